@@ -12,8 +12,8 @@
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "pictures/origin.hpp"
-#include "pictures/picture_ending.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_format.hpp"
+#include "pictures/picture_job.hpp"
 
 namespace achilles {
 

@@ -5,7 +5,7 @@
 #include "cli/assets.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"
-#include "session/gallery.hpp"
+#include "session/glossary.hpp"
 
 namespace achilles {
 

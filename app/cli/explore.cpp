@@ -23,7 +23,7 @@
 #include "panels/panels.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/thumbnails.hpp"
-#include "session/open_session.hpp"
+#include "session/recipe.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {

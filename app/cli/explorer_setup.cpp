@@ -6,9 +6,9 @@
 #include "cli/commands/commands.hpp"
 #include "cli/entries.hpp"
 #include "cli/manual.hpp"
-#include "panels/print.hpp"
+#include "panels/widgets.hpp"
 #include "pictures/thumbnails.hpp"
-#include "session/open_session.hpp"
+#include "session/recipe.hpp"
 
 namespace achilles {
 

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "panels/panels.hpp"
-#include "pictures/film_job.hpp"
+#include "pictures/film.hpp"
 #include "session/session.hpp"
 
 namespace achilles {

@@ -6,11 +6,11 @@
 #include "cli/commands/commands.hpp"
 #include "cli/explore.hpp"
 #include "cli/explorer_setup.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "journal/journal.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
-#include "session/open_session.hpp"
+#include "session/recipe.hpp"
 #include "surface/offscreen.hpp"
 
 namespace achilles {

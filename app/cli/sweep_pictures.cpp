@@ -6,8 +6,7 @@
 #include <stdexcept>
 
 #include "cli/terminal.hpp"
-#include "pictures/pdf.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/take_away.hpp"
 #include "study/chunks.hpp"
 

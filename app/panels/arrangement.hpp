@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/sheet.hpp"
+#include "figure/layout.hpp"
 #include "session/scene.hpp"
 
 namespace achilles {

@@ -9,9 +9,8 @@
 
 #include "figure/label.hpp"
 #include "number/angle.hpp"
-#include "panels/dependence.hpp"
-#include "panels/print.hpp"
 #include "panels/slider.hpp"
+#include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "session/recipe.hpp"
 #include "surface/imgui_version.hpp"

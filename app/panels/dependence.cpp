@@ -1,6 +1,6 @@
 // Below, in place of the events: what a quantity of the run depends on. A bar for every slider: how much the quantity would change
 // over all of it, at the slope that it has now.
-#include "panels/dependence.hpp"
+#include "panels/sweep.hpp"
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -9,9 +9,6 @@
 #include <cmath>
 
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
-#include "panels/print.hpp"
-#include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

@@ -8,8 +8,7 @@
 
 #include "panels/widgets.hpp"
 #include "pictures/film.hpp"
-#include "pictures/find_program.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "surface/imgui_version.hpp"
 
 namespace achilles {

@@ -53,14 +53,14 @@ void follow_session(const Session& session, EditorState& editor) {
 }
 
 // What the text looks like on the screen: where the first letter of a line stands.
-struct Page {
+struct TextPage {
     float left, top;      // of the first letter, scrolling included
     float line, letter;   // height, width
     Rectangle text, all;  // what is visible of the text; that and the gutter
     float y(int number) const { return top + static_cast<float>(number - 1) * line; }
 };
 
-void paint_line_numbers(const Page& page, int lines, const std::vector<InputError>& problems, ImDrawList* list) {
+void paint_line_numbers(const TextPage& page, int lines, const std::vector<InputError>& problems, ImDrawList* list) {
     const int first = std::max(1, static_cast<int>((page.all.y - page.top) / page.line));
     const int last = std::min(lines, static_cast<int>((page.all.y + page.all.height - page.top) / page.line) + 1);
     const float right = page.text.x - units(gutter_padding);
@@ -75,7 +75,7 @@ void paint_line_numbers(const Page& page, int lines, const std::vector<InputErro
 }
 
 // A wave under the word that begins at the place, and the line behind it tinted.
-void paint_problem(const Page& page, const std::string& text, Location at, ImDrawList* list) {
+void paint_problem(const TextPage& page, const std::string& text, Location at, ImDrawList* list) {
     if (at.line < 1) return;
     const float top = page.y(at.line), bottom = top + page.line;
     list->AddRectFilled({page.all.x, top}, {page.all.x + page.all.width, bottom}, packed(error_color(), 0.10F));
@@ -171,12 +171,12 @@ void show_text(const Session& session, PanelState& state, float height) {
     editor.height = height;
     const float scroll = child != nullptr ? child->Scroll.y : 0.0F;
     editor.scroll = scroll;
-    const Page page{all.x + gutter + padding.x - sideways,
-                    all.y + padding.y - scroll,
-                    line,
-                    letter,
-                    {all.x + gutter, all.y, all.width - gutter, height},
-                    all};
+    const TextPage page{all.x + gutter + padding.x - sideways,
+                        all.y + padding.y - scroll,
+                        line,
+                        letter,
+                        {all.x + gutter, all.y, all.width - gutter, height},
+                        all};
     list->PushClipRect(low, {high.x - (child != nullptr ? child->ScrollbarSizes.x : 0.0F), high.y}, true);
     // Marks belong to the text that was read, not to what was typed since.
     const bool is_known = editor.text == session.document().text;

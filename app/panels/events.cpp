@@ -6,16 +6,14 @@
 #include <optional>
 
 #include "figure/label.hpp"
-#include "figure/shown_unit.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/energy.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/label.hpp"
-#include "paint/marker.hpp"
-#include "panels/event_columns.hpp"
-#include "panels/event_rows.hpp"
+#include "paint/paint.hpp"
+#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "system/units.hpp"

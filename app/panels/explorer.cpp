@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "panels/arrangement.hpp"
-#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "session/history.hpp"
 #include "surface/imgui_version.hpp"

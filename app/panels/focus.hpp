@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/sheet.hpp"
+#include "figure/layout.hpp"
 
 namespace achilles {
 

@@ -10,7 +10,6 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/label.hpp"
-#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

@@ -8,11 +8,10 @@
 
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "output/output.hpp"
 #include "paint/paint.hpp"
 #include "panels/panels.hpp"
-#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "session/orbit_job.hpp"
 #include "surface/imgui_version.hpp"

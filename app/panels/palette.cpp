@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "panels/print.hpp"
 #include "panels/widgets.hpp"
 #include "session/finder.hpp"
 #include "surface/imgui_version.hpp"

@@ -11,8 +11,8 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "output/sentences.hpp"
-#include "paint/marker.hpp"
-#include "panels/turns.hpp"
+#include "paint/paint.hpp"
+#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

@@ -1,4 +1,4 @@
-// Under the sliders: the present run and those that are pinned, each with its colour and what it differs by.
+// The present run and those that are pinned.
 #include <algorithm>
 #include <cmath>
 
@@ -10,9 +10,11 @@
 
 namespace achilles {
 
+// ---- under the sliders: each with its color and what it differs by ----
+
 namespace {
 
-constexpr float sign_width = 20.0F, word_gap = 10.0F;
+constexpr float run_sign_width = 20.0F, word_gap = 10.0F;
 
 // A quiet word that is pressed, which ends at x, on the line at y; its left end becomes x.
 bool word(const char* text, const std::string& name, const std::string& about, float& x, float y, PanelState& state) {
@@ -80,8 +82,8 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
     const std::string name = run.name.empty() ? "same as present run" : run.name;
     tooltip(name + (run.shown ? ": pinned. Click to hide it" : ": pinned, hidden. Click to show it"));
     paint_sign(at, run_color(session.theme(), run.place), run.shown);
-    const std::string told = fitted(name, right - at.x - units(sign_width));
-    cell({at.x + units(sign_width), at.y}, told, right - at.x - units(sign_width) + 1.0F,
+    const std::string told = fitted(name, right - at.x - units(run_sign_width));
+    cell({at.x + units(run_sign_width), at.y}, told, right - at.x - units(run_sign_width) + 1.0F,
          run.shown || is_hovered ? text_color() : faint_color());
     ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
 }
@@ -94,7 +96,7 @@ void show_waiting(int place, const Session& session, PanelState& state, Commands
     if (word("\u00d7", "unpin " + std::to_string(place), "do not pin this run", right, at.y, state))
         commands.emplace_back(command::Unpin{place});
     paint_sign(at, run_color(session.theme(), place), false);
-    cell({at.x + units(sign_width), at.y}, "still under way", right - at.x - units(sign_width), faint_color());
+    cell({at.x + units(run_sign_width), at.y}, "still under way", right - at.x - units(run_sign_width), faint_color());
     ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
 }
 
@@ -131,13 +133,120 @@ void show_runs(const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
     paint_sign(at, session.theme().ink, true);
-    cell({at.x + units(sign_width), at.y},
-         session.name_of_run().empty() ? "present run" : "present: " + session.name_of_run(), width - units(sign_width),
-         text_color());
+    cell({at.x + units(run_sign_width), at.y},
+         session.name_of_run().empty() ? "present run" : "present: " + session.name_of_run(),
+         width - units(run_sign_width), text_color());
     ImGui::Dummy({width, ImGui::GetTextLineHeight()});
     for (const PinnedRun& run : session.pinned()) show_run(run, session, state, commands);
     for (const int place : waiting) show_waiting(place, session, state, commands);
     ImGui::Dummy({1.0F, 0.0F});  // what stands last must have been laid out
+}
+
+// ---- beside the list of events: in a table, a column each; what differs stands out ----
+
+namespace {
+
+constexpr float run_name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, table_sign_width = 15.0F;
+
+// The columns of a table as wide as the panel.
+struct Columns {
+    float first = 0.0F, each = 0.0F;
+    std::size_t count = 0;  // runs, and behind them the change where there is one
+    float at(std::size_t i) const { return first + each * static_cast<float>(i); }
+};
+
+Columns columns_of(const Session& session) {
+    Columns columns;
+    const std::size_t runs = session.pinned().size() + 1;
+    columns.count = runs == 2 ? 3 : runs;
+    const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+    columns.first = std::min(units(run_name_width), 0.28F * room);
+    columns.each = std::min(units(widest_column), (room - columns.first) / static_cast<float>(columns.count));
+    return columns;
+}
+
+void paint_table_sign(const ImVec2& at, const Color& color) {
+    const float middle = std::floor(at.y + 0.5F * ImGui::GetTextLineHeight()) + 0.5F;
+    ImGui::GetWindowDrawList()->AddLine({at.x, middle}, {at.x + units(10.0F), middle}, packed(color), units(3.0F));
+}
+
+// Names and colours of the runs; the line stays while the table scrolls.
+void show_head(const Session& session, const Columns& columns) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const auto title = [&](std::size_t i, const std::string& name, const Color* color) {
+        const float x = at.x + columns.at(i), side = color != nullptr ? units(table_sign_width) : 0.0F;
+        if (color != nullptr) paint_table_sign({x, at.y}, *color);
+        cell({x + side, at.y}, name, columns.each - side - units(6.0F),
+             color != nullptr ? text_color() : faint_color());
+    };
+    const Color ink = session.theme().ink;
+    title(0, session.name_of_run().empty() ? "present" : session.name_of_run(), &ink);
+    for (std::size_t i = 0; i < session.pinned().size(); ++i) {
+        const PinnedRun& run = session.pinned()[i];
+        const Color color = run_color(session.theme(), run.place);
+        title(i + 1, run.name.empty() ? "pinned" : run.name, &color);
+    }
+    if (session.pinned().size() == 1) title(2, "change", nullptr);
+    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
+}
+
+// Strong where it is another than the present run's, which is strong where any differs.
+void show_row(const RunTable::Row& row, const Columns& columns) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool any = std::find(row.differs.begin(), row.differs.end(), true) != row.differs.end();
+    cell(at, row.name, columns.first - units(6.0F), any ? text_color() : faint_color());
+    for (std::size_t i = 0; i < row.values.size(); ++i)
+        cell({at.x + columns.at(i), at.y}, row.values[i], columns.each - units(6.0F),
+             row.differs[i] || (i == 0 && any) ? text_color() : faint_color());
+    if (any && row.values.size() == 2)
+        cell({at.x + columns.at(2), at.y}, row.change, columns.each - units(6.0F), text_color());
+    ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
+}
+
+// The colour of the run, then what it does.
+void show_parting(const PinnedRun& run, const std::string& sentence, float width, const Session& session) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    paint_table_sign(at, run_color(session.theme(), run.place));
+    cell({at.x + units(table_sign_width), at.y}, sentence, width - units(table_sign_width), text_color());
+    ImGui::Dummy({width, ImGui::GetTextLineHeight()});
+}
+
+}  // namespace
+
+float comparison_width(const Session& session) {
+    const std::size_t runs = session.pinned().size() + 1;
+    return units(run_name_width + least_column * static_cast<float>(runs == 2 ? 3 : runs));
+}
+
+void show_comparison(const Session& session, PanelState& state, Commands& commands) {
+    const RunTable& table = session.run_table();
+    if (show_card_title(
+            session.pinned().size() == 1 ? "Comparison with the pinned run" : "Comparison with the pinned runs", "",
+            state))
+        commands.emplace_back(command::Show{"runs", false});
+    const Columns columns = columns_of(session);
+    show_head(session, columns);
+    const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
+    const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
+    ImGui::BeginChild("table", {0.0F, room}, false);
+    const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
+    bool was_cause = false;
+    for (const RunTable::Row& row : table.rows) {
+        // A line between what differs and what follows.
+        if (was_cause && !row.is_cause) {
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const float y = std::floor(at.y - 0.5F * ImGui::GetStyle().ItemSpacing.y) + 0.5F;
+            ImGui::GetWindowDrawList()->AddLine({at.x, y}, {at.x + std::min(width, columns.at(columns.count)), y},
+                                                ImGui::GetColorU32(ImGuiCol_Border));
+        }
+        was_cause = row.is_cause;
+        show_row(row, columns);
+    }
+    for (const auto& [run, sentence] : table.partings)
+        show_parting(session.pinned()[run - 1], sentence, width, session);
+    ImGui::EndChild();
+    ImGui::PopStyleVar();
 }
 
 }  // namespace achilles

@@ -11,7 +11,6 @@
 
 #include "expression/parse.hpp"
 #include "expression/read_number.hpp"
-#include "panels/print.hpp"
 #include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"

@@ -1,14 +1,22 @@
-// Above the mechanism: the state at this instant in numbers, the phase and the coordinates, their rates below.
+// The state and the energy at this instant.
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <string>
 
 #include "figure/label.hpp"
 #include "figure/stage.hpp"
 #include "number/angle.hpp"
+#include "output/energy.hpp"
+#include "output/precision.hpp"
 #include "paint/label.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {
+
+// ---- above the mechanism: the phase and the coordinates in numbers, their rates below ----
 
 namespace {
 
@@ -87,6 +95,233 @@ void show_state(const Session& session, const Rectangle& panel) {
             cell(corner, shown.name, shown.value, column - units(8.0F), is_rate ? faint_color() : text_color());
         }
     }
+}
+
+// Between the results and the player: where the energy is now and where it went, as a bar, in numbers, and over the run on the
+// player's axis. What moves has the colour of the velocity's arrow, what impacts took that of their signs.
+
+// The energies of the run that is shown, along it: made once for each run.
+class EnergyCourse {
+ public:
+    // Of this run, and whether it still is.
+    explicit EnergyCourse(const Session& session)
+        : model_(session.model()),
+          run_(session.trajectory().run),
+          end_(session.trajectory().end_time),
+          balance_(*model_, run_) {
+        for (const Sample& sample : session.samples()) {
+            const Energies now = balance_.at(sample);
+            lowest_ = course_.empty() ? now.potential : std::min(lowest_, now.potential);
+            course_.emplace_back(sample.t, now);
+        }
+        for (const auto& [t, energies] : course_) full_ = std::max(full_, stack(energies).back());
+    }
+    bool is_of(const Session& session) const {
+        return model_ == session.model() && end_ == session.trajectory().end_time && run_ == session.trajectory().run;
+    }
+    Energies at(const Sample& sample) { return balance_.at(sample); }
+    // At a time, as the curves have it: what the last sample before it had.
+    const Energies& before(double t) const {
+        const auto after = std::upper_bound(course_.begin(), course_.end(), t,
+                                            [](double at, const auto& entry) { return at < entry.first; });
+        return after == course_.begin() ? after->second : std::prev(after)->second;
+    }
+    bool empty() const { return course_.empty(); }
+    // The upper ends of what moves, what is stored above its least, what impacts took, what forces took: of the highest such
+    // stack in the run.
+    using Stack = std::array<double, 4>;
+    Stack stack(const Energies& now) const {
+        Stack ends{};
+        ends[0] = now.kinetic;
+        ends[1] = ends[0] + now.potential - lowest_;
+        ends[2] = ends[1] + now.loss;
+        ends[3] = ends[2] + (now.work < 0.0 ? -now.work : 0.0);
+        return ends;
+    }
+    double full() const { return full_; }
+    double at_start() const { return course_.front().second.total() - lowest_; }
+
+ private:
+    std::shared_ptr<const Model> model_;
+    Run run_;
+    double end_;
+    EnergyBalance balance_;
+    std::vector<std::pair<double, Energies>> course_;
+    double lowest_ = 0.0, full_ = 0.0;
+};
+
+namespace {
+
+constexpr float energy_padding = 6.0F, gap = 4.0F, bar_height = 9.0F, course_height = 40.0F, inset = 8.0F;
+
+struct Part {
+    const char *name, *about;
+    Color color;
+    float alpha;
+};
+// The last is striped: of two quiet greys nobody can tell which is which.
+constexpr std::size_t striped = 3;
+
+std::array<Part, 4> parts(const Theme& theme) {
+    return {{{"kinetic", "kinetic energy", theme.ink, 0.85F},
+             {"potential", "potential energy; the bar shows the part above the minimum of this run", theme.ink, 0.3F},
+             {"impact loss", "energy lost in all impacts and in the restarts at Zeno points",
+              phase_color(theme, Phase::Kind::hybrid), 0.75F},
+             {"work done",
+              "work of forces and of moving surfaces: energy removed is part of the bar, energy added extends beyond "
+              "the line, which marks the initial energy",
+              theme.faint, 0.8F}}};
+}
+
+void fill(const Part& part, bool stripes, ImVec2 low, ImVec2 high) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (!stripes) return list->AddRectFilled(low, high, packed(part.color, part.alpha));
+    const float step = std::max(2.0F, std::floor(units(2.0F)));
+    list->AddRectFilled(low, high, packed(part.color, 0.15F));
+    for (float x = low.x; x < high.x; x += 2.0F * step)
+        list->AddRectFilled({x, low.y}, {std::min(x + step, high.x), high.y}, packed(part.color, 0.8F));
+}
+
+std::string valued(const Session& session, double value, double error) {
+    const std::string unit = typeset_unit(session.sentences().energy_unit());
+    const double size = 10.0 * std::max(session.sentences().energy_scale(), std::abs(session.trajectory().loss));
+    const std::string text = std::isfinite(value) ? number(without_noise(value, size), error, 4) : "\u2013";
+    return unit.empty() ? text : text + " " + unit;
+}
+
+bool has_forces(const Session& session) { return session.model()->equations().has_power(); }
+
+std::array<double, 4> values(const Energies& now) { return {now.kinetic, now.potential, now.loss, now.work}; }
+
+// A name over its value, in as many columns as there are.
+void show_numbers(const Session& session, const Energies& now, const Rectangle& area) {
+    const std::size_t count = has_forces(session) ? 4 : 3;
+    const float width = area.width / static_cast<float>(count), line = ImGui::GetTextLineHeight();
+    const auto all = parts(session.theme());
+    const auto its = values(now);
+    const double error = session.precision().of_energy(session.now());
+    for (std::size_t i = 0; i < count; ++i) {
+        const ImVec2 at{area.x + static_cast<float>(i) * width, area.y};
+        const float sign = units(9.0F), words = units(14.0F);
+        const float top = std::floor(at.y + 0.5F * (line - sign));
+        fill(all[i], i == striped, {at.x, top}, {at.x + sign, top + sign});
+        cell({std::floor(at.x + words), at.y}, all[i].name, width - words - units(4.0F), faint_color());
+        cell({std::floor(at.x + words), at.y + ImGui::GetTextLineHeightWithSpacing()}, valued(session, its[i], error),
+             width - words - units(4.0F), text_color());
+        ImGui::SetCursorScreenPos(at);
+        ImGui::Dummy({width, 2.0F * ImGui::GetTextLineHeightWithSpacing()});
+        tooltip(all[i].about);
+    }
+}
+
+// So much of the whole as a length.
+float length(double value, double full, float whole) {
+    return full > 0.0 && std::isfinite(value) ? static_cast<float>(std::clamp(value / full, 0.0, 1.0)) * whole : 0.0F;
+}
+
+void show_bar_of(const Session& session, const EnergyCourse& course, const Energies& now, const Rectangle& area) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const auto all = parts(session.theme());
+    const auto ends = course.stack(now);
+    const auto x = area.x, width = area.width;
+    const auto top = area.y, bottom = area.y + area.height;
+    list->AddRectFilled({x, top}, {x + width, bottom}, packed(session.theme().grid, 0.5F));
+    float from = x;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+        const float to = std::max(from, x + length(ends[i], course.full(), width));
+        if (to > from) fill(all[i], i == striped, {from, top}, {to, bottom});
+        from = to;
+    }
+    if (!has_forces(session)) return;
+    const float start = std::floor(x + length(course.at_start(), course.full(), width)) + 0.5F;
+    list->AddLine({start, top - units(2.0F)}, {start, bottom + units(2.0F)}, packed(text_color()), units(1.5F));
+}
+
+// The same over the run, a column a pixel, upwards; with the present as a line.
+void paint_course(const Session& session, const EnergyCourse& course, const Rectangle& area, double start, double end) {
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const auto all = parts(session.theme());
+    const auto left = area.x, width = area.width;
+    const auto top = area.y, height = area.height, bottom = top + height;
+    const double reached = session.trajectory().end_time;
+    std::array<ImU32, 4> colors{};
+    for (std::size_t i = 0; i < all.size(); ++i) colors[i] = packed(all[i].color, all[i].alpha);
+    const float stripe = std::max(2.0F, std::floor(units(2.0F)));
+    const ImU32 between = packed(all[striped].color, 0.15F);
+    for (float x = 0.0F; x + 1.0F <= width; x += 1.0F) {
+        const double t = start + double{(x + 1.0F) / width} * (end - start);
+        if (t > reached + (end - start) / width) break;
+        const auto ends = course.stack(course.before(t));
+        float from = bottom;
+        for (std::size_t i = 0; i < ends.size(); ++i) {
+            const float to = std::min(from, bottom - length(ends[i], course.full(), height));
+            const ImU32 color = i == striped && std::fmod(x, 2.0F * stripe) >= stripe ? between : colors[i];
+            if (to < from) list->AddRectFilled({left + x, to}, {left + x + 1.0F, from}, color);
+            from = to;
+        }
+    }
+    fade_beyond(session, {left, top, width, height}, start, end, session.theme().background);
+    const float now = std::floor(left + static_cast<float>((session.time() - start) / (end - start)) * width) + 0.5F;
+    list->AddLine({now, top}, {now, bottom}, packed(session.theme().background), units(4.0F));
+    list->AddLine({now, top}, {now, bottom}, packed(text_color()), units(1.5F));
+}
+
+// What the instant under the mouse has, and what the last event before it has taken.
+std::string told(const Session& session, const EnergyCourse& course, double t) {
+    const auto its = values(course.before(t));
+    const auto all = parts(session.theme());
+    std::string text = fmt::format("t = {:.6g} s", t);
+    const double error = session.precision().of_energy(session.at(t));
+    for (std::size_t i = 0; i < (has_forces(session) ? 4U : 3U); ++i)
+        text += fmt::format("\n{} {}", all[i].name, valued(session, its[i], error));
+    const auto& events = session.trajectory().events;
+    const auto after =
+        std::upper_bound(events.begin(), events.end(), t, [](double at, const Event& event) { return at < event.t; });
+    if (after == events.begin()) return text;
+    const auto event = static_cast<std::size_t>(after - events.begin()) - 1;
+    return text + fmt::format("\nevent {}: {}", event + 1, typeset_sentence(session.sentences().of(event)));
+}
+
+}  // namespace
+
+float energy_height(bool with_course) {
+    const float numbers = 2.0F * ImGui::GetTextLineHeightWithSpacing();
+    return std::floor(2.0F * units(energy_padding) + numbers + units(gap + bar_height) +
+                      (with_course ? units(gap + course_height) : 0.0F));
+}
+
+void show_energy(const Session& session, PanelState& state, Commands& commands) {
+    if (state.energy == nullptr || !state.energy->is_of(session))
+        state.energy = std::make_shared<EnergyCourse>(session);
+    EnergyCourse& course = *state.energy;
+    const Rectangle area = remaining();
+    ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
+                                              packed(session.theme().background), units(4.0F));
+    if (course.empty()) return;
+    const Energies now = course.at(session.now());
+    const float edge = units(inset), line = ImGui::GetTextLineHeightWithSpacing();
+    Rectangle rest{area.x + edge, area.y + units(energy_padding), area.width - 2.0F * edge, 2.0F * line};
+    show_numbers(session, now, rest);
+    rest.y += rest.height + units(gap), rest.height = units(bar_height);
+    show_bar_of(session, course, now, rest);
+    ImGui::SetCursorScreenPos({rest.x, rest.y});
+    ImGui::Dummy({rest.width, rest.height});
+    remember(state, "energy bar");
+    rest.y += rest.height + units(gap), rest.height = area.y + area.height - units(energy_padding) - rest.y;
+    if (rest.height < 0.5F * units(course_height)) return;
+    const Options& options = session.trajectory().run.options;
+    const double start = options.start_time, end = std::max(options.end_time, session.trajectory().end_time);
+    ImGui::SetCursorScreenPos({rest.x, rest.y});
+    ImGui::InvisibleButton("course", {rest.width, rest.height});
+    remember(state, "energy course");
+    paint_course(session, course, rest, start, end);
+    const double share = (double{ImGui::GetIO().MousePos.x} - double{rest.x}) / double{rest.width};
+    if (ImGui::IsItemHovered())
+        tooltip(told(session, course, std::clamp(start + share * (end - start), start, session.trajectory().end_time)),
+                area);
+    double time = 0.0;
+    if (dragged_to(start, end, rest.x, rest.width, time) && time != session.time())
+        commands.emplace_back(command::Seek{time});
 }
 
 }  // namespace achilles

@@ -1,13 +1,319 @@
-// Menus: what can be taken away from a session, and the tours that can be taken; and what a tour says on the way.
+// What can be taken away from a session: the menus and the dialog; and the tours that can be taken.
 #include <fmt/format.h>
+#include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <filesystem>
 
 #include "panels/widgets.hpp"
+#include "pictures/film.hpp"
+#include "pictures/picture_format.hpp"
+#include "pictures/take_away.hpp"
 #include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
 
 namespace achilles {
+
+// ---- the upper part of the dialog: what is taken away, in which size, and what that comes to; and a film on its way ----
+
+namespace {
+
+using What = TakeAwayForm::What;
+
+constexpr float names_width = 92.0F;
+
+void row(const char* name) {
+    ImGui::AlignTextToFramePadding();
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width));
+}
+
+// One of several, side by side; the chosen one is down.
+bool word(const std::string& name, bool is_down, PanelState& state, const std::string& about = {}) {
+    ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(is_down ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
+    const bool pressed = ImGui::Button(name.c_str());
+    ImGui::PopStyleColor();
+    remember(state, "take " + name);
+    tooltip(about);
+    ImGui::SameLine(0.0F, ImGui::GetStyle().ItemInnerSpacing.x);
+    return pressed;
+}
+
+// True when another number was typed.
+bool number_field(const char* name, double& value, const char* unit, PanelState& state) {
+    ImGui::SetNextItemWidth(units(58.0F));
+    const bool typed = ImGui::InputDouble((std::string("##") + name).c_str(), &value, 0.0, 0.0, "%.4g");
+    remember(state, std::string("take field ") + name);
+    ImGui::SameLine(0.0F, units(5.0F));
+    ImGui::TextUnformatted(unit);
+    ImGui::SameLine(0.0F, units(14.0F));
+    return typed;
+}
+
+// A second name in a row, at the same place in every row.
+void column(const char* name) {
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width + 120.0F));
+    ImGui::TextUnformatted(name);
+    ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width + 206.0F));
+}
+
+std::string name_of(const Session& session, int plot) {
+    return fmt::format("plot {}: {}", plot, session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
+}
+
+bool is_data(const std::string& ending) { return ending == "json" || ending == "csv" || ending == "journal"; }
+
+// Whether what is chosen can be written with this ending.
+bool fits(const TakeAwayForm& form, const std::string& ending) {
+    const std::string name = "a." + ending;
+    if (form.what == What::film) return is_film(name);
+    return !ending_of_picture(name).empty() || (form.what == What::plots && form.plot == 0 && is_data(ending));
+}
+
+// The path ends as what is chosen says, in place of an ending that a file may have.
+void end_in(PanelState& state, const std::string& ending) {
+    std::filesystem::path path(state.editor.path);
+    const std::string before = ending_of(state.editor.path), name = "a." + before;
+    if (is_film(name) || !ending_of_picture(name).empty() || is_data(before)) path.replace_extension();
+    use_path(state, path.string() + "." + ending);
+    state.take_away.ending = ending;
+}
+
+void choose_what(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    const int count = static_cast<int>(session.plotted().list().size());
+    form.plot = std::min(form.plot, count);
+    row("content");
+    ImGui::SetNextItemWidth(-1.0F);
+    const std::string now = form.what == What::film        ? "a film: the mechanism in motion beside the plots"
+                            : form.what == What::mechanism ? "the mechanism as it is now"
+                            : form.plot > 0                ? name_of(session, form.plot)
+                            : count == 1                   ? "the plot"
+                                                           : "all plots";
+    const bool open = ImGui::BeginCombo("##what", fitted(now, remaining().width - units(40.0F)).c_str());
+    remember(state, "take what");
+    if (!open) return;
+    const auto take = [&](const std::string& name, What what, int plot) {
+        const bool chosen = ImGui::Selectable(name.c_str(), form.what == what && form.plot == plot);
+        remember(state, "take " + name);
+        if (!chosen) return;
+        form.what = what;
+        form.plot = plot;
+        if (!fits(form, form.ending)) end_in(state, what == What::film ? "mp4" : "svg");
+    };
+    take("all plots", What::plots, 0);
+    for (int plot = 1; count > 1 && plot <= count; ++plot) take(name_of(session, plot), What::plots, plot);
+    if (!session.mechanism().is_empty()) take("the mechanism as it is now", What::mechanism, 0);
+    take("a film: the mechanism in motion beside the plots", What::film, 0);
+    close_by_escape(state);
+    ImGui::EndCombo();
+}
+
+void choose_kind(PanelState& state) {
+    const std::string& ending = state.take_away.ending;
+    row("format");
+    if (state.take_away.what == What::film) {
+        const std::string by = find_program("ffmpeg").empty() ? "ffmpeg is not installed" : "made with ffmpeg";
+        for (const char* kind : {"mp4", "gif"})
+            if (word(kind, ending == kind, state, by)) end_in(state, kind);
+    } else {
+        for (const auto& [kind, about] :
+             {std::pair{"svg", "lines and text, for papers and for editing"},
+              std::pair{"pdf", "lines and text for LaTeX (needs rsvg-convert from librsvg)"},
+              std::pair{"png", "pixels"}})
+            if (word(kind, ending == kind, state, about)) end_in(state, kind);
+    }
+    ImGui::SameLine(0.0F, units(14.0F));
+    ImGui::Checkbox("dark", &state.take_away.dark);
+    remember(state, "take dark");
+    tooltip("light on dark, for a screen; paper is white");
+}
+
+// The width over the height of what is chosen.
+double chosen_shape(const Session& session, const TakeAwayForm& form) {
+    const Plots& plots = session.plotted();
+    return form.what == What::mechanism ? shape_of(session.limits())
+           : form.plot > 0              ? shape_of(1, 1)
+                                        : shape_of(static_cast<int>(plots.list().size()), plots.columns());
+}
+
+void choose_size(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("width");
+    number_field("width", form.width, "mm", state);
+    column("height");
+    // Until somebody types another: what fits.
+    double height =
+        form.height == 0.0 ? height_of({form.width, 0.0, 0.0, 0.0}, chosen_shape(session, form)) : form.height;
+    if (number_field("height", height, "mm", state)) form.height = height;
+    if (word("fits", form.height == 0.0, state, "best height for the plots")) form.height = 0.0;
+    ImGui::NewLine();
+    row("text");
+    number_field("font", form.font, "pt", state);
+    if (form.ending == "png") {
+        column("resolution");
+        number_field("dpi", form.dpi, "dpi", state);
+    }
+    ImGui::NewLine();
+}
+
+void choose_page(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("for");
+    const auto widths = column_widths();
+    const auto chosen =
+        std::find_if(widths.begin(), widths.end(), [&](const ColumnWidth& one) { return one.width == form.width; });
+    const bool is_other = form.on_paper && chosen == widths.end();
+    const std::string pixels = "a screen (1200 \u00d7 800 pixels)";
+    const std::string now = !form.on_paper ? pixels : is_other ? "another width" : std::string(chosen->name);
+    ImGui::SetNextItemWidth(-1.0F);
+    const bool open = ImGui::BeginCombo("##page", now.c_str());
+    remember(state, "take page");
+    if (open) {
+        if (ImGui::Selectable(pixels.c_str(), !form.on_paper)) form.on_paper = false;
+        remember(state, "take screen");
+        for (const ColumnWidth& one : widths) {
+            const std::string name(one.name);
+            if (ImGui::Selectable(name.c_str(), form.on_paper && form.width == one.width))
+                form.on_paper = true, form.width = one.width, form.height = 0.0, form.font = one.font;
+            remember(state, "take " + name);
+        }
+        if (ImGui::Selectable("another width", is_other)) form.on_paper = true, form.width = 100.0;
+        remember(state, "take another width");
+        close_by_escape(state);
+        ImGui::EndCombo();
+    }
+    if (form.on_paper) choose_size(session, state);
+}
+
+void choose_film(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    row("width");
+    for (const int pixels : {640, 1280, 1920, 2560})
+        if (word(fmt::format("{}", pixels), form.pixels == pixels, state)) form.pixels = pixels;
+    ImGui::TextUnformatted("pixels");
+    row("time");
+    double speed = form.speed > 0.0 ? form.speed : session.scene().speed();
+    const double before = speed;
+    number_field("speed", speed, "\u00d7 its speed", state);
+    if (speed != before) form.speed = std::max(speed, 0.0);
+    number_field("fps", form.fps, "frames per second", state);
+    ImGui::NewLine();
+}
+
+}  // namespace
+
+void use_path(PanelState& state, const std::string& path) {
+    state.editor.path = path;
+    state.browser.line = path;
+    state.browser.rewrites = true;
+}
+
+void show_take_away_form(const Session& session, PanelState& state) {
+    TakeAwayForm& form = state.take_away;
+    if (const std::string typed = ending_of(state.editor.path); fits(form, typed)) form.ending = typed;
+    if (is_data(form.ending)) return;
+    choose_what(session, state);
+    choose_kind(state);
+    if (form.what == What::film)
+        choose_film(session, state);
+    else
+        choose_page(session, state);
+    const TakeAwayNote note = take_away_note(session, form);
+    row("result");
+    paragraph(note.text, remaining().width, note.is_wrong ? error_color() : text_color());
+    ImGui::Dummy({0.0F, units(4.0F)});
+}
+
+std::string take_away_file(const TakeAwayForm& form, const std::string& path) {
+    const std::filesystem::path file(path);
+    return file.has_filename() && file.extension().empty() ? path + "." + form.ending : path;
+}
+
+command::Export take_away_command(const TakeAwayForm& form, const std::string& file, bool overwrite) {
+    command::Export what{file, overwrite, 0};
+    if (form.what == What::film) {
+        what.fps = form.fps == 30.0 ? 0.0 : form.fps;
+        what.speed = form.speed;
+        what.pixels = form.pixels == 1280 ? 0 : form.pixels;
+        what.dark = form.dark;
+        return what;
+    }
+    if (ending_of_picture(file).empty()) return what;
+    what.plot = form.plot;
+    what.mechanism = form.what == What::mechanism;
+    what.dark = form.dark;
+    if (!form.on_paper) return what;
+    what.width = form.width;
+    what.height = form.height;
+    what.font = form.font == default_font ? 0.0 : form.font;
+    if (ending_of(file) == "png") what.dpi = form.dpi == default_dpi ? 0.0 : form.dpi;
+    return what;
+}
+
+namespace {
+
+TakeAwayNote note_on_film(const Session& session, const TakeAwayForm& form) {
+    if (!(form.fps > 0.0)) return {fmt::format("the frames per second must be above 0, not {:g}", form.fps), true};
+    const FilmExtent extent = extent_of(session, take_away_command(form, "a.mp4", false));
+    if (!(extent.frames <= most_film_frames))
+        return {fmt::format("more than {:.0f} frames: raise the speed, or use fewer per second", most_film_frames),
+                true};
+    if (extent.width < 320 || extent.width > 3840)
+        return {fmt::format("a film must be 320 to 3840 pixels wide, not {}", extent.width), true};
+    if (find_program("ffmpeg").empty()) return {"a film needs ffmpeg, which is not installed", true};
+    return {fmt::format("{} \u00d7 {} px, {:.0f} frames, {:.3g} s", extent.width, extent.height, extent.frames,
+                        extent.frames / form.fps)};
+}
+
+TakeAwayNote note_on_page(const Session& session, const TakeAwayForm& form) {
+    const bool has_dots = form.ending == "png";
+    const PaperSize page{form.width, form.height, form.font, has_dots ? form.dpi : default_dpi};
+    // To a page 0 is what follows from the rest; here the fields of the others show that.
+    for (const auto& [name, value] :
+         {std::pair{"width", page.width}, std::pair{"text", page.font}, std::pair{"resolution", page.dpi}})
+        if (!(value > 0.0)) return {fmt::format("{} must be above 0, not {:g}", name, value), true};
+    try {
+        check(page, "");
+        const double shape = chosen_shape(session, form);
+        on_page(page, form.ending, 1.0, shape);
+        return {fmt::format("{}, text of {:.3g} pt", told(page, form.ending, shape), page.font)};
+    } catch (const InputError& problem) {
+        return {problem.message + (problem.hint.empty() ? "" : ": " + problem.hint), true};
+    }
+}
+
+}  // namespace
+
+TakeAwayNote take_away_note(const Session& session, const TakeAwayForm& form) {
+    if (form.what == What::film) return note_on_film(session, form);
+    if (form.on_paper) return note_on_page(session, form);
+    return {form.ending == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)
+                                 : "1200 \u00d7 800 px"};
+}
+
+void show_film(PanelState& state) {
+    if (!state.film) return;
+    const ImVec2 all = ImGui::GetIO().DisplaySize;
+    ImGui::SetNextWindowPos({0.5F * all.x, all.y - units(44.0F)}, ImGuiCond_Always, {0.5F, 1.0F});
+    constexpr ImGuiWindowFlags flags = ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove |
+                                       ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoFocusOnAppearing |
+                                       ImGuiWindowFlags_NoNav;
+    ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetColorU32(ImGuiCol_PopupBg));
+    ImGui::Begin("film", nullptr, flags);
+    const std::string name = std::filesystem::path(state.film->film).filename().string();
+    ImGui::TextUnformatted(fitted(name + "   " + state.film->line, units(420.0F)).c_str());
+    ImGui::ProgressBar(static_cast<float>(state.film->share), {units(330.0F), ImGui::GetFrameHeight()}, "");
+    ImGui::SameLine();
+    if (ImGui::Button("Stop", {units(80.0F), 0.0F})) state.film->is_given_up = true;
+    remember(state, "film Stop");
+    ImGui::End();
+    ImGui::PopStyleColor();
+}
+
+// ---- menus: what can be taken away, and the tours; and what a tour says on the way ----
 
 namespace {
 
@@ -18,11 +324,12 @@ bool item(const char* name, const char* about, PanelState& state, bool enabled =
     return chosen;
 }
 
-constexpr float padding = 12.0F, accent_width = 4.0F, buttons_width = 76.0F, close_width = 26.0F;
+constexpr float tour_padding = 12.0F, accent_width = 4.0F, buttons_width = 76.0F, close_width = 26.0F;
 
 // The caption's text in its width, a little larger than the interface's.
 float text_width(const PanelState& state, float width) {
-    return width - 2.0F * units(padding) - units(accent_width) - units(state.on_tour ? buttons_width : close_width);
+    return width - 2.0F * units(tour_padding) - units(accent_width) -
+           units(state.on_tour ? buttons_width : close_width);
 }
 
 // A word to press in the caption's corner.
@@ -74,7 +381,7 @@ float caption_height(const Session& session, const PanelState& state, float widt
     const float room = text_width(state, width);
     const float text = ImGui::CalcTextSize(caption.c_str(), nullptr, false, room).y;
     // Room for four lines: from caption to caption nothing jumps.
-    return std::max(text, 4.0F * ImGui::GetTextLineHeight()) + 2.0F * units(padding) - units(4.0F);
+    return std::max(text, 4.0F * ImGui::GetTextLineHeight()) + 2.0F * units(tour_padding) - units(4.0F);
 }
 
 void show_caption(const Session& session, PanelState& state, Commands& commands) {
@@ -84,7 +391,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     list->AddRectFilled(low, high, packed(session.theme().background), units(4.0F));
     list->AddRectFilled(low, {low.x + units(accent_width), high.y}, ImGui::GetColorU32(ImGuiCol_SliderGrab),
                         units(2.0F));
-    const float left = area.x + units(accent_width + padding), top = area.y + units(padding - 2.0F);
+    const float left = area.x + units(accent_width + tour_padding), top = area.y + units(tour_padding - 2.0F);
     ImGui::SetCursorScreenPos({left, top});
     ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + text_width(state, area.width));
     ImGui::TextUnformatted(session.scene().caption().c_str());
@@ -109,8 +416,8 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
         state.tour_wants = PanelState::OnTour::back;
     if (state.tour_said == 0) return;
     const std::string how_far = fmt::format("{}/{}", state.tour_said, state.tour_sentences);
-    list->AddText({std::floor(high.x - units(padding) - ImGui::CalcTextSize(how_far.c_str()).x),
-                   std::floor(high.y - units(padding - 2.0F) - ImGui::GetTextLineHeight())},
+    list->AddText({std::floor(high.x - units(tour_padding) - ImGui::CalcTextSize(how_far.c_str()).x),
+                   std::floor(high.y - units(tour_padding - 2.0F) - ImGui::GetTextLineHeight())},
                   packed(faint_color()), how_far.c_str());
 }
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "figure/ticks.hpp"
-#include "paint/marker.hpp"
-#include "panels/turns.hpp"
+#include "figure/axes.hpp"
+#include "paint/paint.hpp"
+#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 
@@ -234,10 +234,10 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     // As wide as it ever gets, so that what follows stands still.
-    const float time_at = ImGui::GetCursorPosX();
+    const float clock_at = ImGui::GetCursorPosX();
     ImGui::TextUnformatted(fmt::format("t = {:.3f} s", session.time()).c_str());
     ImGui::SameLine(
-        time_at +
+        clock_at +
         ImGui::CalcTextSize(fmt::format("t = {:.3f} s", 8.0 + 10.0 * session.run().options.end_time).c_str()).x);
     speed_slider(session, state, commands);
     loop_box(session, state, commands);

@@ -8,9 +8,19 @@
 #include <string>
 
 #include "figure/figure.hpp"
+#include "figure/palette.hpp"
 #include "panels/panels.hpp"
 
 namespace achilles {
+
+// How plots and words look on the screen, wherever they stand.
+
+constexpr double screen_text_size = 13.0;  // of a plot, at scale 1
+
+// Colours and text of a panel: the rest of the figure is not drawn.
+Figure screen_style(const Theme& theme);
+// Words broken to a width, pixels.
+void paragraph(const std::string& text, float width, const Color& color);
 
 // So many pixels at scale 1.
 float units(float pixels);

@@ -10,10 +10,11 @@
 #include <optional>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "cli/write_files.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "pictures/origin.hpp"
 #include "system/description.hpp"
 
@@ -21,9 +22,21 @@ namespace achilles {
 
 namespace fs = std::filesystem;
 
+OutputFolder::OutputFolder(fs::path folder) : path_(std::move(folder)) {
+    std::error_code problem;
+    made_ = fs::create_directories(path_, problem);
+    if (!fs::is_directory(path_))
+        throw InputError(path_.string(), {}, fmt::format("the folder cannot be created: {}", problem.message()));
+}
+
+OutputFolder::~OutputFolder() {
+    std::error_code ignored;
+    if (made_) fs::remove(path_, ignored);  // only if it is empty
+}
+
 namespace {
 
-constexpr std::string_view prefix = "frame_", ending = ".png", unfinished = ".png.part";
+constexpr std::string_view prefix = "frame_", picture_ending = ".png", unfinished = ".png.part";
 constexpr std::size_t digits = 5, largest_frame = std::size_t{1} << 30;  // bytes
 
 // The number in "frame_00042.png" and what comes after the digits; nothing for another name.
@@ -91,7 +104,7 @@ std::vector<std::size_t> FrameFolder::missing(std::size_t count,
     for (const auto& entry : fs::directory_iterator(folder_.path())) {
         const auto name = parsed(entry.path().filename().string());
         if (!name) continue;
-        if (name->second == ending) frames.emplace_back(name->first, entry.path());
+        if (name->second == picture_ending) frames.emplace_back(name->first, entry.path());
         if (name->second.rfind(unfinished, 0) == 0) waste.push_back(entry.path());
     }
     std::sort(frames.begin(), frames.end());  // the first that is wrong is the one that is told

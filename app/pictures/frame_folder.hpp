@@ -1,4 +1,4 @@
-// The folder that numbered pictures of an animation are drawn into: what is there of the same run stays.
+// Folders that pictures are written into.
 #pragma once
 
 #include <filesystem>
@@ -6,10 +6,28 @@
 #include <string>
 #include <vector>
 
-#include "image/note.hpp"
-#include "pictures/output_folder.hpp"
+#include "image/notes.hpp"
 
 namespace achilles {
+
+// A folder for what a command writes: made where it is missing, and taken away again if nothing came into it.
+
+class OutputFolder {
+ public:
+    // Throws InputError if it cannot be made.
+    explicit OutputFolder(std::filesystem::path folder);
+    ~OutputFolder();
+    OutputFolder(const OutputFolder&) = delete;
+    OutputFolder& operator=(const OutputFolder&) = delete;
+
+    const std::filesystem::path& path() const { return path_; }
+
+ private:
+    std::filesystem::path path_;
+    bool made_ = false;
+};
+
+// The folder that numbered pictures of an animation are drawn into: what is there of the same run stays.
 
 // "frame_00042".
 std::string frame_name(std::size_t number);

@@ -7,8 +7,7 @@
 
 #include "cli/overrides.hpp"
 #include "figure/palette.hpp"
-#include "image/pdf_notes.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "paint/svg.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/inputs.hpp"
-#include "image/note.hpp"
+#include "image/notes.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles {

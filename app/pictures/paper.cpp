@@ -8,10 +8,10 @@
 #include <optional>
 #include <span>
 
+#include "figure/axes.hpp"
 #include "figure/compose.hpp"
 #include "figure/label.hpp"
 #include "figure/publication.hpp"
-#include "figure/ticks.hpp"
 #include "number/angle.hpp"
 #include "output/precision.hpp"
 #include "simulate/impact.hpp"

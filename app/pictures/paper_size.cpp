@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "figure/grid.hpp"
-#include "pictures/pdf.hpp"
+#include "pictures/picture_format.hpp"
 #include "system/description.hpp"
 
 namespace achilles {

@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
+#include <algorithm>
+
 #include "cli/assets.hpp"
-#include "image/pdf_notes.hpp"
-#include "image/png_notes.hpp"
+#include "expression/nearest.hpp"
+#include "image/notes.hpp"
 #include "output/output.hpp"
 #include "paint/mechanism.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
-#include "pictures/pdf.hpp"
+#include "pictures/picture_format.hpp"
 
 namespace achilles {
 
@@ -148,6 +150,30 @@ std::string picture_of(const Drawing& world, const Color& background, const Pict
                    carried);
     };
     return format == "svg" ? drawn(notes) : pdf_of(drawn({}), size, notes);
+}
+
+std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names) {
+    std::vector<ViewDescription> views;
+    if (names.empty()) {
+        views = description.views;
+        std::stable_partition(views.begin(), views.end(),
+                              [](const ViewDescription& view) { return view.x.text == "t"; });
+        return views;
+    }
+    std::vector<std::string> known;
+    for (const ViewDescription& view : description.views) known.push_back(view.name);
+    for (const std::string& name : names) {
+        const auto at = std::find(known.begin(), known.end(), name);
+        if (at == known.end()) {
+            std::string all;
+            for (const std::string& view : known) all += (all.empty() ? "" : ", ") + view;
+            throw InputError("--view " + name, {},
+                             fmt::format("this system has no view '{}'{}", name, did_you_mean(name, known)),
+                             "its views are: " + all);
+        }
+        views.push_back(description.views[static_cast<std::size_t>(at - known.begin())]);
+    }
+    return views;
 }
 
 }  // namespace achilles

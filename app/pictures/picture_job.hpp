@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "cli/write_files.hpp"
-#include "figure/drawing.hpp"
 #include "figure/figure.hpp"
 #include "pictures/origin.hpp"
 #include "surface/offscreen.hpp"
+#include "system/description.hpp"
 
 namespace achilles {
 
@@ -83,5 +83,9 @@ std::string picture_of(const Figure& figure, const PictureSize& size, const Note
 // The same of a mechanism, over this colour; where that is clear there is no background.
 std::string picture_of(const Drawing& world, const Color& background, const PictureSize& size, const Notes& notes,
                        const std::string& format);
+
+// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
+// Throws InputError for a name that is none.
+std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names);
 
 }  // namespace achilles

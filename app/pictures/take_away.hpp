@@ -6,7 +6,7 @@
 #include <string>
 
 #include "figure/publication.hpp"
-#include "pictures/film_job.hpp"
+#include "pictures/film.hpp"
 #include "pictures/paper_size.hpp"
 #include "session/session.hpp"
 

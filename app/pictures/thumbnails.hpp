@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/drawing.hpp"
+#include "figure/figure.hpp"
 #include "session/worker.hpp"
 
 namespace achilles {

@@ -1,7 +1,7 @@
 // Figures as Python asks for them: how they look, and what they carry.
 #include "module.hpp"
 #include "output/output.hpp"
-#include "pictures/pdf.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/take_away.hpp"
 
 namespace py = pybind11;

@@ -1,9 +1,9 @@
 #include <pybind11/stl.h>
 
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "module.hpp"
 #include "output/output.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 
 namespace py = pybind11;

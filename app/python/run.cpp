@@ -11,7 +11,7 @@
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/recipe.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/simulate.hpp"

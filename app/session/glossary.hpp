@@ -1,8 +1,11 @@
-// What the explorer says and what its keys do, as two tables: the help card (F1), the menus and the manual show these.
+// What the explorer says, what its keys do and which systems it offers, as tables: the help card (F1), the menus, the gallery and
+// the manual show these.
 #pragma once
 
+#include <cstddef>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace achilles {
 
@@ -27,5 +30,18 @@ struct Shortcut {
 std::span<const Shortcut> shortcuts();
 // Of a line of a menu; empty where it has none.
 std::string_view shortcut_of(std::string_view menu);
+
+// The gallery in groups: which of the systems that come with the program are about the same.
+
+struct GalleryGroup {
+    std::string_view title;
+    std::vector<std::string_view> systems;  // by name, in the order in which they are shown
+};
+std::span<const GalleryGroup> gallery();
+
+// The title of a system's group; "others" for one that is in none.
+std::string_view group_of(std::string_view system);
+// Where it stands in the gallery, from 0; behind all of them where it does not.
+std::size_t place_in_gallery(std::string_view system);
 
 }  // namespace achilles

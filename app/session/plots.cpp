@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/ticks.hpp"
-#include "session/refusal.hpp"
+#include "figure/axes.hpp"
+#include "session/command.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -1,4 +1,4 @@
-// What leads from files to what a session shows: as short a journal, as few words of a command line as will do.
+// From files and a command line to a session, and back: as short a journal, as few words as will do.
 #pragma once
 
 #include <string>
@@ -7,6 +7,8 @@
 #include "session/session.hpp"
 
 namespace achilles {
+
+// What leads from files to what a session shows.
 
 // Replayed anywhere, these commands lead to a session of the same text. What was done and undone on the way is not in
 // it (`--record` keeps that).
@@ -30,5 +32,25 @@ std::vector<Command> explorer_steps(const Session& session);
 
 // A system's name for somebody who may stand in another folder: a path is made absolute.
 std::string name_anywhere(const std::string& system);
+
+// The session that a command line asks for.
+
+class PictureJob;
+struct OptionOverrides;
+
+// Where none is asked for: the paper's first example, or whatever there is.
+std::string first_system();
+
+// A session on a system, its run as the command line changes it: `settings` for this one, `overrides` for every one that is
+// opened. Throws InputError.
+Session open_session(const std::string& name, const SystemDescription& first, const std::vector<std::string>& settings,
+                     const OptionOverrides& overrides, SystemSource library, Patience patience);
+
+// What a journal or a command line asks for, in this order, where no window tells what became of it: what the session
+// refuses is bad input, what it warns of stands on standard error, each once. Throws InputError.
+void apply_all(Session& session, const std::vector<Command>& commands);
+
+// A picture's systems and journals. What its journal writes is written only when it is made for the first time.
+SystemSource source_of(PictureJob& job);
 
 }  // namespace achilles

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "expression/nearest.hpp"
-#include "session/refusal.hpp"
+#include "session/command.hpp"
 
 namespace achilles {
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/camera_mode.hpp"
+#include "figure/camera.hpp"
 #include "session/command.hpp"
 
 namespace achilles {

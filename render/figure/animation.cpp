@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "depend/error_estimate.hpp"
-#include "figure/boundary.hpp"
 #include "figure/label.hpp"
+#include "figure/plane.hpp"
 #include "figure/publication.hpp"
 #include "simulate/sampler.hpp"
 

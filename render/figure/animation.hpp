@@ -3,8 +3,8 @@
 #pragma once
 
 #include "figure/compose.hpp"
-#include "figure/drawing.hpp"
-#include "figure/sheet.hpp"
+#include "figure/figure.hpp"
+#include "figure/layout.hpp"
 #include "figure/stage.hpp"
 #include "simulate/sampler.hpp"
 

@@ -1,9 +1,16 @@
 #include "figure/camera.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <utility>
+
+#include "expression/parse.hpp"
+#include "figure/axes.hpp"
+#include "figure/label.hpp"
 
 namespace achilles {
 
@@ -286,6 +293,44 @@ Drawing Camera::near_zeno(const Sample& now, const CameraPicture& picture) const
     const Point there{looked_at.x + left * left * (middle.x - looked_at.x),
                       looked_at.y + left * left * (middle.y - looked_at.y)};
     return widened(square(limits_, there, size), picture.width, picture.height);
+}
+
+// ---- a scale bar: round lengths and their unit ----
+
+double round_length(double most) {
+    if (!(most > 0.0) || !std::isfinite(most)) return 0.0;
+    const double decade = std::pow(10.0, std::floor(std::log10(most)));
+    for (const double digit : {5.0, 2.0, 1.0})
+        if (digit * decade <= most * (1.0 + 1e-12)) return digit * decade;
+    return 0.5 * decade;
+}
+
+std::string length_unit(const SystemDescription& description) {
+    constexpr std::array<std::string_view, 8> lengths{"m", "km", "cm", "mm", "um", "nm", "ft", "in"};
+    std::set<std::string> found;
+    for (const DrawingDescription& drawing : drawings_of(description))
+        for (const Text& text : texts_of(drawing))
+            for (const std::string& name : names_in(text.text)) {
+                const std::string unit = unit_of(description, name);
+                if (std::find(lengths.begin(), lengths.end(), unit) != lengths.end()) found.insert(unit);
+            }
+    if (drawings_of(description).empty())
+        for (const CoordinateDescription& coordinate : description.coordinates)
+            if (std::find(lengths.begin(), lengths.end(), coordinate.unit) != lengths.end())
+                found.insert(coordinate.unit);
+    return found.size() == 1 ? *found.begin() : "";
+}
+
+std::string length_label(double length, const std::string& unit) {
+    const int exponent = static_cast<int>(std::floor(std::log10(length) + 1e-9));
+    std::string text;
+    if (exponent >= -3 && exponent <= 4) {
+        text = fmt::format("{:.{}f}", length, std::max(0, -exponent));
+    } else {
+        const double digit = std::round(length / std::pow(10.0, exponent));
+        text = (digit == 1.0 ? "" : fmt::format("{:.0f}\u00b7", digit)) + power_of_ten(exponent);
+    }
+    return unit.empty() ? text : text + " " + typeset_unit(unit);
 }
 
 }  // namespace achilles

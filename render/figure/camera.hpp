@@ -3,13 +3,26 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "figure/body.hpp"
-#include "figure/camera_mode.hpp"
 #include "figure/touch.hpp"
 
 namespace achilles {
+
+// The ways to look at a mechanism.
+//
+//     fit     all that the run needs, arrows included
+//     fixed   where the user looks
+//     follow  a part of the world, so large that the body is seen well; it moves with the body's mean place, and never
+//             loses it
+//     zeno    fit, but towards a Zeno point the picture shrinks about the place that is touched, by the height that
+//             the bounces still reach, so that they look the same all the way; after it the picture grows back
+
+enum class CameraMode { fit, fixed, follow, zeno };
+std::string_view to_text(CameraMode mode);
+std::optional<CameraMode> camera_mode_from(std::string_view text);
 
 // A picture in pixels, and how long the longest arrow of the run is in it; 0 where none is drawn.
 struct CameraPicture {

@@ -7,14 +7,14 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/boundary.hpp"
-#include "figure/contact_bars.hpp"
+#include "figure/axes.hpp"
 #include "figure/label.hpp"
-#include "figure/retrace.hpp"
-#include "figure/ticks.hpp"
-#include "figure/values.hpp"
+#include "figure/plane.hpp"
+#include "figure/trace.hpp"
+#include "model/model.hpp"
 #include "output/precision.hpp"
 #include "simulate/sampler.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -495,6 +495,88 @@ Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> vi
     for (const ViewDescription& view : views)
         figure.panels.push_back(compose(trajectory, samples, PreparedView(*trajectory.model, view), theme));
     return figure;
+}
+
+// What a view plots: its expressions, what they are called and in which units they are shown.
+
+std::string name_of(const ViewDescription& view) {
+    std::string name;
+    for (const Text& y : view.y) name += (name.empty() ? "" : ", ") + y.text;
+    return view.x.text == "t" ? name : name + " over " + view.x.text;
+}
+
+std::string title_of(const ViewDescription& view) {
+    const bool is_word = view.name == "gap";  // and is read as one
+    return view.name == name_of(view) && !is_word ? typeset(view.name) : view.name;
+}
+
+PreparedView::PreparedView(const Model& model, const ViewDescription& view)
+    : title_(title_of(view)), label_(view.label) {
+    std::vector<Text> texts{view.x};
+    texts.insert(texts.end(), view.y.begin(), view.y.end());
+    program_ = model.compile_view(texts);
+    for (const Text& text : texts)
+        quantities_.push_back(quantity(model.description(), text.text, quantities_.empty() ? "" : view.unit));
+    constexpr std::size_t most_names = 3;
+    for (std::size_t i = 1; i < quantities_.size() && view.label.empty() && view.y.size() <= most_names; ++i)
+        label_ += (i > 1 ? ", " : "") + quantities_[i].label;
+    if (!view.label.empty() && view.y.size() == 1) quantities_[1].label = view.label;
+}
+
+std::string PreparedView::unit() const {
+    const auto other = [&](const Quantity& quantity) { return quantity.unit != quantities_[1].unit; };
+    return std::any_of(quantities_.begin() + 1, quantities_.end(), other) ? "" : quantities_[1].unit;
+}
+
+PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written,
+                                              const std::string& unit) {
+    const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
+    const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
+    Quantity result{typeset(text), unit, 1.0, text == "t"};
+    result.text = text;
+    for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+        const CoordinateDescription& c = description.coordinates[i];
+        if (text == c.name) result.coordinate = i;
+        // Whatever the unit is called, a rate's is so much a second.
+        if (unit.empty() && (text == c.name || text == c.name + "'")) result.unit = unit_of(description, text);
+    }
+    if (result.unit.empty()) result.unit = unit_of_expression(description, text);
+    const ShownUnit shown = shown_unit(result.unit);
+    result.unit = shown.text;
+    result.factor = shown.factor;
+    return result;
+}
+
+std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme) {
+    constexpr double parts = 4000.0;  // of an axis that can be told apart
+    const double near = (time.high - time.low) / parts;
+    const Color held = phase_color(theme, Phase::Kind::constrained), impact = phase_color(theme, Phase::Kind::hybrid);
+    const auto& constraints = trajectory.model->description().constraints;
+    std::vector<TimeBar> bars(constraints.size());
+    for (std::size_t contact = 0; contact < bars.size(); ++contact) {
+        bars[contact].label = typeset_name(constraints[contact].name);
+        std::vector<TimeBar::Mark>& marks = bars[contact].marks;
+        const auto is_seen = [&](double low, double high) {
+            return high >= time.low && low <= time.high && low <= end;
+        };
+        for (const Phase& phase : trajectory.phases) {
+            if (!phase.held.contains(contact) || !is_seen(phase.start, phase.end)) continue;
+            const double until = std::min(phase.end, end);
+            if (!marks.empty() && phase.start - marks.back().high < near)
+                marks.back().high = until;
+            else if (until > phase.start)
+                marks.push_back({phase.start, until, held});
+        }
+        double last = -std::numeric_limits<double>::infinity();
+        for (const Event& event : trajectory.events) {
+            if (event.kind != Event::Kind::impact || !event.contacts.contains(contact) || !is_seen(event.t, event.t) ||
+                event.t - last < near)
+                continue;
+            marks.push_back({event.t, event.t, impact});
+            last = event.t;
+        }
+    }
+    return bars;
 }
 
 }  // namespace achilles

@@ -5,11 +5,13 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <vector>
 
 #include "figure/figure.hpp"
 #include "figure/palette.hpp"
 #include "figure/trace.hpp"
 #include "model/model.hpp"
+#include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -73,7 +75,7 @@ struct Framing {
 };
 
 // The panel of one view until the last of the samples: hybrid phases dashed, constrained ones solid, squares at
-// impacts, markers at Zeno points and releases. Over time a run of several contacts has a bar for each (contact_bars.hpp).
+// impacts, markers at Zeno points and releases. Over time a run of several contacts has a bar for each.
 // What lies after the horizon of the run (s), where that comes before its end, is pale.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme, const Framing& framing = {}, std::optional<double> horizon = {});
@@ -98,5 +100,29 @@ void place_legend(Panel& panel);
 
 // A grid of panels.
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns);
+
+// Evaluates all of a view's quantities at a sample, x first, in the units they are shown in. Refers to view and trajectory.
+class Values {
+ public:
+    Values(const PreparedView& view, const Trajectory& trajectory)
+        : evaluator_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
+          reads_(view.program().inputs_of(view.program().output_count())),
+          quantities_(view.quantities()),
+          forces_(*trajectory.model, trajectory.run.parameters) {}
+    void set(const Sample& sample) { forces_.run_view(evaluator_, sample, reads_); }
+    double operator[](std::size_t i) const { return evaluator_.output(i) * quantities_[i].factor; }
+    // Whether a quantity depends on an input (model/derive.hpp).
+    bool reads(std::size_t slot) const { return reads_[slot]; }
+
+ private:
+    Evaluator<double> evaluator_;
+    std::vector<bool> reads_;  // by slot
+    std::span<const PreparedView::Quantity> quantities_;
+    ContactForces forces_;
+};
+
+// A bar for each contact of a run until a time: filled in the colour of constrained phases while it is held, ticked at
+// its impacts. What is nearer together than can be seen on this axis is one.
+std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme);
 
 }  // namespace achilles

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <limits>
 
+#include "figure/axes.hpp"
+#include "figure/compose.hpp"
 #include "figure/label.hpp"
-#include "figure/ticks.hpp"
-#include "figure/values.hpp"
 
 namespace achilles {
 

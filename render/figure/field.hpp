@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "figure/drawing.hpp"
+#include "figure/figure.hpp"
 
 namespace achilles {
 

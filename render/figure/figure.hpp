@@ -1,11 +1,12 @@
-// A figure as data: panels, limits, ticks, curves, markers, all decided. It can be printed, compared and drawn; whoever
-// draws it decides nothing. No ImGui here.
+// Pictures as data. A figure: panels, limits, ticks, curves, markers, all decided. A drawing: the mechanism at one instant. Both
+// can be printed, compared and drawn; whoever draws them decides nothing. No ImGui here.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -172,5 +173,27 @@ struct Figure {
 
 // The figure as text, 9 significant digits: what golden tests compare before pixels.
 std::string to_text(const Figure& figure);
+
+// The mechanism at one instant, as data: shapes already evaluated, in world coordinates.
+
+struct Shape {
+    enum class Kind { disc, polyline, text, area };  // area: convex polygons, filled, of one opaque colour
+    Kind kind = Kind::polyline;
+    std::vector<Point> points;  // world; disc and text: one point, the centre. A NaN point ends a line or a polygon
+    double radius = 0.0;        // disc, in world units
+    std::string text;           // UTF-8
+    Stroke stroke;              // outline, and the colour of a text; width 0: no outline
+    bool fill = false;          // disc, closed polyline
+    Color fill_color;
+    bool closed = false;                // polyline: the last point is joined to the first
+    bool moves = false;                 // with the coordinates; else it is part of the world
+    std::optional<std::size_t> item{};  // which of the file's drawings it is
+};
+
+struct Drawing {
+    std::vector<Shape> shapes;                                      // painted in this order
+    double x_low = -1.0, x_high = 1.0, y_low = -1.0, y_high = 1.0;  // the world that must be visible
+    double size = 2.0;  // of the world that the run needs, however it is looked at: what signs in it are measured by
+};
 
 }  // namespace achilles

@@ -14,7 +14,7 @@ namespace {
 using Kind = FormulaPiece::Kind;
 
 // Shares of the letters' size.
-constexpr float axis = 0.25F;             // above the base line: where a fraction's bar and a minus sign are
+constexpr float axis_height = 0.25F;      // above the base line: where a fraction's bar and a minus sign are
 constexpr float rule_thickness = 0.065F;  // of a rule
 constexpr float bar_gap = 0.13F;          // between a bar and what stands over and under it
 constexpr float bar_overhang = 0.06F;
@@ -49,7 +49,7 @@ FormulaBox fraction(const FormulaPiece& piece, float size, const FormulaFont& fo
     const FormulaBox top = set(piece.parts[0], inner, font), bottom = set(piece.parts[1], inner, font);
     const float rule = rule_width(inner), gap = bar_gap * inner, over = bar_overhang * size;
     FormulaBox box;
-    const float wider = std::max(top.width, bottom.width), bar = std::round(-axis * size) - 0.5F * rule;
+    const float wider = std::max(top.width, bottom.width), bar = std::round(-axis_height * size) - 0.5F * rule;
     box.put(top, over + 0.5F * (wider - top.width), bar - gap - top.descent);
     box.put(bottom, over + 0.5F * (wider - bottom.width), bar + rule + gap + bottom.ascent);
     box.width = wider + 2.0F * over;
@@ -293,7 +293,7 @@ FormulaBox set_matrix(const std::vector<std::vector<Formula>>& rows, float size,
         height = base.back() + descent;
     }
     // Its middle is on the axis.
-    const float top = std::round(-0.5F * height - axis * size);
+    const float top = std::round(-0.5F * height - axis_height * size);
     FormulaBox box;
     for (std::size_t r = 0; r < boxes.size(); ++r) {
         float x = margin;

@@ -6,6 +6,8 @@
 #include <utility>
 
 #include "expression/greek.hpp"
+#include "number/angle.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -285,6 +287,22 @@ std::vector<Letter> letters(std::string_view label) {
         }
     }
     return result;
+}
+
+ShownUnit shown_unit(std::string unit) {
+    const bool is_angle = unit == "rad" || unit.starts_with("rad/");
+    if (is_angle) unit.replace(0, 3, "\u00B0");
+    return {typeset_unit(unit), is_angle ? degrees(1.0) : 1.0};
+}
+
+ShownUnit shown_unit_of_setting(const std::string& unit, bool is_start) {
+    return is_start || unit == "rad" ? shown_unit(unit) : ShownUnit{typeset_unit(unit)};
+}
+
+ShownUnit shown_unit_of_setting(const SystemDescription& description, std::string_view name) {
+    const bool is_start = std::none_of(description.parameters.begin(), description.parameters.end(),
+                                       [&](const ParameterDescription& p) { return p.name == name; });
+    return shown_unit_of_setting(std::string(unit_of(description, name)), is_start);
 }
 
 }  // namespace achilles

@@ -12,6 +12,8 @@
 
 namespace achilles {
 
+struct SystemDescription;
+
 // One name: Greek letters by name, trailing digits as indices, primes as dots, and h, lambda for gap, lambda. Upright:
 // fit for any widget.
 std::string typeset_name(std::string_view name);
@@ -24,6 +26,16 @@ std::string upright(std::string_view label);
 std::string typeset_unit(std::string_view unit);
 // "label (unit)", or the label alone.
 std::string with_unit(const std::string& label, const std::string& unit);
+
+// Units as they are shown: angles in degrees, and whatever they are divided by.
+struct ShownUnit {
+    std::string text;     // typeset
+    double factor = 1.0;  // of a number in the file's unit
+};
+ShownUnit shown_unit(std::string unit);
+// Of what a slider sets: of a start as above, of a parameter an angle alone; a drive's frequency is known in rad/s.
+ShownUnit shown_unit_of_setting(const std::string& unit, bool is_start);
+ShownUnit shown_unit_of_setting(const SystemDescription& description, std::string_view name);
 
 // As much of a label as fits, with an ellipsis where its end is left out: whole words as long as there are some, then letters,
 // or letters at once. A unit in brackets at its end stays.

@@ -7,7 +7,6 @@
 
 #include "figure/grid.hpp"
 #include "figure/marks.hpp"
-#include "figure/tiles.hpp"
 
 namespace achilles {
 

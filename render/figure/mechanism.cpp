@@ -9,13 +9,77 @@
 #include "expression/parse.hpp"
 #include "figure/field.hpp"
 #include "figure/parts.hpp"
-#include "figure/refine.hpp"
 
 namespace achilles {
 
 namespace {
 
-using Kind = DrawingDescription::Shape;
+constexpr int most_halvings = 56;
+constexpr std::size_t most_points = 20000;  // of a curve that turns in the picture without end
+
+struct At {
+    double s;
+    Point p;
+};
+
+// Whether a chord may be seen, or what of the curve is between its ends: within its own length of the picture.
+bool is_near(const Point& a, const Point& b, const Drawing& seen) {
+    const double reach = std::hypot(b.x - a.x, b.y - a.y);
+    return std::max(a.x, b.x) + reach >= seen.x_low && std::min(a.x, b.x) - reach <= seen.x_high &&
+           std::max(a.y, b.y) + reach >= seen.y_low && std::min(a.y, b.y) - reach <= seen.y_high;
+}
+
+double distance_to_chord(const Point& p, const Point& a, const Point& b) {
+    const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y);
+    if (!(length > 0.0)) return std::hypot(p.x - a.x, p.y - a.y);
+    return std::abs(x * (p.y - a.y) - y * (p.x - a.x)) / length;
+}
+
+class Refiner {
+ public:
+    Refiner(const ParametricCurve& curve, const Drawing& seen)
+        : curve_(curve), seen_(seen), size_(std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low)) {}
+
+    // What is between two points, less the first.
+    void add(const At& a, const At& b, int halvings) {
+        const bool is_short = std::hypot(b.p.x - a.p.x, b.p.y - a.p.y) <= 0.1 * size_;
+        if (halvings < most_halvings && points_.size() < most_points && is_near(a.p, b.p, seen_)) {
+            const double s = 0.5 * (a.s + b.s);
+            const At middle{s, curve_(s)};
+            constexpr double flat = 5e-5;  // of the diagonal: a twentieth of a pixel
+            if (s != a.s && s != b.s && !(is_short && distance_to_chord(middle.p, a.p, b.p) <= flat * size_)) {
+                add(a, middle, halvings + 1);
+                return add(middle, b, halvings + 1);
+            }
+        }
+        points_.push_back(b.p);
+    }
+    std::vector<Point> points_;
+
+ private:
+    const ParametricCurve& curve_;
+    const Drawing& seen_;
+    double size_;
+};
+
+}  // namespace
+
+std::vector<Point> refined(const ParametricCurve& curve, double low, double high, int pieces, const Drawing& seen) {
+    Refiner refiner(curve, seen);
+    At before{low, curve(low)};
+    refiner.points_.push_back(before.p);
+    for (int i = 1; i <= pieces; ++i) {
+        const double s = low + (high - low) * i / pieces;
+        const At here{s, curve(s)};
+        refiner.add(before, here, 0);
+        before = here;
+    }
+    return std::move(refiner.points_);
+}
+
+namespace {
+
+using DrawingShape = DrawingDescription::Shape;
 
 constexpr int curve_points = 400;
 constexpr double hatch_of_world = 0.022;  // between the strokes under a ground
@@ -71,11 +135,11 @@ void include_under(Box& all, const Box& motion, const std::vector<Point>& curve)
 }
 
 // Of a wall with hatching, or a block, that is not much larger than the motion all is shown.
-bool is_shown_whole(Kind shape, const Box& motion, const std::vector<Point>& points) {
+bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Point>& points) {
     Box whole;
     for (const Point& p : points) whole.include(p);
     const auto is_near = [&](const Point& p) { return motion.distance(p) <= motion.size(); };
-    return (shape == Kind::ground || shape == Kind::box) && whole.size() <= 2.0 * motion.size() &&
+    return (shape == DrawingShape::ground || shape == DrawingShape::box) && whole.size() <= 2.0 * motion.size() &&
            std::any_of(points.begin(), points.end(), is_near);
 }
 
@@ -153,11 +217,11 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
     if (is_round(d.shape)) placed.radius = run.output(2);
     if (!d.width.text.empty()) placed.width = run.output(run.output_count() - 1);
     for (std::size_t i = 0; i < d.sizes.size(); ++i) placed.sizes.push_back(run.output(2 * d.points.size() + i));
-    if (d.shape == Kind::box) {
+    if (d.shape == DrawingShape::box) {
         placed.points = box_corners({run.output(0), run.output(1)}, placed.sizes[0], placed.sizes[1], placed.sizes[2]);
         return placed;
     }
-    if (d.shape != Kind::curve) {
+    if (d.shape != DrawingShape::curve) {
         for (std::size_t i = 0; i < d.points.size(); ++i)
             placed.points.push_back({run.output(2 * i), run.output(2 * i + 1)});
         return placed;
@@ -181,13 +245,13 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
 std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& run, const Placed& placed,
                                            double world) const {
     const Point &from = placed.points.front(), &to = placed.points.back();
-    const Kind shape = item.description.shape;
-    if (shape == Kind::ground) return hatching(from, to, hatch_of_world * world);
+    const DrawingShape shape = item.description.shape;
+    if (shape == DrawingShape::ground) return hatching(from, to, hatch_of_world * world);
     const Placed at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
     const Point &a = at_rest.points.front(), &b = at_rest.points.back();
     PartSize size{std::hypot(b.x - a.x, b.y - a.y), placed.sizes.back()};
     if (!(size.across > 0.0)) size.across = fitting_across(size.rest, world);
-    if (shape == Kind::damper) return damper_line(from, to, size);
+    if (shape == DrawingShape::damper) return damper_line(from, to, size);
     constexpr double most_coils = 1000.0;
     const double coils = std::min(std::round(placed.sizes.front()), most_coils);
     return spring_line(from, to, coils >= 1.0 ? static_cast<int>(coils) : fitting_coils(size), size);
@@ -209,7 +273,8 @@ const Mechanism::Item* Mechanism::body() const {
     for (const Item& item : items_) {
         if (!item.moves) continue;
         if (is_body(item.description.shape)) body = &item;
-        if (item.description.shape == Kind::segment || item.description.shape == Kind::polyline) line = &item;
+        if (item.description.shape == DrawingShape::segment || item.description.shape == DrawingShape::polyline)
+            line = &item;
     }
     return body != nullptr ? body : line;
 }
@@ -224,7 +289,7 @@ std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
 Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
     Grip grip;
     grip.run_ = model_.evaluator(item.program, parameters);
-    const Kind shape = item.description.shape;
+    const DrawingShape shape = item.description.shape;
     grip.sizes_ = is_round(shape) ? 1 : is_body(shape) ? 2 : 0;
     grip.t_ = model_.layout().t();
     grip.first_ = 2 * point;
@@ -235,8 +300,9 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
     std::vector<Grip> all;
     if (auto first = grip(parameters)) all.push_back(std::move(*first));
     for (const Item& item : items_) {
-        const Kind shape = item.description.shape;
-        if (!item.moves || (!is_body(shape) && shape != Kind::segment && shape != Kind::polyline)) continue;
+        const DrawingShape shape = item.description.shape;
+        if (!item.moves || (!is_body(shape) && shape != DrawingShape::segment && shape != DrawingShape::polyline))
+            continue;
         const std::size_t last = item.description.points.size() - 1;
         all.push_back(grip_of(item, last, parameters));
         if (last > 0) all.push_back(grip_of(item, 0, parameters));
@@ -297,16 +363,16 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
     for (const Item& item : items_) {
         if (!all && !item.moves) continue;
         const DrawingDescription& d = item.description;
-        const Color own = item.moves && d.shape != Kind::ground ? theme.body : theme.surface;
+        const Color own = item.moves && d.shape != DrawingShape::ground ? theme.body : theme.surface;
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
         Placed placed = place(item, run, t, state, &limits);
-        const Shape::Kind kind = is_round(d.shape)       ? Shape::Kind::disc
-                                 : d.shape == Kind::text ? Shape::Kind::text
-                                                         : Shape::Kind::polyline;
-        const bool is_part = d.shape == Kind::spring || d.shape == Kind::damper;
+        const Shape::Kind kind = is_round(d.shape)               ? Shape::Kind::disc
+                                 : d.shape == DrawingShape::text ? Shape::Kind::text
+                                                                 : Shape::Kind::polyline;
+        const bool is_part = d.shape == DrawingShape::spring || d.shape == DrawingShape::damper;
         const bool is_lit = d.contact ? held.contains(*d.contact) : !of_body.empty() && &item == body();
-        if (d.shape == Kind::ground) {
+        if (d.shape == DrawingShape::ground) {
             Shape& earth = add(drawing, Shape::Kind::area, theme.ground, 0.0);
             earth.points = beneath(
                 placed.points.front(), placed.points.back(),
@@ -323,7 +389,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         shape.moves = item.moves;
         shape.points = std::move(placed.points);
         shape.fill = d.fill;
-        shape.closed = d.shape == Kind::box || (d.fill && d.shape == Kind::polyline);
+        shape.closed = d.shape == DrawingShape::box || (d.fill && d.shape == DrawingShape::polyline);
         if (is_lit) light(shape, theme);
         shape.text = d.text;
         shape.radius = placed.radius;
@@ -358,7 +424,7 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
         const Placed placed = place(item, run, trajectory.run.options.start_time, {trajectory.run.q, trajectory.run.v});
         if (still)
             all.include(placed);
-        else if (item.description.shape == Kind::curve)
+        else if (item.description.shape == DrawingShape::curve)
             include_under(all, box, placed.points);
         else if (is_shown_whole(item.description.shape, box, placed.points))
             all.include(placed);

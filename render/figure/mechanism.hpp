@@ -1,12 +1,13 @@
 // The mechanism that a system file draws, evaluated at a state.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
-#include "figure/drawing.hpp"
+#include "figure/figure.hpp"
 #include "figure/palette.hpp"
 #include "model/model.hpp"
 #include "simulate/sampler.hpp"
@@ -80,5 +81,14 @@ class Mechanism {
     std::vector<Item> items_;
     bool plane_ = false;  // no drawing, but coordinates x and y
 };
+
+// Curves as smooth as a picture needs: dense where it looks, coarse elsewhere.
+
+using ParametricCurve = std::function<Point(double)>;
+
+// Points of a curve over [low, high]: `pieces` + 1 at equal steps of its parameter, and between those in or near what is
+// seen as many more as bring the chords within 5e-5 of the picture's diagonal, so that no corner shows at any zoom. What is
+// seen: the drawing's limits.
+std::vector<Point> refined(const ParametricCurve& curve, double low, double high, int pieces, const Drawing& seen);
 
 }  // namespace achilles

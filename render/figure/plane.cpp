@@ -3,10 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
 #include <set>
+#include <utility>
 
-#include "figure/ticks.hpp"
-#include "figure/values.hpp"
+#include "figure/axes.hpp"
+#include "figure/compose.hpp"
+#include "figure/field.hpp"
+#include "simulate/contact_forces.hpp"
 
 namespace achilles {
 
@@ -201,6 +207,204 @@ std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const Prepa
         if (taken.insert(cell).second) arrows.push_back(arrow);
     }
     return arrows;
+}
+
+// ---- the boundaries h = 0 in the picture of a path ----
+
+namespace {
+
+using Pair = std::array<std::size_t, 2>;
+
+// Where two coordinates are looked at.
+struct Part {
+    Pair pair;
+    Drawing box;
+};
+
+bool moves(const Model& model, std::size_t contact) {
+    const std::uint32_t t = model.layout().t();
+    return depends_on(model.equations().gaps[contact], {&t, 1});
+}
+
+// Those whose gaps depend on no other coordinates than these, and not on time unless moving ones are asked for.
+std::vector<std::size_t> contacts_of(const Model& model, const Pair& pair, bool also_moving) {
+    std::vector<std::uint32_t> others;
+    for (std::size_t i = 0; i < model.layout().dof; ++i)
+        if (i != pair[0] && i != pair[1]) others.push_back(static_cast<std::uint32_t>(model.layout().q(i)));
+    std::vector<std::size_t> found;
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (!depends_on(model.equations().gaps[i], others) && (also_moving || !moves(model, i))) found.push_back(i);
+    return found;
+}
+
+// The values of a view's first two quantities at a state of rest with these two coordinates.
+class Place {
+ public:
+    Place(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
+        : run_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
+          forces_(*trajectory.model, trajectory.run.parameters),
+          quantities_(view.quantities()),
+          sample_{0.0,   0,  Phase::Kind::hybrid,
+                  false, {}, {trajectory.run.q, Eigen::VectorXd::Zero(trajectory.run.v.size()), 0.0}},
+          pair_(pair) {}
+    Point operator()(const Point& q, double t = 0.0, double rate = 0.0) {
+        State& state = sample_.state;
+        state.q[static_cast<Eigen::Index>(pair_[0])] = q.x;
+        state.q[static_cast<Eigen::Index>(pair_[1])] = q.y;
+        state.v.setConstant(rate);
+        state.t = t;
+        forces_.run_view(run_, sample_);
+        return {run_.output(0) * quantities_[0].factor, run_.output(1) * quantities_[1].factor};
+    }
+
+ private:
+    Evaluator<double> run_;
+    ContactForces forces_;
+    std::span<const PreparedView::Quantity> quantities_;
+    Sample sample_;
+    Pair pair_;
+};
+
+// What of a coordinate the samples show, and half as much on either side; all around if it is an angle.
+std::array<double, 2> reach(std::span<const Sample> samples, const CoordinateDescription& coordinate, Eigen::Index i) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (const Sample& sample : samples) {
+        low = std::min(low, sample.state.q[i]);
+        high = std::max(high, sample.state.q[i]);
+    }
+    const double around = coordinate.unit == "rad" ? std::numbers::pi - 0.5 * (high - low) : 0.0;
+    const double more = std::max(0.5 * (high - low), around);
+    return {low - more, high + more};
+}
+
+std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                            const Panel& panel) {
+    const Model& model = *trajectory.model;
+    const auto& quantities = view.quantities();
+    if (quantities.size() != 2 || samples.empty()) return std::nullopt;
+    const auto& x = quantities[0].coordinate;
+    const auto& y = quantities[1].coordinate;
+    Part part;
+    if (x && y && *x != *y) {
+        part.pair = {*x, *y};
+        part.box.x_low = panel.x.low / quantities[0].factor, part.box.x_high = panel.x.high / quantities[0].factor;
+        part.box.y_low = panel.y.low / quantities[1].factor, part.box.y_high = panel.y.high / quantities[1].factor;
+        return part;
+    }
+    if (model.dof() != 2) return std::nullopt;
+    part.pair = {0, 1};
+    const auto& coordinates = model.description().coordinates;
+    const auto first = reach(samples, coordinates[0], 0), second = reach(samples, coordinates[1], 1);
+    part.box.x_low = first[0], part.box.x_high = first[1];
+    part.box.y_low = second[0], part.box.y_high = second[1];
+    // A function of the coordinates alone, and of both: it says the same at other times and rates, another elsewhere.
+    Place place(trajectory, view, part.pair);
+    const Point here{trajectory.run.q[0], trajectory.run.q[1]};
+    const Point at_rest = place(here), moving = place(here, 1.25, 0.75);
+    const bool is_place = at_rest.x == moving.x && at_rest.y == moving.y && !quantities[0].is_time;
+    return is_place ? std::optional(part) : std::nullopt;
+}
+
+// The line h = 0 between two of its points, less the first, until its chords are straight in the picture.
+class Straightener {
+ public:
+    Straightener(PlaneFunction gap, Place& place, const Panel& panel)
+        : gap_(std::move(gap)), place_(place), panel_(panel) {}
+    void add(const Point& a, const Point& b, std::vector<Point>& line, int halvings = 0) {
+        constexpr int most = 8;
+        constexpr double flat = 1e-4;  // of the picture: a tenth of a pixel
+        const auto middle = zero_near(a, b);
+        if (middle && halvings < most) {
+            const Point p = in_picture(a), q = in_picture(*middle), r = in_picture(b);
+            const double x = r.x - p.x, y = r.y - p.y, length = std::hypot(x, y);
+            const double off = length > 0.0 ? std::abs(x * (q.y - p.y) - y * (q.x - p.x)) / length : 0.0;
+            if (off > flat && off < 1.0) {
+                add(a, *middle, line, halvings + 1);
+                return add(*middle, b, line, halvings + 1);
+            }
+        }
+        line.push_back(place_(b));
+    }
+
+ private:
+    Point in_picture(const Point& q) {
+        const Point p = place_(q);
+        return {(p.x - panel_.x.low) / (panel_.x.high - panel_.x.low),
+                (p.y - panel_.y.low) / (panel_.y.high - panel_.y.low)};
+    }
+    // Straight aside from the middle, no farther than the ends are apart; nothing where it is not there.
+    std::optional<Point> zero_near(const Point& a, const Point& b) {
+        const Point middle{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)}, aside{a.y - b.y, b.x - a.x};
+        const auto at = [&](double s) { return Point{middle.x + s * aside.x, middle.y + s * aside.y}; };
+        constexpr int rounds = 20;
+        constexpr double near = 1e-6;
+        double s = 0.0, before = 1e-2, h = gap_(at(s)), h_before = gap_(at(before));
+        for (int round = 0; round < rounds; ++round) {  // secants
+            const double step = -h * (s - before) / (h - h_before);
+            if (!std::isfinite(step)) return h == 0.0 ? std::optional(at(s)) : std::nullopt;
+            before = s, h_before = h;
+            s += step;
+            if (std::abs(s) > 1.0) return std::nullopt;
+            h = gap_(at(s));
+            if (std::abs(step) < near) return at(s);
+        }
+        return std::nullopt;
+    }
+    PlaneFunction gap_;
+    Place& place_;
+    const Panel& panel_;
+};
+
+}  // namespace
+
+bool has_moving_gap(const Model& model) {
+    for (std::size_t i = 0; i < model.contacts(); ++i)
+        if (moves(model, i)) return true;
+    return false;
+}
+
+std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                            const Panel& panel, std::optional<double> t, const Resolution& size) {
+    const auto part = part_of(trajectory, samples, view, panel);
+    if (!part) return {};
+    const Model& model = *trajectory.model;
+    const std::vector<std::size_t> contacts = contacts_of(model, part->pair, t.has_value());
+    const State here{trajectory.run.q, trajectory.run.v, t.value_or(trajectory.run.options.start_time)};
+    std::vector<PlaneFunction> gaps;
+    for (const std::size_t contact : contacts) {
+        auto gap = model.evaluator(model.gap(contact), trajectory.run.parameters);
+        set_state(gap, here);
+        gaps.emplace_back([gap, pair = part->pair](const Point& p) mutable {
+            gap.input(pair[0]) = p.x;
+            gap.input(pair[1]) = p.y;
+            gap.run();
+            return gap.output(0);
+        });
+    }
+    // A crest that is narrower than a few cells would be cut off.
+    constexpr double cell = 2.5;  // pixels
+    constexpr int least_columns = 160, least_rows = 120, most = 640;
+    const int columns = std::clamp(static_cast<int>(size.width / cell), least_columns, most),
+              rows = std::clamp(static_cast<int>(size.height / cell), least_rows, most);
+    std::vector<Field> fields;
+    for (const PlaneFunction& gap : gaps) fields.emplace_back(part->box, gap, columns, rows);
+    const std::vector<std::vector<Point>> lines = borders(fields, gaps);
+    Place place(trajectory, view, part->pair);
+    std::vector<Point> line;
+    for (std::size_t i = 0; i < lines.size(); ++i) {
+        Straightener straightener(gaps[i], place, panel);
+        const Point* before = nullptr;
+        for (const Point& point : lines[i]) {
+            if (!std::isfinite(point.x))
+                line.push_back(point);
+            else if (before == nullptr || !std::isfinite(before->x))
+                line.push_back(place(point));
+            else
+                straightener.add(*before, point, line);
+            before = &point;
+        }
+    }
+    return line;
 }
 
 }  // namespace achilles

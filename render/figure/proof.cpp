@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/ticks.hpp"
-#include "figure/values.hpp"
+#include "figure/axes.hpp"
+#include "figure/compose.hpp"
 #include "number/ground.hpp"
 #include "output/proof.hpp"
 #include "simulate/sampler.hpp"

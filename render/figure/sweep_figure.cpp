@@ -8,9 +8,9 @@
 #include "figure/grid.hpp"
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
+#include "figure/marks.hpp"
 #include "figure/publication.hpp"
 #include "figure/sweep_panels.hpp"
-#include "figure/tiles.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {

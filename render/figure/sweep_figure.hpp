@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "figure/figure.hpp"
-#include "figure/shown_unit.hpp"
+#include "figure/label.hpp"
 #include "study/table.hpp"
 
 namespace achilles {

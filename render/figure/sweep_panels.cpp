@@ -8,8 +8,8 @@
 #include <limits>
 #include <map>
 
+#include "figure/axes.hpp"
 #include "figure/label.hpp"
-#include "figure/ticks.hpp"
 
 namespace achilles {
 

@@ -1,6 +1,8 @@
 #include "image/xml.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <stdexcept>
 #include <utility>
 
@@ -83,6 +85,20 @@ Notes xml_notes_of(std::string_view text) {
     }
     if (text.substr(0, metadata_end.size()) != metadata_end) throw std::runtime_error("its notes are incomplete");
     return notes;
+}
+
+std::string base64(std::string_view bytes) {
+    constexpr std::string_view letters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t i = 0; i < bytes.size(); i += 3) {
+        const std::string_view three = bytes.substr(i, 3);
+        std::uint32_t bits = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+            bits = bits << 8 | (k < three.size() ? static_cast<unsigned char>(three[k]) : 0u);
+        for (std::size_t k = 0; k < 4; ++k) text += k <= three.size() ? letters[bits >> (18 - 6 * k) & 63u] : '=';
+    }
+    return text;
 }
 
 }  // namespace achilles

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "figure/animation.hpp"
-#include "figure/drawing.hpp"
+#include "figure/figure.hpp"
 #include "paint/paint.hpp"
 
 namespace achilles {

@@ -1,7 +1,9 @@
 // Strokes only: a figure onto an ImGui draw list. The painter has no memory and decides nothing but where pixels go.
 #pragma once
 
-#include "figure/sheet.hpp"
+#include <vector>
+
+#include "figure/layout.hpp"
 
 struct ImDrawList;
 
@@ -16,5 +18,14 @@ Rectangle paint(const Panel& panel, const Figure& style, ImDrawList* list, Recta
 // A label with its combining dots placed over their letters; returns its width. `angle`: 0, or 90 for a vertical axis
 // label.
 float paint_label(ImDrawList* list, float x, float y, const std::string& label, Color color, float size, int angle = 0);
+
+// The little shapes that mark events.
+
+// The corners of a marker's shape in pixels; many for a circle. A bar has none: it is as high as its panel.
+std::vector<Point> corners(const Mark& mark);
+
+void paint_marker(ImDrawList* list, const Mark& mark);
+// One marker centred at a pixel; a bar is left to the panel, which knows how high it is.
+void paint_marker(ImDrawList* list, const Markers& style, const Point& pixel, double scale);
 
 }  // namespace achilles

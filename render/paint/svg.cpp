@@ -1,24 +1,99 @@
+// A figure as SVG. The only file that includes FreeType.
 #include "paint/svg.hpp"
+
+#include <ft2build.h>
+#include FT_FREETYPE_H
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <stdexcept>
+#include <string>
 #include <tuple>
 
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
-#include "image/base64.hpp"
 #include "image/image.hpp"
 #include "image/xml.hpp"
-#include "paint/font_file.hpp"
-#include "paint/marker.hpp"
 #include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "surface/polyline.hpp"
 
 namespace achilles {
+
+// The measures of the one font as its file has them, for drawings whose letters somebody else will set.
+
+// All lengths are shares of the em but those of width().
+class FontFile {
+ public:
+    // `fonts`: the folder that holds DejaVuSans.ttf. Throws std::runtime_error if it cannot be read.
+    explicit FontFile(const std::filesystem::path& fonts);
+    ~FontFile();
+    FontFile(const FontFile&) = delete;
+    FontFile& operator=(const FontFile&) = delete;
+
+    struct Glyph {
+        double advance = 0.0, left = 0.0, right = 0.0, bottom = 0.0, top = 0.0;  // the ink's box, up from the base line
+    };
+    const Glyph& glyph(char32_t code) const;
+    // Of a line of text of that height, as a painter with this font would set it.
+    float width(const std::string& label, float size) const;
+    // Of a line of text: the em by its height, and the base line from its top by its height.
+    double em() const { return em_; }
+    double base() const { return base_; }
+
+ private:
+    struct Face;
+    std::unique_ptr<Face> face_;
+    mutable std::map<char32_t, Glyph> glyphs_;
+    double em_ = 1.0, base_ = 1.0;
+};
+
+struct FontFile::Face {
+    FT_Library library = nullptr;
+    FT_Face face = nullptr;
+    ~Face() {
+        if (face != nullptr) FT_Done_Face(face);
+        if (library != nullptr) FT_Done_FreeType(library);
+    }
+};
+
+FontFile::FontFile(const std::filesystem::path& fonts) : face_(std::make_unique<Face>()) {
+    const std::string file = (fonts / "DejaVuSans.ttf").string();
+    if (FT_Init_FreeType(&face_->library) != 0 || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0)
+        throw std::runtime_error(file + ": the font cannot be read; install the package fonts-dejavu-core");
+    // A line is as high as the font's ascent and descent together: so do painters of interfaces count.
+    const FT_Face face = face_->face;
+    const double height = face->ascender - face->descender;
+    em_ = face->units_per_EM / height;
+    base_ = face->ascender / height;
+}
+
+FontFile::~FontFile() = default;
+
+const FontFile::Glyph& FontFile::glyph(char32_t code) const {
+    const auto [entry, is_new] = glyphs_.try_emplace(code);
+    Glyph& glyph = entry->second;
+    const FT_Face face = face_->face;
+    if (!is_new || FT_Load_Char(face, code, FT_LOAD_NO_SCALE) != 0) return glyph;
+    const FT_Glyph_Metrics& m = face->glyph->metrics;
+    const double em = face->units_per_EM;
+    glyph = {static_cast<double>(m.horiAdvance) / em, static_cast<double>(m.horiBearingX) / em,
+             static_cast<double>(m.horiBearingX + m.width) / em, static_cast<double>(m.horiBearingY - m.height) / em,
+             static_cast<double>(m.horiBearingY) / em};
+    return glyph;
+}
+
+float FontFile::width(const std::string& label, float size) const {
+    double width = 0.0;
+    for (const Letter& letter : letters(label))
+        width += glyph(letter.code).advance * (letter.script == 0 ? 1.0 : double{script_size});
+    return static_cast<float>(width * em_) * size;
+}
 
 namespace {
 

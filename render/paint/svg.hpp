@@ -5,9 +5,8 @@
 #include <string>
 #include <string_view>
 
-#include "figure/drawing.hpp"
 #include "figure/figure.hpp"
-#include "image/note.hpp"
+#include "image/notes.hpp"
 
 namespace achilles {
 

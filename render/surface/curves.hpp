@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "figure/figure.hpp"
+#include "figure/layout.hpp"
 #include "surface/gl.hpp"
 
 struct ImDrawCmd;
@@ -62,6 +63,30 @@ class CurvePainter {
     GLuint edges_ = 0, overlay_ = 0, vertices_ = 0;
     GLuint mask_ = 0, mask_framebuffer_ = 0;
     int mask_width_ = 0, mask_height_ = 0;
+};
+
+// A picture of cells inside a draw list. Like a curve it travels in the list's vertex buffer behind a callback.
+
+// Draws the cells as rectangles inside the list's current clip rectangle.
+void add_tiles(ImDrawList* list, const Rectangle& area, const Cells& cells);
+
+// Whether the command was made by add_tiles.
+bool are_tiles(const ImDrawCmd& command);
+
+// The graphics side.
+class TilesPainter {
+ public:
+    explicit TilesPainter(const Gl& gl);
+    ~TilesPainter();
+    TilesPainter(const TilesPainter&) = delete;
+    TilesPainter& operator=(const TilesPainter&) = delete;
+
+    // Leaves the target bound, everything else about the state changed.
+    void draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target);
+
+ private:
+    const Gl& gl_;
+    GLuint program_ = 0, vertices_ = 0;
 };
 
 }  // namespace achilles

@@ -4,7 +4,6 @@
 #include "image/image.hpp"
 #include "surface/curves.hpp"
 #include "surface/gl.hpp"
-#include "surface/tiles.hpp"
 
 struct ImDrawCmd;
 struct ImDrawData;

@@ -1,5 +1,7 @@
 #include "surface/offscreen.hpp"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
@@ -11,7 +13,6 @@
 #include "surface/draw_data.hpp"
 #include "surface/interface.hpp"
 #include "surface/memory_context.hpp"
-#include "surface/room.hpp"
 
 namespace achilles {
 
@@ -128,6 +129,15 @@ void Offscreen::restyle(double scale, bool dark) {
     implementation_->interface.restyle(scale, dark);
     const Implementation::Current current(*implementation_);
     implementation_->canvas->load_fonts();
+}
+
+void check_room(const std::string& purpose, std::size_t bytes) {
+    void* const room =
+        ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (room == MAP_FAILED)
+        throw NotEnoughMemory("there is not enough memory for " + purpose + ", which may take " +
+                              std::to_string(bytes >> 20) + " MB; ulimit -v prints the limit for this process");
+    ::munmap(room, bytes);
 }
 
 }  // namespace achilles

@@ -5,7 +5,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "surface/loaded_library.hpp"
 #include "surface/memory_context.hpp"
 
 namespace achilles {

@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "surface/draw_data.hpp"
-#include "surface/events.hpp"
+#include "surface/frame.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 #include "surface/memory_context.hpp"

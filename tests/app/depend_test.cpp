@@ -8,7 +8,7 @@
 #include <iostream>
 
 #include "app/hands.hpp"
-#include "panels/dependence.hpp"
+#include "panels/sweep.hpp"
 #include "session/recipe.hpp"
 
 namespace achilles {

@@ -11,7 +11,7 @@
 #include "app/program.hpp"
 #include "cli/dropped.hpp"
 #include "journal/journal.hpp"
-#include "pictures/find_program.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/take_away.hpp"
 
 namespace achilles {

@@ -7,7 +7,6 @@
 #include <filesystem>
 
 #include "app/program.hpp"
-#include "pictures/progress.hpp"
 #include "system/description.hpp"
 
 namespace achilles::test {

@@ -11,7 +11,6 @@
 #include "output/precision.hpp"
 #include "output/proof.hpp"
 #include "pictures/take_away.hpp"
-#include "session/open_session.hpp"
 #include "session/recipe.hpp"
 
 namespace achilles {

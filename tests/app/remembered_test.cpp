@@ -12,7 +12,7 @@
 #include "cli/entries.hpp"
 #include "image/image.hpp"
 #include "journal/preferences.hpp"
-#include "session/gallery.hpp"
+#include "session/glossary.hpp"
 
 namespace achilles {
 namespace {

@@ -9,7 +9,7 @@
 #include "app/program.hpp"
 #include "core/deny_executable.hpp"
 #include "image/image.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "pictures/origin.hpp"
 
 namespace achilles::test {

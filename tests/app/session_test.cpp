@@ -4,7 +4,7 @@
 #include "app/program.hpp"
 #include "figure/stage.hpp"
 #include "output/output.hpp"
-#include "panels/turns.hpp"
+#include "panels/event_list.hpp"
 #include "session/recipe.hpp"
 #include "simulate/simulate.hpp"
 

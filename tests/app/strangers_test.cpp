@@ -11,7 +11,7 @@
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "cli/dropped.hpp"
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 #include "journal/journal.hpp"
 #include "journal/words.hpp"
 #include "model/read_system.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "figure/sheet.hpp"
+#include "figure/layout.hpp"
 #include "surface/offscreen.hpp"
 
 namespace achilles::golden {

@@ -18,7 +18,7 @@
 #include "model/read_system.hpp"
 #include "output/output.hpp"
 #include "pictures/paper.hpp"
-#include "pictures/views.hpp"
+#include "pictures/picture_job.hpp"
 #include "session/session.hpp"
 #include "simulate/simulate.hpp"
 

@@ -8,8 +8,7 @@
 
 #include "core/systems.hpp"
 #include "figure/compose.hpp"
-#include "figure/refine.hpp"
-#include "figure/sides.hpp"
+#include "figure/mechanism.hpp"
 #include "figure/stage.hpp"
 
 namespace achilles {

@@ -1,5 +1,5 @@
 // The colours of numbers: even and monotone, for any colour vision.
-#include "figure/color_table.hpp"
+#include "figure/palette.hpp"
 
 #include <gtest/gtest.h>
 

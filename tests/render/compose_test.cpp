@@ -9,10 +9,10 @@
 #include <tuple>
 
 #include "core/several.hpp"
+#include "figure/axes.hpp"
 #include "figure/body.hpp"
 #include "figure/label.hpp"
 #include "figure/mechanism.hpp"
-#include "figure/ticks.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
 

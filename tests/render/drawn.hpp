@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "core/systems.hpp"
+#include "figure/compose.hpp"
 #include "figure/layout.hpp"
 #include "figure/publication.hpp"
-#include "figure/values.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles::drawn {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "figure/ticks.hpp"
+#include "figure/axes.hpp"
 
 namespace achilles {
 namespace {

@@ -6,9 +6,9 @@
 #include <set>
 
 #include "core/systems.hpp"
+#include "figure/axes.hpp"
 #include "figure/grid.hpp"
 #include "figure/publication.hpp"
-#include "figure/ticks.hpp"
 #include "render/samples.hpp"
 #include "simulate/simulate.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "figure/axes.hpp"
 #include "figure/plane.hpp"
-#include "figure/ticks.hpp"
 #include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 

@@ -1,4 +1,4 @@
-#include "image/png_notes.hpp"
+#include "image/notes.hpp"
 
 #include <gtest/gtest.h>
 

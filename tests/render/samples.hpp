@@ -5,7 +5,6 @@
 #include <limits>
 #include <string>
 
-#include "figure/drawing.hpp"
 #include "figure/figure.hpp"
 
 namespace achilles::samples {

@@ -7,11 +7,11 @@
 #include <map>
 
 #include "core/systems.hpp"
-#include "figure/boundary.hpp"
 #include "figure/compose.hpp"
 #include "figure/field.hpp"
 #include "figure/layout.hpp"
 #include "figure/lens.hpp"
+#include "figure/plane.hpp"
 #include "figure/publication.hpp"
 
 namespace achilles {

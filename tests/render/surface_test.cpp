@@ -10,9 +10,9 @@
 #include "render/samples.hpp"
 #include "render/support.hpp"
 #include "surface/curves.hpp"
-#include "surface/events.hpp"
+#include "surface/frame.hpp"
 #include "surface/imgui_version.hpp"
-#include "surface/loaded_library.hpp"
+#include "surface/memory_context.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {

@@ -7,12 +7,12 @@
 #include <limits>
 #include <set>
 
-#include "figure/color_table.hpp"
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
 #include "figure/palette.hpp"
 #include "figure/publication.hpp"
 #include "figure/sweep_panels.hpp"
+#include "number/angle.hpp"
 #include "render/samples.hpp"
 #include "render/sweep_tables.hpp"
 #include "system/input_error.hpp"

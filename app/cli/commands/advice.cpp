@@ -15,7 +15,7 @@
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "pictures/origin.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "system/input_error.hpp"
 #include "system/read_tables.hpp"
 

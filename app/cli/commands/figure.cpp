@@ -13,12 +13,10 @@
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
-#include "pictures/pdf.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
-#include "pictures/views.hpp"
-#include "session/open_session.hpp"
+#include "session/recipe.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {

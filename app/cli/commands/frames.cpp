@@ -16,9 +16,7 @@
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/process_pool.hpp"
-#include "pictures/progress.hpp"
-#include "pictures/views.hpp"
-#include "session/open_session.hpp"
+#include "session/recipe.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {

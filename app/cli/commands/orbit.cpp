@@ -8,13 +8,11 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
-#include "figure/orbit_figure.hpp"
+#include "figure/publication.hpp"
 #include "output/output.hpp"
-#include "pictures/pdf.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/take_away.hpp"
-#include "pictures/views.hpp"
 
 namespace achilles {
 

@@ -4,8 +4,8 @@
 #include "cli/terminal.hpp"
 #include "figure/publication.hpp"
 #include "model/model.hpp"
-#include "pictures/output_folder.hpp"
-#include "pictures/pdf.hpp"
+#include "pictures/frame_folder.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
 #include "simulate/simulate.hpp"
 

@@ -25,7 +25,7 @@
 #include "mpi/ranks.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
-#include "surface/room.hpp"
+#include "surface/offscreen.hpp"
 #include "system/description.hpp"
 
 namespace achilles {

@@ -6,7 +6,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
-#include "pictures/picture_ending.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
 #include "system/description.hpp"
 

@@ -18,7 +18,7 @@
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
-#include "pictures/progress.hpp"
+#include "pictures/process_pool.hpp"
 
 namespace achilles {
 

@@ -1,0 +1,427 @@
+// The first line and the last.
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "output/proof.hpp"
+#include "paint/paint.hpp"
+#include "panels/widgets.hpp"
+#include "session/glossary.hpp"
+#include "surface/imgui_version.hpp"
+
+namespace achilles {
+
+// ---- above everything: menus, and at the right end a switch for every panel and for the theme ----
+
+namespace {
+
+struct Shown {
+    const char *what, *name;
+    int key;
+};
+constexpr std::array<Shown, 6> panels{{{"controls", "Controls", '1'},
+                                       {"plots", "Plots", '2'},
+                                       {"events", "Events", '3'},
+                                       {"sweep", "Sweep", '4'},
+                                       {"depend", "Sensitivities", '5'},
+                                       {"orbit", "Periodic run", '6'}}};
+
+template <class Content>
+void menu(const char* name, PanelState& state, const Content& content) {
+    const bool open = ImGui::BeginMenu(name);
+    remember(state, std::string("menu ") + name);
+    if (!open) return;
+    content();
+    close_by_escape(state);
+    ImGui::EndMenu();
+}
+
+// The next size of everything, as browsers have them.
+double next_size(double now, int step) {
+    constexpr std::array sizes{0.5, 0.67, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
+    if (step > 0) {
+        const auto* const larger = std::upper_bound(sizes.begin(), sizes.end(), now);
+        return larger == sizes.end() ? now : *larger;
+    }
+    const auto* const here = std::lower_bound(sizes.begin(), sizes.end(), now);
+    return here == sizes.begin() ? now : *(here - 1);
+}
+
+void enlarge(const Session& session, int step, Commands& commands) {
+    const double now = session.scene().enlarged(), next = step == 0 ? 1.0 : next_size(now, step);
+    if (next != now) commands.emplace_back(command::Enlarge{next});
+}
+
+// The files that were open last.
+void show_recent(const Session& session, PanelState& state, Commands& commands) {
+    if (state.recent.empty()) return;
+    ImGui::Separator();
+    for (const std::string& path : state.recent) {
+        const std::string name = std::filesystem::path(path).filename().string();
+        if (ImGui::MenuItem((name + "##" + path).c_str())) request(session, state, command::Open{path}, commands);
+        remember(state, "menu " + path);
+        tooltip(path);
+    }
+}
+
+void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
+    if (menu_item("New", state)) request(session, state, command::New{}, commands);
+    if (menu_item("Open\u2026", state)) ask_to_open(state);
+    if (menu_item("Gallery\u2026", state)) commands.emplace_back(command::Show{"gallery", true});
+    if (menu_item("Save", state)) save_or_ask(session, state, commands);
+    if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
+    show_recent(session, state, commands);
+    ImGui::Separator();
+    show_take_away_items(session, state, commands);
+}
+
+void show_edit_menu(const Session& session, PanelState& state, Commands& commands) {
+    if (menu_item("Undo", state, false, session.can_undo())) commands.emplace_back(command::Undo{});
+    if (menu_item("Redo", state, false, session.can_redo())) commands.emplace_back(command::Redo{});
+    ImGui::Separator();
+    if (menu_item("Reset all values", state)) commands.emplace_back(command::Reset{});
+    ImGui::Separator();
+    if (menu_item("Command\u2026", state)) commands.emplace_back(command::Show{"palette", true});
+    if (menu_item("Edit System File", state, session.shows_editor())) toggle_editor(session, state, commands);
+}
+
+void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
+    const Scene& scene = session.scene();
+    for (const Shown& panel : panels)
+        if (menu_item(panel.name, state, scene.shows(panel.what)))
+            commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
+    if (menu_item("Automatic panel sizes", state))
+        for (const std::string& panel : command::sized_panels)
+            if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
+    ImGui::Separator();
+    for (const auto& [what, name] : {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"},
+                                     std::pair{"force", "Contact force"}, std::pair{"strobe", "Poses at events"}})
+        if (menu_item(name, state, scene.shows(what))) commands.emplace_back(command::Show{what, !scene.shows(what)});
+    const bool plane = scene.shows("plane");
+    if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});
+    const bool energy = scene.shows("energy");
+    if (menu_item("Energy", state, energy)) commands.emplace_back(command::Show{"energy", !energy});
+    if (menu_item("Fit whole run", state, false, scene.look().has_value())) commands.emplace_back(command::LookAll{});
+    ImGui::Separator();
+    const bool loops = scene.loops();
+    if (menu_item("Loop playback", state, loops)) commands.emplace_back(command::Loop{!loops});
+    if (menu_item("Presentation", state, scene.presents())) commands.emplace_back(command::Present{!scene.presents()});
+    ImGui::Separator();
+    if (menu_item("Larger", state)) enlarge(session, 1, commands);
+    if (menu_item("Smaller", state)) enlarge(session, -1, commands);
+    if (menu_item("Reset Zoom", state)) enlarge(session, 0, commands);
+    if (menu_item("Dark theme", state, session.theme().dark))
+        commands.emplace_back(command::UseTheme{!session.theme().dark});
+}
+
+// A picture to press, as wide as it is high. Returns where to draw it.
+bool switch_button(const std::string& name, const std::string& about, PanelState& state, Rectangle& area) {
+    const float size = ImGui::GetFrameHeight();
+    const bool pressed = ImGui::InvisibleButton(name.c_str(), {size, size});
+    remember(state, name);
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    if (ImGui::IsItemHovered())
+        ImGui::GetWindowDrawList()->AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_ButtonHovered), units(3.0F));
+    tooltip(about);
+    area = {std::floor(low.x + 0.5F * size - units(8.0F)), std::floor(low.y + 0.5F * size - units(6.5F)), units(16.0F),
+            units(13.0F)};
+    return pressed;
+}
+
+// A little window whose left, right, lower or lower right part is filled where the panel is shown.
+void panel_switch(const Session& session, const Shown& panel, PanelState& state, Commands& commands) {
+    const bool shown = session.scene().shows(panel.what);
+    Rectangle r;
+    if (switch_button(std::string("switch ") + panel.what,
+                      std::string(shown ? "hide the " : "show the ") + panel.what + " (" +
+                          std::string(shortcut_of(panel.name)) + ")",
+                      state, r))
+        commands.emplace_back(command::Show{panel.what, !shown});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImU32 ink = packed(shown ? text_color() : faint_color());
+    stroke_rectangle(list, {r.x + 0.5F, r.y + 0.5F}, {r.x + r.width - 0.5F, r.y + r.height - 0.5F}, ink, units(2.0F),
+                     units(1.2F));
+    const float across = 0.38F * r.width, down = 0.4F * r.height, inset = units(2.5F);
+    ImVec2 low{r.x + inset, r.y + inset}, high{r.x + r.width - inset, r.y + r.height - inset};
+    if (panel.key == '1') high.x = r.x + across;
+    if (panel.key == '2' || panel.key == '4') low.x = r.x + r.width - across;
+    if (panel.key == '3' || panel.key == '4') low.y = r.y + r.height - down;
+    list->AddRectFilled(low, high, packed(shown ? text_color() : faint_color(), shown ? 1.0F : 0.35F));
+}
+
+void theme_switch(const Session& session, PanelState& state, Commands& commands) {
+    const bool dark = session.theme().dark;
+    Rectangle r;
+    if (switch_button("switch theme", dark ? "light theme (Ctrl+D)" : "dark theme (Ctrl+D)", state, r))
+        commands.emplace_back(command::UseTheme{!dark});
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const ImVec2 c{r.x + 0.5F * r.width, r.y + 0.5F * r.height};
+    const float radius = units(6.5F);
+    const ImU32 ink = packed(text_color());
+    list->AddCircle(c, radius, ink, 32, units(1.2F));
+    list->PathArcTo(c, radius - units(0.5F), -1.5707964F, 1.5707964F, 20);
+    list->PathFillConvex(ink);
+}
+
+}  // namespace
+
+void use_view_keys(const Session& session, PanelState& state, Commands& commands) {
+    const ImGuiIO& io = ImGui::GetIO();
+    if (takes_key(state, key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
+    if (!io.KeyCtrl || io.KeyAlt) return;
+    for (const Shown& panel : panels)
+        if (takes_key(state, panel.key, false))
+            commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
+    if (takes_key(state, 'D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+    if (takes_key(state, '=', false)) enlarge(session, 1, commands);
+    if (takes_key(state, '-', false)) enlarge(session, -1, commands);
+    if (takes_key(state, '0', false)) enlarge(session, 0, commands);
+}
+
+void show_bar(const Session& session, PanelState& state, Commands& commands) {
+    if (!ImGui::BeginMenuBar()) return;
+    menu("File", state, [&] { show_file_menu(session, state, commands); });
+    menu("Edit", state, [&] { show_edit_menu(session, state, commands); });
+    menu("View", state, [&] { show_view_menu(session, state, commands); });
+    menu("Tours", state, [&] { show_tour_items(session, state, commands); });
+    menu("Help", state, [&] { show_help_items(state, commands); });
+    const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
+    const float width = 5.0F * size + 4.0F * space + edge;
+    const float left = ImGui::GetWindowWidth() - width;
+    const float title_at = ImGui::GetCursorPosX() + units(16.0F);
+    // Where no panel tells what runs, this line does.
+    if (!session.scene().shows("controls") && !session.shows_editor() && left - title_at > units(80.0F)) {
+        ImGui::SetCursorPosX(title_at);
+        label(session.description().title, left - title_at);
+        ImGui::SameLine(0.0F, 0.0F);
+    }
+    if (left < title_at) return ImGui::EndMenuBar();
+    ImGui::SetCursorPosX(left);
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {space, 0.0F});
+    for (const std::size_t i : {0U, 2U, 1U, 3U}) panel_switch(session, panels[i], state, commands);
+    theme_switch(session, state, commands);
+    ImGui::PopStyleVar();
+    ImGui::EndMenuBar();
+}
+
+// ---- the last line: how the run went, and what the colors and signs mean ----
+
+namespace {
+
+constexpr float edge = 10.0F;  // left and right, as beside the panels
+
+// A coloured sign and what it stands for, on the current line.
+void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::Dummy({units(16.0F), ImGui::GetTextLineHeight()});
+    sign(ImGui::GetWindowDrawList(), {at.x + units(8.0F), at.y + 0.5F * ImGui::GetTextLineHeight()});
+    ImGui::SameLine(0.0F, units(2.0F));
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+constexpr Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
+
+std::vector<Markers> legend_markers(const Session& session) {
+    std::vector<Markers> events;
+    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
+        events.push_back(event_markers(session.theme(), kind));
+    if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
+    return events;
+}
+
+float legend_gap() { return units(12.0F); }
+
+float legend_width(const Session& session) {
+    float width = 0.0F;
+    const auto add = [&](const std::string& text) {
+        width += ImGui::CalcTextSize(text.c_str()).x + units(18.0F) + legend_gap();
+    };
+    for (const Phase::Kind kind : phases) add(legend_text(kind));
+    for (const Markers& markers : legend_markers(session)) add(markers.label);
+    if (session.proof() != nullptr) add(proof_tube(session.theme()).label);
+    return width;
+}
+
+void show_legend(const Session& session) {
+    const std::vector<Markers> events = legend_markers(session);
+    const float between = legend_gap(), width = legend_width(session);
+    const bool has_tube = session.proof() != nullptr;
+    const Tube tube = proof_tube(session.theme());
+    ImGui::SameLine();
+    if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
+    ImGui::SetCursorPosX(content_right() - units(edge) - width + between);
+    for (const Phase::Kind kind : phases) {
+        legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
+            list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
+                                packed(phase_color(session.theme(), kind), 0.85F));
+        });
+        ImGui::SameLine(0.0F, between);
+    }
+    for (const Markers& markers : events) {
+        legend_entry(markers.label, [&](ImDrawList* list, ImVec2 c) {
+            paint_marker(list, markers, {c.x, c.y}, units(1.0F));
+        });
+        if (&markers != &events.back() || has_tube) ImGui::SameLine(0.0F, between);
+    }
+    if (!has_tube) return;
+    legend_entry(tube.label, [&](ImDrawList* list, ImVec2 c) {
+        const ImVec2 low{c.x - units(6.0F), c.y - units(4.0F)}, high{c.x + units(6.0F), c.y + units(4.0F)};
+        list->AddRectFilled(low, high, packed(tube.fill));
+        stroke_rectangle(list, low, high, packed(tube.edge), 0.0F, units(1.0F));
+    });
+}
+
+// How much is done of what is under way, along the upper edge.
+void paint_share(double share) {
+    const ImVec2 corner = ImGui::GetWindowPos();
+    const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
+    ImGui::GetWindowDrawList()->AddRectFilled(corner, {corner.x + width, corner.y + units(3.0F)},
+                                              ImGui::GetColorU32(ImGuiCol_SliderGrab));
+}
+
+// A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
+// the run before it or, of another system, its start.
+void show_progress(const Session& session, const PanelState& state, const Watch& watch) {
+    const Run& run = session.run();
+    const double time = watch.time, impacts = static_cast<double>(watch.impacts);
+    const double share =
+        std::clamp(std::max((time - run.options.start_time) / (run.options.end_time - run.options.start_time),
+                            impacts / run.options.max_impacts),
+                   0.0, 1.0);
+    paint_share(share);
+    ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_SliderGrab));
+    const std::string left = state.in_window ? time_left(session.seconds_under_way(), share) : "";
+    ImGui::TextUnformatted(fmt::format("running: t = {:.6g} of {:.6g} s   \u00b7   {:.0f} impacts{}{}", time,
+                                       run.options.end_time, impacts, left.empty() ? "" : "   \u00b7   ", left)
+                               .c_str());
+    ImGui::PopStyleColor();
+    ImGui::SameLine(0.0F, units(24.0F));
+    ImGui::TextDisabled(
+        "%s", session.shows_start() ? "the start is shown until then" : "the previous run is shown until then");
+}
+
+// How far the proof of the run has come, or how far it goes.
+void show_proof(const Session& session) {
+    const Options& options = session.run().options;
+    if (const ProofWatch* watch = session.proof_under_way()) {
+        const double time = watch->time;
+        paint_share(std::clamp((time - options.start_time) / (options.end_time - options.start_time), 0.0, 1.0));
+        ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_SliderGrab));
+        ImGui::TextUnformatted(fmt::format("proving: t = {:.6g} of {:.6g} s", time, options.end_time).c_str());
+        ImGui::PopStyleColor();
+        return ImGui::SameLine(0.0F, units(24.0F));
+    }
+    const Proof* const proof = session.proof();
+    if (proof == nullptr) return;
+    const Enclosure& enclosure = proof->enclosure;
+    const std::string about = told(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(enclosure.end ? text_color() : error_color()));
+    ImGui::TextUnformatted(
+        fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
+            .c_str());
+    ImGui::PopStyleColor();
+    tooltip(
+        enclosure.end
+            ? "The exact motion lies in the tubes of the plots, and its events in the intervals shown. This assumes " +
+                  enclosure.assumptions + "."
+            : "Until then the exact motion lies in the tubes of the plots, and its events in the intervals shown. "
+              "After that, nothing is proved: " +
+                  enclosure.outcome.message + ".");
+    ImGui::SameLine(0.0F, units(24.0F));
+}
+
+// What is estimated of the run's error, once that is known, behind what stands there. Nothing where there is none, and why is in the
+// summary; nor where it would take the legend its place.
+void show_estimate(const Session& session) {
+    const ErrorEstimate* estimate = session.error_estimate();
+    if (estimate == nullptr || !estimate->end || session.horizon()) return;  // a remark tells of the horizon
+    const std::string text = fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}"));
+    const float room = ImGui::GetWindowPos().x + content_right() - ImGui::GetItemRectMax().x;
+    const float needed = ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + legend_width(session);
+    if (room < needed + units(edge)) return;
+    ImGui::SameLine(0.0F, 0.0F);
+    ImGui::TextUnformatted(text.c_str());
+    tooltip(
+        "Error of the state at the end, position and rates together: errors of steps,\nroots and cuts, propagated to "
+        "first order, and rounding.\nAn estimate, not a proof.");
+}
+
+}  // namespace
+
+std::string time_left(double seconds, double share) {
+    if (!(seconds >= 0.5) || !(share > 1e-3)) return {};  // too early to tell
+    const double left = seconds * (1.0 - share) / share;
+    if (left < 1.5) return "about 1 s left";
+    if (left < 90.0) return fmt::format("about {:.0f} s left", left < 20.0 ? left : 10.0 * std::round(left / 10.0));
+    if (left < 90.0 * 60.0) return fmt::format("about {:.0f} min left", left / 60.0);
+    if (left < 36.0 * 3600.0) return fmt::format("about {:.0f} h left", left / 3600.0);
+    return "more than a day left";
+}
+
+void show_status(const Session& session, const PanelState& state) {
+    const Trajectory& trajectory = session.trajectory();
+    const Statistics& s = trajectory.statistics;
+    const ImVec2 corner = ImGui::GetWindowPos();
+    ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
+                                        ImGui::GetColorU32(ImGuiCol_Border));
+    ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
+    if (const Watch* watch = session.under_way()) return show_progress(session, state, *watch);
+    show_proof(session);
+    if (trajectory.outcome.kind != Outcome::Kind::end_time) {
+        const std::string early =
+            fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));
+        ImGui::PushStyleColor(ImGuiCol_Text, packed(error_color()));
+        ImGui::TextUnformatted(early.c_str());
+        ImGui::PopStyleColor();
+        tooltip(trajectory.outcome.message);
+        ImGui::SameLine(0.0F, units(24.0F));
+    }
+    if (const auto warned = warnings(session.run().options); !warned.empty()) {
+        ImGui::TextUnformatted(fmt::format("minimum tolerances: {}", least_tolerance).c_str());
+        for (const std::string& warning : warned) tooltip(warning);
+        ImGui::SameLine(0.0F, units(24.0F));
+    }
+    for (const Remark& remark : session.remarks()) {
+        const bool is_horizon = session.horizon() && &remark == session.remarks().data();
+        ImGui::PushStyleColor(ImGuiCol_Text, packed(is_horizon ? error_color() : text_color()));
+        ImGui::TextUnformatted(remark.label.c_str());
+        ImGui::PopStyleColor();
+        tooltip(remark.sentence);
+        ImGui::SameLine(0.0F, units(24.0F));
+    }
+    if (session.selected() > 0) {
+        const auto event = static_cast<std::size_t>(session.selected() - 1);
+        const std::string said = fmt::format("event {}: ", event + 1) + typeset_sentence(session.sentences().of(event));
+        const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+        cell(ImGui::GetCursorScreenPos(), said, room, text_color());
+        ImGui::Dummy({std::min(width_of(said), room), ImGui::GetTextLineHeight()});
+        show_legend(session);
+        return;
+    }
+    const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
+    const std::string text =
+        fmt::format("{}{}   \u00b7   {} steps   \u00b7   minimum gap {}   \u00b7   energy drift {}   \u00b7   {}",
+                    seconds, session.sentences().impacts(), s.steps,
+                    with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
+                    s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
+                    to_text(trajectory.run.options.method));
+    const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
+    const bool is_cut = width_of(text) > room;
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(is_cut ? fitted(text, room).c_str() : text.c_str());
+    if (is_cut) tooltip(text);
+    show_estimate(session);
+    ImGui::PopStyleColor();
+    show_legend(session);
+}
+
+}  // namespace achilles

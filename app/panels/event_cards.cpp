@@ -1,0 +1,371 @@
+// Beside the list of events: why the chosen event is what it is.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "figure/axes.hpp"
+#include "figure/compose.hpp"
+#include "figure/label.hpp"
+#include "number/angle.hpp"
+#include "output/contacts.hpp"
+#include "output/output.hpp"
+#include "output/precision.hpp"
+#include "paint/label.hpp"
+#include "panels/widgets.hpp"
+#include "simulate/explain.hpp"
+#include "surface/imgui_version.hpp"
+#include "system/units.hpp"
+
+namespace achilles {
+
+// ---- impacts and releases ----
+
+namespace {
+
+constexpr float value_at = 150.0F, second_at = 270.0F;
+
+ImVec2 at_right(const ImVec2& at, float by) { return {at.x + units(by), at.y}; }
+
+// A name and its values in columns.
+void row(const std::string& name, const std::string& first, const std::string& second = {}) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    cell(at, name, units(value_at - 8.0F), faint_color());
+    cell(at_right(at, value_at), first, units((second.empty() ? second_at + 90.0F : second_at) - value_at - 8.0F),
+         text_color());
+    if (!second.empty()) cell(at_right(at, second_at), second, units(90.0F), text_color());
+    ImGui::Dummy({units(second_at + 90.0F), ImGui::GetTextLineHeight()});
+}
+
+// The rates before and after, in the units that are shown.
+void show_rates(const Session& session, const Event& event) {
+    row("", "before", "after");
+    const State errors = session.precision().of_state(event.t);
+    const auto& coordinates = session.description().coordinates;
+    for (std::size_t i = 0; i < coordinates.size(); ++i) {
+        const bool is_angle = coordinates[i].unit == "rad";
+        const double factor = is_angle ? degrees(1.0) : 1.0;
+        const auto at = static_cast<Eigen::Index>(i);
+        row(typeset_name(coordinates[i].name + "'") + (is_angle ? " [\u00b0/s]" : ""),
+            number(event.v_before[at] * factor, errors.v[at] * factor, 6),
+            number(event.v_after[at] * factor, errors.v[at] * factor, 6));
+    }
+}
+
+// The first inequality that does not hold, if any.
+std::optional<Inequality> failed(const Certificate& certificate) {
+    for (const Inequality& inequality : certificate.inequalities())
+        if (!(inequality.left < inequality.right)) return inequality;
+    return std::nullopt;
+}
+
+std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once,
+                        const ShownUnit& acceleration) {
+    if (reason.cut)
+        return "Cut here: the error of the motion that follows is certified to be within the tolerances. The next "
+               "event, the Zeno point, shows the bounds.";
+    if (!reason.contact || all_at_once)
+        return "Not cut: several contacts take part in this impact, which Moreau's law resolves together.";
+    if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
+    if (!(reason.normal_acceleration < 0.0))
+        return fmt::format(
+            "Not cut: the surface falls away here; the gap would open with acceleration {}.",
+            number_with_unit(number(reason.normal_acceleration * acceleration.factor), acceleration.text));
+    if (attempt == nullptr)
+        return fmt::format(
+            "Not cut: nothing can be certified yet; the gap's acceleration may change sign{} before the Zeno point.",
+            several ? ", or another contact may open or close," : "");
+    const std::optional<Inequality> inequality = failed(*attempt);
+    if (!inequality) return "Not cut: this impact came before the conditions were checked.";
+    if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} does not hold.", inequality->name);
+    return fmt::format("Not cut: the {} requires {} < {}; the left side is {} times too large.", inequality->name,
+                       number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
+                       number(inequality->left / inequality->right, "{:.3g}"));
+}
+
+// Lambda during the contact, down to zero, and dotted how it would go on.
+Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& reason) {
+    const std::string time = "t (s)", lambda_name = "\u03bb";
+    Panel panel;
+    panel.x.label = time;
+    panel.y.label = lambda_name;
+    const Stroke contact = phase_stroke(theme, Phase::Kind::constrained, 0, 1);
+    Curve force{"", contact, {}}, pull{"", contact, {}};
+    double most = 0.0;
+    for (const auto& [t, lambda] : reason.force) {
+        force.points.push_back({t, lambda});
+        most = std::max(most, lambda);
+    }
+    const double start = reason.force.front().first, beyond = 0.15 * (event.t - start);
+    pull.stroke.dash = {2.0, 2.5};
+    pull.points = {{event.t, reason.lambda}, {event.t + beyond, reason.lambda + beyond * reason.lambda_rate}};
+    Markers release = event_markers(theme, Event::Kind::release);
+    release.points = {{event.t, reason.lambda}};
+    set_ticks(panel.x, start, event.t + beyond, 0.0, 4);
+    set_ticks(panel.y, std::min(pull.points.back().y, 0.0), most, 0.08, 3);
+    panel.curves = {force, pull};
+    panel.markers = {release};
+    return panel;
+}
+
+// When the proof of the run has it.
+void show_proved(const Session& session, std::size_t event) {
+    if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
+}
+
+// "Impact of wall, event 7"; without the contact where there is one.
+std::string title(const char* kind, const Session& session, const Event& event, std::size_t index) {
+    const std::string contacts = contacts_told(session.trajectory(), event);
+    return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
+}
+
+std::string time_of(const Session& session, std::size_t event) {
+    return fmt::format("t = {} s",
+                       number(session.trajectory().events[event].t, session.precision().of_event(event), 10));
+}
+
+// Where there are several contacts.
+std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
+    const Model& model = *session.model();
+    std::string text =
+        reason.held.empty() ? "No contact is held. " : fmt::format("Held: {}. ", joined_names(model, reason.held));
+    if (!event.opened.empty())
+        text += fmt::format("It opens {}, where the impulse would have to pull. ", joined_names(model, event.opened));
+    if (event.joint && event.joint->order_matters)
+        text += "The order of the impacts matters but is unknown: they are resolved together. ";
+    if (event.joint && event.joint->not_unique) text += "The impulses are not unique; this is one choice. ";
+    return text;
+}
+
+}  // namespace
+
+void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    if (show_card_title(title("Impact", session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    const ImpactReason reason = explain_impact(session.trajectory(), index);
+    show_rates(session, event);
+    const SystemDescription& description = session.description();
+    // In the units of the file; of several contacts that of the first that lands.
+    std::size_t first = 0;
+    while (first + 1 < session.model()->contacts() && !event.contacts.contains(first)) ++first;
+    const auto with = [&](const std::string& value, const std::string& of) {
+        const std::string unit = typeset_unit(unit_of_expression(description, of));
+        return unit.empty() ? value : value + " " + unit;
+    };
+    const ShownUnit rate = shown_unit(unit_of_expression(description, output_names(description, "gap'")[first]));
+    row("gap speed |h\u0307|", number_with_unit(number(event.impact_speed * rate.factor,
+                                                       session.precision().of_gap_speed(index) * rate.factor, 9),
+                                                rate.text));
+    const double error = session.precision().of_energy(sample_at(session.trajectory(), event));
+    row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
+        number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
+    row("energy lost",
+        with(
+            number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before)), error, 6),
+            "energy"));
+    const bool several = session.model()->contacts() > 1;
+    show_proved(session, index);
+    std::string words =
+        why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr,
+                    shown_unit(unit_of_expression(description, output_names(description, "gap''")[first])));
+    if (several) {
+        for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
+            row("impulse on " + description.constraints[contact].name,
+                with(number(impulse), output_names(description, "lambda")[contact] + "*t"));
+        words = what_is_held(session, event, reason) + words;
+    }
+    paragraph(words, remaining().width, text_color());
+}
+
+void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    if (show_card_title(title("Release", session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    const ReleaseReason reason = explain_release(session.trajectory(), index);
+    const Rectangle room = remaining();
+    const float words = std::max(units(second_at), 0.45F * room.width);
+    if (room.width - words > units(160.0F) && !reason.force.empty())
+        paint(force_panel(session.theme(), event, reason), screen_style(session.theme()), ImGui::GetWindowDrawList(),
+              {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
+    double most = 0.0;
+    for (const auto& [t, lambda] : reason.force) most = std::max(most, std::abs(lambda));
+    row("\u03bb", number(without_noise(reason.lambda, most), "{:.2g}"));
+    row("\u03bb\u0307", number(reason.lambda_rate));
+    row("h\u2034", number(reason.jerk));
+    show_proved(session, index);
+    paragraph(
+        "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
+        "first two derivatives are zero and the third, h\u2034, is positive, so the body leaves the surface.",
+        words - units(16.0F), text_color());
+}
+
+// ---- Zeno points: what is proved, and by how much each inequality holds ----
+
+namespace {
+
+// The share of the right-hand side that the left one uses up: 0 is a wide margin, 1 none. An inequality whose right
+// side is 0 (a sign) has none.
+double share_of(const Inequality& inequality) {
+    return inequality.right > 0.0 ? std::clamp(inequality.left / inequality.right, 0.0, 1.0) : 0.0;
+}
+
+void quiet(const std::string& text) {
+    ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
+    ImGui::TextUnformatted(text.c_str());
+    ImGui::PopStyleColor();
+}
+
+// One row: name, left < right, and a bar of how much of the right side is used. The one that decided is set off.
+void show_inequality(const Inequality& inequality, bool decisive) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    const Color color = decisive ? text_color() : faint_color();
+    std::string name(inequality.name);
+    if (const std::size_t at_power = name.find("^2"); at_power != std::string::npos)
+        name.replace(at_power, 2, "\u00b2");
+    list->AddText(at, packed(color), name.c_str());
+    const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
+    const ImVec2 middle{std::floor(at.x + units(138.0F)), at.y};
+    cell(middle, sides, std::min(units(150.0F), at.x + width + units(6.0F) - middle.x), color);  // into the margin
+    const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
+    const float top = at.y + 0.35F * line, bottom = at.y + 0.7F * line;
+    if (room > units(12.0F) && inequality.right > 0.0) {
+        list->AddRectFilled({left, top}, {left + room, bottom}, packed(faint_color(), 0.25F), units(2.0F));
+        const float used = std::max(units(2.0F), room * static_cast<float>(share_of(inequality)));
+        list->AddRectFilled({left, top}, {left + used, bottom},
+                            decisive ? ImGui::GetColorU32(ImGuiCol_SliderGrabActive) : packed(faint_color()),
+                            units(2.0F));
+    }
+    ImGui::Dummy({width, line});
+    tooltip(decisive ? inequality.left < inequality.right ? "the tightest of these inequalities"
+                                                          : "this does not hold: shorter flights cannot be resolved"
+                     : "the bar shows the left side as a share of the right side");
+}
+
+}  // namespace
+
+bool show_card_title(const std::string& title, const std::string& more, PanelState& state, float margin) {
+    ImGui::TextUnformatted(title.c_str());
+    ImGui::SameLine();
+    quiet(more);
+    const float width = ImGui::GetTextLineHeight();
+    ImGui::SameLine(content_right() - width - margin);
+    const bool pressed = ImGui::InvisibleButton("close", {width, width}), close = take_escape(state) || pressed;
+    remember(state, "close card");
+    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+    const float inset = 0.28F * width;
+    const ImU32 color = packed(ImGui::IsItemHovered() ? text_color() : faint_color());
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddLine({low.x + inset, low.y + inset}, {high.x - inset, high.y - inset}, color, units(1.5F));
+    list->AddLine({low.x + inset, high.y - inset}, {high.x - inset, low.y + inset}, color, units(1.5F));
+    tooltip("close (Escape)");
+    return close;
+}
+
+std::vector<std::string> certificate_lines(const Event& event) {
+    constexpr int digits = 6;
+    const Certificate& c = *event.certificate;
+    std::vector<std::string> lines;
+    if (is_plastic_landing(event)) {
+        lines.emplace_back("stays in contact without a bounce");
+        lines.push_back(
+            with_minus("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits)));
+        return lines;
+    }
+    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
+    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
+                                bound_text(c.velocity_bound)));
+    if (c.uniform_position)
+        lines.push_back(fmt::format("error until \u03c4\u221e: q \u2264 {}", bound_text(*c.uniform_position)));
+    if (c.shadowing_position)
+        lines.push_back(fmt::format("error at \u03c4\u221e: q \u2264 {}, v \u2264 {}",
+                                    bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity)));
+    lines.push_back("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits));
+    if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
+    for (std::string& line : lines) line = with_minus(std::move(line));
+    return lines;
+}
+
+namespace {
+
+// A word that opens the lens in place of the plots, and closes it.
+void lens_button(const Session& session, PanelState& state, Commands& commands) {
+    const bool open = session.scene().shows("lens");
+    const char* const name = open ? "close the Zeno lens" : "open the Zeno lens";
+    const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(name);
+    if (ImGui::InvisibleButton("lens", size)) commands.emplace_back(command::Show{"lens", !open});
+    remember(state, "open lens");
+    const ImU32 color = ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_SliderGrab);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddText(at, color, name);
+    list->AddLine({at.x, at.y + size.y}, {at.x + size.x, at.y + size.y}, color, units(1.0F));
+    tooltip("show the bouncing before this Zeno point in logarithmic time, in place of the plots");
+}
+
+}  // namespace
+
+// "; q in rad, v in rad/s": of what stands below.
+std::string units_told(const SystemDescription& description) {
+    const NormUnits unit = norm_units(description);
+    return unit.position.empty() ? "" : fmt::format("; q in{}, v in{}", unit.position, unit.velocity);
+}
+
+void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    const Certificate& certificate = *event.certificate;
+    const bool is_plastic = is_plastic_landing(event);
+    const std::string contacts = contacts_told(session.trajectory(), event);
+    const bool close =
+        show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
+                                    contacts.empty() ? "" : " of ", contacts, index + 1,
+                                    is_plastic              ? "plastic"
+                                    : certificate.certified ? "certified"
+                                                            : "not certified"),
+                        fmt::format("{} conditions, {} restart{}", to_text(certificate.conditions),
+                                    to_text(certificate.reinitialization), units_told(session.description())),
+                        state);
+    if (close) commands.emplace_back(command::Select{0});
+    if (!is_plastic) lens_button(session, state, commands);
+    if (const std::string proved = proved_text(session, index); !proved.empty()) {
+        if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
+        ImGui::TextUnformatted(proved.c_str());
+        tooltip(
+            "covers the whole run from its start, with integration and all cuts; the bounds below cover this cut "
+            "alone");
+    }
+    if (const auto horizon = session.horizon(); horizon && event.t > *horizon)
+        return paragraph(fmt::format("The run is not trusted after t = {:.6g} s: this certificate is about the "
+                                     "computed motion, which no longer follows the motion of this system.",
+                                     *horizon),
+                         remaining().width, text_color());
+    show_certificate(event);
+    const auto& others = certificate.others;
+    const std::string told = others ? others_told(*session.model(), *others) : "";
+    if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
+}
+
+void show_certificate(const Event& event) {
+    const std::vector<std::string> lines = certificate_lines(event);
+    float half = 0.44F * ImGui::GetContentRegionAvail().x;
+    for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));
+    half = std::floor(half);
+    const float top = ImGui::GetCursorPosY(), left = ImGui::GetCursorPosX();
+    for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
+    const float below = ImGui::GetCursorPosY();
+    ImGui::SetCursorPos({left + half, top});
+    ImGui::BeginGroup();
+    for (const Inequality& inequality : event.certificate->inequalities())
+        show_inequality(inequality, inequality.name == event.certificate->decisive);
+    ImGui::EndGroup();
+    ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
+    ImGui::PushTextWrapPos(0.0F);
+    quiet(is_plastic_landing(event) ? "Not covered: integration and rounding errors before it."
+                                    : "For the exact motion from the computed state at the cut. Not covered: "
+                                      "integration and rounding errors, and the combined effect of several cuts.");
+    ImGui::PopTextWrapPos();
+}
+
+}  // namespace achilles

@@ -1,0 +1,155 @@
+// The list of events: which lines it has, and its columns.
+#pragma once
+
+#include <imgui.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "output/contacts.hpp"
+#include "panels/panels.hpp"
+#include "run/trajectory.hpp"
+
+namespace achilles {
+
+// The events of a run at which what is held changes. A run may have a hundred thousand impacts, and a frame has no time to
+// look at each: phases begin and end where these events are.
+
+// The indices of Zeno points and releases, in order; with openings, of impacts that open a contact, too.
+inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_openings = false) {
+    std::vector<std::size_t> result;
+    const auto& events = trajectory.events;
+    for (const Phase& phase : trajectory.phases) {
+        auto event = std::lower_bound(events.begin(), events.end(), phase.start,
+                                      [](const Event& e, double t) { return e.t < t; });
+        for (; event != events.end() && event->t == phase.start; ++event) {
+            const auto index = static_cast<std::size_t>(event - events.begin());
+            const bool turns_here = event->kind != Event::Kind::impact || (with_openings && !event->opened.empty());
+            if (turns_here && (result.empty() || result.back() < index)) result.push_back(index);
+        }
+    }
+    return result;
+}
+
+// Which lines the list of events has.
+
+// The lines of the list: each event, but impacts one after the other as one line, until it is opened; so, too, where contacts
+// come to rest and are opened again and again. A run may have a
+// hundred thousand impacts: only what is seen is made.
+class EventRows {
+ public:
+    struct Row {
+        std::size_t event;      // the first, of impacts in one line
+        std::size_t count = 0;  // of these impacts; 0: the line is an event
+        bool is_open = false;   // they follow, line by line
+    };
+    EventRows(const Session& session, const PanelState& state) {
+        const Trajectory& trajectory = session.trajectory();
+        const std::vector<std::size_t> all_turns = turns(trajectory, true);
+        folds_ = !state.show_impacts && !all_turns.empty();  // where there are only impacts each is seen
+        std::size_t next = 0;
+        const std::vector<Chatter> chatters = chatters_of(trajectory);
+        auto chatter = chatters.begin();
+        for (const std::size_t turn : all_turns) {
+            if (folds_ && chatter != chatters.end() && turn >= chatter->first_event) {
+                add_impacts(session, state, next, chatter->first_event - next);
+                add_impacts(session, state, chatter->first_event, chatter->last_event - chatter->first_event);
+                next = chatter++->last_event;
+            }
+            if (turn < next) continue;
+            add_impacts(session, state, next, turn - next);
+            add({turn, 1, false, false, 0});
+            next = turn + 1;
+        }
+        add_impacts(session, state, next, trajectory.events.size() - next);
+    }
+    std::size_t size() const { return count_; }
+    Row at(std::size_t index) const {
+        const auto after = std::upper_bound(parts_.begin(), parts_.end(), index,
+                                            [](std::size_t i, const Part& part) { return i < part.row; });
+        const Part& part = *std::prev(after);
+        const std::size_t within = index - part.row;
+        if (part.is_folded && within == 0) return {part.first, part.count, part.is_open};
+        return {part.first + within - (part.is_folded ? 1 : 0)};
+    }
+    // The line of this event, or that which it is folded into.
+    std::size_t row_of(std::size_t event) const {
+        const auto after = std::upper_bound(parts_.begin(), parts_.end(), event,
+                                            [](std::size_t e, const Part& part) { return e < part.first; });
+        if (after == parts_.begin()) return 0;
+        const Part& part = *std::prev(after);
+        if (part.is_folded && !part.is_open) return part.row;
+        return part.row + (part.is_folded ? 1 : 0) + event - part.first;
+    }
+
+ private:
+    struct Part {
+        std::size_t first, count;
+        bool is_folded, is_open;
+        std::size_t row;
+    };
+    void add(Part part) {
+        part.row = count_;
+        count_ += (part.is_folded ? 1 : 0) + (part.is_folded && !part.is_open ? 0 : part.count);
+        parts_.push_back(part);
+    }
+    void add_impacts(const Session& session, const PanelState& state, std::size_t first, std::size_t count) {
+        if (count == 0) return;
+        const auto chosen = static_cast<std::size_t>(std::max(session.selected() - 1, 0));
+        const bool has_chosen = session.selected() > 0 && chosen >= first && chosen < first + count;
+        add({first, count, count > 1 && folds_, has_chosen || state.unfolded.contains(first), 0});
+    }
+
+    std::vector<Part> parts_;
+    std::size_t count_ = 0;
+    bool folds_ = true;
+};
+
+// The columns of the list of events: a sign, a number, the time and a sentence, and behind it numbers below one another.
+
+// Where they are, at scale 1, from the left edge of the list: signs and words begin there, numbers end there. The sentence has
+// what the numbers behind it leave, and these stand back before it has less than a sentence needs.
+constexpr float sign_at = 14.0F, number_at = 62.0F, time_at = 164.0F, words_at = 180.0F, words_width = 600.0F,
+                state_width = 112.0F;
+
+// A column of the state after an event: a coordinate or its rate.
+struct StateColumn {
+    std::string name, title;
+    Eigen::Index coordinate = 0;
+    bool is_rate = false;
+    double factor = 1.0;
+    double of(const Event& event) const { return (is_rate ? event.v_after : event.q)[coordinate] * factor; }
+    double size(const State& scale) const { return (is_rate ? scale.v : scale.q)[coordinate] * factor; }
+    double error(const State& errors) const { return (is_rate ? errors.v : errors.q)[coordinate] * factor; }
+};
+
+std::vector<StateColumn> state_columns(const Session& session);
+
+// A number, or a word over numbers, that ends at x; a long word is cut.
+void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
+
+// The numbers at the right end of the list: the energy that is lost, where there are several contacts what is held, and as much
+// of the state as has room. Beside a card the list has no numbers but the time.
+class EventColumns {
+ public:
+    EventColumns(const Session& session, float width, bool is_alone);
+    float words() const;  // how wide the words are, pixels
+    void put_words(ImVec2 at, const std::string& text, const Color& color) const;
+    void titles(const Session& session, ImVec2 at) const;
+    // Of an event, or of impacts in a row what they have lost.
+    void row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const;
+
+ private:
+    bool is_held(std::size_t i) const { return is_of_several_ && i == 1; }
+    const StateColumn& state(std::size_t i) const { return states_[i - (is_of_several_ ? 2 : 1)]; }
+    void put(ImVec2 at, std::size_t i, const std::string& text, const Color& color) const;
+
+    std::vector<StateColumn> states_;
+    float width_;
+    bool is_of_several_;
+    std::size_t shown_ = 0;
+};
+
+}  // namespace achilles

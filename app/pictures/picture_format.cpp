@@ -1,0 +1,164 @@
+#include "pictures/picture_format.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+#include <sstream>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "system/description.hpp"
+#include "system/input_error.hpp"
+
+extern char** environ;  // NOLINT: POSIX has it here
+
+namespace achilles {
+
+namespace {
+
+constexpr std::string_view written_formats[] = {"png", "svg", "pdf"};
+// What a person may hope for: bytes of another kind in such a file would be a trap.
+constexpr std::string_view other_formats[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
+
+template <std::size_t count>
+bool is_among(const std::string& ending, const std::string_view (&endings)[count]) {
+    return std::find(std::begin(endings), std::end(endings), ending) != std::end(endings);
+}
+
+template <class Change>
+std::string each(std::string text, Change change) {
+    for (char& c : text) c = static_cast<char>(change(static_cast<unsigned char>(c)));
+    return text;
+}
+std::string large(const std::string& text) {
+    return each(text, [](int c) { return std::toupper(c); });
+}
+
+}  // namespace
+
+std::string ending_of(const std::string& file) {
+    const std::string ending = std::filesystem::path(file).extension().string();
+    return each(ending.substr(std::min<std::size_t>(1, ending.size())), [](int c) { return std::tolower(c); });
+}
+
+std::string ending_of_picture(const std::string& file) {
+    const std::string ending = ending_of(file);
+    return is_among(ending, written_formats) ? ending : "";
+}
+
+std::string format_for(const std::string& out, const std::string& wanted, const std::string& advice) {
+    const std::string ending = ending_of(out), said = ending_of_picture(out), option = "--out " + shown(out);
+    if (wanted.empty() && out == "-") return "png";
+    if (wanted.empty() && said.empty())
+        throw InputError(option, {}, "this name does not give the format of the picture",
+                         "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
+    if (wanted.empty()) return said;
+    if (said != wanted && (!said.empty() || is_among(ending, other_formats)))
+        throw InputError(option, {},
+                         fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
+                         fmt::format("end it in .{}{}", wanted, advice));
+    return wanted;
+}
+
+std::string find_program(const std::string& name) {
+    const char* const path = std::getenv("PATH");
+    std::istringstream folders(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(folders, folder, ':');)
+        if (const std::string file = folder + "/" + name; !folder.empty() && ::access(file.c_str(), X_OK) == 0)
+            return file;
+    return {};
+}
+
+namespace {
+
+constexpr const char* writer = "rsvg-convert";
+
+using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
+
+File temporary() {
+    File file(std::tmpfile(), &std::fclose);
+    if (!file) throw std::runtime_error("a temporary file cannot be created");
+    return file;
+}
+
+std::string content(std::FILE* file) {
+    std::string text;
+    std::array<char, 65536> part{};
+    std::rewind(file);
+    for (std::size_t n = 0; (n = std::fread(part.data(), 1, part.size(), file)) > 0;) text.append(part.data(), n);
+    return text;
+}
+
+// The caller's environment, with the date that a PDF has: none that tells one run from another.
+std::vector<char*> environment() {
+    static std::string date = "SOURCE_DATE_EPOCH=0";
+    std::vector<char*> all;
+    for (char** entry = environ; *entry != nullptr; ++entry)
+        if (!std::string_view(*entry).starts_with("SOURCE_DATE_EPOCH=")) all.push_back(*entry);
+    all.push_back(date.data());
+    all.push_back(nullptr);
+    return all;
+}
+
+struct Written {
+    std::string pdf, problems;  // the first is empty where there is none
+};
+
+// What the writer makes of an SVG in this format, so many points wide.
+Written written(std::FILE* svg, const std::string& format, double points) {
+    const File out = temporary(), problems = temporary();
+    ::lseek(::fileno(svg), 0, SEEK_SET);  // also after a writer that has read
+    std::string wide = fmt::format("--width={:.3f}pt", points), kind = "--format=" + format;
+    std::string name = writer, ratio = "--keep-aspect-ratio", unlimited = "--unlimited";
+    std::array<char*, 6> words{name.data(), kind.data(), ratio.data(), unlimited.data(), wide.data(), nullptr};
+    std::vector<char*> variables = environment();
+    posix_spawn_file_actions_t actions;
+    ::posix_spawn_file_actions_init(&actions);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(svg), 0);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(out.get()), 1);
+    ::posix_spawn_file_actions_adddup2(&actions, ::fileno(problems.get()), 2);
+    pid_t process = 0;
+    const int problem = ::posix_spawnp(&process, writer, &actions, nullptr, words.data(), variables.data());
+    ::posix_spawn_file_actions_destroy(&actions);
+    int status = 0;
+    const bool is_done = problem == 0 && ::waitpid(process, &status, 0) == process && status == 0;
+    std::string pdf = is_done ? content(out.get()) : "";
+    if (!pdf.starts_with("%PDF")) pdf.clear();
+    return {std::move(pdf), content(problems.get())};
+}
+
+}  // namespace
+
+void need_pdf_writer(const std::string& file) {
+    if (!find_program(writer).empty()) return;
+    throw InputError(file, {}, fmt::format("a PDF needs {}, which is not installed", writer),
+                     "install the package librsvg2-bin, or end the name in .svg");
+}
+
+std::string pdf_of_svg(const std::string& svg, double width_mm) {
+    const File in = temporary();
+    if (std::fwrite(svg.data(), 1, svg.size(), in.get()) != svg.size() || std::fflush(in.get()) != 0)
+        throw std::runtime_error("a temporary file cannot be written");
+    const double points = width_mm / 25.4 * 72.0;
+    // Cairo 1.18 compresses what notes are added to, but in PDF 1.4; where that cannot be asked for, cairo is older.
+    std::string pdf = written(in.get(), "pdf1.4", points).pdf;
+    if (!pdf.empty()) return pdf;
+    Written last = written(in.get(), "pdf", points);
+    if (last.pdf.empty())
+        throw std::runtime_error(fmt::format("{} could not write the PDF: {}", writer, last.problems));
+    return std::move(last.pdf);
+}
+
+}  // namespace achilles

@@ -1,0 +1,296 @@
+// What a session finds out besides its run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "expression/parse.hpp"
+#include "figure/sweep_figure.hpp"
+#include "journal/journal.hpp"
+#include "session/command.hpp"
+#include "session/orbit_job.hpp"
+#include "session/session.hpp"
+
+namespace achilles {
+
+// ---- many runs beside the present one ----
+
+namespace {
+
+constexpr std::uint64_t points = 512;  // along an axis, of the finest picture
+
+// What varies is not what the values and options of the present run are for.
+Sweep sweep_of(const std::string& text, const SystemDescription& description) {
+    Sweep sweep = read_sweep(text, description);
+    if (sweep.base != default_run(description))
+        throw refusal("--set and the options of a run are not allowed here", "the sliders set what does not vary");
+    if (sweep.axes.size() > 2) throw refusal("at most two axes can be shown");
+    if (sweep.count() > most_drawn_rows)
+        throw refusal(
+            fmt::format("a sweep of {} points cannot be drawn: at most {} can be", sweep.count(), most_drawn_rows),
+            "achilles sweep --csv F writes it as a table");
+    return sweep;
+}
+
+}  // namespace
+
+std::string default_sweep(const SystemDescription& description) {
+    std::vector<const ParameterDescription*> order;
+    for (const ParameterDescription& parameter : description.parameters) order.push_back(&parameter);
+    const auto restitutes = [&](const ParameterDescription* parameter) {
+        return std::any_of(description.constraints.begin(), description.constraints.end(), [&](const auto& constraint) {
+            const std::vector<std::string> names = names_in(constraint.restitution.text);
+            return std::find(names.begin(), names.end(), parameter->name) != names.end();
+        });
+    };
+    std::stable_partition(order.begin(), order.end(), restitutes);
+    Sweep sweep;
+    sweep.base = default_run(description);
+    if (!order.empty()) {
+        const ParameterDescription& first = *order.front();
+        sweep.axes.push_back({first.name, first.range[0], first.range[1], points, false});
+    } else {
+        const CoordinateDescription& first = description.coordinates.front();
+        sweep.axes.push_back({first.name + "'", first.rate_range[0], first.rate_range[1], points, false});
+    }
+    sweep.prints = {"zeno_time(1)"};
+    return to_text(sweep, description);
+}
+
+std::string Session::sweep_text() const { return scene_.sweep().value_or(default_sweep(description())); }
+
+Sweep Session::sweep() const {
+    Sweep sweep = sweep_of(sweep_text(), description());
+    sweep.base = asked_;
+    return sweep;
+}
+
+// Throws InputError where it could not be made of runs that end as the present one does.
+void Session::check_sweep(const std::string& text) const {
+    Sweep sweep = sweep_of(text, description());
+    sweep.base.options = asked_.options;
+    if (library_.budget) library_.budget->check(sweep);
+    const RunMeasures measures(system_->model, sweep);
+}
+
+void Session::perform(const command::ShowSweep& command) {
+    try {
+        check_sweep(command.text);
+    } catch (const Forbidden&) {
+        throw;
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(command::ShowSweep::said.usage));
+    }
+    scene_.perform(command);
+}
+
+// Unless another system has not what it names.
+void Session::keep_sweep() {
+    if (!scene_.sweep()) return;
+    try {
+        check_sweep(*scene_.sweep());
+    } catch (const InputError&) {
+        scene_.forget_sweep();
+    }
+}
+
+void Session::follow_sweep() {
+    if (scene_.shows("sweep"))
+        sweep_job_->ask(system_->model, sweep());
+    else
+        sweep_job_->ask(system_->model, {});
+    sweep_job_->update(0.0);
+}
+
+void Session::settle() {
+    receive_pins({});
+    receive({});
+    receive_proof({});
+    receive_estimate({});
+    sweep_job_->update({});
+    follow_dependence({});
+    receive_orbit({});
+}
+
+// ---- a proof of the present run ----
+
+const Proof* Session::proof() const {
+    const Proof* const proof = proof_job_->proof().get();
+    const bool is_its = proof != nullptr && proof_job_->model() == trajectory().model && !shows_start() &&
+                        same_to_a_proof(proof->claim.run, trajectory().run);
+    return is_its ? proof : nullptr;
+}
+
+const ProofWatch* Session::proof_under_way() const { return proof_job_->under_way(); }
+
+std::optional<command::Prove> Session::proof_command() const {
+    if (proof_asked_) return prove_command(proof_asked_->spread);
+    return proof() == nullptr ? std::nullopt : std::optional(prove_command(proof()->spread));
+}
+
+void Session::perform(const command::Prove& command) {
+    Spread spread;
+    spread.width = command.width;
+    for (const std::string& interval : command.intervals) {
+        const auto side = read_side(interval, description());
+        if (!side)
+            throw refusal(fmt::format("'{}' is not an interval", interval), std::string(command::Prove::said.usage));
+        const double present = *value(side->name);
+        if (!(side->low <= present && present <= side->high))
+            throw refusal(fmt::format("{} = {} in the present run is not in [{}, {}]", side->name, present, side->low,
+                                      side->high));
+        spread.sides.push_back(*side);
+    }
+    check(*system_->model, claim_of(description(), asked_, spread));
+    proof_job_->forget();
+    proof_asked_ = AskedProof{system_, asked_, spread};
+    follow_proof(patience_);
+    compose_pinned();
+}
+
+void Session::perform(const command::StopProof&) {
+    proof_asked_.reset();
+    proof_job_->forget();
+    compose_pinned();
+}
+
+// What was asked of another run is not to be proved any more; of a run that is there it begins. Throws InputError for a system
+// that no proof covers.
+void Session::follow_proof(Patience patience) {
+    if (proof_asked_ && (proof_asked_->system != system_ || !same_to_a_proof(proof_asked_->run, asked_))) {
+        proof_asked_.reset();
+        proof_job_->stop();
+    }
+    try {
+        if (proof_asked_ && watch_ == nullptr && proof_job_->under_way() == nullptr)
+            proof_job_->begin(system_->model, proof_asked_->spread, claim_to_draw(trajectory(), proof_asked_->spread));
+        if (!proof_job_->update(patience)) return;
+        proof_asked_.reset();
+        compose_pinned();
+    } catch (const InputError&) {
+        proof_asked_.reset();
+        throw;
+    } catch (const std::bad_alloc&) {
+        proof_asked_.reset();
+        throw refusal("there is not enough memory for a proof of this run");
+    }
+}
+
+void Session::receive_proof(Patience patience) {
+    try {
+        follow_proof(patience);
+    } catch (const InputError& problem) {
+        error_ = problem.what();
+    }
+}
+
+// ---- on what a quantity of the present run depends ----
+
+std::string Session::depend_text() const { return scene_.depends().value_or(simulated_->quantity); }
+
+bool Session::influences_are_current() const {
+    const Influences* const known = influences();
+    return known != nullptr && watch_ == nullptr && known->run.get() == &trajectory() &&
+           known->quantity.expression == depend_text();
+}
+
+void Session::perform(const command::ShowDependence& command) {
+    try {
+        const Text text{command.quantity, {}};
+        system_->model->compile_measures({&text, 1});
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(command::ShowDependence::said.usage));
+    }
+    scene_.perform(command);
+}
+
+// Unless another system has not what it names.
+void Session::keep_dependence() {
+    if (!scene_.depends()) return;
+    try {
+        const Text text{*scene_.depends(), {}};
+        system_->model->compile_measures({&text, 1});
+    } catch (const InputError&) {
+        scene_.forget_dependence();
+    }
+}
+
+// Of the run that is shown. What takes less than half a frame is there in the same one.
+void Session::follow_dependence(Patience patience) {
+    constexpr double glance = 0.008;
+    if (!scene_.shows("depend") || shows_start()) return influences_job_->forget();
+    const bool is_new = influences_job_->ask({simulated_, &simulated_->trajectory}, depend_text());
+    influences_job_->update(is_new && patience ? glance : patience);
+}
+
+std::optional<TangentLine> Session::sweep_tangent() const {
+    if (!influences_are_current()) return std::nullopt;
+    const Sweep shown = sweep();
+    if (shown.axes.size() != 1 || shown.at || shown.prints.front() != influences()->quantity.expression)
+        return std::nullopt;
+    const SweepAxis& axis = shown.axes.front();
+    const Influences::Of* const by = influences()->find(axis.name);
+    if (by == nullptr || !std::isfinite(by->derivative)) return std::nullopt;
+    return TangentLine{*value(axis.name), influences()->quantity.value, by->derivative, axis.logarithmic};
+}
+
+// ---- a periodic run near the present one, and its branch ----
+
+namespace {
+
+bool begin_alike(const Run& a, const Run& b) {
+    return a.q == b.q && a.v == b.v && a.parameters == b.parameters && a.options.start_time == b.options.start_time;
+}
+
+}  // namespace
+
+std::shared_ptr<const FoundOrbit> Session::orbit() const { return orbit_job_->found(); }
+
+const OrbitWatch* Session::orbit_under_way() const { return orbit_job_->under_way(); }
+
+void Session::receive_orbit(Patience patience) { orbit_job_->update(patience); }
+
+void Session::perform(const command::FindOrbit& command) {
+    try {
+        orbit_job_->begin(system_->model, command.text, asked_,
+                          make_orbit_question(read_orbit(command.text), asked_, system_->model));
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(command::FindOrbit::said.usage));
+    }
+    scene_.perform(command::Show{"orbit", true});
+    receive_orbit(patience_);
+}
+
+void Session::perform(const command::StopOrbit&) { orbit_job_->forget(); }
+
+void Session::perform(const command::GoOnOrbit& command) {
+    const auto found = orbit();
+    if (found == nullptr || found->count() == 0)
+        throw refusal(orbit_under_way() != nullptr ? "the search for a periodic run is under way"
+                                                   : "no periodic run has been found yet",
+                      "orbit \"\" searches for one");
+    if (command.point < 1 || static_cast<std::size_t>(command.point) > found->count())
+        throw refusal(fmt::format("the branch has no point {}: its points are numbered from 1 to {}", command.point,
+                                  found->count()));
+    rerun(run_on(found->point(static_cast<std::size_t>(command.point) - 1), asked_));
+}
+
+std::optional<std::size_t> Session::orbit_point() const {
+    const auto found = orbit();
+    for (std::size_t i = 0; found != nullptr && i < found->count(); ++i)
+        if (begin_alike(run_on(found->point(i), asked_), asked_)) return i;
+    return std::nullopt;
+}
+
+std::optional<command::FindOrbit> Session::orbit_command() const {
+    const auto found = orbit();
+    if (found == nullptr) return std::nullopt;
+    if (begin_alike(found->base, asked_)) return command::FindOrbit{found->text};
+    if (!orbit_point()) return std::nullopt;
+    AskedOrbit asked = read_orbit(found->text);
+    asked.from = "start";
+    return command::FindOrbit{to_text(asked)};
+}
+
+}  // namespace achilles

@@ -1,0 +1,323 @@
+#include "session/study_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <new>
+#include <span>
+#include <utility>
+
+#include "figure/sweep_figure.hpp"
+#include "model/model.hpp"
+#include "study/chunks.hpp"
+#include "study/measures.hpp"
+
+namespace achilles {
+
+// ---- derivatives ----
+
+namespace {
+
+// Of one that the sliders set, with the range of its slider and where it stands.
+Influences::Of influence(const std::string& name, const std::array<double, 2>& range, double value,
+                         const Quantity& quantity, const Derivatives& derivatives) {
+    const auto at = std::find(derivatives.directions.begin(), derivatives.directions.end(), name);
+    const auto k = static_cast<std::size_t>(at - derivatives.directions.begin());
+    Influences::Of one{name, quantity.derivatives[static_cast<Eigen::Index>(k)], 0.0, ""};
+    const double reach =
+        goes_by_ratios(range[0], range[1]) ? value * std::log(range[1] / range[0]) : range[1] - range[0];
+    one.over_slider = one.derivative * reach;
+    if (std::isfinite(one.derivative)) return one;
+    one.reason = !derivatives.refused[k].empty() ? derivatives.refused[k]
+                 : !quantity.refused.empty()     ? quantity.refused
+                                                 : "it does not exist there";
+    return one;
+}
+
+}  // namespace
+
+bool goes_by_ratios(double low, double high) { return low > 0.0 && high / low >= 100.0; }
+
+const Influences::Of* Influences::find(const std::string& name) const {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Of& one) { return one.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+double Influences::largest() const {
+    double most = 0.0;
+    for (const Of& one : all)
+        if (std::isfinite(one.over_slider)) most = std::max(most, std::abs(one.over_slider));
+    return most;
+}
+
+Influences influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run) {
+    const Derivatives derivatives = differentiate(*run);
+    Influences result{run, Quantities(run->model, {quantity}).of(*run, derivatives).front(), {}, {}};
+    Sweep sweep;
+    sweep.prints = {quantity};
+    result.unit = RunMeasures(run->model, sweep).columns().front().unit;
+    const SystemDescription& system = run->model->description();
+    const auto add = [&](const std::string& name, const std::array<double, 2>& range, double value) {
+        result.all.push_back(influence(name, range, value, result.quantity, derivatives));
+    };
+    for (std::size_t i = 0; i < system.parameters.size(); ++i)
+        add(system.parameters[i].name, system.parameters[i].range, run->run.parameters[i]);
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+        const CoordinateDescription& c = system.coordinates[i];
+        add(c.name, c.range, run->run.q[static_cast<Eigen::Index>(i)]);
+        add(c.name + "'", c.rate_range, run->run.v[static_cast<Eigen::Index>(i)]);
+    }
+    // What is rounding beside the others is none.
+    const double size = std::max(result.largest(), std::abs(result.quantity.value));
+    for (Influences::Of& one : result.all)
+        if (std::abs(one.over_slider) < 1e-12 * size) one.derivative = one.over_slider = 0.0;
+    return result;
+}
+
+std::string default_quantity(const Trajectory& run) {
+    const auto count = std::count_if(run.events.begin(), run.events.end(),
+                                     [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    if (count > 0) return "zeno_time(" + std::to_string(count) + ")";
+    return run.model->description().coordinates.front().name;
+}
+
+double TangentLine::at(double other_x) const {
+    return y + slope * (logarithmic ? x * std::log(other_x / x) : other_x - x);
+}
+
+bool InfluencesJob::ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity) {
+    if (asked_ && asked_->run == run && asked_->quantity == quantity) return false;
+    asked_ = Asked{run, quantity};
+    problem_.clear();
+    if (made_ != nullptr && (made_->quantity.expression != quantity || made_->run->model != run->model)) made_.reset();
+    if (!begun_) begin();
+    return true;
+}
+
+void InfluencesJob::forget() {
+    if (begun_) worker_.start([](const std::stop_token&) { return std::shared_ptr<const Influences>(); });
+    asked_.reset(), begun_.reset(), made_.reset();
+    problem_.clear();
+}
+
+void InfluencesJob::begin() {
+    begun_ = asked_;
+    worker_.start([asked = *asked_](const std::stop_token&) -> std::shared_ptr<const Influences> {
+        return std::make_shared<const Influences>(influences_on(asked.quantity, asked.run));
+    });
+}
+
+void InfluencesJob::update(Patience patience) {
+    using Clock = std::chrono::steady_clock;
+    const auto began = Clock::now();
+    const auto left = [&]() -> Patience {
+        if (!patience) return patience;
+        return std::max(0.0, *patience - std::chrono::duration<double>(Clock::now() - began).count());
+    };
+    while (begun_) {
+        std::shared_ptr<const Influences> made;
+        std::string problem;
+        try {
+            const auto taken = worker_.take(left());
+            if (!taken) return;
+            made = *taken;
+        } catch (const InputError& error) {
+            problem = error.message + (error.hint.empty() ? "" : ": " + error.hint);
+        } catch (const std::bad_alloc&) {
+            problem = "there is not enough memory for the derivatives of this run";
+        }
+        const Asked of = *std::exchange(begun_, std::nullopt);
+        if (of.quantity == asked_->quantity && of.run->model == asked_->run->model) {
+            made_ = made;
+            problem_ = problem;
+        }
+        if (of == *asked_) return;
+        begin();
+        if (left() == 0.0) return;  // each is seen, however soon the next is made
+    }
+}
+
+// ---- a proof ----
+
+void ProofJob::begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim) {
+    model_ = model;
+    proof_.reset();
+    const auto watch = std::make_shared<ProofWatch>();
+    watch->time = claim.run.options.start_time;
+    watch_ = watch;
+    worker_.start([model, spread, claim, watch](const std::stop_token& stop) {
+        watch->stop = stop;
+        return std::make_shared<const Proof>(Proof{spread, claim, prove(model, claim, watch.get())});
+    });
+}
+
+void ProofJob::stop() {
+    if (watch_ == nullptr) return;
+    watch_.reset();
+    worker_.start([](const std::stop_token&) { return std::shared_ptr<const Proof>(); });
+}
+
+void ProofJob::forget() {
+    stop();
+    proof_.reset();
+}
+
+bool ProofJob::update(Patience patience) {
+    if (watch_ == nullptr) return false;
+    try {
+        const auto made = worker_.take(patience);
+        if (!made) return false;
+        proof_ = *made;
+    } catch (...) {
+        watch_.reset();
+        throw;
+    }
+    watch_.reset();
+    return true;
+}
+
+command::Prove prove_command(const Spread& spread) {
+    command::Prove command{spread.width, {}};
+    for (const Spread::Side& side : spread.sides) command.intervals.push_back(to_text(side));
+    return command;
+}
+
+bool same_to_a_proof(const Run& a, const Run& b) {
+    const Options &x = a.options, &y = b.options;
+    return a.q == b.q && a.v == b.v && a.parameters == b.parameters && x.start_time == y.start_time &&
+           x.end_time == y.end_time && x.max_steps == y.max_steps && x.max_impacts == y.max_impacts;
+}
+
+// ---- a sweep ----
+
+namespace {
+
+// Points along one axis, of one level and the next: a first picture that comes at once, and each finer one costs so much
+// more that those before it do not count.
+constexpr std::uint64_t map_steps[] = {16, 64, 160}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
+constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // of one run
+
+struct Stopped {};
+
+std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep,
+                                          const std::stop_token& stop) {
+    const SweepTable table(model, sweep);
+    auto data = std::make_shared<SweepData>(table);
+    std::mutex mutex;
+    std::map<std::uint64_t, SweepData> waiting;  // chunks that are made, by their first points
+    const std::atomic<bool> never{false};
+    const auto go_on = [&] {
+        if (stop.stop_requested()) throw Stopped();
+    };
+    const auto task = [&](Chunk chunk) {
+        SweepData part(table);
+        part.add(table.rows(chunk.first, chunk.count, go_on));
+        const std::scoped_lock lock(mutex);
+        waiting.emplace(chunk.first, std::move(part));
+        return std::string();
+    };
+    const auto write = [&](Chunk chunk, const std::string&) {
+        const std::scoped_lock lock(mutex);
+        data->add(waiting.extract(chunk.first).mapped().rows);
+        if (data->count() > most_drawn_rows)
+            throw InputError("sweep", {},
+                             fmt::format("there are more than {} rows, the most that can be drawn", most_drawn_rows),
+                             "use shorter runs, or fewer; achilles sweep --csv F writes the whole table");
+    };
+    do_chunks(0, sweep.count(), 0, task, write, never);
+    return data;
+}
+
+}  // namespace
+
+std::vector<Sweep> coarse_to_fine(const Sweep& sweep) {
+    std::vector<Sweep> levels;
+    if (sweep.axes.empty()) {
+        for (const double share : lengths) {
+            Sweep shorter = sweep;
+            const double start = sweep.base.options.start_time,
+                         end = start + share * (sweep.base.options.end_time - start);
+            if (sweep.at && sweep.at->after && !(*sweep.at->after < end)) continue;
+            shorter.base.options.end_time = end;
+            levels.push_back(std::move(shorter));
+        }
+    }
+    const std::span<const std::uint64_t> steps = sweep.at                ? std::span<const std::uint64_t>(section_steps)
+                                                 : sweep.axes.size() > 1 ? std::span<const std::uint64_t>(map_steps)
+                                                                         : std::span<const std::uint64_t>(curve_steps);
+    for (const std::uint64_t most : steps) {
+        Sweep coarse = sweep;
+        for (SweepAxis& axis : coarse.axes) axis.count = std::min(axis.count, most);
+        if (coarse.random) coarse.random->count = std::min(coarse.random->count, most * most);
+        if (coarse != sweep) levels.push_back(std::move(coarse));
+    }
+    levels.push_back(sweep);
+    return levels;
+}
+
+void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Sweep> sweep) {
+    if (sweep && !sweep->axes.empty()) sweep->base = SweepPoints(*sweep, model->description()).run(0);
+    if (model == model_ && sweep == sweep_) return;
+    const bool alike = model == model_ && sweep && sweep_ && sweep->prints == sweep_->prints && sweep->at == sweep_->at;
+    model_ = model;
+    sweep_ = std::move(sweep);
+    if (!alike) data_.reset();
+    is_current_ = false;
+    problem_.clear();
+    levels_ = sweep_ ? coarse_to_fine(*sweep_) : std::vector<Sweep>();
+    next_ = 0;
+    begin();
+}
+
+void SweepJob::begin() {
+    if (next_ == levels_.size()) {
+        if (levels_.empty()) worker_.start([](const std::stop_token&) { return std::shared_ptr<const SweepData>(); });
+        return;
+    }
+    worker_.start([model = model_, level = levels_[next_]](const std::stop_token& stop) {
+        try {
+            return table_of(model, level, stop);
+        } catch (const Stopped&) {
+            return std::shared_ptr<const SweepData>();
+        }
+    });
+}
+
+void SweepJob::update(Patience patience) {
+    while (is_busy()) {
+        try {
+            const auto made = worker_.take(patience);
+            if (!made) return;
+            data_ = *made;
+            is_current_ = true;
+            ++next_;
+        } catch (const InputError& problem) {
+            problem_ = problem.what();
+            next_ = levels_.size();
+        } catch (const std::bad_alloc&) {
+            problem_ = "there is not enough memory for so many points";
+            next_ = levels_.size();
+        }
+        if (is_busy()) begin();
+    }
+}
+
+double SweepJob::share() const {
+    const auto work = [](const Sweep& sweep) {
+        return static_cast<double>(sweep.count()) *
+               (sweep.axes.empty() ? sweep.base.options.end_time - sweep.base.options.start_time : 1.0);
+    };
+    double done = 0.0, all = 0.0;
+    for (std::size_t i = 0; i < levels_.size(); ++i) {
+        all += work(levels_[i]);
+        if (i < next_) done += work(levels_[i]);
+    }
+    return all > 0.0 ? done / all : 1.0;
+}
+
+}  // namespace achilles

@@ -1,0 +1,106 @@
+#include "surface/frame.hpp"
+
+#include <algorithm>
+
+namespace achilles {
+
+namespace {
+
+constexpr double away = -1e6;  // see Input
+
+void append_utf8(std::string& text, unsigned c) {
+    const auto put = [&text](unsigned byte) { text.push_back(static_cast<char>(byte)); };
+    if (c < 0x80) {
+        put(c);
+    } else if (c < 0x800) {
+        put(0xC0 | (c >> 6));
+        put(0x80 | (c & 0x3F));
+    } else if (c < 0x10000) {
+        put(0xE0 | (c >> 12));
+        put(0x80 | ((c >> 6) & 0x3F));
+        put(0x80 | (c & 0x3F));
+    } else if (c < 0x110000) {
+        put(0xF0 | (c >> 18));
+        put(0x80 | ((c >> 12) & 0x3F));
+        put(0x80 | ((c >> 6) & 0x3F));
+        put(0x80 | (c & 0x3F));
+    }
+}
+
+}  // namespace
+
+void Events::mouse_at(double x, double y) { waiting_.push_back({Event::Kind::mouse, 0, false, x, y}); }
+void Events::mouse_left() { mouse_at(away, away); }
+void Events::button(int number, bool down) { waiting_.push_back({Event::Kind::button, number, down}); }
+void Events::wheel(double sideways, double clicks) {
+    waiting_.push_back({Event::Kind::wheel, 0, false, sideways, clicks});
+}
+void Events::key(int code, bool down) { waiting_.push_back({Event::Kind::key, code, down}); }
+void Events::character(unsigned code_point) {
+    waiting_.push_back({Event::Kind::character, static_cast<int>(code_point)});
+}
+
+void Events::release_all() {
+    for (const int code : held_.keys) key(code, false);
+    for (const int number : {0, 1, 2}) button(number, false);
+}
+
+// A key that matters only through the character it makes.
+bool Events::is_letter(const Event& event) const {
+    const auto is_held = [this](int code) {
+        return std::find(held_.keys.begin(), held_.keys.end(), code) != held_.keys.end();
+    };
+    for (const int code :
+         {key::left_control, key::right_control, key::left_alt, key::right_alt, key::left_super, key::right_super})
+        if (is_held(code)) return false;
+    return event.code < 256 || event.code == key::left_shift || event.code == key::right_shift;
+}
+
+Input Events::next(bool is_typing) {
+    held_.wheel = held_.wheel_sideways = 0.0;
+    held_.text.clear();
+    bool clicked = false, pressed = false;
+    for (; !waiting_.empty(); waiting_.pop_front()) {
+        const Event& event = waiting_.front();
+        const bool is_button = event.kind == Event::Kind::button, is_key = event.kind == Event::Kind::key;
+        // A move after a click would drag, a click after a move must hit where the mouse went: the one order ImGui can
+        // show in a frame is move, then click.
+        if ((is_button || event.kind == Event::Kind::mouse) && clicked) break;
+        if (is_key && pressed) break;
+        // In a text letters come first: what acts on them waits, and they wait for what acted before them.
+        const bool is_free = is_typing && is_key && is_letter(event);
+        if (is_typing && (is_button || (is_key && !is_free)) && !held_.text.empty()) break;
+        if (is_typing && event.kind == Event::Kind::character && (pressed || clicked)) break;
+        clicked = clicked || is_button;
+        pressed = pressed || (is_key && !is_free);
+        apply(event);
+    }
+    return held_;
+}
+
+void Events::apply(const Event& event) {
+    switch (event.kind) {
+        case Event::Kind::mouse:
+            held_.mouse_x = event.x;
+            held_.mouse_y = event.y;
+            break;
+        case Event::Kind::button:
+            if (event.code == 0) held_.left = event.down;
+            if (event.code == 1) held_.right = event.down;
+            if (event.code == 2) held_.middle = event.down;
+            break;
+        case Event::Kind::wheel:
+            held_.wheel_sideways += event.x;
+            held_.wheel += event.y;
+            break;
+        case Event::Kind::key:
+            std::erase(held_.keys, event.code);
+            if (event.down) held_.keys.push_back(event.code);
+            break;
+        case Event::Kind::character:
+            append_utf8(held_.text, static_cast<unsigned>(event.code));
+            break;
+    }
+}
+
+}  // namespace achilles
