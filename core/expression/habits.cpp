@@ -49,6 +49,7 @@ constexpr Habit signs[] = {
     {"\u2264", comparison, ""},
     {"\u2265", comparison, ""},
     {";", "nothing ends an expression", ""},
+    {"\\dot", "the rate of x is written x'", ""},
     {"\\", "expressions are not LaTeX", ""},
 };
 
