@@ -274,8 +274,9 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
     if (!(extent.frames <= most_film_frames))
         throw InputError(what.file, {}, fmt::format("these would be more than {:.0f} frames", most_film_frames),
                          "a higher speed or fewer frames a second make it less");
-    need_film_joiner(what.file);
-    Words words{"frames", name_anywhere(session.system())};
+    const std::string system = name_anywhere(session.system());
+    need_film_joiner(what.file, system, what.file);
+    Words words{"frames", system};
     const Words options = run_options(session);
     words.insert(words.end(), options.begin(), options.end());
     if (const auto views = views_of(session, session.plotted()))

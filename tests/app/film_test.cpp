@@ -56,7 +56,7 @@ TEST(Film, WithoutFfmpegIsRefused) {
     EXPECT_EQ(answer.status, 2);
     EXPECT_EQ(answer.err.rfind("--out film.mp4: ffmpeg, which joins the frames of a film, is not installed\n", 0), 0U)
         << answer.err;
-    EXPECT_NE(answer.err.find("achilles frames --out FOLDER"), std::string::npos) << answer.err;
+    EXPECT_NE(answer.err.find("achilles frames ball_on_sine --out film.frames"), std::string::npos) << answer.err;
     EXPECT_TRUE(folder.files().empty());
 }
 
