@@ -31,15 +31,14 @@ fs::path assets() {
     std::error_code problem;
     if (const char* given = std::getenv("ACHILLES_ASSETS"); given != nullptr && *given != '\0') {
         if (!fs::is_directory(given, problem))
-            throw InputError("ACHILLES_ASSETS", {}, fmt::format("'{}' is no folder", given));
+            throw InputError("ACHILLES_ASSETS", {}, fmt::format("'{}' is not a folder", given));
         return given;
     }
     const fs::path folder = binary().parent_path();
     const fs::path places[] = {folder / "assets", folder.parent_path() / "share/achilles"};
     for (const fs::path& place : places)
         if (fs::is_directory(place, problem)) return place;
-    throw InputError({}, {},
-                     fmt::format("the assets are neither in {} nor in {}", places[0].string(), places[1].string()),
+    throw InputError({}, {}, fmt::format("no assets found in {} or in {}", places[0].string(), places[1].string()),
                      "set ACHILLES_ASSETS to the folder that holds systems/ and fonts/");
 }
 
@@ -78,8 +77,8 @@ InputError a_folder(const fs::path& folder, const char* kind, const char* extens
     std::sort(names.begin(), names.end());
     return {folder.string(),
             {},
-            fmt::format("this is a folder, and a {} is a file{}", kind,
-                        names.empty() ? "" : fmt::format("; write the path of one in it, {}", names.front()))};
+            fmt::format("this is a folder; a {} file is expected{}", kind,
+                        names.empty() ? "" : fmt::format(", for example {}", names.front()))};
 }
 
 // A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
@@ -94,7 +93,7 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
         if (!is_there && file.filename() == path.filename() && !path.has_parent_path())
             throw InputError(
                 path.string(), {},
-                fmt::format("there is no such file here; write {} for the one of the gallery", file.stem().string()));
+                fmt::format("there is no such file here; write {} for the one in the gallery", file.stem().string()));
         names.push_back(file.stem().string());
     }
     if (fs::is_directory(path, problem)) throw a_folder(path, kind, extension);
@@ -110,7 +109,7 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
         fmt::format("there is no {} '{}'{}", kind, shown(wanted),
                     !meant.empty()            ? meant
                     : extension == of_systems ? "; SYSTEM is the path of a .toml file or a name from 'achilles list'"
-                                              : fmt::format("; it is the path of a {} file, or one of: {}", extension,
+                                              : fmt::format("; write the path of a {} file, or one of: {}", extension,
                                                             fmt::join(names, ", "))));
 }
 

@@ -32,7 +32,7 @@ struct Asked {
 Asked parsed(const std::string& command_line) {
     std::vector<std::string> words = words_of(command_line);
     Asked asked;
-    if (words.empty()) throw std::runtime_error("its origin names no command");
+    if (words.empty()) throw std::runtime_error("the picture does not contain the command that made it");
     asked.kind = words.front();
     words.erase(words.begin());
     CLI::App command;
@@ -54,7 +54,7 @@ Asked parsed(const std::string& command_line) {
     try {
         command.parse(words);
     } catch (const CLI::ParseError& error) {
-        throw std::runtime_error(std::string("its command cannot be read here: ") + error.what());
+        throw std::runtime_error(std::string("the command in this picture cannot be read: ") + error.what());
     }
     return asked;
 }
@@ -145,9 +145,10 @@ void replay(const std::vector<Command>& journal, const Origin& origin, Opening& 
 
 std::vector<Command> session_of(const Origin& origin, Opening& opening) {
     const Asked asked = parsed(origin.command);
-    if (asked.kind == "paper") throw std::runtime_error("a picture of the paper shows no session");
+    if (asked.kind == "paper")
+        throw std::runtime_error("a picture made by achilles paper cannot be opened as a session");
     const Source* source = carried(origin, Source::Kind::system, asked.system);
-    if (source == nullptr) throw std::runtime_error("it carries no system");
+    if (source == nullptr) throw std::runtime_error("the picture does not contain its system");
     open(*source, opening);
     ask(asked, *source, opening.commands);
     if (const Source* journal = carried(origin, Source::Kind::journal, asked.journal);

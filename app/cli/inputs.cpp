@@ -12,7 +12,7 @@ namespace achilles {
 namespace {
 
 InputError not_carried(const std::string& name) {
-    return {name, {}, "the picture does not carry this file", "its origin is incomplete"};
+    return {name, {}, "the picture does not contain this file", "the files stored in it are incomplete"};
 }
 
 }  // namespace
@@ -20,10 +20,8 @@ InputError not_carried(const std::string& name) {
 Inputs::Inputs(std::vector<Source> kept, const std::string& command)
     : kept_(std::move(kept)),
       from_picture_(true),
-      trust_{Trust::Files::imagined,
-             {},
-             {},
-             std::make_shared<Budget>("its command makes it without this limit:\n" + command)} {
+      trust_{
+          Trust::Files::imagined, {}, {}, std::make_shared<Budget>("to make it without this limit, run:\n" + command)} {
     trust_.budget->limit();
     time_limit_.arm(trust_.budget->how_to_allow());
 }
@@ -84,7 +82,7 @@ void Inputs::count(const std::string& name, const std::vector<Command>& commands
         return change_of(command) == command::Change::together || change_of(command) == command::Change::alone;
     }));
     if (from_picture_ && changes_ > most_changes)
-        throw Forbidden(name, {}, fmt::format("a picture is made again with at most {} changes", most_changes));
+        throw Forbidden(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
 }
 
 std::string Inputs::first_system() const {

@@ -46,7 +46,7 @@ std::string table(const std::vector<std::vector<std::string>>& rows) {
 }
 
 std::string keys_table(std::string_view heading) {
-    std::vector<std::vector<std::string>> rows{{"key", "what may stand there", "meaning"}};
+    std::vector<std::vector<std::string>> rows{{"key", "allowed values", "meaning"}};
     for (const FileTable& keys : file_tables()) {
         if (keys.heading != heading) continue;
         for (const FileKey& key : keys.keys)
@@ -56,7 +56,7 @@ std::string keys_table(std::string_view heading) {
 }
 
 std::string shapes_table() {
-    std::vector<std::vector<std::string>> rows{{"shape", "key", "what may stand there", "meaning"}};
+    std::vector<std::vector<std::string>> rows{{"shape", "key", "allowed values", "meaning"}};
     for (const FileTable& keys : file_tables())
         if (!keys.heading.empty() && keys.heading.front() != '[')
             for (const FileKey& key : keys.keys)
@@ -66,8 +66,7 @@ std::string shapes_table() {
 }
 
 std::string options_table() {
-    std::vector<std::vector<std::string>> rows{
-        {"key", "table", "flag", "command of the explorer", "default", "meaning"}};
+    std::vector<std::vector<std::string>> rows{{"key", "table", "flag", "explorer command", "default", "meaning"}};
     for (const Option& option : all_options()) {
         const std::string choice = option.words.empty() ? "" : fmt::format(" ({})", fmt::join(option.words, " or "));
         const std::string unit = option.unit.empty() ? "" : fmt::format(", {}", option.unit);
@@ -95,7 +94,7 @@ std::string words_table() {
 }
 
 std::string shortcuts_table() {
-    std::vector<std::vector<std::string>> rows{{"keys", "what they do"}};
+    std::vector<std::vector<std::string>> rows{{"keys", "action"}};
     for (const Shortcut& shortcut : shortcuts())
         rows.push_back({std::string(shortcut.keys), std::string(shortcut.does)});
     return table(rows);
@@ -181,7 +180,7 @@ std::string manual_page(std::string_view topic) {
     const std::string meant = did_you_mean(topic, known);
     throw InputError({}, {},
                      fmt::format("there is no topic '{}'{}", shown(topic),
-                                 !pages.empty()   ? fmt::format("; write achilles help {}: it is explained there",
+                                 !pages.empty()   ? fmt::format("; it is explained in achilles help {}",
                                                                 fmt::join(pages, ", or achilles help "))
                                  : !meant.empty() ? meant
                                                   : fmt::format("; the topics are {}", fmt::join(known, ", "))));

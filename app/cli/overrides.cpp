@@ -25,9 +25,10 @@ double number_from(const std::string& option, std::string_view text, std::string
         return read_number(text).value;
     } catch (const ParseError& error) {
         const auto apart = measured(text);
-        throw apart ? InputError(fmt::format("{} {}", option, shown(text)), {}, "a value is a number without its unit",
-                                 without_unit(*apart, option, unit, fmt::format("{} {}", option, apart->number)))
-                    : InputError(fmt::format("{} {}", option, shown(text)), {}, error.what(), error.hint);
+        throw apart
+            ? InputError(fmt::format("{} {}", option, shown(text)), {}, "this value must be a number without a unit",
+                         without_unit(*apart, option, unit, fmt::format("{} {}", option, apart->number)))
+            : InputError(fmt::format("{} {}", option, shown(text)), {}, error.what(), error.hint);
     }
 }
 
@@ -96,7 +97,7 @@ Run asked_run(const SystemDescription& description, const std::vector<std::strin
         const auto has_value = [&](std::size_t k) { return settings[k].find('=') != std::string::npos; };
         if (i + 1 < settings.size() && !has_value(i) && !has_value(i + 1))
             throw InputError(fmt::format("--set {} {}", shown(settings[i]), shown(settings[i + 1])), {},
-                             "a name and its value are one word",
+                             "a name and its value must be one word",
                              fmt::format("write --set {}={}", settings[i], settings[i + 1]));
         assign(run, description, settings[i]);
     }

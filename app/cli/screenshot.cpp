@@ -17,7 +17,7 @@ namespace achilles {
 
 int screenshot(const ScreenshotOptions& options, PictureJob& job) {
     job.check_size(options.width, options.height);
-    format_for(options.out, "png", "; the plots alone are drawn as SVG and PDF, too: achilles figure");
+    format_for(options.out, "png", "; for the plots alone as SVG or PDF: achilles figure");
     job.add(options.out);
     if (!options.record.empty() && !job.reproduces()) {
         refuse_record(options.record);

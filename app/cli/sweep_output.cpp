@@ -69,7 +69,7 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked,
     : table_(table), pictures_(pictures), csv_(asked.csv), hdf5_(asked.hdf5), units_(asked.units) {
     if (csv_.empty() && !keeps_rows()) csv_ = "-";
     if (units_ && csv_.empty()) throw InputError("--units", {}, "this needs --csv F");
-    if (hdf5_ == "-") throw InputError("--hdf5 -", {}, "HDF5 is written into a file", "write --hdf5 F");
+    if (hdf5_ == "-") throw InputError("--hdf5 -", {}, "HDF5 output needs a file", "write --hdf5 F");
     if (!hdf5_.empty()) {
         if (const std::string why = why_no_hdf5(); !why.empty()) throw InputError("--hdf5", {}, why, "write --csv F");
         if (const std::string fault = fault_of_hdf5(table); !fault.empty()) throw InputError("--hdf5", {}, fault);
@@ -83,11 +83,11 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked,
     for (const std::string& file : {csv_, hdf5_})
         if (!file.empty()) files_.add(file);
     for (const std::string& file : pictures_.files()) files_.add(file);
-    if (is_stream(hdf5_)) throw InputError("--hdf5 " + hdf5_, {}, "HDF5 is written into a file");
+    if (is_stream(hdf5_)) throw InputError("--hdf5 " + hdf5_, {}, "HDF5 output needs a file");
     log_path_ = csv_.empty() || is_stream(csv_) ? hdf5_ : csv_;
     if (log_path_.empty() && !pictures_.files().empty()) log_path_ = pictures_.files().front();
     if (log_path_.empty()) {
-        if (asked.resume) throw InputError("--resume", {}, "this needs a file, --csv F, --hdf5 F or --out F");
+        if (asked.resume) throw InputError("--resume", {}, "this needs a file: --csv F, --hdf5 F or --out F");
         stream_ = csv_ == "-" ? STDOUT_FILENO : open_in_place(csv_);
         if (stream_ < 0)
             throw InputError(csv_, {}, fmt::format("the file cannot be written: {}", std::strerror(errno)));
@@ -198,8 +198,8 @@ bool SweepOutput::finish() {
 std::string SweepOutput::how_to_go_on() {
     if (!log_) return "";
     if (log_->done() == table_.sweep().count())
-        return fmt::format("; they are kept in {}, and the same command makes the files of them", log_path_);
-    if (log_->done() > 0) return fmt::format(": the same command with --resume goes on from {}", log_path_);
+        return fmt::format("; the runs are kept in {}: the same command writes the files", log_path_);
+    if (log_->done() > 0) return fmt::format(": the same command with --resume continues from {}", log_path_);
     log_->remove();  // there is nothing in it
     return "";
 }

@@ -23,8 +23,7 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
         return;
     }
     for (const std::string& file : asked_.files) {
-        if (file == "-")
-            throw InputError("--out -", {}, "a picture of a sweep is written into a file", "write --out F.png");
+        if (file == "-") throw InputError("--out -", {}, "the picture of a sweep needs a file", "write --out F.png");
         const std::string format = format_for(file, "");
         if (format == "pdf") need_pdf_writer("--out " + file);
         if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
@@ -37,7 +36,7 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
     const SweepData data(table);
     check_drawn(data, asked_.look);
     for (const std::string& word : left_out(data, asked_.look))
-        print_clean(stderr, "achilles: warning: --print {}: words are not drawn in a section\n", word);
+        print_clean(stderr, "achilles: warning: --print {}: text values are not drawn in a section\n", word);
 }
 
 // Without its fonts, or what draws without a window, a picture fails: before the runs, not after them.
@@ -66,13 +65,15 @@ std::optional<Figure> SweepPictures::figure(const EachRows& each_rows) const {
             if (next++ % every == 0) data.add(rows, row);
     });
     if (every > 1)
-        print_clean(stderr, "achilles: warning: of {} rows every {}th is drawn: a figure has room for {}\n", count,
-                    every, most_drawn_rows);
+        print_clean(
+            stderr,
+            "achilles: warning: the table has {} rows; every {}th is drawn, because a figure holds at most {}\n", count,
+            every, most_drawn_rows);
     SweepLook look = asked_.look;
     look.columns = columns_with_values(data, asked_.look);
     const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one over the other
     if (look.columns.empty() || (needs_both && look.columns.size() < 2)) {
-        print_clean(stderr, "achilles: nothing is drawn: no run has a value to draw\n");
+        print_clean(stderr, "achilles: no picture is drawn: no run has a value to draw\n");
         return std::nullopt;
     }
     return compose_sweep(data, look);

@@ -55,7 +55,7 @@ void RunFailures::tell(const SweepTable& table) const {
     for (const auto& [code, kind] : kinds_) {
         std::string where, why;
         for (std::size_t axis = 0; axis < table.sweep().axes.size(); ++axis)
-            where += fmt::format("{}{} = {}", axis == 0 ? "; the first has " : ", ", table.sweep().axes[axis].name,
+            where += fmt::format("{}{} = {}", axis == 0 ? "; first at " : ", ", table.sweep().axes[axis].name,
                                  table.sweep().value(axis, kind.first));
         try {
             table.model().check(points.run(kind.first));
@@ -92,7 +92,7 @@ Share sweep_share(std::string_view order) {
     };
     if (const std::string other = take_line(); other != version())
         throw std::runtime_error(
-            fmt::format("this is Achilles {}, and that of rank 0 is {}", version(), printable(other)));
+            fmt::format("this process runs Achilles {}, but rank 0 runs {}", version(), printable(other)));
     SweepKept kept;
     int text = 0, rows = 0, in_log = 0, threads = 0;
     std::sscanf(take_line().c_str(), "%d %d %d %d", &text, &rows, &in_log, &threads);

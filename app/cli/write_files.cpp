@@ -110,7 +110,7 @@ void OutputFiles::refuse_inputs() const {
         for (const auto& [input, identity] : spared_)
             if (file.identity == identity)
                 throw InputError(file.path == "-" ? "standard output" : file.path, {},
-                                 fmt::format("this output would destroy {}, which was read", input.string()),
+                                 fmt::format("this output would overwrite the input file {}", input.string()),
                                  "write to another file");
 }
 
@@ -152,7 +152,7 @@ void OutputFiles::refuse_output(const std::string& path) const {
     const auto identity = identity_of(path);
     for (const File& other : files_)
         if (other.target == target || (identity && other.identity == identity))
-            throw InputError(path, {}, "two outputs cannot go to the same place");
+            throw InputError(path, {}, "two outputs cannot go to the same file");
 }
 
 void OutputFiles::put(const std::string& path, std::string content) {

@@ -36,14 +36,15 @@ void Budget::check(const Options& options) const {
     if (options.memory > allowed_.memory)
         throw Forbidden(
             {}, {},
-            fmt::format("a run would keep up to {:.4g} MB; a run of a journal or a picture keeps at most {:.4g} MB",
+            fmt::format("a run would keep up to {:.4g} MB; a run of a journal or a picture may keep at most {:.4g} MB",
                         options.memory / 1e6, allowed_.memory / 1e6),
             how_to_allow_);
     if (options.max_steps > allowed_.max_steps)
-        throw Forbidden({}, {},
-                        fmt::format("a run would take up to {} steps; a run of a journal or a picture takes at most {}",
-                                    options.max_steps, allowed_.max_steps),
-                        how_to_allow_);
+        throw Forbidden(
+            {}, {},
+            fmt::format("a run would take up to {} steps; a run of a journal or a picture may take at most {}",
+                        options.max_steps, allowed_.max_steps),
+            how_to_allow_);
 }
 
 void Budget::check(const Sweep& sweep) const {
@@ -57,7 +58,7 @@ void Budget::check(const Sweep& sweep) const {
         }
     if (sweep.count() > max_points)
         throw Forbidden({}, {},
-                        fmt::format("the sweep has {} points; a sweep of a journal or a picture has at most {}",
+                        fmt::format("the sweep has {} points; a sweep of a journal or a picture may have at most {}",
                                     sweep.count(), max_points),
                         how_to_allow_);
 }
@@ -73,19 +74,17 @@ void Budget::charge(const Trajectory& run) {
     full_runs_ +=
         std::max(static_cast<double>(run.statistics.steps) / allowed_.max_steps, bytes_of(run) / allowed_.memory);
     if (full_runs_ > max_full_runs)
-        throw Forbidden(
-            {}, {},
-            fmt::format("the runs of this journal or picture take more than {} steps, or {:.4g} MB, together",
-                        max_full_runs * allowed_.max_steps, max_full_runs * allowed_.memory / 1e6),
-            how_to_allow_);
+        throw Forbidden({}, {},
+                        fmt::format("the runs of this journal or picture together take more than {} steps or {:.4g} MB",
+                                    max_full_runs * allowed_.max_steps, max_full_runs * allowed_.memory / 1e6),
+                        how_to_allow_);
 }
 
 void TimeLimit::arm(const std::string& how_to_allow, unsigned seconds) {
     if (is_armed_) return;
     is_armed_ = true;
-    time_message =
-        printable(fmt::format("achilles: this journal or picture takes longer than {} s, and nothing is written\n{}\n",
-                              seconds, how_to_allow));
+    time_message = printable(fmt::format(
+        "achilles: this journal or picture takes longer than {} s; nothing is written\n{}\n", seconds, how_to_allow));
     struct sigaction action {};
     action.sa_handler = [](int) {
         [[maybe_unused]] const ssize_t ignored = ::write(STDERR_FILENO, time_message.data(), time_message.size());

@@ -124,7 +124,7 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
                    "if you trust it: --allow-files");
             if (wanted.insert(want(use.path, use.writes)).second) refused->wants.push_back(want(use.path, use.writes));
         } else if (would_overwrite(use, trust)) {
-            refuse(fmt::format("there is a file {} already, and a journal overwrites nothing", use.path),
+            refuse(fmt::format("the file {} already exists, and a journal never overwrites files", use.path),
                    "save or export to another file");
         }
         try {
@@ -148,7 +148,7 @@ std::vector<Command> parse_steps(const std::vector<std::string>& lines) {
 
 std::string journal_file(const std::filesystem::path& file) {
     std::string text = read_text(file);
-    if (text.size() > largest_file) throw InputError(file.string(), {}, "this is too large for a journal");
+    if (text.size() > largest_file) throw InputError(file.string(), {}, "this file is too large for a journal");
     return text;
 }
 
@@ -166,8 +166,8 @@ void refuse_record(const fs::path& file) {
     std::error_code problem;
     const fs::file_status there = fs::symlink_status(file, problem);
     if (fs::exists(there) && !fs::is_character_file(there))
-        throw InputError(file.string(), {}, "there is a file already, and a record overwrites nothing",
-                         "record under another name");
+        throw InputError(file.string(), {}, "the file already exists, and a recording never overwrites files",
+                         "record to another file");
 }
 
 JournalFile::JournalFile(const fs::path& file) : path_(file) {

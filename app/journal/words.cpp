@@ -44,9 +44,9 @@ InputError Line::error(int column, const std::string& message, const std::string
 
 void Line::expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
     const int end = static_cast<int>(text_.find_last_not_of(spaces)) + 2;
-    if (count() < least + 1) throw error(end, fmt::format("'{}' needs more", words_[0].text), usage);
+    if (count() < least + 1) throw error(end, fmt::format("'{}' needs more arguments", words_[0].text), usage);
     if (count() > most + 1)
-        throw error(words_[most + 1].column, fmt::format("'{}' is too much", words_[most + 1].text), usage);
+        throw error(words_[most + 1].column, fmt::format("unexpected argument '{}'", words_[most + 1].text), usage);
 }
 
 double Line::number(std::size_t i) const {

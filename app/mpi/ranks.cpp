@@ -27,10 +27,11 @@ std::optional<int> number_in(const char* variable) {
 }
 
 [[noreturn]] void cannot_share(const Launch& launch, const std::string& why) {
-    throw InputError({}, {},
-                     fmt::format("{} processes were started, which cannot share a sweep: {}",
-                                 launch.size > 0 ? std::to_string(launch.size) : "several", why),
-                     "alone it uses all cores of a machine; ACHILLES_MPI=0 has each process do all of it");
+    throw InputError(
+        {}, {},
+        fmt::format("{} processes were started, but they cannot share a sweep: {}",
+                    launch.size > 0 ? std::to_string(launch.size) : "several", why),
+        "a single process uses all cores of a machine; with ACHILLES_MPI=0 each process runs the whole sweep");
 }
 
 const AchillesMpi* load(const Launch& launch) {
@@ -40,8 +41,7 @@ const AchillesMpi* load(const Launch& launch) {
     const fs::path installed = folder.parent_path() / ACHILLES_MODULE_FOLDER / name;
     const fs::path file = fs::exists(folder / name, problem) ? folder / name : installed;
     if (!fs::exists(file, problem))
-        cannot_share(launch,
-                     fmt::format("{} is missing (it is built where libopenmpi-dev is installed)", file.string()));
+        cannot_share(launch, fmt::format("{} is missing (it is built if libopenmpi-dev is installed)", file.string()));
     // Its own plug-ins look for MPI's names among all.
     void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (module == nullptr) cannot_share(launch, dlerror());
@@ -80,8 +80,10 @@ Ranks::Ranks(const Launch& launch) {
     mpi_->begin(&rank_, &size_, &cores_);
     if (launch.size > 0 && launch.size != size_) {
         mpi_->end();
-        cannot_share(launch,
-                     fmt::format("each reaches {} by MPI: is mpirun of another MPI than libachilles_mpi.so?", size_));
+        cannot_share(
+            launch,
+            fmt::format("each reaches {} through MPI; mpirun may belong to a different MPI than libachilles_mpi.so",
+                        size_));
     }
 }
 
@@ -92,7 +94,7 @@ Ranks::~Ranks() {
 
 void Ranks::send(int to, std::string_view bytes) {
     if (bytes.size() > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-        throw std::runtime_error("what a chunk comes to is more than 2 GB, which MPI does not send");
+        throw std::runtime_error("the results of a chunk exceed 2 GB, the most that MPI can send");
     mpi_->send(to, bytes.data(), static_cast<int>(bytes.size()));
 }
 

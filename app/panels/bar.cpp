@@ -90,7 +90,7 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     for (const Shown& panel : panels)
         if (menu_item(panel.name, state, scene.shows(panel.what)))
             commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
-    if (menu_item("Sizes that fit", state))
+    if (menu_item("Automatic panel sizes", state))
         for (const std::string& panel : command::sized_panels)
             if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
     ImGui::Separator();
@@ -101,11 +101,10 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});
     const bool energy = scene.shows("energy");
     if (menu_item("Energy", state, energy)) commands.emplace_back(command::Show{"energy", !energy});
-    if (menu_item("All of the motion", state, false, scene.look().has_value()))
-        commands.emplace_back(command::LookAll{});
+    if (menu_item("Fit whole run", state, false, scene.look().has_value())) commands.emplace_back(command::LookAll{});
     ImGui::Separator();
     const bool loops = scene.loops();
-    if (menu_item("Play again at the end", state, loops)) commands.emplace_back(command::Loop{!loops});
+    if (menu_item("Loop playback", state, loops)) commands.emplace_back(command::Loop{!loops});
     if (menu_item("Presentation", state, scene.presents())) commands.emplace_back(command::Present{!scene.presents()});
     ImGui::Separator();
     if (menu_item("Larger", state)) enlarge(session, 1, commands);

@@ -58,7 +58,7 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
     if (ImGui::InvisibleButton("camera", {width, height})) ImGui::OpenPopup(popup);
     remember(state, "camera");
     const bool lit = ImGui::IsItemHovered();
-    tooltip("camera: where this picture looks");
+    tooltip("camera: what this view shows");
     const ImU32 color = packed(lit ? text_color() : faint_color());
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText({x, y}, color, name.c_str());
@@ -67,10 +67,10 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
                             {left + 0.7F * sign, middle + 0.5F * sign}, color);
     if (ImGui::BeginPopup(popup)) {
         constexpr std::array<std::pair<CameraMode, const char*>, 4> cameras{
-            {{CameraMode::fit, "fit: all of the run"},
-             {CameraMode::fixed, "fixed: as it is now"},
-             {CameraMode::follow, "follow: with the body"},
-             {CameraMode::zeno, "zeno: closer to the next Zeno point"}}};
+            {{CameraMode::fit, "fit: the whole run"},
+             {CameraMode::fixed, "fixed: the current view"},
+             {CameraMode::follow, "follow: move with the body"},
+             {CameraMode::zeno, "zeno: zoom in on the next Zeno point"}}};
         for (const auto& [camera, says] : cameras) {
             if (!menu_item(says, state, camera == mode)) continue;
             if (camera == CameraMode::fixed)

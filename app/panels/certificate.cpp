@@ -50,9 +50,9 @@ void show_inequality(const Inequality& inequality, bool decisive) {
                             units(2.0F));
     }
     ImGui::Dummy({width, line});
-    tooltip(decisive ? inequality.left < inequality.right ? "of these it has the least room"
+    tooltip(decisive ? inequality.left < inequality.right ? "the tightest of these inequalities"
                                                           : "this does not hold: shorter flights cannot be resolved"
-                     : "the bar is the share of the right side that is used");
+                     : "the bar shows the left side as a share of the right side");
 }
 
 }  // namespace
@@ -80,7 +80,7 @@ std::vector<std::string> certificate_lines(const Event& event) {
     const Certificate& c = *event.certificate;
     std::vector<std::string> lines;
     if (is_plastic_landing(event)) {
-        lines.emplace_back("it stays there without a bounce");
+        lines.emplace_back("stays in contact without a bounce");
         lines.push_back(
             with_minus("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits)));
         return lines;
@@ -89,10 +89,10 @@ std::vector<std::string> certificate_lines(const Event& event) {
     lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
                                 bound_text(c.velocity_bound)));
     if (c.uniform_position)
-        lines.push_back(fmt::format("drawn until \u03c4\u221e: q within {}", bound_text(*c.uniform_position)));
+        lines.push_back(fmt::format("error until \u03c4\u221e: q \u2264 {}", bound_text(*c.uniform_position)));
     if (c.shadowing_position)
-        lines.push_back(fmt::format("drawn at \u03c4\u221e: q within {}, v {}", bound_text(*c.shadowing_position),
-                                    bound_text(*c.shadowing_velocity)));
+        lines.push_back(fmt::format("error at \u03c4\u221e: q \u2264 {}, v \u2264 {}",
+                                    bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity)));
     lines.push_back("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits));
     if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
@@ -104,7 +104,7 @@ namespace {
 // A word that opens the lens in place of the plots, and closes it.
 void lens_button(const Session& session, PanelState& state, Commands& commands) {
     const bool open = session.scene().shows("lens");
-    const char* const name = open ? "close the Zeno lens" : "look through the Zeno lens";
+    const char* const name = open ? "close the Zeno lens" : "open the Zeno lens";
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(name);
     if (ImGui::InvisibleButton("lens", size)) commands.emplace_back(command::Show{"lens", !open});
     remember(state, "open lens");
@@ -112,7 +112,7 @@ void lens_button(const Session& session, PanelState& state, Commands& commands) 
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText(at, color, name);
     list->AddLine({at.x, at.y + size.y}, {at.x + size.x, at.y + size.y}, color, units(1.0F));
-    tooltip("the bouncing before this Zeno point in logarithmic time, where the plots are");
+    tooltip("show the bouncing before this Zeno point in logarithmic time, in place of the plots");
 }
 
 }  // namespace
@@ -143,15 +143,14 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
         if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
         ImGui::TextUnformatted(proved.c_str());
         tooltip(
-            "of the whole run from its start, integration and all cuts included; what stands below is of this cut "
+            "covers the whole run from its start, with integration and all cuts; the bounds below cover this cut "
             "alone");
     }
     if (const auto horizon = session.horizon(); horizon && event.t > *horizon)
-        return paragraph(
-            fmt::format("The run is not trusted after t = {:.6g} s: what is certified here is of the computed "
-                        "motion, which is not the motion of this system.",
-                        *horizon),
-            remaining().width, text_color());
+        return paragraph(fmt::format("The run is not trusted after t = {:.6g} s: this certificate is about the "
+                                     "computed motion, which no longer follows the motion of this system.",
+                                     *horizon),
+                         remaining().width, text_color());
     show_certificate(event);
     const auto& others = certificate.others;
     const std::string told = others ? others_told(*session.model(), *others) : "";
@@ -174,8 +173,8 @@ void show_certificate(const Event& event) {
     ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
     ImGui::PushTextWrapPos(0.0F);
     quiet(is_plastic_landing(event) ? "Not covered: integration and rounding errors before it."
-                                    : "Of the exact motion from the computed state at the cut. Not covered: "
-                                      "integration and rounding errors, and how several cuts add up.");
+                                    : "For the exact motion from the computed state at the cut. Not covered: "
+                                      "integration and rounding errors, and the combined effect of several cuts.");
     ImGui::PopTextWrapPos();
 }
 

@@ -72,7 +72,7 @@ void first_section(const char* title, const Session& session, const Run& file, P
     if (ImGui::InvisibleButton("reset all", {width, ImGui::GetTextLineHeight()}))
         commands.emplace_back(command::Reset{});
     remember(state, "reset all");
-    tooltip("every value as the file has it");
+    tooltip("reset every value to that of the file");
     const Color color = ImGui::IsItemHovered() ? text_color() : current_theme().accent;
     ImGui::GetWindowDrawList()->AddText({std::floor(right - width), low.y}, packed(color), text);
 }
@@ -110,7 +110,7 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
     Slider slider{typeset_name(name) + "(0)",
                   "set " + name,
                   unit,
-                  fmt::format("{} of {} at the start", is_rate ? "rate" : "value", c.name),
+                  fmt::format("initial {} of {}", is_rate ? "rate" : "value", c.name),
                   is_rate ? session.run().v[at] : session.run().q[at],
                   range[0],
                   range[1],
@@ -188,7 +188,7 @@ bool moved(const OptionRow& row, Options& options, const Options& file, PanelSta
 void bounds(const Options& now, const Options& file, PanelState& state, Commands& commands) {
     // One slider for all three, and one for each.
     constexpr double low = 1e-12, high = 1e-1;
-    const OptionRow all{"eps_q", "eps", "\u03b5, all", "all three bounds below at once", low, high};
+    const OptionRow all{"eps_q", "eps", "\u03b5, all", "set all three bounds below together", low, high};
     const OptionRow each[] = {
         {"eps_q", "eps q", "   position", "bound on the error of the position from the cut to the Zeno time", low,
          high},
@@ -238,9 +238,9 @@ bool accuracy_heading(const Session& session, const Run& file, PanelState& state
     });
     const Color color = ImGui::IsItemHovered() ? text_color() : faint_color();
     tooltip(open
-                ? "fold: truncation of the bouncing and tolerance of the integration"
-                : fmt::format("truncation of the bouncing: {} conditions, {} restart, bounds {:.3g} (position), {:.3g} "
-                              "(velocity), {:.3g} s (time); integration: tolerance {:.3g}. A click opens",
+                ? "truncation of the impact sequence and integration tolerance. Click to close"
+                : fmt::format("truncation of the impact sequence: {} conditions, {} restart, bounds {:.3g} (position), "
+                              "{:.3g} (velocity), {:.3g} s (time); integration tolerance {:.3g}. Click to open",
                               to_text(now.truncation.conditions), to_text(now.truncation.reinitialization),
                               now.truncation.eps_q, now.truncation.eps_v, now.truncation.eps_t, now.tolerance));
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -270,23 +270,22 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     const Options& now = session.run().options;
     bounds(now, file.options, state, commands);
     choice({"conditions", "", "conditions",
-            "what must be certified before the bouncing is cut short: the paper's inequalities (Def. 7), or the sharp "
-            "ones, "
-            "which choose their own neighbourhood and certify the restarted motion"},
+            "what must be certified before the impact sequence is truncated: the paper's inequalities (Def. 7), or the "
+            "sharp ones, which choose their own neighborhood and certify the restarted motion"},
            now, file.options, state, commands);
     choice({"reinitialization", "", "restart",
-            "the velocity the constrained motion starts with: the paper's "
-            "euclidean projection, or the kinetic one of a plastic impact"},
+            "initial velocity of the constrained motion: the paper's Euclidean projection, or the kinetic one of a "
+            "plastic impact"},
            now, file.options, state, commands);
-    slide({"tolerance", "tolerance", "tolerance", "of the integration: local error per step, absolute and relative",
+    slide({"tolerance", "tolerance", "tolerance", "integration tolerance: local error per step, absolute and relative",
            1e-14, 1e-4},
           session, file, state, commands);
     choice({"method", "", "method",
-            "of the integration: Taylor series, with an estimate of their error, or Dormand and Prince's formula"},
+            "integration method: Taylor series, with an error estimate, or the Dormand-Prince formula"},
            now, file.options, state, commands);
-    slide({"max_impacts", "max impacts", "impacts \u2264", "after so many impacts the run stops", 100.0, 1e7}, session,
+    slide({"max_impacts", "max impacts", "impacts \u2264", "maximum number of impacts in the run", 100.0, 1e7}, session,
           file, state, commands);
-    slide({"max_steps", "max steps", "steps \u2264", "after so many steps of the integration the run stops", 1e3, 1e8},
+    slide({"max_steps", "max steps", "steps \u2264", "maximum number of integration steps in the run", 1e3, 1e8},
           session, file, state, commands);
 }
 
@@ -308,7 +307,7 @@ void show_difference(const Difference& difference, const std::string& of, PanelS
         commands.push_back(difference.back);
     remember(state, "put back " + difference.name);
     const bool is_hovered = ImGui::IsItemHovered();
-    tooltip(fmt::format("{}; the {} has {}. A click puts it back", difference.told(), of, difference.other));
+    tooltip(fmt::format("{}; the {} has {}. Click to reset it", difference.told(), of, difference.other));
     const std::string file_has = of + ": " + difference.other;
     const float other = std::min(std::ceil(width_of(file_has)), 0.5F * width);
     cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
@@ -318,8 +317,7 @@ void show_difference(const Difference& difference, const std::string& of, PanelS
 void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {
     // Of the file, not of the run: a range that grew with the value would run away under the hand.
     const double longest = std::max(50.0, 2.0 * file.options.end_time);
-    slide({"end_time", "end", "end", "the run stops here at the latest", 0.1, longest, 4}, session, file, state,
-          commands);
+    slide({"end_time", "end", "end", "end time of the run", 0.1, longest, 4}, session, file, state, commands);
 }
 
 }  // namespace

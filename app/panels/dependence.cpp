@@ -44,7 +44,7 @@ std::string no_derivative(const std::string& reason) { return "no derivative her
 std::string explanation(const Session& session, const Influences& known, const Influences::Of& by) {
     if (!by.reason.empty()) return no_derivative(by.reason);
     const SystemDescription& system = session.description();
-    return fmt::format("{} changes by {};\nover the whole slider at this slope by {}",
+    return fmt::format("derivative of {}: {};\nlinear change over the whole slider: {}",
                        typeset(known.quantity.expression), derivative_text(system, known, by),
                        (by.over_slider > 0.0 ? "+" : "") + of_quantity(known, by.over_slider));
 }
@@ -79,8 +79,8 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
     if (text_row("other", "depend expression", state.depend, 150.0F, state) && !state.depend.empty())
         commands.emplace_back(command::ShowDependence{state.depend});
     tooltip(
-        "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
-        "Enter takes it");
+        "an expression at the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
+        "Press Enter to apply");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     close_by_escape(state);
     ImGui::EndPopup();
@@ -88,10 +88,10 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
 
 // What is known, of which run, and what the bars are.
 std::string remark(const Session& session) {
-    if (session.influences() == nullptr) return session.influences_job().is_busy() ? "under way\u2026" : "";
-    if (!session.influences_are_current()) return "of the run before: those of this one are under way";
+    if (session.influences() == nullptr) return session.influences_job().is_busy() ? "computing\u2026" : "";
+    if (!session.influences_are_current()) return "from the previous run; this run is being computed";
     if (!session.influences()->quantity.refused.empty()) return "";
-    return "bars: its change over each whole slider, at the present slope";
+    return "bars: its linear change over each whole slider";
 }
 
 void show_head(const Session& session, PanelState& state, Commands& commands) {
@@ -102,7 +102,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
     const float right = ImGui::GetWindowPos().x + content_right(), y = at.y + ImGui::GetStyle().FramePadding.y;
     float x =
         menu_button("depend quantity", typeset(session.depend_text()), at.x, row, at.x + 0.4F * (right - at.x), state);
-    tooltip("of which quantity of the run; certificates do not cover derivatives");
+    tooltip("quantity to differentiate; certificates do not cover derivatives");
     show_quantities(session, state, commands);
     if (const Influences* const known = session.influences(); known != nullptr) {
         const std::string value = "= " + of_quantity(*known, known->quantity.value, "{:.9g}");
@@ -192,7 +192,7 @@ void show_line(const Session& session, const Influences& known, const Influences
     remember(state, "depend " + by.name);
     const bool is_hovered = ImGui::IsItemHovered();
     if (is_hovered) state.lights = by.name;
-    tooltip(explanation(session, known, by) + "\na click sweeps " + slider_name(session.description(), by.name));
+    tooltip(explanation(session, known, by) + "\nclick to sweep " + slider_name(session.description(), by.name));
     if (is_hovered || by.name == state.lit || by.name == state.pointed_slider)
         ImGui::GetWindowDrawList()->AddRectFilled({at.x - units(4.0F), at.y}, {at.x + size.x, at.y + size.y},
                                                   packed(current_theme().accent, 0.16F), units(3.0F));
@@ -238,7 +238,7 @@ void put_bar(const Session& session, Slider& slider) {
     if (by == nullptr) return;
     slider.bar_about = explanation(session, *known, *by);
     slider.bar_is_old = !session.influences_are_current();
-    if (slider.bar_is_old) slider.bar_about += " (of the run before)";
+    if (slider.bar_is_old) slider.bar_about += " (from the previous run)";
     if (by->reason.empty()) slider.bar = static_cast<float>(share_of(*known, *by));
 }
 

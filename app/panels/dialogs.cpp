@@ -35,7 +35,7 @@ struct Verdict {
 Verdict to_open(const std::string& path) {
     std::error_code problem;
     const fs::file_status status = fs::status(path, problem);
-    if (path.empty()) return {"the path of a system file", false, false};
+    if (path.empty()) return {"enter the path of a system file", false, false};
     if (!fs::exists(status)) return {"there is no such file", false, false};
     if (fs::is_directory(status)) return {"this is a folder", false, false};
     return {"", true, false};
@@ -45,13 +45,13 @@ Verdict to_save(const Document& document, const std::string& path) {
     std::error_code problem;
     const fs::path target(path);
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    if (path.empty() || !target.has_filename()) return {"the path of the file to write", false, false};
+    if (path.empty() || !target.has_filename()) return {"enter the path of the file to write", false, false};
     if (!fs::is_directory(folder, problem)) return {"there is no such folder", false, false};
     if (fs::is_directory(target, problem)) return {"this is a folder", false, false};
     if (!fs::exists(target, problem))
-        return {"goes to " + fs::absolute(target, problem).lexically_normal().string(), true, false};
+        return {"writes to " + fs::absolute(target, problem).lexically_normal().string(), true, false};
     if (!document.file.empty() && fs::equivalent(target, document.file, problem)) return {"", true, false};
-    return {"There is a file of this name. Overwrite it?", true, true};
+    return {"A file of this name exists. Overwrite it?", true, true};
 }
 
 Verdict to_take_away(const Session& session, const PanelState& state, const std::string& typed) {
@@ -61,19 +61,19 @@ Verdict to_take_away(const Session& session, const PanelState& state, const std:
                is_data = ending == "json" || ending == "csv" || ending == "journal";
     const auto refuse = [](const std::string& why) { return Verdict{why, false, false}; };
     if (!path.empty() && form.what == TakeAwayForm::What::film && !is_film(path))
-        return refuse("end it in .mp4 or .gif");
+        return refuse("end the name in .mp4 or .gif");
     if (!path.empty() && form.what != TakeAwayForm::What::film && is_film(path))
-        return refuse("a film is one of the whole: choose it above");
+        return refuse("this name is for a film: choose the film above");
     if (!path.empty() && (form.plot > 0 || form.what == TakeAwayForm::What::mechanism) && !is_picture)
-        return refuse("end it in .svg, .png or .pdf");
+        return refuse("end the name in .svg, .png or .pdf");
     if (!path.empty() && !is_picture && !is_film(path) && !is_data)
-        return refuse("end it in .svg, .png, .pdf, .json, .csv or .journal");
+        return refuse("end the name in .svg, .png, .pdf, .json, .csv or .journal");
     if (ending == "pdf" && find_program("rsvg-convert").empty())
-        return refuse("a PDF is written by rsvg-convert (librsvg2-bin), which is not installed");
+        return refuse("a PDF needs rsvg-convert (librsvg2-bin), which is not installed");
     const TakeAwayNote note = is_data ? TakeAwayNote() : take_away_note(session, form);
     if (note.is_wrong) return refuse(note.text);
     // A picture of the dialog knows no folder.
-    return state.reads_folders ? to_save(Document(), path) : Verdict{"goes to " + path, true, false};
+    return state.reads_folders ? to_save(Document(), path) : Verdict{"writes to " + path, true, false};
 }
 
 // "contact force" as a part of a file's name.
@@ -199,7 +199,7 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     EditorState& editor = state.editor;
     const std::string name = session.document().name;
     ImGui::PushTextWrapPos(0.0F);
-    const char* before = editor.is_closing ? "the window is closed" : "another takes its place";
+    const char* before = editor.is_closing ? "closing the window" : "replacing it";
     ImGui::TextUnformatted(fmt::format("Save the text of {} before {}?", name, before).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
@@ -222,11 +222,11 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
 void file_dialog(PanelState& state) {
     FileQuestion& question = *state.file_question;
     const std::string more = question.more == 0   ? ""
-                             : question.more == 1 ? ", and then one more file"
-                                                  : fmt::format(", and then {} more files", question.more);
+                             : question.more == 1 ? ", and one more file"
+                                                  : fmt::format(", and {} more files", question.more);
     ImGui::PushTextWrapPos(0.0F);
-    for (const std::string& line : {question.asker + " would", "    " + question.want + more + ".",
-                                    std::string("Allow it only if you know who made it. It writes over no file.")})
+    for (const std::string& line : {question.asker + " wants to", "    " + question.want + more + ".",
+                                    std::string("Allow it only if you trust its source. It never overwrites files.")})
         ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
@@ -241,7 +241,7 @@ void recovery_dialog(PanelState& state) {
     RecoveryQuestion& question = *state.recovery_question;
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted(
-        fmt::format("The text of {} was not saved when its window ended ({}).", question.name, question.when).c_str());
+        fmt::format("The text of {} was not saved when its window closed ({}).", question.name, question.when).c_str());
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     const bool entered = takes_key(state, key::enter, false);
@@ -341,13 +341,13 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     const bool was_open = editor.asking == Asking::take_away;
     constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
                                                          {Asking::save, "Save the system"},
-                                                         {Asking::unsaved, "Changes that are not saved"},
-                                                         {Asking::take_away, "Take it away"}};
+                                                         {Asking::unsaved, "Unsaved changes"},
+                                                         {Asking::take_away, "Export"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     const bool is_free = editor.asking == Asking::nothing;
-    question_dialog("A file is wanted", state.file_question, is_free, [&] { file_dialog(state); });
-    question_dialog("Text that was not saved", state.recovery_question, is_free && !state.file_question,
+    question_dialog("File access", state.file_question, is_free, [&] { file_dialog(state); });
+    question_dialog("Recover unsaved text", state.recovery_question, is_free && !state.file_question,
                     [&] { recovery_dialog(state); });
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });

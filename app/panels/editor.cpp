@@ -25,10 +25,10 @@ constexpr const char* text_id = "##text";
 // ImGui keeps what is typed as 16-bit characters up to a zero, and is slow with very long texts: what it would change
 // by itself is shown but not edited.
 const char* reason_against_editing(const std::string& text) {
-    if (text.size() > std::size_t{1} << 20) return "Too long to be edited here: more than 1 MB.";
+    if (text.size() > std::size_t{1} << 20) return "Too long to edit here: more than 1 MB.";
     for (const char c : text)
         if (c == '\0' || static_cast<unsigned char>(c) >= 0xF0)
-            return "Not to be edited here: the text holds characters (emoji, for example) that would be lost.";
+            return "Cannot be edited here: the text contains characters (emoji, for example) that would be lost.";
     return nullptr;
 }
 
@@ -203,7 +203,8 @@ void show_problems(const Session& session, EditorState& editor, float height) {
         ImGui::BeginGroup();
         show_message(problem.what(), width);
         ImGui::EndGroup();
-        tooltip(fmt::format("click to go to line {}; Ctrl+Z in the text: back to the last that runs", problem.at.line));
+        tooltip(fmt::format("click to go to line {}; Ctrl+Z in the text: back to the last version that runs",
+                            problem.at.line));
         if (problem.at.line > 0 && ImGui::IsItemClicked()) editor.go_to = problem.at.line;
     }
     ImGui::EndChild();
@@ -229,13 +230,13 @@ void show_buttons(const Session& session, PanelState& state, Commands& commands)
         tooltip(about);
         return pressed;
     };
-    if (button("New", "a short system to start from (Ctrl+N)")) request(session, state, command::New{}, commands);
+    if (button("New", "start from a short example (Ctrl+N)")) request(session, state, command::New{}, commands);
     ImGui::SameLine(0.0F, space);
-    if (button("Open\u2026", "a system file (Ctrl+O); or drop it on the window")) ask_to_open(state);
+    if (button("Open\u2026", "open a system file (Ctrl+O), or drop one on the window")) ask_to_open(state);
     ImGui::SameLine(0.0F, space);
-    if (button("Save", "to the file it came from (Ctrl+S)")) save_or_ask(session, state, commands);
+    if (button("Save", "save to the same file (Ctrl+S)")) save_or_ask(session, state, commands);
     ImGui::SameLine(0.0F, space);
-    if (button("Save as\u2026", "to another file")) ask_to_save(session, state);
+    if (button("Save as\u2026", "save to another file")) ask_to_save(session, state);
 }
 
 // In a text that is no system: back to the last that was one, at once; redo has this one.
@@ -255,8 +256,8 @@ void show_file(const Session& session, const EditorState& editor) {
     const std::string status = is_changed ? "not saved" : "";
     const float room = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(status.c_str()).x - units(16.0F);
     const bool is_new = document.file.empty() && document.name == document.source;
-    const std::string name = is_new                  ? "a new system, in no file yet"
-                             : document.file.empty() ? document.name + ", from the list"
+    const std::string name = is_new                  ? "a new system, not saved yet"
+                             : document.file.empty() ? document.name + ", from the gallery"
                                                      : std::filesystem::path(document.file).filename().string();
     ImGui::TextUnformatted(fitted(name, room).c_str());
     tooltip(document.source);
@@ -279,8 +280,8 @@ void show_run(const Session& session, PanelState& state, Commands& commands) {
         if (ImGui::InvisibleButton("reset all", {std::max(row.width, 1.0F), ImGui::GetTextLineHeight()}))
             commands.emplace_back(command::Reset{});
         remember(state, "reset all");
-        tooltip("every value as the text has it");
-        cell({row.x, row.y}, fmt::format("and {} more: put all back", all - lines), row.width, current_theme().accent);
+        tooltip("reset every value to that of the text");
+        cell({row.x, row.y}, fmt::format("and {} more: reset all", all - lines), row.width, current_theme().accent);
     }
     ImGui::PopStyleVar();
     if (all > 0) ImGui::Dummy({0.0F, units(1.0F)});

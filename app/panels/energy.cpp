@@ -76,14 +76,13 @@ struct Part {
 constexpr std::size_t striped = 3;
 
 std::array<Part, 4> parts(const Theme& theme) {
-    return {{{"kinetic", "the energy of what moves", theme.ink, 0.85F},
-             {"potential", "what is stored; the bar shows what is above the least of this run", theme.ink, 0.3F},
-             {"impacts took", "all impacts together, and the restarts at Zeno points",
+    return {{{"kinetic", "kinetic energy", theme.ink, 0.85F},
+             {"potential", "potential energy; the bar shows the part above the minimum of this run", theme.ink, 0.3F},
+             {"impact loss", "energy lost in all impacts and in the restarts at Zeno points",
               phase_color(theme, Phase::Kind::hybrid), 0.75F},
-             {"forces did",
-              "the work of forces and of moving surfaces: what they took stands in the bar, what they gave reaches "
-              "beyond the "
-              "line, which is what there was at the start",
+             {"work done",
+              "work of forces and of moving surfaces: energy removed is part of the bar, energy added extends beyond "
+              "the line, which marks the initial energy",
               theme.faint, 0.8F}}};
 }
 

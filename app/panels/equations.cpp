@@ -73,7 +73,7 @@ Now now_of(const Session& session, EquationsView& view, const SheetCondition& co
     if (held != condition.held)
         return {fmt::format("not now: {} is held", held.empty() ? "nothing" : joined_names(model, held)), false};
     const double value = view.value(index, model, session.trajectory().run, session.now().state, session.now().t);
-    if (!std::isfinite(value)) return {"now it is not defined", true};
+    if (!std::isfinite(value)) return {"not defined now", true};
     const std::string shown = number(value, "{:.4g}");
     if (value < 0.0) {
         const double e = model.restitution(session.trajectory().run.parameters, condition.contact);
@@ -151,7 +151,7 @@ class PageDrawing {
 
 void show_lower_tabs(const Session& session, PanelState& state, Commands& commands) {
     const std::string seen = session.scene().below();
-    if (tab("Events", "tab events", "what happens in the run", seen == "events", state)) {
+    if (tab("Events", "tab events", "the events of the run", seen == "events", state)) {
         commands.emplace_back(command::Show{seen, false});
         if (!session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
     }
@@ -163,8 +163,8 @@ void show_lower_tabs(const Session& session, PanelState& state, Commands& comman
         ImGui::SameLine(0.0F, units(14.0F));
         tab(title, place, about, true, state);
     };
-    name_of("depend", "Dependence", "tab depend", "what a quantity of the run depends on");
-    name_of("orbit", "Periodic run", "tab orbit", "a run that comes back to its start, and its branch in a parameter");
+    name_of("depend", "Dependence", "tab depend", "derivatives of a quantity of the run");
+    name_of("orbit", "Periodic run", "tab orbit", "a periodic run and its branch in a parameter");
 }
 
 bool derives_equations(const PanelState& state) {

@@ -125,7 +125,7 @@ void show_comparing(float x, PanelState& state, Commands& commands) {
     ImGui::SameLine(x);
     if (ImGui::Button("pin", {pin_width, 0.0F})) commands.emplace_back(command::Pin{});
     remember(state, "pin");
-    tooltip("keep the present run in the plots, in a colour of its own, beside those that follow");
+    tooltip("keep the present run in the plots, in its own color, to compare with later runs");
 }
 
 constexpr const char *prove_word = "Prove this run", *stop_word = "Stop proving", *forget_word = "Forget proof";
@@ -141,9 +141,9 @@ void show_spreads(PanelState& state, Commands& commands) {
     const bool is_open = ImGui::BeginPopup("spreads");
     ImGui::PopStyleVar();
     if (!is_open) return;
-    ImGui::TextDisabled("for every start within");
+    ImGui::TextDisabled("for all starts within");
     for (const double width : {0.0, 1e-8, 1e-6, 1e-4}) {
-        const std::string name = width == 0.0 ? "the numbers alone" : fmt::format("± {:g}", width);
+        const std::string name = width == 0.0 ? "this start only" : fmt::format("± {:g}", width);
         if (ImGui::MenuItem(name.c_str())) commands.emplace_back(command::Prove{width, {}});
         remember(state, fmt::format("prove {:g}", width));
     }
@@ -160,7 +160,7 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
     remember(state, "prove more");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     paint_menu_arrow(low.x + 0.5F * (high.x - low.x) - units(4.0F), 0.5F * (low.y + high.y), ImGui::IsItemHovered());
-    tooltip("prove more than the present run: every start within a distance of its own");
+    tooltip("prove more than the present run: all starts in a box around its start");
     show_spreads(state, commands);
     ImGui::SameLine(x);
     if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word, {width, 0.0F})) {
@@ -170,9 +170,9 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
             commands.emplace_back(command::Prove{});
     }
     remember(state, "prove");
-    tooltip(is_under_way ? "give up the proof that is under way"
-            : is_there   ? "draw the run without what is proved of it"
-                         : "enclose the whole exact motion: integration, rounding, every bounce and every Zeno point");
+    tooltip(is_under_way ? "stop the proof"
+            : is_there   ? "remove the proof from the plots and the events"
+                         : "enclose the whole exact motion: integration, rounding, every impact and every Zeno point");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
@@ -195,12 +195,12 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     ImGui::SameLine(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
-    tooltip("list every impact; without, those in a row are one line, which a click opens");
+    tooltip("list every impact; otherwise consecutive impacts share one line, which a click opens");
     ImGui::SameLine(right - width - units(16.0F) - copy_width);
     const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && takes_key(state, 'C', false);
     if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
     remember(state, "copy events");
-    tooltip("the chosen event, or all, as a table with every digit, for a spreadsheet (Ctrl+C)");
+    tooltip("copy the selected event, or all events, as a table with all digits, for a spreadsheet (Ctrl+C)");
     show_comparing(buttons, state, commands);
 }
 
@@ -273,8 +273,8 @@ void show_impacts(const Session& session, const EventRows::Row& row, int present
     }
     remember(state, "impacts " + std::to_string(row.event + 1));
     const auto time = [&](std::size_t i) { return known_digits(events[i].t, session.precision().of_event(i), 9); };
-    tooltip(fmt::format("events {} to {}, t = {} to {} s: a click {} them", row.event + 1, last + 1, time(row.event),
-                        time(last), row.is_open ? "folds" : "lists"));
+    tooltip(fmt::format("events {} to {}, t = {} to {} s: click to {} them", row.event + 1, last + 1, time(row.event),
+                        time(last), row.is_open ? "collapse" : "list"));
     paint_impacts(session, row, at, columns);
 }
 

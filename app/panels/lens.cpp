@@ -22,10 +22,9 @@ constexpr float margin = 12.0F;
 
 std::string explanation(const Lens& lens) {
     return fmt::format(
-        "Every flight is e = {} times as long as the one before and e\u00b2 times as high; with time as "
+        "Each flight lasts e = {} times as long as the one before and is e\u00b2 times as high. With time as "
         "\u2212log(\u03c4\u221e \u2212 t) and the gap over the impact speed squared, infinitely many bounces become an "
-        "even "
-        "row of equal arcs that never ends.",
+        "endless row of equal arcs.",
         number(lens.restitution(), "{:.4g}"));
 }
 
@@ -38,10 +37,10 @@ void show_places(const Lens& lens, double width, PanelState& state, Commands& co
     };
     place("first impact", lens.first() - 0.05 * width, "where the row begins");
     ImGui::SameLine();
-    place("cut", lens.cut() - 0.3 * width, "where the run was cut short and the contact began");
+    place("cut", lens.cut() - 0.3 * width, "where the impact sequence was cut and the contact began");
     if (lens.interval()) {
         ImGui::SameLine();
-        place("certified interval", *lens.interval() - 0.5 * width, "what is certified of the Zeno time");
+        place("certified interval", *lens.interval() - 0.5 * width, "the certified interval of the Zeno time");
     }
 }
 
@@ -66,7 +65,7 @@ void show_row(const Session& session, const Lens& lens, float height, PanelState
     ImGui::InvisibleButton("lens", {std::max(area.width, 1.0F), std::max(area.height, 1.0F)});
     remember(state, "lens");
     use_mouse(lens, low, width, inside, commands);
-    tooltip("drag, or use the wheel: the row never ends");
+    tooltip("drag, or use the wheel, to move along the row");
     ImGui::SetCursorScreenPos({area.x, area.y + area.height + units(6.0F)});
     show_places(lens, width, state, commands);
 }
@@ -107,10 +106,9 @@ void show_lens(const Session& session, PanelState& state, Commands& commands) {
         commands.emplace_back(command::Show{"lens", false});
     const auto lens = Lens::at(session.trajectory(), index);
     if (!lens) {
-        paragraph(is_plastic_landing(zeno)
-                      ? "A plastic landing: restitution 0 leaves no bounces, and no row to look at."
+        paragraph(is_plastic_landing(zeno)    ? "A plastic impact: with restitution 0 there are no bounces to show."
                   : zeno.contacts.count() > 1 ? "Several contacts come to rest together: there is no row of equal arcs."
-                                              : "One impact and no bouncing: there is no row to look at.",
+                                              : "A single impact: there are no bounces to show.",
                   width, faint_color());
     } else {
         paragraph(explanation(*lens), width, faint_color());

@@ -289,7 +289,7 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     if (is_hovered && under.what != Holding::world) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(under.at), static_cast<float>(under.reach) + units(2.0F),
                                               packed(text_color(), 0.5F), 32, units(1.5F));
-        tooltip(under.what == Holding::arrow ? "drag: the rates to start with" : "drag: where the run starts");
+        tooltip(under.what == Holding::arrow ? "drag to set the initial rates" : "drag to set the initial position");
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
@@ -329,10 +329,10 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
         ImGui::PopID();
         remember(state, std::string("show ") + what);
         const bool lit = ImGui::IsItemHovered();
-        tooltip(is_plane && shown    ? "back to the mechanism"
-                : is_plane           ? "the configuration plane: two quantities, where the gap is open, and the run"
-                : word == "contours" ? (shown ? "hide the contours of the energy" : "contours of the energy")
-                : word == "sides"    ? (shown ? "back to the drawing" : "from two sides: x and z, y and z")
+        tooltip(is_plane && shown ? "back to the mechanism"
+                : is_plane ? "the configuration plane: two quantities, the region where the gap is open, and the run"
+                : word == "contours"         ? (shown ? "hide the energy contours" : "show the energy contours")
+                : word == "sides"            ? (shown ? "back to the drawing" : "show two side views: x and z, y and z")
                 : word == "strobe" && !shown ? "show the poses at the events"
                                              : std::string(shown ? "hide the " : "show the ") + what);
         ImDrawList* list = ImGui::GetWindowDrawList();

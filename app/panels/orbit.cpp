@@ -74,9 +74,10 @@ void show_from(const Session& session, OrbitView& view, PanelState& state) {
         remember(state, std::string("orbit ") + name);
         tooltip(about);
     };
-    choice("from the start", "start", "the search begins where the present run does");
-    choice("from the end", "end", "where the present run ends: what attracts has been nearly reached there");
-    if (session.description().orbit) choice("from the file's guess", "", "what [orbit] of the system's file says");
+    choice("from the start", "start", "begin the search at the start of the present run");
+    choice("from the end", "end", "begin at the end of the present run, which may be close to an attractor");
+    if (session.description().orbit)
+        choice("from the file's guess", "", "begin at the guess in [orbit] of the system file");
     close_by_escape(state);
     ImGui::EndPopup();
 }
@@ -84,11 +85,11 @@ void show_from(const Session& session, OrbitView& view, PanelState& state) {
 void show_closing(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit closing")) return;
     if (text_row("period", "orbit period", view.asked.period, 150.0F, state)) ImGui::CloseCurrentPopup();
-    tooltip("s; an expression in the parameters, as 2*pi/om: that of a drive, or a guess. Empty: as the file has it");
+    tooltip(
+        "period in s, an expression in the parameters such as 2*pi/om: of the drive, or a guess. Empty: from the file");
     const std::string& first = session.description().coordinates.front().name;
     if (text_row("shift", "orbit shift", view.shift, 150.0F, state)) ImGui::CloseCurrentPopup();
-    tooltip(fmt::format(
-        "a coordinate that has moved on by so much after a period, as {}=2*pi. Empty: as the file has it", first));
+    tooltip(fmt::format("shift of a coordinate after one period, such as {}=2*pi. Empty: from the file", first));
     view.asked.shifts.clear();
     if (!view.shift.empty()) view.asked.shifts.push_back(view.shift);
     close_by_escape(state);
@@ -137,10 +138,10 @@ std::string from_text(const AskedOrbit& asked) {
 // What the search has come to.
 std::string remark(const Session& session) {
     if (const OrbitWatch* const watch = session.orbit_under_way())
-        return fmt::format("under way: {} runs tried", watch->runs.load());
+        return fmt::format("searching: {} runs tried", watch->runs.load());
     const auto found = session.orbit();
     if (!found || !found->answer.orbit) return "";
-    return session.orbit_point() ? "the run begins on it" : "the run has left it";
+    return session.orbit_point() ? "run is on the orbit" : "run is off the orbit";
 }
 
 void show_head(const Session& session, OrbitView& view, PanelState& state, Commands& commands) {
@@ -155,8 +156,7 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
             commands.emplace_back(command::FindOrbit{to_text(view.asked)});
     }
     remember(state, "make periodic");
-    tooltip(is_busy ? "give up the search"
-                    : "search for a run near this one that comes back to its start, and begin the run there");
+    tooltip(is_busy ? "stop the search" : "find a periodic run near this one, and start the run there");
     ImGui::SameLine(0.0F, units(14.0F));
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
@@ -166,11 +166,11 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
     show_from(session, view, state);
     x = menu_button("orbit along", view.asked.along.empty() ? "no branch" : "branch over " + typeset(view.asked.along),
                     x, row, right, state);
-    tooltip("the parameter in which its branch is followed");
+    tooltip("parameter of the branch");
     show_along(session, view, state);
     if (right - x > units(60.0F)) {
         x = menu_button("orbit closing", "period and shift", x, row, right, state);
-        tooltip("when a run has come back: after the period of a drive, or moved on by a shift");
+        tooltip("period of the drive, and shift of the coordinates after one period");
         show_closing(session, view, state);
     }
     const std::string told = remark(session);
@@ -195,7 +195,7 @@ std::string value_text(const FoundOrbit& found, const OrbitPoint& point) {
     return typeset(name) + " = " + number(branch.value(point), "{:.8g}");
 }
 
-// "flip at b = 0.0667": a click goes to the point nearest to it.
+// "period doubling at b = 0.0667": a click goes to the point nearest to it.
 void show_happenings(const FoundOrbit& found, PanelState& state, Commands& commands) {
     const Branch& branch = *found.answer.branch;
     const auto each = [&](const char* what, const std::vector<OrbitPoint>& all) {
@@ -215,14 +215,14 @@ void show_happenings(const FoundOrbit& found, PanelState& state, Commands& comma
                 commands.emplace_back(command::GoOnOrbit{static_cast<int>(nearest) + 1});
             remember(state, id);
             const bool lit = ImGui::IsItemHovered();
-            tooltip("a click goes to the point of the branch nearest to it");
+            tooltip("click to go to the nearest point of the branch");
             cell(at, fmt::format("{} at {}", what, value_text(found, all[i])), width,
                  lit ? text_color() : faint_color());
         }
     };
     each("fold", branch.folds);
-    each("flip", branch.flips);
-    each("complex pair, size 1", branch.circles);
+    each("period doubling", branch.flips);
+    each("Neimark-Sacker", branch.circles);
     each("Zeno point lost", branch.lost);
     each("other events", branch.changes);
 }
@@ -237,7 +237,7 @@ void show_slider(const Session& session, const FoundOrbit& found, PanelState& st
     if (ImGui::SliderInt("##branch", &point, 1, static_cast<int>(found.count()), "", ImGuiSliderFlags_AlwaysClamp))
         commands.emplace_back(command::GoOnOrbit{point});
     remember(state, "branch");
-    tooltip("along the branch: the run begins at this point of it, with its parameters");
+    tooltip("move along the branch: the run starts at this point, with its parameters");
 }
 
 void show_numbers(const Session& session, const FoundOrbit& found, PanelState& state, Commands& commands) {
@@ -291,7 +291,7 @@ void show_panel(const Session& session, const FoundOrbit& found, const BranchPan
     const auto on = session.orbit_point();
     if (under && ImGui::IsItemActive() && under != on)
         commands.emplace_back(command::GoOnOrbit{static_cast<int>(*under) + 1});
-    tooltip("a click or a drag goes along the branch: solid where it is stable, dashed where it is not");
+    tooltip("click or drag to move along the branch: solid is stable, dashed is unstable");
     if (!on || !std::isfinite(shown.values[*on])) return;
     const ImVec2 at{static_cast<float>(map.x(found.answer.branch->value(found.point(*on)))),
                     static_cast<float>(map.y(shown.values[*on]))};
@@ -318,14 +318,13 @@ void show_found(const Session& session, const OrbitView& view, PanelState& state
     if (!found) {
         if (session.orbit_under_way() == nullptr)
             paragraph(
-                "A run that comes back to its start after a period, or moved on by a shift. The search begins near the "
-                "present run; a branch follows what it finds in a parameter.",
+                "A periodic run returns to its start after one period, possibly moved by a shift. The search begins "
+                "near the present run; a branch follows the periodic run in a parameter.",
                 std::min(room.width, units(560.0F)), faint_color());
         return;
     }
     if (!found->answer.orbit)
-        return paragraph("no periodic run was found: " + typeset_sentence(found->answer.why), room.width,
-                         error_color());
+        return paragraph("no periodic run found: " + typeset_sentence(found->answer.why), room.width, error_color());
     const float numbers = view.panels.empty() ? room.width : std::min(units(330.0F), 0.4F * room.width);
     begin_padded_child("orbit numbers", {numbers, room.height});
     show_numbers(session, *found, state, commands);

@@ -141,7 +141,7 @@ void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, 
                          std::hypot(start.x - double{mouse.x}, start.y - double{mouse.y}) <= double{units(9.0F)};
     if (ImGui::IsItemHovered() && (is_near || plane.is_held)) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(start), units(11.0F), packed(text_color(), 0.5F), 32, units(1.5F));
-        tooltip("drag: where the run starts");
+        tooltip("drag to set the start of the run");
     }
     if (!is_near && !plane.is_held) use_events(session, map, plane, commands);
     if (ImGui::IsItemActivated() && is_near) {

@@ -30,9 +30,8 @@ bool fields(PlaneView& plane, PanelState& state, bool focuses) {
             ImGui::InputText((std::string("##") + name).c_str(), text, ImGuiInputTextFlags_EnterReturnsTrue) || typed;
         remember(state, std::string("plane ") + name);
         tooltip(
-            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy. Enter shows it; "
-            "the "
-            "start is dragged, and contours are drawn, where both are coordinates or rates");
+            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy. Press Enter to "
+            "show it. If both are coordinates or rates, you can drag the start, and contours are drawn");
     }
     return typed;
 }
@@ -124,7 +123,7 @@ void show_plane_heading(const Session& session, const Rectangle& row, PanelState
     remember(state, "plane axes");
     const bool lit = ImGui::IsItemHovered();
     tooltip((title == names ? "" : plane.texts.first + ", " + plane.texts.second + "\n") +
-            "choose two other quantities: coordinates, rates, gaps, any expressions");
+            "choose two other quantities: coordinates, rates, gaps or any expressions");
     paint_label(list, row.x, row.y, title, lit ? text_color() : faint_color(), size);
     const float x = row.x + width + units(5.0F), y = std::floor(row.y + 0.5F * ImGui::GetTextLineHeight());
     list->AddTriangleFilled({x, y - units(2.0F)}, {x + units(7.0F), y - units(2.0F)},

@@ -93,7 +93,8 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     if (ImGui::Checkbox(text, &linked)) commands.emplace_back(command::Link{linked});
     remember(state, "link");
     tooltip(
-        "plots over time show the same time. Wheel: zoom; drag: move; right button: zoom to a box; double click: fit");
+        "show the same times in all plots over time. Wheel: zoom; drag: move; right button: zoom to a box; double "
+        "click: fit");
 }
 
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state) {
@@ -121,8 +122,8 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
             ImGui::InputText((std::string("##") + name).c_str(), text, ImGuiInputTextFlags_EnterReturnsTrue) || typed;
         remember(state, std::string("expression ") + name);
         tooltip(
-            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy; several curves "
-            "are separated by commas. Enter plots it");
+            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy; separate several "
+            "curves by commas. Press Enter to plot");
     }
     if (menu.is_wrong && !session.error().empty()) show_message(session.error(), units(264.0F));
     if (typed) commands.emplace_back(command::PlotView{number, menu.x, split(menu.y)});
@@ -138,16 +139,16 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     remember(state, "fit");
     if (!session.pinned().empty() || framing.difference) {
         bool on = framing.difference;
-        if (ImGui::Checkbox("difference to the pinned runs", &on))
+        if (ImGui::Checkbox("difference from the pinned runs", &on))
             commands.emplace_back(command::PlotDifference{number, on});
         remember(state, "difference");
-        tooltip("how far each pinned run is from the present one, over time, on a logarithmic axis");
+        tooltip("difference of each pinned run from the present one over time, on a logarithmic axis");
     }
     ImGui::Separator();
     if (ImGui::MenuItem("Save figure\u2026", nullptr, false, session.under_way() == nullptr))
         ask_to_take_away(session, state, "svg", number);
     remember(state, "menu Save figure\u2026");
-    tooltip("this plot alone, for print: SVG, or PNG or PDF by the ending of the name");
+    tooltip("save this plot alone, for print, as SVG, PNG or PDF");
     if (was_entered && !menu.is_wrong) ImGui::CloseCurrentPopup();
     close_by_escape(state);
     ImGui::EndPopup();

@@ -62,24 +62,23 @@ std::optional<Inequality> failed(const Certificate& certificate) {
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once,
                         const ShownUnit& acceleration) {
     if (reason.cut)
-        return "Cut here: what follows is certified to stay within the tolerances of what is drawn. The next event, "
-               "the "
-               "Zeno point, tells by how much.";
+        return "Cut here: the error of the motion that follows is certified to be within the tolerances. The next "
+               "event, the Zeno point, shows the bounds.";
     if (!reason.contact || all_at_once)
-        return "Not cut: more than one contact moves here, all at once by Moreau's law.";
+        return "Not cut: several contacts take part in this impact, which Moreau's law resolves together.";
     if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
     if (!(reason.normal_acceleration < 0.0))
         return fmt::format(
-            "Not cut: the surface falls away here, the gap would accelerate by {}.",
+            "Not cut: the surface falls away here; the gap would open with acceleration {}.",
             number_with_unit(number(reason.normal_acceleration * acceleration.factor), acceleration.text));
     if (attempt == nullptr)
         return fmt::format(
-            "Not cut: nothing can be certified yet, the gap's acceleration may change its sign{} on the way.",
-            several ? " or another contact open or close" : "");
+            "Not cut: nothing can be certified yet; the gap's acceleration may change sign{} before the Zeno point.",
+            several ? ", or another contact may open or close," : "");
     const std::optional<Inequality> inequality = failed(*attempt);
-    if (!inequality) return "Not cut: an impact before the conditions were asked.";
+    if (!inequality) return "Not cut: this impact came before the conditions were checked.";
     if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} does not hold.", inequality->name);
-    return fmt::format("Not cut: the {} asks for {} < {}; it is {} times too large.", inequality->name,
+    return fmt::format("Not cut: the {} requires {} < {}; the left side is {} times too large.", inequality->name,
                        number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
                        number(inequality->left / inequality->right, "{:.3g}"));
 }
@@ -129,12 +128,12 @@ std::string time_of(const Session& session, std::size_t event) {
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
     const Model& model = *session.model();
     std::string text =
-        reason.held.empty() ? "None is held. " : fmt::format("Held: {}. ", joined_names(model, reason.held));
+        reason.held.empty() ? "No contact is held. " : fmt::format("Held: {}. ", joined_names(model, reason.held));
     if (!event.opened.empty())
-        text += fmt::format("It opens {}: the impulse would have to pull there. ", joined_names(model, event.opened));
+        text += fmt::format("It opens {}, where the impulse would have to pull. ", joined_names(model, event.opened));
     if (event.joint && event.joint->order_matters)
-        text += "Which is first matters and cannot be told: this is what follows from all at once. ";
-    if (event.joint && event.joint->not_unique) text += "The impulses are one choice of several. ";
+        text += "The order of the impacts matters but is unknown: they are resolved together. ";
+    if (event.joint && event.joint->not_unique) text += "The impulses are not unique; this is one choice. ";
     return text;
 }
 
@@ -197,8 +196,7 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     show_proved(session, index);
     paragraph(
         "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
-        "first "
-        "two rates vanish, the third, h\u2034, is positive: the body leaves it.",
+        "first two derivatives are zero and the third, h\u2034, is positive, so the body leaves the surface.",
         words - units(16.0F), text_color());
 }
 

@@ -36,8 +36,7 @@ std::string explanation(const Session& session, std::size_t index) {
     if (session.precision().is_beyond(event.t)) return said;  // a certificate is of the computed motion
     if (event.kind != Event::Kind::zeno) return said + proved_text(session, index, "\n") + "\nClick: why";
     if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
-    std::string proof =
-        event.certificate ? sentence(*event.certificate, session.description()) : "nothing is certified of it";
+    std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
     for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
         proof.replace(at, 2, "\n");
     return said + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
@@ -242,8 +241,7 @@ void show_more(bool is_before, std::size_t count, ImVec2 at, const Shown& shown,
         list->AddText(
             {std::floor(x - 0.5F * ImGui::CalcTextSize(text.c_str()).x), std::floor(at.y + line - units(1.0F))},
             packed(color), text.c_str());
-    tooltip(
-        fmt::format("{} {}; the strip can be dragged, and turned by the wheel", count, is_before ? "before" : "more"));
+    tooltip(fmt::format("{} {}; drag the strip, or use the wheel, to scroll", count, is_before ? "before" : "more"));
     if (!pressed || state.strip.was_dragged) return;
     const std::size_t step = std::max<std::size_t>(1, shown.cells.size() - 1);
     state.strip.begin = is_before ? shown.begin - std::min(step, shown.begin) : shown.begin + step;
@@ -259,7 +257,7 @@ void show_none(const Session& session, ImVec2 at, float width) {
                                                   : fmt::format("{} impacts", impacts),
                                    trajectory.end_time);
     if (session.shows_start())
-        text = "its run is under way";
+        text = "the run is under way";
     else if (is_early)
         text = fmt::format("{} at t = {:.6g} s: {}", to_text(trajectory.outcome.kind), trajectory.end_time,
                            trajectory.outcome.message);
@@ -271,9 +269,9 @@ void show_none(const Session& session, ImVec2 at, float width) {
 }  // namespace
 
 std::string precision_text() {
-    return "\u00b1: certified of the Zeno time from the computed state at the cut.\n"
-           "The integration and the cuts before it are not covered: where an\n"
-           "estimate of theirs is larger, that stands here, and nothing is certified of it.";
+    return "\u00b1: certified for the Zeno time from the computed state at the cut.\nErrors of the integration and of "
+           "the cuts before it are not covered: where\ntheir estimate is larger, it is shown instead, and it is not "
+           "certified.";
 }
 
 std::string time_text(const Trajectory& trajectory, std::size_t index, double error) {

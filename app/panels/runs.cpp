@@ -48,8 +48,8 @@ void show_heading(const Session& session, PanelState& state, Commands& commands)
     if (word("unpin all", "unpin all", "Unpin all runs", right, y, state)) commands.emplace_back(command::UnpinAll{});
     const bool open = session.scene().shows("runs");
     if (word("table", "runs table",
-             open ? "close the table of the runs" : "what differs between the runs, and what follows: a table below",
-             right, y, state)) {
+             open ? "close the table of the runs" : "show the differences between the runs in a table below", right, y,
+             state)) {
         commands.emplace_back(command::Show{"runs", !open});
         // It stands where the reasons of an event do.
         if (!open && session.selected() > 0) commands.emplace_back(command::Select{0});
@@ -65,11 +65,11 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
     const std::string number = std::to_string(run.place);
     float right = at.x + width;
-    if (word("\u00d7", "unpin " + number, "let go of this run", right, at.y, state))
+    if (word("\u00d7", "unpin " + number, "unpin this run", right, at.y, state))
         commands.emplace_back(command::Unpin{run.place});
     const bool is_present = run.trajectory->run == session.run();
     if (!is_present &&
-        word("use", "recall " + number, "make it the present run: every slider goes where it was (Ctrl+Z goes back)",
+        word("use", "recall " + number, "make it the present run: all sliders return to its values (Ctrl+Z to undo)",
              right, at.y, state))
         commands.emplace_back(command::Recall{run.place});
     ImGui::SetCursorScreenPos(at);
@@ -77,8 +77,8 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
         commands.emplace_back(command::ShowPinned{run.place, !run.shown});
     remember(state, "pinned " + number);
     const bool is_hovered = ImGui::IsItemHovered();
-    const std::string name = run.name.empty() ? "as the present run" : run.name;
-    tooltip(name + (run.shown ? ": pinned. A click hides it" : ": pinned, hidden. A click shows it"));
+    const std::string name = run.name.empty() ? "same as present run" : run.name;
+    tooltip(name + (run.shown ? ": pinned. Click to hide it" : ": pinned, hidden. Click to show it"));
     paint_sign(at, run_color(session.theme(), run.place), run.shown);
     const std::string told = fitted(name, right - at.x - units(sign_width));
     cell({at.x + units(sign_width), at.y}, told, right - at.x - units(sign_width) + 1.0F,

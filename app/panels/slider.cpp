@@ -59,11 +59,12 @@ std::string explanation(const Slider& slider) {
     std::string text = slider.about + (slider.about.empty() ? "" : "\n");
     text += number(slider.low * slider.factor) + " to " + shown(slider, slider.high);
     if (is_logarithmic(slider)) text += ", logarithmic";
-    if (slider.value != slider.original) text += "\nthe file has " + shown(slider, slider.original);
+    if (slider.value != slider.original) text += "\nin the file: " + shown(slider, slider.original);
     return text +
-           (slider.factor == 1.0 ? "\ndouble click: type a value, 1/3 too; "
-                                 : "\ndouble click: type degrees, or pi/6; ") +
-           "right click: as the file has it; Shift: fine" + (slider.bar_about.empty() ? "" : "\n" + slider.bar_about);
+           (slider.factor == 1.0 ? "\ndouble click: type a value, such as 1/3; "
+                                 : "\ndouble click: type degrees, or a value such as pi/6; ") +
+           "right click: reset to the file; Shift: fine steps" +
+           (slider.bar_about.empty() ? "" : "\n" + slider.bar_about);
 }
 
 // A thin track behind a slider whose own frame is invisible, with a mark where the file's value is.

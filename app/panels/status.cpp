@@ -105,7 +105,7 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
     ImGui::PopStyleColor();
     ImGui::SameLine(0.0F, units(24.0F));
     ImGui::TextDisabled(
-        "%s", session.shows_start() ? "its start is shown until then" : "the run before this one is shown until then");
+        "%s", session.shows_start() ? "the start is shown until then" : "the previous run is shown until then");
 }
 
 // How far the proof of the run has come, or how far it goes.
@@ -128,13 +128,13 @@ void show_proof(const Session& session) {
         fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
             .c_str());
     ImGui::PopStyleColor();
-    tooltip(enclosure.end
-                ? "Whatever is computed here, the exact motion lies in the tubes of the plots and has its events "
-                  "in the intervals that are told. It stands on " +
-                      enclosure.assumptions + "."
-                : "Until then the exact motion lies in the tubes of the plots and has its events in the "
-                  "intervals that are told; what comes after is not known: " +
-                      enclosure.outcome.message + ".");
+    tooltip(
+        enclosure.end
+            ? "The exact motion lies in the tubes of the plots, and its events in the intervals shown. This assumes " +
+                  enclosure.assumptions + "."
+            : "Until then the exact motion lies in the tubes of the plots, and its events in the intervals shown. "
+              "After that, nothing is proved: " +
+                  enclosure.outcome.message + ".");
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
@@ -150,9 +150,8 @@ void show_estimate(const Session& session) {
     ImGui::SameLine(0.0F, 0.0F);
     ImGui::TextUnformatted(text.c_str());
     tooltip(
-        "Of the state at the end, position and rates together: what steps,\n"
-        "roots and cuts leave out, carried on to first order, and rounding.\n"
-        "An estimate, not a proof.");
+        "Error of the state at the end, position and rates together: errors of steps,\nroots and cuts, propagated to "
+        "first order, and rounding.\nAn estimate, not a proof.");
 }
 
 }  // namespace
@@ -186,7 +185,7 @@ void show_status(const Session& session, const PanelState& state) {
         ImGui::SameLine(0.0F, units(24.0F));
     }
     if (const auto warned = warnings(session.run().options); !warned.empty()) {
-        ImGui::TextUnformatted(fmt::format("least tolerances: {}", least_tolerance).c_str());
+        ImGui::TextUnformatted(fmt::format("minimum tolerances: {}", least_tolerance).c_str());
         for (const std::string& warning : warned) tooltip(warning);
         ImGui::SameLine(0.0F, units(24.0F));
     }
@@ -209,7 +208,7 @@ void show_status(const Session& session, const PanelState& state) {
     }
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
     const std::string text =
-        fmt::format("{}{}   \u00b7   {} steps   \u00b7   least gap {}   \u00b7   energy drift {}   \u00b7   {}",
+        fmt::format("{}{}   \u00b7   {} steps   \u00b7   minimum gap {}   \u00b7   energy drift {}   \u00b7   {}",
                     seconds, session.sentences().impacts(), s.steps,
                     with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
                     s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),

@@ -104,12 +104,12 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
         paint_label(ImGui::GetWindowDrawList(), at.x, at.y, typeset(name), text_color(), ImGui::GetFontSize());
     }
     if (place == 1 || sweep.at) {
-        if (ImGui::Selectable("nothing", !has_axis) && has_axis) {
+        if (ImGui::Selectable("none", !has_axis) && has_axis) {
             sweep.axes.erase(sweep.axes.begin() + static_cast<std::ptrdiff_t>(place));
             commands.emplace_back(showing(sweep, description));
         }
         remember(state, std::string(popups[place]) + " nothing");
-        tooltip(place == 1 ? "a curve over x" : "the moments of the present run alone");
+        tooltip(place == 1 ? "a curve over x" : "the points of the present run only");
     }
     if (has_axis && place < sweep.axes.size()) {
         ImGui::Separator();
@@ -146,7 +146,7 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
     std::string& zero = state.sweep.zero;
     if (text_row("where", "sweep zero", zero, 150.0F, state) && !zero.empty())
         ask(Section{Section::Kind::zero, zero, {}});
-    tooltip("an expression: where it passes zero upwards, as gap' or x - 1. Enter takes it");
+    tooltip("where this expression crosses zero upward, such as gap' or x - 1. Press Enter to apply");
 }
 
 void show_print_menu(const Session& session, PanelState& state, Commands& commands) {
@@ -171,9 +171,8 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
     std::string& typed = state.sweep.print;
     if (text_row("other", "sweep expression", typed, 150.0F, state) && !typed.empty()) ask(typed);
     tooltip(
-        "an expression over the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k), "
-        "or "
-        "its derivative by a parameter or a start, d(zeno_time(1), e). Enter takes it");
+        "an expression at the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k), or "
+        "its derivative with respect to a parameter or a start, d(zeno_time(1), e). Press Enter to apply");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     ImGui::Separator();
     show_moments(sweep, session, state, commands);
@@ -211,14 +210,14 @@ void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& 
     std::string asked;
     for (const std::string& print : sweep.prints) asked += (asked.empty() ? "" : ", ") + typeset(print);
     float x = menu_button("sweep print", asked, row.x, row, row.x + 1.4F * third, state);
-    tooltip("what is asked of each run");
+    tooltip("quantity to compute for each run");
     show_print_menu(session, state, commands);
     for (std::size_t place = 0; place < 2; ++place) {
         if (place > sweep.axes.size() || (sweep.at && place == 1)) break;
         const std::string name = place < sweep.axes.size() ? typeset(sweep.axes[place].name) : "\u2026";
         x = menu_button(popups[place], (place == 0 ? "over " : "and ") + name, x, row, right, state);
-        tooltip(place == 0 ? "what varies along x; a slider's name can be dragged onto the axis"
-                           : "what varies along y, if anything: then it is a map");
+        tooltip(place == 0 ? "quantity along x; you can also drag a slider's name onto the axis"
+                           : "quantity along y, for a map");
         show_axis_menu(session, place, state, commands);
     }
 }

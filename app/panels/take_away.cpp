@@ -43,26 +43,24 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
         const char *name, *ending, *about;
     };
     constexpr Kind kinds[] = {
-        {"Film as MP4\u2026", "mp4",
-         "the mechanism in motion beside the plots; ffmpeg joins it, and must be installed"},
-        {"Figure as SVG\u2026", "svg", "the plots for print, with their origin: achilles reproduce makes them again"},
-        {"Figure as PNG\u2026", "png", "the same in pixels"},
+        {"Film as MP4\u2026", "mp4", "the mechanism in motion beside the plots (needs ffmpeg)"},
+        {"Figure as SVG\u2026", "svg", "the plots for print; achilles reproduce can make them again"},
+        {"Figure as PNG\u2026", "png", "the plots as an image in pixels"},
         {"Run as JSON\u2026", "json", "phases, events and certificates"},
-        {"Run as CSV\u2026", "csv", "a row an instant"},
-        {"Session as journal\u2026", "journal", "the commands that lead here, to be replayed anywhere"}};
+        {"Run as CSV\u2026", "csv", "one row per instant"},
+        {"Session as journal\u2026", "journal", "the commands that lead here, to replay anywhere"}};
     const bool is_there = session.under_way() == nullptr;
     for (const Kind& kind : kinds)
         if (item(kind.name, kind.about, state, is_there)) ask_to_take_away(session, state, kind.ending);
     ImGui::Separator();
-    constexpr std::pair<const char*, const char*> lines[] = {{"Copy command of the explorer", "explorer"},
-                                                             {"Copy command of the figure", "figure"},
-                                                             {"Copy command of the run", "run"}};
+    constexpr std::pair<const char*, const char*> lines[] = {
+        {"Copy explorer command", "explorer"}, {"Copy figure command", "figure"}, {"Copy run command", "run"}};
     for (const auto& [name, what] : lines)
         if (item(name, "shell command that reproduces this", state)) commands.emplace_back(command::Copy{what});
 }
 
 void show_tour_items(const Session& session, PanelState& state, Commands& commands) {
-    if (state.tours.empty()) ImGui::TextDisabled("there are none beside this program");
+    if (state.tours.empty()) ImGui::TextDisabled("no tours are installed");
     for (const SystemEntry& tour : state.tours) {
         if (ImGui::MenuItem((tour.title + "##" + tour.name).c_str()))
             request(session, state, command::Replay{tour.name}, commands);
@@ -98,16 +96,15 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     }
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
     const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_said > 1;
-    if (word_button("next", "go on at once (Enter)", state) ||
+    if (word_button("next", "go on now (Enter)", state) ||
         (keys && !has_keys(state) && takes_key(state, key::enter, false)))
         state.tour_wants = PanelState::OnTour::next;
     ImGui::SameLine(0.0F, units(10.0F));
-    if (word_button("stop", "end the tour here (Escape); whatever else you do ends it, too", state) ||
-        take_escape(state))
+    if (word_button("stop", "end the tour here (Escape); any other action also ends it", state) || take_escape(state))
         state.tour_wants = PanelState::OnTour::stop;
     // Below the others: beside them the words would have less room.
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
-    if (word_button("back", "to the sentence before (Backspace)", state, has_before) ||
+    if (word_button("back", "previous step (Backspace)", state, has_before) ||
         (keys && has_before && !has_keys(state) && takes_key(state, key::backspace, false)))
         state.tour_wants = PanelState::OnTour::back;
     if (state.tour_said == 0) return;

@@ -83,7 +83,7 @@ void choose_what(const Session& session, PanelState& state) {
     TakeAwayForm& form = state.take_away;
     const int count = static_cast<int>(session.plotted().list().size());
     form.plot = std::min(form.plot, count);
-    row("what");
+    row("content");
     ImGui::SetNextItemWidth(-1.0F);
     const std::string now = form.what == What::film        ? "a film: the mechanism in motion beside the plots"
                             : form.what == What::mechanism ? "the mechanism as it is now"
@@ -111,16 +111,16 @@ void choose_what(const Session& session, PanelState& state) {
 
 void choose_kind(PanelState& state) {
     const std::string& ending = state.take_away.ending;
-    row("kind");
+    row("format");
     if (state.take_away.what == What::film) {
-        const std::string by =
-            find_program("ffmpeg").empty() ? "ffmpeg, which joins the pictures, is not installed" : "joined by ffmpeg";
+        const std::string by = find_program("ffmpeg").empty() ? "ffmpeg is not installed" : "made with ffmpeg";
         for (const char* kind : {"mp4", "gif"})
             if (word(kind, ending == kind, state, by)) end_in(state, kind);
     } else {
         for (const auto& [kind, about] :
              {std::pair{"svg", "lines and text, for papers and for editing"},
-              std::pair{"pdf", "the same for LaTeX, by rsvg-convert of librsvg"}, std::pair{"png", "pixels"}})
+              std::pair{"pdf", "lines and text for LaTeX (needs rsvg-convert from librsvg)"},
+              std::pair{"png", "pixels"}})
             if (word(kind, ending == kind, state, about)) end_in(state, kind);
     }
     ImGui::SameLine(0.0F, units(14.0F));
@@ -146,7 +146,7 @@ void choose_size(const Session& session, PanelState& state) {
     double height =
         form.height == 0.0 ? height_of({form.width, 0.0, 0.0, 0.0}, chosen_shape(session, form)) : form.height;
     if (number_field("height", height, "mm", state)) form.height = height;
-    if (word("fits", form.height == 0.0, state, "as high as the plots are drawn best")) form.height = 0.0;
+    if (word("fits", form.height == 0.0, state, "best height for the plots")) form.height = 0.0;
     ImGui::NewLine();
     row("text");
     number_field("font", form.font, "pt", state);
@@ -197,7 +197,7 @@ void choose_film(const Session& session, PanelState& state) {
     const double before = speed;
     number_field("speed", speed, "\u00d7 its speed", state);
     if (speed != before) form.speed = std::max(speed, 0.0);
-    number_field("fps", form.fps, "pictures a second", state);
+    number_field("fps", form.fps, "frames per second", state);
     ImGui::NewLine();
 }
 
@@ -220,7 +220,7 @@ void show_take_away_form(const Session& session, PanelState& state) {
     else
         choose_page(session, state);
     const TakeAwayNote note = take_away_note(session, form);
-    row("comes to");
+    row("result");
     paragraph(note.text, remaining().width, note.is_wrong ? error_color() : text_color());
     ImGui::Dummy({0.0F, units(4.0F)});
 }
@@ -254,16 +254,15 @@ command::Export take_away_command(const TakeAwayForm& form, const std::string& f
 namespace {
 
 TakeAwayNote note_on_film(const Session& session, const TakeAwayForm& form) {
-    if (!(form.fps > 0.0)) return {fmt::format("pictures a second: a number above 0, not {:g}", form.fps), true};
+    if (!(form.fps > 0.0)) return {fmt::format("the frames per second must be above 0, not {:g}", form.fps), true};
     const FilmExtent extent = extent_of(session, take_away_command(form, "a.mp4", false));
     if (!(extent.frames <= most_film_frames))
-        return {fmt::format("more than {:.0f} pictures: raise the speed, or take fewer a second", most_film_frames),
+        return {fmt::format("more than {:.0f} frames: raise the speed, or use fewer per second", most_film_frames),
                 true};
     if (extent.width < 320 || extent.width > 3840)
-        return {fmt::format("a film is 320 to 3840 pixels wide, not {}", extent.width), true};
-    if (find_program("ffmpeg").empty())
-        return {"ffmpeg, which joins the pictures of a film, is not installed", true};
-    return {fmt::format("{} \u00d7 {} px, {:.0f} pictures, {:.3g} s", extent.width, extent.height, extent.frames,
+        return {fmt::format("a film must be 320 to 3840 pixels wide, not {}", extent.width), true};
+    if (find_program("ffmpeg").empty()) return {"a film needs ffmpeg, which is not installed", true};
+    return {fmt::format("{} \u00d7 {} px, {:.0f} frames, {:.3g} s", extent.width, extent.height, extent.frames,
                         extent.frames / form.fps)};
 }
 
@@ -273,7 +272,7 @@ TakeAwayNote note_on_page(const Session& session, const TakeAwayForm& form) {
     // To a page 0 is what follows from the rest; here the fields of the others show that.
     for (const auto& [name, value] :
          {std::pair{"width", page.width}, std::pair{"text", page.font}, std::pair{"resolution", page.dpi}})
-        if (!(value > 0.0)) return {fmt::format("{}: a number above 0, not {:g}", name, value), true};
+        if (!(value > 0.0)) return {fmt::format("{} must be above 0, not {:g}", name, value), true};
     try {
         check(page, "");
         const double shape = chosen_shape(session, form);

@@ -145,7 +145,7 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
         const double next = std::pow(10.0, 0.1 * std::round(10.0 * std::log10(session.scene().speed()) + steps));
         if (steps != 0) commands.emplace_back(command::Speed{std::clamp(next, command::slowest, command::fastest)});
     }
-    tooltip("how fast the run is played; right click: as fast as it is");
+    tooltip("playback speed; right click: real time");
     if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) commands.emplace_back(command::Speed{1.0});
     const std::string text = fmt::format("{:.3g}\u00d7", session.scene().speed());
     ImGui::SameLine(0.0F, units(6.0F));
@@ -163,7 +163,7 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
     bool loops = session.scene().loops();
     if (ImGui::Checkbox("loop", &loops)) commands.emplace_back(command::Loop{loops});
     remember(state, "loop");
-    tooltip("begin again at the end of the run");
+    tooltip("start again at the end of the run");
 }
 
 // Left and right step from event to event, Home and End go to the ends.
@@ -228,10 +228,9 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     const float between = units(4.0F);
     play_button(session, state, commands);
     ImGui::SameLine(0.0F, between);
-    if (step_button("step back", -1.0F, "to the event before (left arrow)", state))
-        commands.emplace_back(command::Step{-1});
+    if (step_button("step back", -1.0F, "previous event (left arrow)", state)) commands.emplace_back(command::Step{-1});
     ImGui::SameLine(0.0F, between);
-    if (step_button("step on", 1.0F, "to the next event (right arrow)", state)) commands.emplace_back(command::Step{1});
+    if (step_button("step on", 1.0F, "next event (right arrow)", state)) commands.emplace_back(command::Step{1});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     // As wide as it ever gets, so that what follows stands still.

@@ -87,8 +87,8 @@ bool has_film_joiner() { return !find_program(joiner).empty(); }
 void need_film_joiner(const std::string& option, const std::string& system, const std::string& film) {
     if (!has_film_joiner())
         throw InputError(
-            option, {}, "ffmpeg, which joins the frames of a film, is not installed",
-            fmt::format("install ffmpeg, or draw the frames alone into a folder: achilles frames {} --out {}",
+            option, {}, "a film needs ffmpeg, which is not installed",
+            fmt::format("install ffmpeg, or draw only the frames into a folder: achilles frames {} --out {}",
                         shell_word(system), shell_word(frames_folder(film).string())));
 }
 
@@ -99,7 +99,8 @@ void check_frames_out(const std::string& out, const std::string& system) {
         std::any_of(ending.begin(), ending.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
     std::error_code ignored;
     if (!has_letter || ending == "frames" || fs::is_directory(out, ignored)) return;
-    throw InputError(option, {}, fmt::format("a film ends in .mp4 or .gif, and this name ends in .{}", shown(ending)),
+    throw InputError(option, {},
+                     fmt::format("the name of a film ends in .mp4 or .gif, but this one ends in .{}", shown(ending)),
                      fmt::format("write --out {}; for a folder of this name --out {}/",
                                  fs::path(out).replace_extension(".mp4").string(), out));
 }
@@ -144,7 +145,8 @@ std::string joined(const FrameSeries& frames, const std::string& film,
     if (!bytes.empty()) return bytes;
     const std::string all = content(said.path);
     constexpr std::size_t last_words = 600;
-    throw std::runtime_error("ffmpeg has made no film: " + all.substr(all.size() - std::min(all.size(), last_words)));
+    throw std::runtime_error("ffmpeg could not make the film: " +
+                             all.substr(all.size() - std::min(all.size(), last_words)));
 }
 
 void remove_frames(const fs::path& frames, std::size_t count) {

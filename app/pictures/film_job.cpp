@@ -35,7 +35,7 @@ std::string program() {
 // A file that holds the text, under the name by which the system is known, in a folder of its own.
 fs::path put_text(const std::string& name, const std::string& text) {
     std::string pattern = (fs::temp_directory_path() / "achilles-XXXXXX").string();
-    if (::mkdtemp(pattern.data()) == nullptr) throw InputError(name, {}, "no temporary folder can be made");
+    if (::mkdtemp(pattern.data()) == nullptr) throw InputError(name, {}, "a temporary folder cannot be created");
     const fs::path file = fs::path(pattern) / (fs::path(name).stem().string() + ".toml");
     std::ofstream(file, std::ios::binary) << text;
     return file;
@@ -58,7 +58,7 @@ FilmJob::FilmJob(std::string film, std::vector<std::string> words, const std::st
     pointers.push_back(nullptr);
     std::array<int, 2> out{-1, -1}, err{-1, -1};
     if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0)
-        throw InputError(film_, {}, "no process can be started");
+        throw InputError(film_, {}, "a new process cannot be started");
     posix_spawn_file_actions_t actions;
     ::posix_spawn_file_actions_init(&actions);
     ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);

@@ -42,18 +42,18 @@ std::optional<std::pair<std::size_t, std::string>> parsed(const std::string& nam
 bool is_frame(const fs::path& file, const Notes& notes) {
     const std::string bytes = read_text(file, largest_frame);
     const auto refuse = [&](const std::string& why) {
-        return InputError(file.string(), {}, why,
-                          "draw into another folder, or add --overwrite to replace what is there");
+        return InputError(file.string(), {}, why, "draw into another folder, or add --overwrite to replace this file");
     };
     if (bytes.empty()) return false;
-    if (picture_format(bytes) != "png") throw refuse("this is no picture of an animation");
+    if (picture_format(bytes) != "png") throw refuse("this is not a frame of an animation");
     Origin there;
     try {
         if (png_notes(bytes) == notes) return true;
         there = origin_of(bytes);
     } catch (const std::runtime_error& problem) {
-        if (std::string_view(problem.what()).find("does not tell") == std::string_view::npos) return false;
-        throw refuse("this is no picture of an animation");
+        if (std::string_view(problem.what()).find("does not contain the command") == std::string_view::npos)
+            return false;
+        throw refuse("this is not a frame of an animation");
     }
     const auto wanted = [&](std::string_view key) {
         const auto at = std::find_if(notes.begin(), notes.end(), [&](const Note& note) { return note.keyword == key; });

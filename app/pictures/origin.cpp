@@ -21,7 +21,7 @@ constexpr std::string_view bare_letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJK
 
 // Takes a word that shell_word() wrote off the text's front.
 std::string take_word(std::string_view& text) {
-    const auto refuse = [] { return std::runtime_error("its origin is damaged: a word without end or beginning"); };
+    const auto refuse = [] { return std::runtime_error("the command stored in it is damaged: an incomplete word"); };
     std::string word;
     const std::size_t bare = std::min(text.find_first_not_of(bare_letters), text.size());
     if (bare > 0) {
@@ -144,10 +144,10 @@ std::string command_line(const std::vector<std::string>& words) {
 }
 
 std::vector<std::string> words_of(std::string_view text) {
-    if (take_word(text) != "achilles") throw std::runtime_error("its origin names no command of achilles");
+    if (take_word(text) != "achilles") throw std::runtime_error("the command stored in it is not an achilles command");
     std::vector<std::string> words;
     while (!text.empty()) {
-        if (text[0] != ' ') throw std::runtime_error("its origin is damaged: words that touch");
+        if (text[0] != ' ') throw std::runtime_error("the command stored in it is damaged: a space is missing");
         text.remove_prefix(1);
         words.push_back(take_word(text));
     }
@@ -181,7 +181,7 @@ std::string picture_format(std::string_view file) {
 
 Notes notes_of(std::string_view file) {
     const std::string format = picture_format(file);
-    if (format.empty()) throw std::runtime_error("this is neither a PNG nor an SVG nor a PDF file");
+    if (format.empty()) throw std::runtime_error("this is not a PNG, SVG or PDF file");
     return format == "png" ? png_notes(file) : format == "svg" ? svg_notes(file) : pdf_notes(file);
 }
 
@@ -195,11 +195,11 @@ Origin origin_of(std::string_view file) {
             if (note.keyword != key_of(kind)) continue;
             std::string_view text = note.text;
             const std::string name = take_word(text);
-            if (text.substr(0, 1) != "\n") throw std::runtime_error("its origin is damaged: a file without a name");
+            if (text.substr(0, 1) != "\n") throw std::runtime_error("a file stored in it is damaged: it has no name");
             origin.sources.push_back({kind, name, std::string(text.substr(1))});
         }
     }
-    if (origin.command.empty()) throw std::runtime_error("this picture does not tell where it comes from");
+    if (origin.command.empty()) throw std::runtime_error("this picture does not contain the command that made it");
     return origin;
 }
 

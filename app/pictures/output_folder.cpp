@@ -15,7 +15,7 @@ OutputFolder::OutputFolder(fs::path folder) : path_(std::move(folder)) {
     std::error_code problem;
     made_ = fs::create_directories(path_, problem);
     if (!fs::is_directory(path_))
-        throw InputError(path_.string(), {}, fmt::format("the folder cannot be made: {}", problem.message()));
+        throw InputError(path_.string(), {}, fmt::format("the folder cannot be created: {}", problem.message()));
 }
 
 OutputFolder::~OutputFolder() {

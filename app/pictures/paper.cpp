@@ -296,10 +296,8 @@ std::string paper_table(const Trajectory& ball, const Trajectory& pendulum) {
         "The restitution is 0.5; the paper's text for Example 3 prints 10.5.\n",
         last ? fmt::format("{:.9g}", *last) : "none", rest_time_with_threshold(ball, 1.0));
     return text +
-           "\nWhat is certified about the Zeno times (s; sharp conditions), each for the motion from the computed "
-           "state "
-           "at "
-           "the cut:\n\n" +
+           "\nCertified intervals of the Zeno times (s; sharp conditions), each for the motion from the computed state "
+           "at the cut:\n\n" +
            intervals_text("ball", ball) + intervals_text("pendulum", pendulum);
 }
 

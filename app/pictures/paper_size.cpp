@@ -20,8 +20,8 @@ constexpr int most_pixels = 16384;                  // along a side, as --size h
 void need(bool is_good, const std::string& what, const char* name, double value, double low, double high,
           const char* unit) {
     if (is_good) return;
-    throw InputError(what, {}, fmt::format("a picture cannot have a {} of {} {}", name, value, unit),
-                     fmt::format("it may be {} to {} {}", low, high, unit));
+    throw InputError(what, {}, fmt::format("the {} of a picture cannot be {} {}", name, value, unit),
+                     fmt::format("use {} to {} {}", low, high, unit));
 }
 
 double pixels_per_mm(const PaperSize& page, const std::string& format) {
@@ -41,7 +41,7 @@ void check(const PaperSize& page, const std::string& what) {
     need(within(page.font, least_font, most_font), what, "font", page.font, least_font, most_font, "pt");
     need(within(page.dpi, least_dpi, most_dpi), what, "resolution", page.dpi, least_dpi, most_dpi, "dpi");
     if (page.width == 0.0 && (page.height != 0.0 || page.font != 0.0 || page.dpi != 0.0))
-        throw InputError(what, {}, "a height, a font and a resolution belong to a width in mm");
+        throw InputError(what, {}, "a height, a font size or a resolution needs a width in mm");
 }
 
 // No picture is a strip.
@@ -53,8 +53,8 @@ PictureSize on_page(const PaperSize& page, const std::string& format, double tex
     const double per_mm = pixels_per_mm(page, format), height = height_of(page, shape);
     const double longest = std::max(page.width, height) * per_mm;
     if (longest > most_pixels)
-        throw InputError({}, {}, fmt::format("this picture would be {:.0f} pixels long", longest),
-                         fmt::format("at most {} are drawn: fewer dots per inch", most_pixels));
+        throw InputError({}, {}, fmt::format("a side of this picture would be {:.0f} pixels long", longest),
+                         fmt::format("at most {} are possible: use fewer dots per inch", most_pixels));
     PictureSize size;
     size.width = static_cast<int>(std::lround(page.width * per_mm));
     size.height = static_cast<int>(std::lround(height * per_mm));
@@ -91,9 +91,9 @@ double shape_of(const Drawing& world) { return (world.x_high - world.x_low) / (w
 
 std::span<const ColumnWidth> column_widths() {
     static constexpr std::array widths{
-        ColumnWidth{"a column of two (85 mm)", 85.0, 8.0},      ColumnWidth{"APS, a column (86 mm)", 86.0, 8.0},
-        ColumnWidth{"IEEE, a column (88.9 mm)", 88.9, 8.0},     ColumnWidth{"Elsevier, a column (90 mm)", 90.0, 8.0},
-        ColumnWidth{"a thesis, the text (140 mm)", 140.0, 9.0}, ColumnWidth{"a page (170 mm)", 170.0, 8.0},
+        ColumnWidth{"one of two columns (85 mm)", 85.0, 8.0},   ColumnWidth{"APS, one column (86 mm)", 86.0, 8.0},
+        ColumnWidth{"IEEE, one column (88.9 mm)", 88.9, 8.0},   ColumnWidth{"Elsevier, one column (90 mm)", 90.0, 8.0},
+        ColumnWidth{"thesis, text width (140 mm)", 140.0, 9.0}, ColumnWidth{"a page (170 mm)", 170.0, 8.0},
         ColumnWidth{"IEEE, two columns (182 mm)", 182.0, 8.0},  ColumnWidth{"a slide (320 mm)", 320.0, 18.0}};
     return widths;
 }

@@ -29,7 +29,7 @@ using File = std::unique_ptr<std::FILE, int (*)(std::FILE*)>;
 
 File temporary() {
     File file(std::tmpfile(), &std::fclose);
-    if (!file) throw std::runtime_error("no temporary file can be made");
+    if (!file) throw std::runtime_error("a temporary file cannot be created");
     return file;
 }
 
@@ -83,7 +83,7 @@ Written written(std::FILE* svg, const std::string& format, double points) {
 
 void need_pdf_writer(const std::string& file) {
     if (!find_program(writer).empty()) return;
-    throw InputError(file, {}, fmt::format("a PDF is written by {}, which is not installed", writer),
+    throw InputError(file, {}, fmt::format("a PDF needs {}, which is not installed", writer),
                      "install the package librsvg2-bin, or end the name in .svg");
 }
 
@@ -96,7 +96,8 @@ std::string pdf_of_svg(const std::string& svg, double width_mm) {
     std::string pdf = written(in.get(), "pdf1.4", points).pdf;
     if (!pdf.empty()) return pdf;
     Written last = written(in.get(), "pdf", points);
-    if (last.pdf.empty()) throw std::runtime_error(fmt::format("{} has written no PDF: {}", writer, last.problems));
+    if (last.pdf.empty())
+        throw std::runtime_error(fmt::format("{} could not write the PDF: {}", writer, last.problems));
     return std::move(last.pdf);
 }
 

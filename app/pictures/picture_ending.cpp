@@ -53,7 +53,7 @@ std::string format_for(const std::string& out, const std::string& wanted, const 
     if (wanted.empty()) return said;
     if (said != wanted && (!said.empty() || is_among(ending, others)))
         throw InputError(option, {},
-                         fmt::format("this name says {}, but what is drawn is {}", large(ending), large(wanted)),
+                         fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
                          fmt::format("end it in .{}{}", wanted, advice));
     return wanted;
 }

@@ -22,10 +22,9 @@ PictureJob::PictureJob(const Origin& origin)
 void PictureJob::check_size(int width, int height) const {
     constexpr double most_pixels = 32e6;  // some seconds and 400 MB
     if (reproduces_ && double{1} * width * height > most_pixels)
-        throw InputError({}, {},
-                         fmt::format("a picture of {} x {} pixels is too large to be made again", width, height),
-                         fmt::format("at most {:.0f} million pixels are drawn for a picture that may be anybody's; its "
-                                     "command makes it without this limit:\n{}",
+        throw InputError({}, {}, fmt::format("a picture of {} x {} pixels is too large to reproduce", width, height),
+                         fmt::format("at most {:.0f} million pixels are drawn for a picture of unknown source; to make "
+                                     "it without this limit, run:\n{}",
                                      most_pixels / 1e6, command_));
 }
 

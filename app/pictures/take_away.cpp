@@ -128,7 +128,7 @@ std::string drawn(const Session& session, const command::Export& what, const std
 std::string bytes_of(const Session& session, const command::Export& what) {
     if (const std::string format = ending_of_picture(what.file); !format.empty()) return drawn(session, what, format);
     if (what.plot > 0 || what.mechanism || what.width > 0.0)
-        throw InputError(what.file, {}, "one plot, a mechanism and a width make a figure",
+        throw InputError(what.file, {}, "plot, mechanism and width apply only to figures",
                          "end it in .svg, .png or .pdf");
     const std::string ending = ending_of(what.file);
     if (ending == "json") return to_json(session.trajectory());
@@ -177,7 +177,7 @@ Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, co
 
 Drawing mechanism_of(const Session& session, const Theme& theme) {
     if (session.mechanism().is_empty())
-        throw InputError({}, {}, "this system draws no mechanism", "[[drawing]] in its file makes one");
+        throw InputError({}, {}, "this system has no drawing of a mechanism", "add [[drawing]] to its file");
     const Scene& scene = session.scene();
     const Sample& now = session.now();
     Drawing seen = session.limits();
@@ -232,10 +232,10 @@ namespace {
 
 void check_file(const command::Export& what) {
     const std::string& file = what.file;
-    if (file.empty() || file == "-") throw InputError({}, {}, "a file to export to is missing");
+    if (file.empty() || file == "-") throw InputError({}, {}, "the file to export to is missing");
     std::error_code ignored;
     if (!what.overwrite && fs::exists(file, ignored))
-        throw InputError(file, {}, "there is a file already",
+        throw InputError(file, {}, "the file already exists",
                          "export under another name, or overwrite it: export FILE overwrite");
 }
 
@@ -265,15 +265,15 @@ FilmExtent extent_of(const Session& session, const command::Export& what) {
 std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Export& what) {
     check_file(what);
     if (what.plot > 0 || what.mechanism || what.width > 0.0)
-        throw InputError(what.file, {}, "a film shows the mechanism beside the plots, and is measured in pixels",
+        throw InputError(what.file, {}, "a film shows the mechanism beside the plots, and its width is in pixels",
                          "export F.mp4 pixels 1280 fps 30 speed 1");
     const FilmExtent extent = extent_of(session, what);
     if (extent.width < 320 || extent.width > 3840)
-        throw InputError(what.file, {}, fmt::format("a film is not {} pixels wide", extent.width),
-                         "it may be 320 to 3840");
+        throw InputError(what.file, {}, fmt::format("a film cannot be {} pixels wide", extent.width),
+                         "use 320 to 3840");
     if (!(extent.frames <= most_film_frames))
-        throw InputError(what.file, {}, fmt::format("these would be more than {:.0f} frames", most_film_frames),
-                         "a higher speed or fewer frames a second make it less");
+        throw InputError(what.file, {}, fmt::format("this would take more than {:.0f} frames", most_film_frames),
+                         "use a higher speed or fewer frames per second");
     const std::string system = name_anywhere(session.system());
     need_film_joiner(what.file, system, what.file);
     Words words{"frames", system};

@@ -69,7 +69,8 @@ pybind11::bytes unlocked(const std::function<std::string()>& make);
 inline pybind11::custom_type_setup made_here_alone() {
     return pybind11::custom_type_setup([](PyHeapTypeObject* type) {
         type->ht_type.tp_new = [](PyTypeObject* of, PyObject*, PyObject*) -> PyObject* {
-            PyErr_Format(PyExc_TypeError, "%s: achilles makes these; they cannot be made or copied by hand",
+            PyErr_Format(PyExc_TypeError,
+                         "%s: only achilles creates these objects; they cannot be constructed or copied directly",
                          of->tp_name);
             return nullptr;
         };

@@ -59,7 +59,7 @@ py::list option_table() {
     for (const Option& option : all_options()) {
         if (const std::string common = common_flag(option);
             common != option.flag && &option == &options_set_by(option.command)[0])
-            add(option.command, common, "all three of eps_q, eps_v and eps_t", option);
+            add(option.command, common, "set eps_q, eps_v and eps_t together", option);
         add(option.key, std::string(option.flag), option.about, option);
     }
     return rows;

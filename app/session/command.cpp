@@ -196,7 +196,7 @@ std::optional<Command> read_as(const Line& line) {
     });
     line.expect_arguments(least, most, from.usage);
     for_each_field<Kind>([&](const auto& field) { read(kind.*field.member, field.how, from); });
-    if (!from.at_end()) throw from.error(fmt::format("'{}' is too much", from.word()));
+    if (!from.at_end()) throw from.error(fmt::format("unexpected argument '{}'", from.word()));
     return kind;
 }
 

@@ -24,7 +24,7 @@ namespace command {
 struct Open {
     std::string system;  // a path, or the name of one of the assets
     static constexpr auto said =
-        Said("open", "write: open SYSTEM; a path with spaces stands in double quotes", Change::alone, &Open::system);
+        Said("open", "write: open SYSTEM; put a path with spaces in double quotes", Change::alone, &Open::system);
 };
 struct Set {
     std::string name;  // a parameter, a coordinate x, or a rate x'
@@ -264,7 +264,7 @@ constexpr double smallest = 0.5, largest = 3.0;
 struct Enlarge {
     double value = 1.0;  // of everything: letters, strokes, panels
     static constexpr auto said =
-        Said("enlarge", "write: enlarge NUMBER, 1 is as at first", Change::view, &Enlarge::value);
+        Said("enlarge", "write: enlarge NUMBER, 1 is the default size", Change::view, &Enlarge::value);
 };
 struct Present {
     bool on = true;  // to a class: the mechanism, one plot, the results, all of it larger
@@ -311,7 +311,7 @@ struct Export {
         Field(&Export::height, length_after("height")), Field(&Export::font, length_after("font")),
         Field(&Export::dpi, length_after("dpi")), Field(&Export::fps, length_after("fps")),
         Field(&Export::speed, length_after("speed")),
-        Field(&Export::pixels, {.after = "pixels", .complaint = "{} pixels are no width"}),
+        Field(&Export::pixels, {.after = "pixels", .complaint = "{} is not a valid width in pixels"}),
         Field(&Export::dark, {.yes = "dark", .may_lack = true}), Field(&Export::overwrite, command::overwrite));
 };
 inline const std::vector<std::string> copied_things{"explorer", "figure", "run", "sweep"};
@@ -345,7 +345,7 @@ struct Highlight {
 };
 struct Replay {
     std::string journal;  // a path, or the name of one of the assets
-    static constexpr auto said = Said("replay", "write: replay JOURNAL; a path with spaces stands in double quotes",
+    static constexpr auto said = Said("replay", "write: replay JOURNAL; put a path with spaces in double quotes",
                                       Change::view, &Replay::journal);
 };
 

@@ -45,7 +45,7 @@ struct How {
 };
 constexpr How in_quotes{.in_quotes = true};
 constexpr How on_off{.yes = "on", .no = "off", .complaint = "'{}' is neither on nor off"};
-constexpr How x_or_y{.yes = "x", .no = "y", .complaint = "an axis is x or y"};
+constexpr How x_or_y{.yes = "x", .no = "y", .complaint = "the axis must be x or y"};
 constexpr How length_after(std::string_view word) {
     return {.fits = [](double x) { return x > 0.0; }, .after = word, .complaint = "this must be above 0, not {}"};
 }
@@ -70,7 +70,7 @@ struct Said {
     constexpr Said(std::string_view called, std::string_view written, Change changed, Fields... of_it)
         : name(called), usage(written), change(changed), fields(of_it...) {}
 };
-constexpr std::string_view alone = "it stands alone";
+constexpr std::string_view alone = "it takes no arguments";
 
 template <class Kind>
 concept Spoken = requires {

@@ -40,7 +40,7 @@ struct GoOnOrbit {
 struct ShowDependence {
     std::string quantity;  // an expression as a sweep prints it
     static constexpr auto said =
-        Said("depend", "write: depend \"zeno_time(2)\", or another expression over the end and the events of a run",
+        Said("depend", "write: depend \"zeno_time(2)\", or another expression in the end and the events of a run",
              Change::view, Field(&ShowDependence::quantity, in_quotes));
 };
 

@@ -66,12 +66,12 @@ Document open_document(const std::string& name, const fs::path& file) {
 }
 
 void save(Document& document, const std::string& file, bool overwrite) {
-    if (file.empty()) throw InputError({}, {}, "a file to save to is missing");
-    if (file == "-") throw InputError({}, {}, "the text is saved to a file, not to standard output");
+    if (file.empty()) throw InputError({}, {}, "the file to save to is missing");
+    if (file == "-") throw InputError({}, {}, "the text must be saved to a file, not to standard output");
     const bool is_own = !document.file.empty() && place_of(document.file) == place_of(file);
     std::error_code ignored;
     if (!is_own && !overwrite && fs::exists(file, ignored))
-        throw InputError(file, {}, "there is a file already",
+        throw InputError(file, {}, "the file already exists",
                          "save under another name, or overwrite it: save FILE overwrite");
     OutputFiles files;
     files.add(file);

@@ -8,45 +8,50 @@ namespace achilles {
 namespace {
 
 constexpr std::array terms{
-    Term{"gap", "gap >= 0", "How far a contact is from closing. A motion never makes it negative.", "theory 1"},
+    Term{"gap", "gap >= 0", "How far a contact is from closing. It is never negative.", "theory 1"},
     Term{"hybrid phase", "M*a + b = 0", "Free flight and impacts, as long as no contact is held.", "paper (2), Def. 4"},
     Term{"impact", "v(after) = v(before) - (1 + e)*gap'*n",
          "The gap closes, and the velocity jumps along n, the direction of the impulse.", "paper (4)"},
     Term{"impact speed", "w = -gap'(before)", "How fast the gap closes at an impact.", "theory 3"},
-    Term{"restitution", "e = -gap'(after)/gap'(before)", "What an impact leaves of its speed: 0 nothing, 1 all of it.",
-         "paper (4)"},
+    Term{"restitution", "e = -gap'(after)/gap'(before)",
+         "The normal speed after an impact over that before: 0 is plastic, 1 is elastic.", "paper (4)"},
     Term{"normal acceleration", "gap''",
-         "Of the gap in free motion. Where it is negative the bodies are pressed together.", "paper (8)"},
+         "The acceleration of the gap in free motion. Where it is negative, the bodies are pressed together.",
+         "paper (8)"},
     Term{"Zeno point", "gap = 0, gap' = 0, gap'' < 0",
-         "Where 0 < e < 1, infinitely many impacts end here in finite time: each flight is about e times the last.",
+         "Where 0 < e < 1, infinitely many impacts end here in finite time: each flight lasts about e times as long as "
+         "the last.",
          "paper, Thm. 2"},
     Term{"truncation", "w < c1, w < c2, w < c3",
-         "The bouncing is cut at the first impact where it is certified how little is lost by it.", "paper, Def. 7"},
+         "The impact sequence is cut at the first impact where the error of the cut is certified to be small enough.",
+         "paper, Def. 7"},
     Term{"conditions", "a_min <= -gap'' <= a_max",
-         "What is certified before the cut: the paper's inequalities, or the sharp ones, which choose their own "
-         "neighbourhood.",
+         "What must be certified before the cut: the paper's inequalities, or the sharp ones, which choose their own "
+         "neighborhood.",
          "paper (9)-(11); theory 6"},
     Term{"certificate", "t(Zeno) - t(cut) <= A*w",
-         "Bounds by interval arithmetic on the Zeno time, and on the true Zeno point beside the one that was computed.",
+         "Bounds by interval arithmetic on the Zeno time, and on the distance of the true Zeno point from the computed "
+         "one.",
          "paper, Thm. 3; theory 4"},
     Term{"restart", "v(after) = v - gap'*n",
-         "Where the motion goes on from the cut: by the kinetic metric, a plastic impact, or by the paper's euclidean "
-         "projection.",
+         "The state from which the motion continues after the cut: by the kinetic metric, a plastic impact, or by the "
+         "paper's Euclidean projection.",
          "paper, Def. 7; theory 5"},
     Term{"constrained phase", "gap = 0, gap' = 0, lambda > 0", "The contact is held: the motion stays on the surface.",
          "paper (5), Def. 5"},
-    Term{"contact force", "lambda = -gap''/W", "What holds the gap closed. It can push, but not pull.", "paper (6)"},
+    Term{"contact force", "lambda = -gap''/W", "The force that holds the gap closed. It can push, but not pull.",
+         "paper (6)"},
     Term{"release", "lambda = 0", "The contact force has fallen to zero, and the body leaves the surface.",
          "paper, Def. 5"},
     Term{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
          "paper, Defs. 4, 5"},
     Term{"work and loss", "energy = energy(0) + work - loss",
-         "Work is that of forces, dampers among them (theirs is negative), and of moving contacts; loss is what "
-         "impacts take.",
+         "Work is done by forces, including dampers (theirs is negative), and by moving contacts; loss is the energy "
+         "that impacts dissipate.",
          ""},
     Term{"undecided", "",
-         "Double precision cannot tell what comes next: the run is made again at the least tolerances, and if that "
-         "does not help it says so and stops.",
+         "Double precision cannot decide what comes next: the run is repeated at the minimum tolerances, and stops if "
+         "that does not help.",
          "theory 6"},
 };
 
@@ -74,16 +79,16 @@ constexpr std::array keys{
     Shortcut{"Ctrl+C", "copy the chosen event"},
     Shortcut{"Ctrl+Q", "close the window"},
     Shortcut{"Space", "play, pause"},
-    Shortcut{"Left, Right", "event before, after"},
+    Shortcut{"Left, Right", "previous, next event"},
     Shortcut{"Home, End", "start, end of the run"},
-    Shortcut{"Tab, arrows", "walk the controls; Enter presses"},
+    Shortcut{"Tab, arrows", "move between controls; Enter clicks"},
     Shortcut{"Escape", "close what is open"},
-    Shortcut{"Enter", "a tour's next step"},
-    Shortcut{"Backspace", "its step before"},
+    Shortcut{"Enter", "next step of a tour"},
+    Shortcut{"Backspace", "previous step of a tour"},
     Shortcut{"double click", "type a slider's value"},
     Shortcut{"Shift+drag", "a slider in fine steps"},
     Shortcut{"right click", "the file's value"},
-    Shortcut{"drag a body", "start there"},
+    Shortcut{"drag a body", "set its start"},
 };
 
 }  // namespace

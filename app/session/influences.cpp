@@ -25,7 +25,7 @@ Influences::Of influence(const std::string& name, const std::array<double, 2>& r
     if (std::isfinite(one.derivative)) return one;
     one.reason = !derivatives.refused[k].empty() ? derivatives.refused[k]
                  : !quantity.refused.empty()     ? quantity.refused
-                                                 : "it has none there";
+                                                 : "it does not exist there";
     return one;
 }
 

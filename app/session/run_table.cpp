@@ -122,7 +122,7 @@ std::optional<Parting> parting(const std::vector<Step>& present, double present_
     const auto goes_on = [&](const std::vector<Step>& steps, double end) {
         return same < steps.size()
                    ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, steps[same].error, 5))
-                   : fmt::format("nothing more until {} s", told(end, 0.0, 5));
+                   : fmt::format("no further event until {} s", told(end, 0.0, 5));
     };
     result.sentence =
         fmt::format("{}: {}; the present run: {}", same > 0 ? "after " + result.after : std::string("from the start"),
@@ -186,7 +186,7 @@ class Table {
     }
 
     void partings() {
-        RunTable::Row row{"same course until", {nothing}, {false}, "", false};
+        RunTable::Row row{"same events until", {nothing}, {false}, "", false};
         for (std::size_t i = 1; i < runs_.size(); ++i) {
             const auto found = parting(courses_[0], runs_[0]->end_time, courses_[i], runs_[i]->end_time);
             row.values.push_back(!found ? "the end" : found->after.empty() ? "the start" : found->after);

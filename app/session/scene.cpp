@@ -14,7 +14,7 @@ namespace achilles {
 void Scene::perform(const command::Look& command) {
     if (!(command.width > 0.0) || !std::isfinite(command.x) || !std::isfinite(command.y) ||
         !std::isfinite(command.width))
-        throw refusal(fmt::format("a part of the world {} wide cannot be shown", command.width));
+        throw refusal(fmt::format("a view {} wide cannot be shown", command.width));
     look_ = command;
     camera_ = CameraMode::fixed;
 }
@@ -30,8 +30,7 @@ void Scene::perform(const command::Camera& command) {
         throw refusal(
             fmt::format("there is no camera '{}'{}", command.mode, did_you_mean(command.mode, command::camera_modes)));
     if (*mode == CameraMode::fixed && !look_)
-        throw refusal("camera fixed: no view has been chosen yet; use `look X Y WIDTH` or the mouse wheel",
-                      "look X Y WIDTH does so, or the wheel of the mouse");
+        throw refusal("camera fixed: no view has been chosen yet", "use look X Y WIDTH, or the mouse wheel");
     camera_ = *mode;
     if (camera_ == CameraMode::fit) look_.reset();
 }
@@ -97,7 +96,7 @@ void Scene::perform(const command::Find& command) {
 
 void Scene::perform(const command::Speed& command) {
     if (!(command.value >= command::slowest && command.value <= command::fastest))
-        throw refusal(fmt::format("a run is played at {} to {} times its speed, not at {}", command::slowest,
+        throw refusal(fmt::format("the playback speed must be from {} to {} times real time, not {}", command::slowest,
                                   command::fastest, command.value));
     speed_ = command.value;
 }
@@ -129,7 +128,7 @@ void Scene::perform(const command::Highlight& command) {
 
 void Scene::perform(const command::Enlarge& command) {
     if (!(command.value >= command::smallest && command.value <= command::largest))
-        throw refusal(fmt::format("everything can be {} to {} times as large, not {}", command::smallest,
+        throw refusal(fmt::format("the size must be from {} to {} times the default, not {}", command::smallest,
                                   command::largest, command.value));
     enlarged_ = command.value;
 }

@@ -111,7 +111,7 @@ void Session::perform(const command::Undo&) {
 }
 
 void Session::perform(const command::Redo&) {
-    if (!can_redo()) throw refusal("there is nothing to do again");
+    if (!can_redo()) throw refusal("there is nothing to redo");
     restore(history_.redo(moment()));
 }
 
@@ -163,7 +163,7 @@ void Session::perform(const command::Text& command) {
 void Session::perform(const command::Save& command) {
     const std::string before = document_.source;
     if (!library_.saves_any_text && !document_.problems.empty())
-        throw refusal("the text is no system, and is not saved", document_.problems.front().what());
+        throw refusal("the text is not a valid system, and is not saved", document_.problems.front().what());
     if (library_.before_writing) library_.before_writing(command.file);
     if (library_.save)
         library_.save(document_, command.file, command.overwrite);
@@ -366,7 +366,7 @@ void Session::receive(Patience patience) {
         if (simulated_ == nullptr) throw;
         watch_.reset();
         asked_ = simulated_->trajectory.run;
-        error_ = "there is not enough memory for this run; the last one stays";
+        error_ = "there is not enough memory for this run; the previous one is kept";
     }
     if (!motion) return;
     simulated_ = *motion;

@@ -26,7 +26,7 @@ constexpr int deepest = 8;  // journals in journals: one that names itself comes
 void Session::perform(const command::Export& command) {
     // Until then the result on the screen is of another run than the sliders say, or of none.
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
-        throw refusal("the run is still under way", "export again when it is there");
+        throw refusal("the run is still under way", "export again when it has finished");
     if (library_.before_writing) library_.before_writing(command.file);
     const std::filesystem::path file(command.file);
     const std::string path = (file.is_absolute() ? file : library_.folder / file).lexically_normal().string();
@@ -47,7 +47,7 @@ void Session::perform(const command::Export& command) {
 void Session::perform(const command::Copy& command) {
     // The line names a file: it must hold what runs here.
     if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
-        throw refusal("no file holds this text, and a command line can only name a file", "save it first, then copy");
+        throw refusal("this text is not saved in a file, and a command line needs a file", "save it first, then copy");
     copied_ = command_for(*this, command.what);
     ++copies_;
     notice_ = "copied: " + copied_;
@@ -57,7 +57,7 @@ void Session::perform(const command::Wait& command) { play_on(*this, command.sec
 
 void Session::perform(const command::Replay& command) {
     if (!library_.journal) throw refusal("there are no journals here");
-    if (replaying_ >= deepest) throw refusal("journals that replay journals that replay journals: this has no end");
+    if (replaying_ >= deepest) throw refusal("too many journals replay each other");
     const std::vector<Command> journal = library_.journal(command.journal);
     ++replaying_;
     std::string first_error;

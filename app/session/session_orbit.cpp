@@ -38,10 +38,11 @@ void Session::perform(const command::GoOnOrbit& command) {
     const auto found = orbit();
     if (found == nullptr || found->count() == 0)
         throw refusal(orbit_under_way() != nullptr ? "the search for a periodic run is under way"
-                                                   : "there is no periodic run to go on",
+                                                   : "no periodic run has been found yet",
                       "orbit \"\" searches for one");
     if (command.point < 1 || static_cast<std::size_t>(command.point) > found->count())
-        throw refusal(fmt::format("it has no point {}: they count from 1 to {}", command.point, found->count()));
+        throw refusal(fmt::format("the branch has no point {}: its points are numbered from 1 to {}", command.point,
+                                  found->count()));
     rerun(run_on(found->point(static_cast<std::size_t>(command.point) - 1), asked_));
 }
 

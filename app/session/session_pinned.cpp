@@ -53,20 +53,21 @@ const PinnedRun* Session::pinned_at(int place) const {
 void Session::perform(const command::Pin& command) {
     const auto same =
         std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& p) { return p.trajectory->run == asked_; });
-    if (same != pinned_.end()) throw refusal(fmt::format("this run is pinned already, as {}", same->place));
+    if (same != pinned_.end()) throw refusal(fmt::format("this run is already pinned, as {}", same->place));
     const auto made = std::find_if(pins_.begin(), pins_.end(), [&](const PinUnderWay& p) { return p.run == asked_; });
     if (pin_waits_ || made != pins_.end())
-        throw refusal(
-            fmt::format("this run is pinned, as {}, when it is there", pin_waits_ ? *pin_waits_ : made->place));
+        throw refusal(fmt::format("this run will be pinned, as {}, when it has finished",
+                                  pin_waits_ ? *pin_waits_ : made->place));
     if (pinned_.size() + pins_.size() >= most_pinned)
-        throw refusal(fmt::format("{} runs are pinned, and more cannot be told apart", most_pinned),
-                      "let one go first: unpin 1, or: unpin all");
+        throw refusal(fmt::format("{} runs are pinned, and no more can be pinned", most_pinned),
+                      "unpin one first: unpin 1, or: unpin all");
     int place = command.place;
     if (place > most_pinned)
-        throw refusal(fmt::format("there is no place {} for a run: there are {}", place, most_pinned));
+        throw refusal(fmt::format("there is no place {} for a run: the places are 1 to {}", place, most_pinned));
     const auto is_taken = [this](int at) { return pinned_at(at) != nullptr || waits_at(at); };
     if (place > 0 && is_taken(place))
-        throw refusal(fmt::format("there is a run pinned at {}", place), fmt::format("unpin {} first, or: pin", place));
+        throw refusal(fmt::format("a run is already pinned at {}", place),
+                      fmt::format("unpin {} first, or: pin", place));
     if (place == 0)
         for (place = 1; is_taken(place);) ++place;
     scene_.perform(command::Show{"runs", true});
@@ -85,8 +86,8 @@ void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) 
     for (const PinnedRun& run : pinned_) bytes += bytes_of(*run.trajectory);
     if (const double most = all->trajectory.run.options.memory; bytes > most)
         throw refusal(
-            fmt::format("the pinned runs would take {:.4g} MB, and memory is {:.4g} MB", bytes / 1e6, most / 1e6),
-            fmt::format("let one go (unpin), or allow more: memory {:.1g}", 2.0 * bytes));
+            fmt::format("the pinned runs would take {:.4g} MB, but memory is {:.4g} MB", bytes / 1e6, most / 1e6),
+            fmt::format("unpin one, or allow more: memory {:.1g}", 2.0 * bytes));
     PinnedRun run;
     run.place = place;
     run.number = number;
@@ -144,7 +145,7 @@ void Session::receive_pins(Patience patience) {
         } catch (const InputError& problem) {
             error_ = problem.what();
         } catch (const std::bad_alloc&) {
-            error_ = "there is not enough memory for the run that was to be pinned";
+            error_ = "there is not enough memory to pin the run";
         }
         pins_.erase(pins_.begin());
         compose_pinned();
@@ -168,9 +169,9 @@ void Session::let_go() {
     let_pins_go();
     if (pinned_.empty()) return;
     const bool one = pinned_.size() == 1;
-    notice_ += fmt::format("{}{} of {} {} let go; undo brings {} back", notice_.empty() ? "" : "; ",
+    notice_ += fmt::format("{}{} of {} {} unpinned; undo restores {}", notice_.empty() ? "" : "; ",
                            one ? std::string("the pinned run") : fmt::format("{} pinned runs", pinned_.size()),
-                           system_->name, one ? "is" : "are", one ? "it" : "them");
+                           system_->name, one ? "was" : "were", one ? "it" : "them");
     pinned_.clear();
 }
 

@@ -27,10 +27,11 @@ void Session::perform(const command::Prove& command) {
     spread.width = command.width;
     for (const std::string& interval : command.intervals) {
         const auto side = read_side(interval, description());
-        if (!side) throw refusal(fmt::format("'{}' is no interval", interval), std::string(command::Prove::said.usage));
+        if (!side)
+            throw refusal(fmt::format("'{}' is not an interval", interval), std::string(command::Prove::said.usage));
         const double present = *value(side->name);
         if (!(side->low <= present && present <= side->high))
-            throw refusal(fmt::format("{} = {} of the present run is not in [{}, {}]", side->name, present, side->low,
+            throw refusal(fmt::format("{} = {} in the present run is not in [{}, {}]", side->name, present, side->low,
                                       side->high));
         spread.sides.push_back(*side);
     }

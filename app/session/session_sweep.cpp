@@ -19,12 +19,12 @@ constexpr std::uint64_t points = 512;  // along an axis, of the finest picture
 Sweep sweep_of(const std::string& text, const SystemDescription& description) {
     Sweep sweep = read_sweep(text, description);
     if (sweep.base != default_run(description))
-        throw refusal("--set and the options do not stand here", "the sliders say what does not vary");
-    if (sweep.axes.size() > 2) throw refusal("two axes can be shown, and no more");
+        throw refusal("--set and the options of a run are not allowed here", "the sliders set what does not vary");
+    if (sweep.axes.size() > 2) throw refusal("at most two axes can be shown");
     if (sweep.count() > most_drawn_rows)
         throw refusal(
-            fmt::format("a sweep of {} points has no picture: at most {} are drawn", sweep.count(), most_drawn_rows),
-            "achilles sweep --csv F makes a table of it");
+            fmt::format("a sweep of {} points cannot be drawn: at most {} can be", sweep.count(), most_drawn_rows),
+            "achilles sweep --csv F writes it as a table");
     return sweep;
 }
 

@@ -47,8 +47,8 @@ void Session::perform(const command::Lens& command) {
         const auto& events = trajectory().events;
         const auto first = std::find_if(events.begin(), events.end(),
                                         [](const Event& event) { return event.kind == Event::Kind::zeno; });
-        throw refusal("the lens looks at a Zeno point, and none is selected",
-                      first == events.end() ? "this run has none"
+        throw refusal("the lens needs a Zeno point, but none is selected",
+                      first == events.end() ? "this run has no Zeno point"
                                             : fmt::format("select it first: select {}", first - events.begin() + 1));
     }
     scene_.perform(command);

@@ -47,8 +47,8 @@ std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& mo
         data->add(waiting.extract(chunk.first).mapped().rows);
         if (data->count() > most_drawn_rows)
             throw InputError("sweep", {},
-                             fmt::format("there are more than {} rows, and no more are drawn", most_drawn_rows),
-                             "make the runs shorter, or fewer; achilles sweep --csv F takes the table as it is");
+                             fmt::format("there are more than {} rows, the most that can be drawn", most_drawn_rows),
+                             "use shorter runs, or fewer; achilles sweep --csv F writes the whole table");
     };
     do_chunks(0, sweep.count(), 0, task, write, never);
     return data;

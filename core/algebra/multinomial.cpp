@@ -177,7 +177,7 @@ std::optional<Multinomial> divide(const Multinomial& a, const Multinomial& b, Wo
 Multinomial quotient(const Multinomial& a, const Multinomial& b, Work& work) {
     if (b.is_one()) return a;
     const std::optional<Multinomial> result = divide(a, b, work);
-    if (!result) throw std::logic_error("the division leaves a rest");
+    if (!result) throw std::logic_error("the division leaves a remainder");
     return *result;
 }
 

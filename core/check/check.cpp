@@ -81,7 +81,7 @@ class Report : EquationsOnPage {
         const auto& constraints = model_.description().constraints;
         for (const HeldCondition& condition : simplified_.while_held) {
             page_.heading(
-                fmt::format("Zeno condition of {} while {} is held: hddot < 0 where h = 0 and hdot = 0 of both",
+                fmt::format("Zeno condition of {} while {} is held: hddot < 0 where h = 0 and hdot = 0 for both",
                             constraints[condition.contact].name, joined_names(model_, condition.held)));
             zeno(condition.zeno);
             zeno_restitution(condition.contact);
@@ -134,10 +134,10 @@ class Report : EquationsOnPage {
             "derived equations against central differences of L{} and h, at {} random states, in 50 digits:",
             has_forces(model_.equations()) ? ", the forces" : "", disagreement.states));
         if (disagreement.states > 0) say(fmt::format("  {}", list(disagreement.derived)));
-        say("what is written above against the derived equations, at the same states:");
+        say("equations as printed above against the derived equations, at the same states:");
         if (disagreement.states > 0) say(fmt::format("  {}", list(disagreement.simplified)));
         say(disagreement.states > 0 ? fmt::format("largest disagreement {:.1e}", disagreement.largest())
-                                    : "none of the states tried had everything defined and M positive definite");
+                                    : "at none of the random states were all terms defined and M positive definite");
         say(fmt::format("deriving took {:.3g} ms", deriving * 1e3));
     }
 };

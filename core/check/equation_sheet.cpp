@@ -4,6 +4,7 @@
 
 #include "check/equations_on_page.hpp"
 #include "check/finite_differences.hpp"
+#include "check/zeno_condition.hpp"
 #include "output/contacts.hpp"
 
 namespace achilles {
@@ -45,24 +46,17 @@ class SheetWriter : EquationsOnPage {
         std::string plain = "Zeno condition" + of(" of {}", contact), where = "$h = \\dot{h} = 0$";
         if (!held.empty()) {
             plain += fmt::format(" while {} is held", joined_names(model_, held));
-            where += " of both";
+            where += " for both";
         }
         const std::size_t first = page_.blocks().size();
         page_.heading({plain, fmt::format("{}: $\\ddot{{h}} < 0$ where {}", Page::escaped(plain), where)});
         zeno(found);
         if (!found) return;
-        Algebra& algebra = *found->algebra;
-        Expression value = algebra.graph().number(1);
-        for (const auto& [base, exponent] : found->decisive.factors)
-            value = value * power_of(algebra.expression(base), exponent);
-        if (found->decisive.number < 0) value = -value;
-        if (found->decisive.number == 0) value = algebra.graph().number(0);
+        const Expression value = expression_of(found->decisive, *found->algebra);
         sheet.conditions.push_back({contact, held, first, page_.blocks().size(),
                                     Program(std::span(&value, 1), model_.layout().slots()),
                                     found->verdict == ZenoCondition::Verdict::depends});
     }
-
-    static Expression power_of(Expression base, int exponent) { return exponent == 1 ? base : power(base, exponent); }
 };
 
 }  // namespace

@@ -4,8 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <numeric>
 
 #include "check/flat_gap.hpp"
+#include "check/zeno_condition.hpp"
 #include "expression/graph.hpp"
 #include "model/flat.hpp"
 #include "output/wrap.hpp"
@@ -79,7 +81,7 @@ void EquationsOnPage::contact(std::size_t index, bool forces, bool named) {
              fmt::format("\\dot{{q}}^{{\\top}}\\,\\mathrm{{Hess}}(h)\\,\\dot{{q}}{} {}",
                          moves ? " + 2\\,\\mathrm{d}h_t\\,\\dot{q} + h_{tt}" : "",
                          forces ? "+ \\mathrm{d}h\\,M^{-1} (Q - b)" : "- \\mathrm{d}h\\,M^{-1} b")});
-    caption("contact force while it is held");
+    caption("contact force while held");
     formula({"lambda", "\\lambda"}, c.lambda, derived.lambda,
             {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
 }
@@ -100,7 +102,7 @@ void EquationsOnPage::flat(std::size_t index) {
 void EquationsOnPage::unwritten_conditions() {
     if (is_one() || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
     const std::string left_out =
-        fmt::format("The conditions while {} others are held are not written out; runs derive what they need.",
+        fmt::format("Zeno conditions with {} other contacts held are not printed; a run derives those that it needs.",
                     simplified_.while_held.empty() ? "any" : "two or more");
     page_.sentence({left_out, left_out});
 }
@@ -134,7 +136,7 @@ void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& f
     if (!fraction) return unsimplified(left, derived, definition);
     if (terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
     page_.formula(left, is_text() ? definition.text : definition.latex);
-    const std::string why = fmt::format("not written out: it has {} terms", terms(*fraction));
+    const std::string why = fmt::format("not printed: {} terms", terms(*fraction));
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
 }
 
@@ -146,8 +148,8 @@ void EquationsOnPage::unsimplified(const Both& left, Expression derived, const B
                         : is_text()  ? definition.text
                                      : definition.latex);
     const std::string why =
-        short_enough ? "not simplified: it takes too many operations"
-                     : fmt::format("neither simplified nor written out: as derived it has {:.2g} symbols", size);
+        short_enough ? "not simplified: too many operations"
+                     : fmt::format("neither simplified nor printed: the derived form has {:.2g} symbols", size);
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
 }
 
@@ -196,8 +198,7 @@ void EquationsOnPage::long_formula(Page& page, const Both& left, const Quotient&
 
 void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
     if (!found) {
-        page_.sentence(
-            {"(not simplified: it takes too many operations)", "(not simplified: it takes too many operations)"});
+        page_.sentence({"(not simplified: too many operations)", "(not simplified: too many operations)"});
         return;
     }
     const ZenoCondition& zeno = *found;
@@ -231,23 +232,41 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
             reason(zeno, writer);
         }
         page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
+        if (is_text()) zeno_here(zeno);  // a sheet has sliders beside it
         return;
     }
     long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
     const std::string verdict = zeno.verdict == ZenoCondition::Verdict::always
                                     ? "hddot < 0 at every contact"
-                                    : "hddot >= 0 at every contact: none of them ends in a Zeno point";
+                                    : "hddot >= 0 at every contact: no Zeno point exists";
     const std::string because = grounds(zeno);
     page_.sentence({verdict + because, Page::escaped(verdict) + because});
+}
+
+void EquationsOnPage::zeno_here(const ZenoCondition& zeno) {
+    const Layout& layout = model_.layout();
+    std::vector<std::uint32_t> varying(layout.t() + 1);
+    std::iota(varying.begin(), varying.end(), 0U);
+    const Expression decisive = expression_of(zeno.decisive, *zeno.algebra);
+    if (depends_on(decisive, varying)) return;
+    const Program program(std::span(&decisive, 1), layout.slots());
+    auto evaluator = model_.evaluator(program, run_.parameters);
+    evaluator.run();
+    const double value = evaluator.output(0);
+    const std::string line =
+        value < 0.0
+            ? fmt::format("it holds with these parameters: {:.6g} < 0", value)
+            : fmt::format("it does not hold with these parameters, so impacts do not pile up: {:.6g} >= 0", value);
+    page_.sentence({line, Page::escaped(line)});
 }
 
 void EquationsOnPage::zeno_restitution(std::size_t contact) {
     const double e = model_.restitution(run_.parameters, contact);
     const std::string line =
-        e >= 1.0 ? "but no Zeno point: restitution is 1 here, and the bounces of an impact never die out"
+        e >= 1.0 ? "but no Zeno point: restitution is 1 here, and the bounces never die out"
         : e <= 0.0
-            ? "but no Zeno point: restitution is 0 here, and the first impact ends on the surface (a plastic landing)"
-            : fmt::format("and 0 < restitution < 1: it is {} here", e);
+            ? "but no Zeno point: restitution is 0 here, and contact begins at the first impact (a plastic impact)"
+            : fmt::format("and 0 < restitution < 1 (here {})", e);
     page_.sentence({line, Page::escaped(line)});
 }
 
@@ -267,7 +286,7 @@ void EquationsOnPage::reason(const ZenoCondition& zeno, const Writer& writer) {
     const std::string divisor = in_line(writer.write(zeno.positive).text);
     const std::string because = grounds(zeno);
     if (is_text() && divisor.size() > 60)
-        return page_.sentence({fmt::format("divided by the factors that are positive{}:", because), {}});
+        return page_.sentence({fmt::format("divided by the positive factors{}:", because), {}});
     const std::string line = fmt::format("divided by {}, which is positive{}:", divisor, because);
     page_.sentence({line, line});
 }

@@ -43,6 +43,8 @@ class EquationsOnPage {
                 std::span<const Expression> derived, std::size_t columns);
     // What was found about hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
+    // Whether the inequality holds with the parameters of this run, where it has nothing else in it.
+    void zeno_here(const ZenoCondition& zeno);
     // The other half of it: bounces pile up only if each impact leaves less of its speed, and some.
     void zeno_restitution(std::size_t contact);
     // Of more contacts than are looked at.

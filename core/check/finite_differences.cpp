@@ -9,7 +9,7 @@
 #include <functional>
 #include <random>
 
-#include "check/simplified.hpp"
+#include "check/zeno_condition.hpp"
 #include "model/scopes.hpp"
 
 namespace achilles {
@@ -207,16 +207,8 @@ class InContact {
         try {
             return algebra.expression(expand(whole, algebra));
         } catch (const TooLong&) {
-            return product(whole, algebra);
+            return expression_of(whole, algebra);
         }
-    }
-    static Expression product(const Factored& whole, Algebra& algebra) {
-        Expression result =
-            algebra.expression(Fraction{Multinomial(numerator(whole.number)), Multinomial(denominator(whole.number))});
-        for (const auto& [base, exponent] : whole.factors)
-            for (int i = 0; i < std::abs(exponent); ++i)
-                result = exponent > 0 ? result * algebra.expression(base) : result / algebra.expression(base);
-        return result;
     }
     Surface surface_;
     Functions hddot_, shown_;

@@ -287,6 +287,15 @@ class Search {
 
 }  // namespace
 
+Expression expression_of(const Factored& product, Algebra& algebra) {
+    Expression result =
+        algebra.expression(Fraction{Multinomial(numerator(product.number)), Multinomial(denominator(product.number))});
+    for (const auto& [base, exponent] : product.factors)
+        for (int i = 0; i < std::abs(exponent); ++i)
+            result = exponent > 0 ? result * algebra.expression(base) : result / algebra.expression(base);
+    return result;
+}
+
 std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
                                             const std::vector<const ContactEquations*>& contacts, Graph& graph) {
     const Ground ground;

@@ -11,4 +11,7 @@ namespace achilles {
 std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
                                             const std::vector<const ContactEquations*>& contacts, Graph& graph);
 
+// A product of factors as one expression, factor by factor.
+Expression expression_of(const Factored& product, Algebra& algebra);
+
 }  // namespace achilles

@@ -66,11 +66,10 @@ Chain::~Chain() = default;
 
 void Chain::check(const Run& run) {
     if (run.options.truncation.reinitialization != Reinitialization::euclidean) return;
-    throw InputError(
-        "derivatives", {},
-        "they need the kinetic reinitialization: past the Euclidean one they are wrong by about the speed at "
-        "the cut times its logarithm, and third-order in it past the kinetic one",
-        "reinitialization = \"kinetic\"");
+    throw InputError("derivatives", {},
+                     "they need the kinetic reinitialization: with w the gap speed at the cut, their error is about w "
+                     "log w after a Euclidean reinitialization, and of third order in w after a kinetic one",
+                     "reinitialization = \"kinetic\"");
 }
 
 void Chain::complete(RowMatrix& Z) {
@@ -173,8 +172,9 @@ const Link* Chain::next() {
 void Chain::step() {
     const Piece& piece = trajectory_->pieces[next_piece_++];
     if (piece.carriers != piece.held)
-        return break_off("contacts whose gradients depend on one another are held: what each bears is not unique");
-    if (piece.held != held_) return break_off("what is held changes without an event of its own");
+        return break_off(
+            "the gradients of the held contacts are linearly dependent: the contact forces are not unique");
+    if (piece.held != held_) return break_off("the set of held contacts changes without an event");
     state_ = state_in(piece, trajectory_->coefficients, model_->dof(), piece.start);
     state_.t = piece.start;
     FlowSlope& slope = this->slope(held_);
@@ -191,7 +191,8 @@ void Chain::step() {
         if (!options_.errors) watch_minima(slope, span);
         const bool is_end = span >= left;
         const double t = is_end ? piece.end : state_.t + span;
-        if (!is_end && !(t > state_.t)) return break_off("no step is small enough for the derivatives");
+        if (!is_end && !(t > state_.t))
+            return break_off("the derivatives would need steps below the resolution of time");
         state_ = state_in(piece, trajectory_->coefficients, model_->dof(), t);
         state_.t = t;
         if (!held_.empty()) {

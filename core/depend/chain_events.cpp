@@ -46,26 +46,29 @@ void Chain::land(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (waiting_) return break_off("an impact happens before the Zeno time of another contact");
     if (now.contacts.count() != 1)
-        return break_off("several contacts land at once: which is first depends on the direction");
+        return break_off(
+            "several contacts close at the same time: which is first depends on the direction of the perturbation");
     const std::size_t i = now.contacts.only();
     // What of the others takes part.
     ContactSet others = held_;
     if (now.joint) {
         if (now.joint->order_matters || now.joint->not_unique)
-            return break_off("what the impact leads to depends on an order that cannot be told");
+            return break_off(
+                "the outcome of the simultaneous impact is not unique: it depends on the order, or on the impulses "
+                "chosen");
         others = {};
         double scale = 0.0;
         for (const auto& [contact, impulse] : now.joint->impulses) scale = std::max(scale, impulse);
         for (const auto& [contact, impulse] : now.joint->impulses) {
             if (contact == i) continue;
             if (!held_.contains(contact))
-                return break_off("a contact that touches without a force takes part in an impact");
+                return break_off("a contact that is closed without a force takes part in an impact");
             const double rate = surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot;
             constexpr double strictly = 1e-10;
             if (impulse > strictly * scale)
                 others = others.with(contact);
             else if (!(rate > strictly * now.impact_speed))
-                return break_off("a held contact is neither pressed by an impact nor opened by it");
+                return break_off("an impact neither loads a held contact nor opens it");
         }
     }
     set_gaps();
@@ -118,7 +121,8 @@ void Chain::land(std::size_t event) {
         retract(J, rests ? others.with(i) : others);
     }
     held_ = completes ? others.with(i) : now.held;
-    if (completes && others != now.held.without(i)) return break_off("a bouncing is cut where a contact opens");
+    if (completes && others != now.held.without(i))
+        return break_off("the impact sequence is cut at an impact that opens a contact");
     for (std::size_t k = 0; k < tangent_.contacts; ++k) {
         if (held_.contains(k) || k == i) continue;
         ContactGradient& other = surface(k, {});
@@ -146,8 +150,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
         if (piece.start == now.t && (event + 1 == events.size() || events[event + 1].t > now.t))
             joins = piece.held.without(now.held);
     }
-    if (joins.count() > 1)
-        return "two contacts come to rest together: their Zeno point has no derivative that is known";
+    if (joins.count() > 1) return "two contacts reach a Zeno point together: the derivative of this point is not known";
     return std::nullopt;
 }
 
@@ -162,7 +165,7 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet 
     const Gradient& e = *restitutions_[contact];
     if (e.value(0) == 0.0 && e.row(0).isZero(0.0)) return RowVectorXd::Zero(J.cols());  // it ends at the impact
     if (e.value(0) == 0.0 && model_->is_carried(contact, others))
-        break_off("with a restitution above 0 a contact that nothing presses would bounce away");
+        break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
     using Number = Jet<double, 5>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
     const Number wait = estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e.value(0), 3),
@@ -175,7 +178,7 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet 
 void Chain::reach_zeno_point(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (!waiting_ || now.contacts.count() != 1)
-        return break_off("two contacts come to rest together: their Zeno point has no derivative that is known");
+        return break_off("two contacts reach a Zeno point together: the derivative of this point is not known");
     waiting_ = false;
     set_gaps();
     const std::size_t i = now.contacts.only();
@@ -192,7 +195,9 @@ void Chain::reach_zeno_point(std::size_t event) {
 void Chain::release(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (now.contacts.count() != 1 || now.joint || held_.without(now.contacts) != now.held)
-        return break_off("several contacts are let go at once: which is first depends on the direction");
+        return break_off(
+            "several contacts are released at the same time: which is first depends on the direction of the "
+            "perturbation");
     const std::size_t i = now.contacts.only();
     const ContactSet others = held_.without(i);
     auto& normal = normals_[{others, i}];

@@ -24,10 +24,10 @@ void refuse(Chain& chain, const Model& model, const RowMatrix& Z, std::vector<st
             const std::string& name = model.description().constraints[i].name;
             if (std::abs(Z(tangent.h(i), k)) > rounding * size)
                 refused[static_cast<std::size_t>(k)] =
-                    fmt::format("the run starts in contact ('{}'), and this direction leaves the surface", name);
+                    fmt::format("the run starts in contact ('{}'), and this direction changes the gap", name);
             else if (std::abs(Z(tangent.u(i), k)) > rounding * size)
                 refused[static_cast<std::size_t>(k)] =
-                    fmt::format("the run starts at rest on '{}', and this direction has a speed across it", name);
+                    fmt::format("the run starts in contact ('{}'), and this direction changes the gap rate", name);
         }
     }
 }

@@ -111,14 +111,16 @@ bool is_finite(const ErrorEstimate::AtEnd& end) {
 
 ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop) {
     const Options& options = trajectory.run.options;
-    if (options.method != Method::taylor) return none("errors are estimated of runs by Taylor's method alone");
+    if (options.method != Method::taylor)
+        return none("errors are estimated only for Taylor's method (--method taylor)");
     if (options.truncation.reinitialization != Reinitialization::kinetic)
-        return none("errors are estimated where cuts restart kinetically, not by the Euclidean projection");
+        return none("errors are estimated only with the kinetic reinitialization, not with the Euclidean one");
     if (trajectory.pieces.empty() && trajectory.end_time > options.start_time)
-        return none("of this run the end alone was kept");
+        return none("only the final state of this run was stored");
     if (trajectory.pieces.size() > most_estimated_steps)
-        return none(fmt::format("the run has more than {} steps, and errors take several times as long as it did",
-                                most_estimated_steps));
+        return none(
+            fmt::format("the run has more than {} steps, and an estimate would take several times as long as the run",
+                        most_estimated_steps));
     Chain chain(trajectory, {.errors = true});
     const Tangent& tangent = chain.tangent();
     Transport carried(tangent);
@@ -128,12 +130,11 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
     result.course.begin(trajectory.run);
     std::size_t steps = 0;
     while (const Link* link = chain.next()) {
-        if (stop.stop_requested()) return none("another thread asked to stop");
+        if (stop.stop_requested()) return none("the estimate was cancelled");
         if (!is_known(*link))
             return none(
-                fmt::format("at t = {:.6g} s a function overflows in the terms that a step leaves out, as cosh(u)^2 "
-                            "does beyond u = 355; "
-                            "write 1 - tanh(u)^2 for 1/cosh(u)^2",
+                fmt::format("at t = {:.6g} s a function overflows in the truncation error of a step, as cosh(u)^2 does "
+                            "beyond u = 355; write 1 - tanh(u)^2 for 1/cosh(u)^2",
                             chain.state().t));
         carried.follow(*link);
         if (link->kind == Link::Kind::crossing) continue;
@@ -160,13 +161,13 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
     if (!chain.broken().empty()) {
         result.none_since = chain.broken();
     } else if (cut) {
-        result.none_since = "the run ends between a cut and its Zeno point, where what is drawn is not the motion";
+        result.none_since =
+            "the run ends between a cut and its Zeno point, where the computed motion leaves out the remaining impacts";
     } else {
         result.end = at_end(carried, tangent, chain.rate());
         if (!is_finite(*result.end)) {
             result.end.reset();
-            result.none_since =
-                "the errors grow beyond all numbers by the end of the run; a shorter run has an estimate";
+            result.none_since = "the estimated errors overflow by the end of the run; a shorter run has an estimate";
         }
     }
     result.trusted_until = result.course.horizon();

@@ -154,12 +154,12 @@ namespace {
 
 // Why an expression has no derivatives.
 std::string reason_of(const std::string& expression, const Derivatives& derivatives, double value) {
-    if (!(value == value)) return "it does not exist in this run";
+    if (!(value == value)) return "the quantity does not exist in this run";
     for (const std::string& name : names_in(expression))
         if (name == "work" || name == "loss" || name == "least_gap")
-            return "derivatives of " + name + " are not carried";
+            return "derivatives of " + name + " are not computed";
     if (!derivatives.broken.empty()) return derivatives.broken;
-    return "it has none there";
+    return "the quantity has none there";
 }
 
 }  // namespace

@@ -36,7 +36,8 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     Maps& maps = this->maps(contact);
     const std::size_t h = z_.h(contact), u_place = z_.u(contact);
     const Maps::Surface surface = maps.surface(start);
-    const Undecided doubt{"contact or flight at the start: the gap cannot be told from zero for all of the set"};
+    const Undecided doubt{
+        "cannot decide between contact and flight at the start: the gap is not bounded away from zero over the set"};
     // What roundings of the coordinates make of the gap; g n = 1, so that a way along n is as long as the gap it makes.
     Intervals near = start;
     for (std::size_t i = 0; i < z_.dof; ++i) {
@@ -70,7 +71,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     double fast = 0.0;
     for (std::size_t i = 0; i < z_.dof; ++i) fast = std::max(fast, mag(box[z_.v(i)]));
     if (certainly_negative(u) || rad(u) > 0x1p-40 * std::max(fast, 1.0))
-        throw Undecided{"the start lands on the surface, or may: start a little before it"};
+        throw Undecided{"at the start the gap is zero, and a contact closes or may close; start a little earlier"};
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.v(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * mag(u));
     box[u_place] = Interval(0.0);
     set_ = Doubleton(box, z_.varied.size());
@@ -85,7 +86,8 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
         openings_[contact].known = KnownRoot::at_rest;
     } else {
         throw Undecided{
-            "contact or flight at the start: the contact force cannot be told from zero for all of the set"};
+            "cannot decide between contact and flight at the start: the contact force is not bounded away from zero "
+            "over the set"};
     }
 }
 

@@ -152,7 +152,7 @@ Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim&
     const double count = std::pow(parts, static_cast<double>(sides_of(whole).size()));
     if (!(parts >= 1 && count <= 1e6))
         throw InputError(fmt::format("--split {}", parts), {},
-                         fmt::format("these are {:.0f} parts, and 1000000 are allowed", count));
+                         fmt::format("the number of parts must be 1 to 1000000, not {:.0f}", count));
     const auto clock = std::chrono::steady_clock::now();
     std::vector<Enclosure> all(static_cast<std::size_t>(count));
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
@@ -179,12 +179,12 @@ void check(const Model& model, const Claim& claim) {
         e.run();
         const Interval bound = e.output(0);
         if (bound.hi() > 1.0 + 0x1p-40 || bound.lo() < -0x1p-40)
-            told.push_back(description.error(
-                constraint.restitution.at,
-                fmt::format(
-                    "the restitution must lie in [0, 1], but the claim's is in [{}, {}]: the part {} is impossible",
-                    bound.lo(), bound.hi(), bound.hi() > 1.0 ? "above 1" : "below 0"),
-                "0 is plastic, 1 is elastic"));
+            told.push_back(
+                description.error(constraint.restitution.at,
+                                  fmt::format("the restitution must lie in [0, 1], but with these intervals it lies in "
+                                              "[{}, {}]: the part {} is impossible",
+                                              bound.lo(), bound.hi(), bound.hi() > 1.0 ? "above 1" : "below 0"),
+                                  "0 is plastic, 1 is elastic"));
         // At the corners: one that is below the surface by all parameters is no start.
         gap.fix();
         gap.clock() = Interval(claim.run.options.start_time);
@@ -203,9 +203,9 @@ void check(const Model& model, const Claim& claim) {
             if (!(gap.output(0).hi() < -0x1p-44 * std::max(1.0, size))) continue;
             told.push_back(
                 description.error(constraint.gap.at,
-                                  fmt::format("the gap is negative for a part of the starts: h <= {:.3g} at {}",
+                                  fmt::format("the gap is negative in part of the initial box: h <= {:.3g} at {}",
                                               gap.output(0).hi(), where),
-                                  "choose starts with h(q) >= 0"));
+                                  "choose an initial box with h(q) >= 0"));
             break;
         }
     }

@@ -82,7 +82,7 @@ auto with_directions(std::size_t count, const Maker& maker) {
     if (count <= 12) return maker.template operator()<12>();
     if (count <= 18) return maker.template operator()<18>();
     if (count <= 26) return maker.template operator()<26>();
-    throw Undecided{"there are more coordinates and interval parameters than a proof follows: 26 at most"};
+    throw Undecided{"too many coordinates and interval parameters for a proof (maximum 26)"};
 }
 
 }  // namespace achilles

@@ -67,7 +67,7 @@ NearlyOrthogonal::NearlyOrthogonal(const Matrix& matrix) : matrix_(matrix) {
         largest = max(largest, row);
     }
     const Interval eps(largest.hi());
-    if (!(eps.hi() < 0.5)) throw Undecided{"the set has no basis that can be inverted"};
+    if (!(eps.hi() < 0.5)) throw Undecided{"no invertible basis of the set was found"};
     delta_ = eps / (Interval(1.0) - eps);
 }
 
@@ -135,7 +135,7 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
     for (std::size_t i = 0; i < n; ++i) {
         bool bounded = std::isfinite(width(at_centre[i]));
         for (std::size_t j = 0; j < size(); ++j) bounded = bounded && std::isfinite(width(slope(i, j)));
-        if (!bounded) throw Undecided{"something is not defined, or has no bound, over all of the set"};
+        if (!bounded) throw Undecided{"a term of the equations may be undefined or unbounded on the set"};
     }
     const IntervalMatrix by_start = product(slope, start_, n), by_errors = product(slope, errors_, n);
     const Matrix start = middle(by_start, n);

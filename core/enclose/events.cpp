@@ -44,10 +44,10 @@ ContactSet Prover::opened_by(std::size_t contact) {
             if (certainly_negative(passed))
                 pulled = pulled.with(other);
             else if (!(passed.lo() >= 0.0))
-                throw Undecided{"an impact opens a contact that is held, or leaves it"};
+                throw Undecided{"cannot decide whether an impact opens a held contact"};
         }
         if (pulled.empty()) break;
-        if (round > 0) throw Undecided{"which held contacts an impact opens is not decided"};
+        if (round > 0) throw Undecided{"cannot decide which held contacts an impact opens"};
         opened = pulled;
         held_ = held_.without(opened);
     }
@@ -60,14 +60,14 @@ void Prover::check_opened(ContactSet opened) {
     result_.events.back().opened = opened;
     for (std::size_t i = 0; i < z_.contacts; ++i)
         if (opened.contains(i) && !certainly_positive(set_.hull(z_.u(i))))
-            throw Undecided{"an impact opens a contact that is held, or leaves it"};
+            throw Undecided{"cannot decide whether an impact opens a held contact"};
 }
 
 // All members are on the surface.
 void Prover::land(std::size_t contact, const Interval& time) {
     const std::size_t h = z_.h(contact), u = z_.u(contact);
     if (!certainly_negative(set_.hull(u)))
-        throw Undecided{"graze: the impact speed cannot be told from zero for all of the set"};
+        throw Undecided{"graze: the impact speed is not bounded away from zero over the set"};
     project(contact);
     const Intervals v_before = velocities(set_.hull());
     const Interval e = maps(contact).restitution(set_.hull());
@@ -93,7 +93,7 @@ void Prover::land(std::size_t contact, const Interval& time) {
     set_ = after;
     const double rise = set_.hull(u).hi(), a = mag(maps(contact).normal(set_.hull()).hddot);
     if (2.0 * rise < 0x1p-50 * mag(time) * a)
-        throw Undecided{"the flights are below the resolution of time, and no completion is proved"};
+        throw Undecided{"the flights are shorter than the resolution of time, and no completion is proved"};
     openings_[contact].known = KnownRoot::landed;
     motion().forget();
 }
@@ -127,7 +127,8 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
         return check_opened(opened);
     }
     if (!certainly_positive(hddot))
-        throw Undecided{"contact or flight: the contact force cannot be told from zero for all of the set"};
+        throw Undecided{
+            "cannot decide between contact and flight: the contact force is not bounded away from zero over the set"};
     ++result_.statistics.impacts;
     note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
     check_opened(opened);
@@ -193,7 +194,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
         left = step.length() < left ? proof->window - mid(passed) : 0.0;
         if (left > 0x1p-43 * proof->window) retract(held_);
     }
-    if (!zeno) throw Undecided{"the Zeno point has no enclosure"};
+    if (!zeno) throw Undecided{"no enclosure of the Zeno point was found"};
     Intervals centre = set_.centre();
     for (std::size_t i = 0; i < 2 * z_.dof; ++i) {
         (*zeno)[z_.q(i)] += proof->error[i];
@@ -215,8 +216,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
 void Prover::release(std::size_t contact, const Interval& time) {
     retract(held_);
     if (!certainly_positive(maps(contact).normal(set_.hull()).jerk))
-        throw Undecided{
-            "degenerate release: the rate of the contact force cannot be told from zero for all of the set"};
+        throw Undecided{"degenerate release: the rate of the contact force is not bounded away from zero over the set"};
     const Intervals v = velocities(set_.hull());
     hold(held_.without(contact));
     note_event(Event::Kind::release, contact, time, v, v);

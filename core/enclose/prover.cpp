@@ -181,14 +181,16 @@ Prover::Next Prover::next_in(const Step& step) const {
             next.elapsed = root.at;
         }
         if (root.kind == FirstRoot::Kind::doubt)
-            next.doubt = held_.contains(i)
-                             ? "release or none: the contact force cannot be told from zero for all of the set"
-                             : "impact or none: the gap cannot be told from zero for all of the set";
+            next.doubt =
+                held_.contains(i)
+                    ? "cannot decide whether a contact is released: the contact force is not bounded away from zero "
+                      "over the set"
+                    : "cannot decide whether an impact occurs: the gap is not bounded away from zero over the set";
     }
     for (std::size_t i = 0; i < z_.contacts && next.contact; ++i) {
         if (i == *next.contact || roots[i].kind == FirstRoot::Kind::none || roots[i].at.lo() > next.elapsed.hi())
             continue;
-        if (next.doubt.empty()) next.doubt = "the events of two contacts cannot be told apart for all of the set";
+        if (next.doubt.empty()) next.doubt = "cannot decide the order of the events of two contacts over the set";
         next.contact.reset();
     }
     return next;

@@ -43,14 +43,14 @@ void cross(Doubleton& set, const Step& step, const Section& section, Interval& t
         IntervalMatrix S = step.slope_at(tau);
         const Interval rate = product(G, F), off = section.value(point) + product(G, rho);
         if (!(section.rises ? certainly_positive(rate) : certainly_negative(rate)))
-            throw Undecided{"a surface is not crossed transversally by all of the set"};
+            throw Undecided{"a transversal crossing of an event surface is not proved for the whole set"};
         Intervals across(set.size());  // G S
         for (std::size_t i = 0; i < set.size(); ++i)
             for (std::size_t j = 0; j < set.size(); ++j) across[j] += times(G[i], S(i, j));
         const Interval th = -(off + set.along(across.data())) / rate;
         const Interval narrowed = middle + th;
         tau = {std::max(tau.lo(), narrowed.lo()), std::min(tau.hi(), narrowed.hi())};
-        if (!tau.is_defined()) throw Undecided{"the time of a crossing has no enclosure"};
+        if (!tau.is_defined()) throw Undecided{"no enclosure of a crossing time was found"};
         if (round == 0) continue;
         for (std::size_t i = 0; i < set.size(); ++i) {
             if (section.exact && section.exact->first == i) {

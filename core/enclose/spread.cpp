@@ -82,7 +82,7 @@ std::optional<Spread::Side> read_side(const std::string& setting, const SystemDe
         *values[i] = *find_value(description, run, side.name);
     }
     if (!(side.low <= side.high))
-        throw InputError("--set " + shown(setting), {}, "the interval ends before it begins",
+        throw InputError("--set " + shown(setting), {}, "LOW is above HIGH",
                          fmt::format("write --set {}={}..{}", side.name, side.high, side.low));
     return side;
 }

@@ -270,7 +270,7 @@ Step Stepper::make(const Doubleton& set, double longest, const std::vector<Openi
         }
         length *= std::clamp(std::pow(excess, -0.7 / (K + 1)), 0.5, 0.95);
     }
-    throw Undecided{"no enclosure found even for a very short step; a smaller initial box may help"};
+    throw Undecided{"no enclosure found even for a very short step"};
 }
 
 }  // namespace achilles

@@ -5,10 +5,9 @@ namespace achilles {
 namespace {
 
 constexpr std::string_view product = "write '*' for a product", power = "write '^' for a power",
-                           minus = "write the minus sign of the keyboard, -",
-                           prime = "write the apostrophe of the keyboard, ' as in x'",
-                           round = "write round parentheses, ( and )",
-                           comparison = "an expression stands alone: a gap is open where it is positive";
+                           minus = "write the keyboard minus sign, -",
+                           prime = "write the keyboard apostrophe, ' as in x'", round = "write parentheses, ( and )",
+                           comparison = "write the expression alone: the contact is open where the gap is positive";
 
 // The longer ones first.
 constexpr Habit signs[] = {
@@ -45,27 +44,28 @@ constexpr Habit signs[] = {
     {"}", round, ")"},
     {"<", comparison, ""},
     {">", comparison, ""},
-    {"=", "an expression stands alone, without a name and =", ""},
+    {"=", "write the expression alone, without a name and =", ""},
     {"\u2264", comparison, ""},
     {"\u2265", comparison, ""},
-    {";", "nothing ends an expression", ""},
+    {";", "leave out the semicolon", ""},
     {"\\dot", "the rate of x is written x'", ""},
     {"\\", "expressions are not LaTeX", ""},
 };
 
 // What has corners or jumps.
-constexpr std::string_view for_abs = "sqrt(x^2 + w^2) is nearly |x|, with a small w";
-constexpr std::string_view for_step = "a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w";
-constexpr std::string_view for_mod = "what repeats is made of sin and cos";
+constexpr std::string_view for_abs = "sqrt(x^2 + w^2) approximates |x| for small w";
+constexpr std::string_view for_step = "(1 + tanh(x/w))/2 approximates a step at x = 0 for small w";
+constexpr std::string_view for_mod = "write a periodic function with sin and cos";
 constexpr Habit corners[] = {
     {"abs", for_abs},
     {"min",
-     "two gaps are two [[constraint]]; else (a + b - sqrt((a - b)^2 + w^2))/2 is nearly min(a, b), with a small w"},
-    {"max", "(a + b + sqrt((a - b)^2 + w^2))/2 is nearly max(a, b), with a small w"},
+     "write one [[constraint]] for each of two gaps; elsewhere (a + b - sqrt((a - b)^2 + w^2))/2 approximates min(a, "
+     "b) for small w"},
+    {"max", "(a + b + sqrt((a - b)^2 + w^2))/2 approximates max(a, b) for small w"},
     {"floor", for_step},
     {"ceil", for_step},
     {"round", for_step},
-    {"sign", "tanh(x/w) is nearly sign(x), with a small w"},
+    {"sign", "tanh(x/w) approximates sign(x) for small w"},
     {"mod", for_mod},
     {"fmod", for_mod},
 };
@@ -82,30 +82,30 @@ constexpr OtherName names[] = {
     {"hddot", "gap''", "the acceleration of the gap is called gap''"},
     {"force", "lambda", "the contact force is called lambda"},
     {"F", "lambda", "the contact force is called lambda"},
-    {"E", "energy", "it is called energy"},
+    {"E", "energy", "the energy is called energy"},
     {"time", "t", "time is called t"},
-    {"zeno", "zeno_points", "write zeno_time(1), or zeno_points for how many"},
-    {"impact", "impacts", "write impact_time(1), or impacts for how many"},
+    {"zeno", "zeno_points", "write zeno_time(1), or zeno_points for their number"},
+    {"impact", "impacts", "write impact_time(1), or impacts for their number"},
     {"bounces", "impacts", "write impacts"},
-    {"bounce", "impacts", "write impact_time(1), or impacts for how many"},
+    {"bounce", "impacts", "write impact_time(1), or impacts for their number"},
     {"collisions", "impacts", "write impacts"},
-    {"release", "releases", "write release_time(1), or releases for how many"},
+    {"release", "releases", "write release_time(1), or releases for their number"},
     {"min_gap", "least_gap", "write least_gap"},
     {"status", "zeno_points", "write outcome"},
     {"result", "zeno_points", "write outcome"},
-    {"np", "", "functions stand alone: sin(x)"},
-    {"numpy", "", "functions stand alone: sin(x)"},
-    {"math", "", "functions stand alone: sin(x)"},
-    {"Math", "", "functions stand alone: sin(x)"},
+    {"np", "", "write the function without a prefix: sin(x)"},
+    {"numpy", "", "write the function without a prefix: sin(x)"},
+    {"math", "", "write the function without a prefix: sin(x)"},
+    {"Math", "", "write the function without a prefix: sin(x)"},
     {"ln", "", "did you mean 'log'?"},
-    {"log10", "", "log is the natural logarithm: log(x)/log(10)"},
-    {"log2", "", "log is the natural logarithm: log(x)/log(2)"},
-    {"pow", "", "a power is written x^2"},
-    {"atan2", "", "atan takes one argument: atan(y/x), where x > 0"},
+    {"log10", "", "log is the natural logarithm: write log(x)/log(10)"},
+    {"log2", "", "log is the natural logarithm: write log(x)/log(2)"},
+    {"pow", "", "write x^2 for a power"},
+    {"atan2", "", "atan takes one argument: write atan(y/x), valid for x > 0"},
     {"sec", "", "write 1/cos(x)"},
     {"csc", "", "write 1/sin(x)"},
     {"cot", "", "write cos(x)/sin(x)"},
-    {"if", "", "what jumps is not smooth: a step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w"},
+    {"if", "", "a jump is not smooth: (1 + tanh(x/w))/2 approximates a step at x = 0 for small w"},
 };
 
 }  // namespace
@@ -117,7 +117,7 @@ const Habit* sign_at(std::string_view rest) {
 }
 
 std::string instead_of_sign(std::string_view rest) {
-    if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') return "; decimals have a point";
+    if (rest.size() > 1 && rest[0] == ',' && rest[1] >= '0' && rest[1] <= '9') return "; write a decimal point";
     const Habit* const sign = sign_at(rest);
     return sign == nullptr ? "" : "; " + std::string(sign->instead);
 }

@@ -91,7 +91,7 @@ std::string did_you_mean(std::string_view word, std::span<const std::string> can
     const std::string latin = spelled_out(word);
     if (latin != word)
         return std::find(candidates.begin(), candidates.end(), latin) == candidates.end()
-                   ? "; Greek letters have names: " + latin
+                   ? "; spell out Greek letters: " + latin
                    : "; did you mean " + in_quotes(latin) + "?";
     const std::string best = nearest(word, candidates);
     return best.empty() ? "" : "; did you mean " + in_quotes(best) + "?";

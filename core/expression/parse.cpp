@@ -123,7 +123,7 @@ class Parser {
         for (;;) {
             const std::size_t where = at_;
             if (const Expression* unit = take_unit()) {
-                if (std::exchange(has_unit, true)) throw ParseError(where, "a value has one unit");
+                if (std::exchange(has_unit, true)) throw ParseError(where, "a value may have only one unit");
                 left = left * *unit;
                 continue;
             }
@@ -223,13 +223,13 @@ class Parser {
     }
 
     [[noreturn]] void fail_at_leftover() const {
-        if (peek() == ')') throw ParseError(at_, "this ')' closes nothing");
+        if (peek() == ')') throw ParseError(at_, "this ')' has no matching '('");
         for (const char* unit : {"deg", "\u00b0", "rad"}) {
             const auto reason = scope_.forbidden.find(unit);
             if (begins_with(unit) && reason != scope_.forbidden.end()) throw ParseError(at_, reason->second, unit);
             if (begins_with(unit) && unit != std::string_view("rad"))
-                throw ParseError(at_,
-                                 "degrees may stand in a number that is given, start = \"30 deg\"; here write pi/180*");
+                throw ParseError(
+                    at_, "degrees are allowed only in a plain number, as in start = \"30 deg\"; here write pi/180*");
         }
         refuse_unit();
         const bool number_follows = peek() == '.' && at_ + 1 < text_.size() && is_digit(text_[at_ + 1]);
@@ -261,8 +261,8 @@ class Parser {
         if (scope_.allowed.find(word) != scope_.allowed.end() || is_reserved(word)) return;
         if (word == "e" || word == "E") throw ParseError(at_, "write the exponent, as in 1e-3");
         throw ParseError(at_, in_quotes(word) +
-                                  " may not follow a number: it is written without its unit (a file has the "
-                                  "key unit for that), and a product with '*'");
+                                  " may not follow a number: write numbers without units (a file has the key unit for "
+                                  "that) and products with '*'");
     }
 
     Expression number() {
@@ -320,8 +320,8 @@ class Parser {
         skip_space();
         const bool is_whole = peek() == ')' || at_end();
         if (problem != std::errc() || number < 1 || !is_whole)
-            throw ParseError(
-                begin, std::string(word) + "(k) needs a whole number from 1 on, as in " + std::string(word) + "(1)");
+            throw ParseError(begin, std::string(word) + "(k) needs a whole number of at least 1, as in " +
+                                        std::string(word) + "(1)");
         close(open);
         return number;
     }
@@ -339,8 +339,9 @@ class Parser {
 
     [[noreturn]] void fail_at_unknown(std::size_t begin, std::string_view bare, std::string_view full) const {
         if (!scope_.listed.empty() && !instead_of_corner(bare).empty())
-            throw ParseError(begin, in_quotes(bare) + " is not taken over a run", bare,
-                             "an expression has its value at the end of the run; there is least_gap over all of it");
+            throw ParseError(
+                begin, in_quotes(bare) + " over a run is not available", bare,
+                "expressions are evaluated at the end of the run; least_gap is the smallest gap of the whole run");
         if (const std::string_view instead = instead_of_corner(bare == "sgn" && peek() == '(' ? "sign" : bare);
             !instead.empty())
             throw ParseError(
@@ -363,7 +364,7 @@ class Parser {
         if (const std::string hint = rates_are_written(full, rates); !hint.empty())
             throw ParseError(begin, "unknown name " + in_quotes(full) + hint, full);
         if (peek() == '=')
-            throw ParseError(begin, "an expression stands alone, without " + in_quotes(full) + " and '='");
+            throw ParseError(begin, "write the expression alone, without " + in_quotes(full) + " and '='");
         const std::string habit = instead_of_name(
             full, [&](std::string_view word) { return scope_.allowed.find(word) != scope_.allowed.end(); });
         throw ParseError(begin, "unknown name " + in_quotes(full) + (habit.empty() ? did_you_mean(full, known) : habit),

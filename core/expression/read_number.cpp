@@ -65,7 +65,7 @@ void allow_units(Scope& scope, std::string_view unit, Graph& graph) {
         if (unit == "rad" || unit == "rad/s")
             scope.units.emplace(word, factor);
         else
-            scope.forbidden.emplace(word, in_quotes(word) + " may follow a number where the unit is rad, and here it " +
+            scope.forbidden.emplace(word, in_quotes(word) + " is allowed only where the unit is rad, and here it " +
                                               (unit.empty() ? "is not" : "is " + std::string(unit)));
         if (is_rate) scope.units.emplace(word + "/s", factor);
     }
@@ -93,7 +93,7 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
         return given;
     }
     if (const std::string better = with_a_point(text); !better.empty())
-        fail(text, begin, "decimals have a point, " + better);
+        fail(text, begin, "write a decimal point, " + better);
     Graph graph;
     Scope scope;
     allow_units(scope, unit, graph);
@@ -104,7 +104,7 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
         // No functions: a word without parentheses is none, and ten was not meant to be tan.
         const std::vector<std::string> known{"pi"};
         fail(text, begin + error.offset,
-             is_unknown ? "no name but pi has a value here" + did_you_mean(error.name, known) : error.what(),
+             is_unknown ? "pi is the only name allowed here" + did_you_mean(error.name, known) : error.what(),
              error.name, error.hint);
     }
     if (!std::isfinite(given.value)) fail(text, begin, "");

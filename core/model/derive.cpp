@@ -210,7 +210,8 @@ HeldEquations HeldMotions::derive(ContactSet held) {
         if (held.contains(i)) k = i;
     const HeldEquations& before = of(held.without(k));
     const ContactEquations& last = before.contacts.at(k);
-    if (last.delassus[k].is_zero()) throw std::domain_error("contacts that depend on one another cannot all be held");
+    if (last.delassus[k].is_zero())
+        throw std::domain_error("contacts with linearly dependent gradients cannot all be held");
     HeldEquations result{held, last.f_c, before.contacts};
     const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {

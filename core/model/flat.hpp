@@ -13,7 +13,8 @@ namespace achilles {
 bool is_flat(const Model& model, std::span<const double> parameters, const State& state, std::size_t contact = 0);
 
 // What would be right.
-inline constexpr const char* flat_hint = "write a gap whose dh is not 0 where h = 0, as x in place of x^2 or x^3";
+inline constexpr const char* flat_hint =
+    "write a gap whose dh is not 0 where h = 0, for example x instead of x^2 or x^3";
 
 // Where a gap is a product of several factors that move, as y*(y - x): one for each of them. Empty for other gaps.
 std::string product_hint(const Model& model, std::size_t contact);

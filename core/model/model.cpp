@@ -15,7 +15,7 @@ namespace achilles {
 Model::Model(SystemDescription description) : description_(std::move(description)), graph_(std::make_unique<Graph>()) {
     if (description_.coordinates.empty() || description_.constraints.empty())
         throw InputError(description_.file.empty() ? "the system" : description_.file, {},
-                         "it needs a coordinate and a constraint");
+                         "a system needs at least one coordinate and one constraint");
     layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
     const Ground ground;  // constants become intervals, too
@@ -30,9 +30,10 @@ Model::Model(SystemDescription description) : description_(std::move(description
         throw description_.error(description_.kinetic.at,
                                  fmt::format("the equations of motion are too large: {}", problem.what()));
     } catch (const std::domain_error& problem) {
-        throw description_.error(description_.kinetic.at,
-                                 fmt::format("the mass matrix is positive definite nowhere: {}", problem.what()),
-                                 "every coordinate needs a positive inertia");
+        throw description_.error(
+            description_.kinetic.at,
+            fmt::format("the mass matrix is not positive definite at any state: {}", problem.what()),
+            "every coordinate needs a positive inertia");
     }
 }
 
@@ -90,7 +91,7 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
     } catch (const TooLarge& problem) {
         throw description_.error(
             description_.kinetic.at,
-            fmt::format("what holds contacts, or proves a truncation, is too large: {}", problem.what()));
+            fmt::format("the equations for held contacts or for certificates are too large: {}", problem.what()));
     }
 }
 

@@ -94,8 +94,8 @@ Mistake not_polynomial(const Text& kinetic, const TextParts& parts, Expression o
     const Operation operation = Builder::node(offender).operation;
     const bool is_power =
         operation == Operation::multiply || (operation == Operation::power && Builder::node(offender).exponent > 0);
-    const char* what = is_power ? "the kinetic energy is of a degree above 8 in the rates: {}"
-                                : "the kinetic energy is no polynomial in the rates: {}";
+    const char* what = is_power ? "the kinetic energy has a degree above 8 in the rates: {}"
+                                : "the kinetic energy is not a polynomial in the rates: {}";
     const auto place =
         std::find_if(parts.all.begin(), parts.all.end(), [&](const TextPart& part) { return part.value == offender; });
     const bool is_written = place != parts.all.end();
@@ -111,8 +111,8 @@ Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePol
     const auto told = [&](const RatePolynomial::key_type& exponents, const std::string& term, std::size_t offset) {
         const int d = degree(exponents);
         return Mistake{place_in(kinetic, offset),
-                       fmt::format("the term {} of the kinetic energy is of degree {} in the rates", term, d),
-                       d == 0 ? "what has no rate in it belongs to the potential, with the other sign" : quadratic};
+                       fmt::format("the term {} of the kinetic energy has degree {} in the rates", term, d),
+                       d == 0 ? "move terms without rates to the potential, with opposite sign" : quadratic};
     };
     for (const TextPart& part : parts.terms) {
         Expression ignored;

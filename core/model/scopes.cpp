@@ -47,7 +47,9 @@ void forbid_primes(Scope& scope, const SystemDescription& system) {
     for (const CoordinateDescription& coordinate : system.coordinates)
         scope.forbidden.emplace(
             coordinate.name + "''",
-            fmt::format("the acceleration {}'' may not stand in an expression: it follows from them", coordinate.name));
+            fmt::format(
+                "the acceleration {}'' is not allowed in an expression: it follows from the equations of motion",
+                coordinate.name));
     const auto forbid = [&](const std::string& name) {
         scope.forbidden.emplace(name + "'", fmt::format("'{}' is a parameter: it has no rate", name));
     };
@@ -60,7 +62,7 @@ constexpr std::array<const char*, 4> contact_outputs{"gap", "gap'", "gap''", "la
 // Words that mean something in views only.
 void forbid_outputs(Scope& scope, const SystemDescription& system) {
     const auto forbid = [&](const std::string& word) {
-        scope.forbidden.emplace(word, fmt::format("'{}' may stand in a [[view]] only", word));
+        scope.forbidden.emplace(word, fmt::format("'{}' is allowed only in a [[view]]", word));
     };
     for (const char* word : contact_outputs) {
         for (const std::string& name : output_names(system, word)) forbid(name);
@@ -78,7 +80,7 @@ Scope position_scope(const SystemDescription& system, const Layout& layout, Grap
     scope.allowed.emplace("t", graph.symbol(layout.t()));
     for (const CoordinateDescription& coordinate : system.coordinates)
         scope.forbidden.emplace(coordinate.name + "'",
-                                fmt::format("the rate {}' may not stand in the {}: {}", coordinate.name, what, why));
+                                fmt::format("the rate {}' is not allowed in the {}: {}", coordinate.name, what, why));
     forbid_primes(scope, system);
     forbid_outputs(scope, system);
     return scope;
@@ -89,7 +91,7 @@ Scope constant_scope(const SystemDescription& system, const Layout& layout, Grap
     Scope scope;
     allow_parameters(scope, system, layout, graph);
     const auto forbid = [&](const std::string& name, const std::string& shown) {
-        scope.forbidden.emplace(name, fmt::format("{} may not stand in {}: parameters alone", shown, what));
+        scope.forbidden.emplace(name, fmt::format("{} is not allowed in {}: use only parameters", shown, what));
     };
     for (const CoordinateDescription& coordinate : system.coordinates) {
         forbid(coordinate.name, fmt::format("the coordinate '{}'", coordinate.name));
@@ -106,9 +108,8 @@ Scope constant_scope(const SystemDescription& system, const Layout& layout, Grap
 Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     Scope scope = force_scope(system, layout, graph);
     scope.allowed.erase("t");
-    scope.forbidden.emplace("t",
-                            "'t' may not stand in the kinetic energy, which may not depend on time: what moves belongs "
-                            "into the gap, the potential or a force");
+    scope.forbidden.emplace(
+        "t", "'t' is not allowed in the kinetic energy: write prescribed motion in the gap, the potential or a force");
     return scope;
 }
 
@@ -124,11 +125,12 @@ Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& 
 }
 
 Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    return position_scope(system, layout, graph, "potential", "what depends on rates is a force, or dissipation");
+    return position_scope(system, layout, graph, "potential",
+                          "write terms with rates in a force or in the dissipation");
 }
 
 Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    return position_scope(system, layout, graph, "gap", "it depends on coordinates and time alone");
+    return position_scope(system, layout, graph, "gap", "it may depend only on coordinates, parameters and time");
 }
 
 Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
@@ -209,8 +211,9 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
         if (names.size() > 1)
             scope.forbidden.emplace(
                 contact_outputs[i],
-                fmt::format("{} is of one constraint, and there are several{}", in_quotes(contact_outputs[i]),
-                            have_names ? fmt::format(": {}", fmt::join(names, ", ")) : ", of which each needs a name"));
+                fmt::format(
+                    "{} is ambiguous with several constraints{}", in_quotes(contact_outputs[i]),
+                    have_names ? fmt::format(": {}", fmt::join(names, ", ")) : ": give each constraint a name"));
     }
     scope.allowed.emplace("energy", graph.adopt(equations.energy));
     Expression power = graph.adopt(equations.power);
@@ -244,12 +247,12 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
     for (const Kind kind : {Kind::zeno_time, Kind::impact_time, Kind::impact_speed, Kind::release_time})
         scope.listed.emplace(to_text(kind), [input, kind](int k) { return input({kind, k}); });
     for (const char* word : {"held", "outcome"})
-        scope.forbidden.emplace(word, fmt::format("'{}' is a text: it stands alone", word));
+        scope.forbidden.emplace(word, fmt::format("'{}' is text: use it alone, not in an expression", word));
     return scope;
 }
 
 Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    return position_scope(system, layout, graph, "drawing", "it depends on coordinates and time alone");
+    return position_scope(system, layout, graph, "drawing", "it may depend only on coordinates, parameters and time");
 }
 
 }  // namespace achilles

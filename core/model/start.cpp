@@ -18,10 +18,12 @@ void Model::check(const Run& run) const {
     const auto n = static_cast<Eigen::Index>(dof());
     const std::size_t p = description_.parameters.size();
     if (run.q.size() != n || run.v.size() != n || run.parameters.size() != p)
-        throw InputError("the run", {},
-                         fmt::format("it has {} coordinates, {} rates and {} parameters; the system has {} and {}",
-                                     run.q.size(), run.v.size(), run.parameters.size(), n, p),
-                         "begin with default_run() of this system");
+        throw InputError(
+            "the run", {},
+            fmt::format(
+                "it has {} coordinates, {} rates and {} parameters; the system has {} coordinates and {} parameters",
+                run.q.size(), run.v.size(), run.parameters.size(), n, p),
+            "start from default_run() of this system");
     const Ground ground;
     Mistakes mistakes;
     const auto refuse = [&](Location at, const std::string& message, const std::string& hint = {}) {
@@ -41,8 +43,7 @@ void Model::check(const Run& run) const {
     for (std::size_t i = 0; i < derived.size(); ++i)
         if (have_values && !std::isfinite(derived[i]))
             refuse(description_.derived[i].definition.at,
-                   fmt::format("the parameter '{}', which follows from others, is not finite",
-                               description_.derived[i].name));
+                   fmt::format("the derived parameter '{}' is not finite", description_.derived[i].name));
     for (int i = 0; i < dof(); ++i) {
         const auto& coordinate = description_.coordinates[static_cast<std::size_t>(i)];
         if (!std::isfinite(run.q[i]))
@@ -123,7 +124,7 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     for (std::size_t i = 0; i < layout_.dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
     constexpr double steep = 1e-6;  // with it a gap is not flat where it is 0 to within rounding; the rest is asked
     if (slope < steep && is_flat(*this, run.parameters, start, contact))
-        throw Mistake{at, "dh = 0 at the start, which is in contact: the normal is not defined", flat_hint};
+        throw Mistake{at, "the start is in contact, and dh = 0 there: the normal is not defined", flat_hint};
 }
 
 // M is positive definite.

@@ -171,12 +171,12 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
                             uncertified == 1 ? "point is" : "points are");
     if (text.empty()) return "";
     if (is_estimated && integration > 0.0)
-        text += fmt::format("; estimated integration error {} s", rounded_up(integration, 1));
+        text += fmt::format("; estimated integration error {} s", estimate_text(integration));
     return text + ".\n";
 }
 
 std::string end_line(const ErrorEstimate& estimate, const std::string& prove_command) {
-    const std::string state = estimate.end ? "estimated error " + rounded_up(estimate.end->size(), 1)
+    const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.none_since;
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
@@ -214,9 +214,9 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::undecided:
             return "Try a smaller --tolerance, or another start or parameter.";
         case Outcome::Kind::simultaneous_impacts:
-            return "To go on with Moreau's law: --simultaneous moreau.";
+            return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:
-            return "Leave out a contact that is not needed.";
+            return "Remove a redundant contact.";
     }
     return "";
 }

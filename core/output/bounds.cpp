@@ -159,6 +159,12 @@ std::string rounded_down(double x, int digits) {
     return x == 0.0 ? "0" : shortened(floor_of(x, leading(x) + 1 - digits));
 }
 
+std::string estimate_text(double estimate) {
+    std::string text = fmt::format("{:.1g}", estimate);
+    if (const std::size_t zero = text.find("e-0"); zero != std::string::npos) text.erase(zero + 2, 1);
+    return text;
+}
+
 std::string bound_text(double bound) {
     constexpr double rounding = 1e-16;
     return rounded_up(std::max(bound, rounding));

@@ -14,6 +14,8 @@ std::string rounded_up(double x, int digits = 2);
 std::string rounded_down(double x, int digits = 2);
 // A bound, rounded up to two digits; one below 1e-16, the rounding of numbers about 1, is printed as that.
 std::string bound_text(double bound);
+// An estimate, which bounds nothing: its nearest decimal of one digit, "4e-9".
+std::string estimate_text(double estimate);
 
 // "[low, high]", rounded outward, with as many digits as tell the ends apart and two more.
 std::string interval_text(double low, double high);

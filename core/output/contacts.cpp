@@ -52,10 +52,10 @@ std::string others_told(const Model& model, const Certificate::Others& others) {
     constexpr int digits = 3;
     std::vector<std::string> parts;
     for (const Certificate::Others::Held& held : others.held)
-        parts.push_back(fmt::format("{} stays held: its force is at least {}, of every impulse {} is passed on to it",
-                                    model.description().constraints[held.contact].name,
-                                    rounded_down(held.least_force, digits),
-                                    interval_text(held.transmission_low + 0.0, held.transmission_high + 0.0)));
+        parts.push_back(fmt::format(
+            "{} stays held: its force is at least {}, and the fraction {} of every impulse is transmitted to it",
+            model.description().constraints[held.contact].name, rounded_down(held.least_force, digits),
+            interval_text(held.transmission_low + 0.0, held.transmission_high + 0.0)));
     if (others.least_gap)
         parts.push_back(fmt::format("other gaps stay above {}", rounded_down(*others.least_gap, digits)));
     return fmt::format("{}", fmt::join(parts, "; "));

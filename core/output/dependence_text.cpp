@@ -27,18 +27,20 @@ std::string margins(const DerivativeMargins& m) {
     const auto add = [&](const char* what, const std::optional<double>& x) {
         if (x) parts.push_back(fmt::format("{} {:.3g}", what, *x));
     };
-    add("least speed of a grazing impact", m.grazing_speed);
-    add("least minimum of a gap in flight", m.gap_minimum);
-    add("least -hddot at a Zeno point", m.a_inf);
-    add("least h''' at a release", m.release_jerk);
-    return parts.empty() ? "" : fmt::format("  from where there would be none: {}\n", fmt::join(parts, ", "));
+    add("smallest speed of a grazing impact", m.grazing_speed);
+    add("smallest minimum of a gap in flight", m.gap_minimum);
+    add("smallest -hddot at a Zeno point", m.a_inf);
+    add("smallest h''' at a release", m.release_jerk);
+    return parts.empty() ? ""
+                         : fmt::format("  margins (there are no derivatives where one of them is 0): {}\n",
+                                       fmt::join(parts, ", "));
 }
 
 }  // namespace
 
 std::string summary(const Trajectory& trajectory, const Dependence& dependence) {
     const Derivatives& d = dependence.derivatives;
-    std::string text = "\nderivatives, of times following the events, of the end at its time:\n";
+    std::string text = "\nderivatives of event times, and of the state at the fixed end time:\n";
     int zeno = 0, releases = 0;
     for (std::size_t i = 0; i < d.events.size(); ++i) {
         const Event& event = trajectory.events[i];
@@ -54,16 +56,15 @@ std::string summary(const Trajectory& trajectory, const Dependence& dependence) 
         text += fmt::format("  {}' at the end: {}\n", coordinates[i].name, row(d, d.end->v.row(k).transpose()));
     }
     for (const Quantity& quantity : dependence.quantities)
-        text += fmt::format(
-            "  {} = {:.10g}: {}\n", quantity.expression, quantity.value,
-            quantity.refused.empty() ? row(d, quantity.derivatives) : "no derivative here: " + quantity.refused);
+        text +=
+            fmt::format("  {} = {:.10g}: {}\n", quantity.expression, quantity.value,
+                        quantity.refused.empty() ? row(d, quantity.derivatives) : "no derivative: " + quantity.refused);
     for (std::size_t k = 0; k < d.refused.size(); ++k)
         if (!d.refused[k].empty())
-            text += fmt::format("  by {}: no derivative here: {}\n", d.directions[k], d.refused[k]);
-    if (!d.broken.empty())
-        text += fmt::format("  from t = {:.9g} s on no derivative here: {}\n", d.broken_from, d.broken);
+            text += fmt::format("  with respect to {}: no derivative: {}\n", d.directions[k], d.refused[k]);
+    if (!d.broken.empty()) text += fmt::format("  no derivatives from t = {:.9g} s on: {}\n", d.broken_from, d.broken);
     if (trajectory.run.options.method == Method::dopri5)
-        text += "  beside the steps of dopri5, by Taylor series from the start of each: as exact as its states are\n";
+        text += "  computed by Taylor series from the start of each dopri5 step: as accurate as the states there\n";
     return text + margins(d.margins) + "Certificates do not cover derivatives.\n";
 }
 

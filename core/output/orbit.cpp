@@ -133,8 +133,8 @@ std::string margins_text(const OrbitPoint& point) {
     };
     add("a_inf", point.margins.a_inf);
     add("h''' at release", point.margins.release_jerk);
-    add("least speed of an impact that may graze", point.margins.grazing_speed);
-    add("least gap it passes", point.margins.gap_minimum);
+    add("smallest speed of an impact that may graze", point.margins.grazing_speed);
+    add("smallest minimum of a gap in flight", point.margins.gap_minimum);
     return text.empty() ? "" : "margins: " + text + "\n";
 }
 
@@ -176,8 +176,8 @@ std::string branch_text(const Branch& branch, const SystemDescription& descripti
     tell("fold", branch.folds);
     tell("flip (mu = -1)", branch.flips);
     tell("|mu| = 1, complex", branch.circles);
-    tell("the Zeno point is lost", branch.lost);
-    tell("other events from here on", branch.changes);
+    tell("Zeno point lost", branch.lost);
+    tell("event sequence changes", branch.changes);
     return text + fmt::format("  it ends at the first point: {}\n           at the last point: {}\n", branch.ends[0],
                               branch.ends[1]);
 }
@@ -190,7 +190,7 @@ std::string orbit_text(const Orbit& orbit, const Branch* branch) {
     std::string text = fmt::format("{}\n  {}", description.title, to_text(o.method));
     for (const Option* option : told_options())
         if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
-    text += fmt::format("\n  {} steps of Newton's method, the last of {:.1e} of the state\n\n", orbit.iterations,
+    text += fmt::format("\n  {} steps of Newton's method, the last {:.1e} relative to the state\n\n", orbit.iterations,
                         orbit.error);
     text += fmt::format("period {:.14g} s, from {} t = {:.10g} s\n  {}\n  {}\n", orbit.period,
                         orbit.is_at_release ? "the release at" : "the flight at", orbit.state.t,
@@ -240,7 +240,7 @@ std::string branch_answer(const Branch& branch, const SystemDescription& descrip
     add("period doubling (multiplier -1)", branch.flips);
     add("Neimark-Sacker (complex multipliers of size 1)", branch.circles);
     add("Zeno point lost", branch.lost);
-    add("other events from here on", branch.changes);
+    add("event sequence changes", branch.changes);
     return text + fmt::format("  first point: {}\n  last point: {}\n", branch.ends[0], branch.ends[1]);
 }
 
@@ -264,19 +264,19 @@ std::string orbit_answer(const Orbit& orbit, const Branch* branch) {
 
 OrbitGuess orbit_guess(const std::string& json, const std::string& file, std::size_t dof) {
     const auto refuse = [&](const std::string& why) {
-        return InputError(file, {}, why, "what achilles orbit --json or achilles simulate --json wrote");
+        return InputError(file, {}, why, "give a file written by achilles orbit --json or achilles simulate --json");
     };
     const Json root = Json::parse(json, nullptr, false);
-    if (root.is_discarded() || !root.is_object()) throw refuse("it is no JSON of Achilles");
+    if (root.is_discarded() || !root.is_object()) throw refuse("this is not a JSON file of Achilles");
     const char* const key = root.contains("state") ? "state" : "end";
-    if (!root.contains(key)) throw refuse("it has no state to begin from");
+    if (!root.contains(key)) throw refuse("the file has no state to start from");
     const Json& at = root[key];
     const auto read = [&](const char* name) {
         if (!at.is_object() || !at.contains(name) || !at[name].is_array() || at[name].size() != dof)
-            throw refuse(fmt::format("its {}.{} has not a number for each of {} coordinates", key, name, dof));
+            throw refuse(fmt::format("{}.{} must be an array of {} numbers, one for each coordinate", key, name, dof));
         Vector values(static_cast<Eigen::Index>(dof));
         for (std::size_t i = 0; i < dof; ++i) {
-            if (!at[name][i].is_number()) throw refuse(fmt::format("its {}.{} is not all numbers", key, name));
+            if (!at[name][i].is_number()) throw refuse(fmt::format("{}.{} must contain only numbers", key, name));
             values[static_cast<Eigen::Index>(i)] = at[name][i].template get<double>();
         }
         return values;

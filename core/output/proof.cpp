@@ -62,8 +62,9 @@ class ProofText {
         if (is_whole) text += state("end", *proof_.end);
         for (const EnclosedState& sample : proof_.samples) text += state("at", sample);
         if (!is_whole) text += fmt::format("\nUndecided from there: {}.\n", proof_.outcome.message);
-        if (has_rounded_times()) text += "\nTimes of the end and of samples are the doubles nearest to those above.\n";
-        return text + fmt::format("\nIt stands on {}.\n", proof_.assumptions);
+        if (has_rounded_times())
+            text += "\nThe end time and the sample times are the doubles nearest to the times above.\n";
+        return text + fmt::format("\nAssumptions: {}.\n", proof_.assumptions);
     }
 
  private:

@@ -28,7 +28,7 @@ class ProofAnswer {
     std::string text() const {
         std::string text = first_lines();
         if (const auto rows = this->rows(); !rows.empty()) text += "\n" + table(rows);
-        return text + "\n" + hypotheses() + "Assumes " + proof_.assumptions + ". Impacts, velocities: --verbose\n";
+        return text + "\n" + hypotheses() + assumptions();
     }
 
  private:
@@ -42,7 +42,7 @@ class ProofAnswer {
         if (is_whole()) return fmt::format("{}: proved to t = {} s, the end\n", description_.title, reach);
         return fmt::format("{}: proved to t = {} s of {:.9g} s, then undecided\n  {}.\n  {}\n", description_.title,
                            reach, claim_.run.options.end_time, proof_.outcome.message,
-                           "Try a smaller box (--width, --set NAME=LOW..HIGH), or --split 4.");
+                           "Try a smaller box (--width, --set NAME=LOW..HIGH), or more parts (--split).");
     }
 
     Row row(std::string name, std::string time, const Intervals& q) const {
@@ -86,6 +86,13 @@ class ProofAnswer {
             rows, [&](const Row& row) { table.add_row(row); },
             [&](std::size_t count) { table.add_line(fmt::format("... {} more events (--verbose)", count)); });
         return table.text();
+    }
+
+    // In short; proof_.assumptions has them in full.
+    static std::string assumptions() {
+        return "Assumes IEEE arithmetic, a math library within 2 ulp (4 for hyperbolic functions), and correctly "
+               "derived and\n"
+               "compiled equations: achilles help accuracy. Impacts: --verbose\n";
     }
 
     // "Holds for x = 0, y = 2, ...": every number as typed or rounded inward.

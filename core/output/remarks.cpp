@@ -18,8 +18,8 @@ Remark made_again(const Trajectory& trajectory) {
     std::string what = fmt::format("tolerance {:g}", used.tolerance);
     for (const char* key : {"eps_q", "eps_v"})
         if (const Option& eps = option(key); eps.get(asked) != eps.get(used)) what += ", " + phrase(eps, used, "{:g}");
-    return {fmt::format("made again at tolerance {:g}", used.tolerance),
-            fmt::format("undecided at tolerance {:g}{}: the whole run was made again, at {}", asked.tolerance,
+    return {fmt::format("repeated at tolerance {:g}", used.tolerance),
+            fmt::format("undecided at tolerance {:g}{}: the whole run was repeated with {}", asked.tolerance,
                         trajectory.undecided.empty() ? "" : " (" + trajectory.undecided + ")", what)};
 }
 
@@ -58,14 +58,12 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
         const std::string when =
             event.impacts == 1 ? "at its first impact" : fmt::format("after {} impacts", event.impacts);
         const double eps = std::max(least_tolerance, std::pow(10.0, std::floor(std::log10(wanted_share * largest))));
-        return Remark{
-            "eps is large here",
-            fmt::format(
-                "eps_q = {:g} is large beside this motion: the bouncing was cut {}, t = {:.6g}, where {} {:.2g}, "
-                "and the gap is never above {:.2g}: try --eps {:g}",
-                trajectory.run.options.truncation.eps_q, when, event.truncation->t,
-                c.uniform_position ? "the position is certified to" : "bounces may be as high as", bound, largest,
-                eps)};
+        return Remark{"eps is large here",
+                      fmt::format("eps_q = {:g} is large for this motion: the impact sequence was cut {}, t = {:.6g}, "
+                                  "where {} {:.2g}, but the gap never exceeds {:.2g}: try --eps {:g}",
+                                  trajectory.run.options.truncation.eps_q, when, event.truncation->t,
+                                  c.uniform_position ? "the position is certified to" : "bounces may be as high as",
+                                  bound, largest, eps)};
     }
     return std::nullopt;
 }
@@ -86,9 +84,8 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
     const Event& cut = trajectory.events.back();
     return Remark{
         "ends before a Zeno point",
-        fmt::format("the run ends between the cut of a bouncing, t = {:.9g}, and its Zeno point: from there on it "
-                    "is the restarted motion, without the bounces that are left; a later end time tells what is "
-                    "certified about it",
+        fmt::format("the run ends between a cut, t = {:.9g}, and its Zeno point: after the cut it is the restarted "
+                    "motion, without the remaining bounces; for the certificate choose a later end time",
                     cut.t)};
 }
 
@@ -102,10 +99,10 @@ std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
         const double error = integration_error_of_time(trajectory, i);
         if (!(width > 0.0) || !(error > width) || !(error > trajectory.run.options.truncation.eps_t)) continue;
         return Remark{
-            "integration outweighs an interval",
-            fmt::format("the interval of the Zeno time {:.6g} is {:.1g} s wide: it is certified of the motion from "
-                        "the computed state, and the integration and cuts before may have moved that time by "
-                        "{:.1g} s (an estimate, mostly too large): a smaller --tolerance makes that less",
+            "integration error exceeds an interval",
+            fmt::format("the interval of the Zeno time {:.6g} is {:.1g} s wide: it is certified for the motion from "
+                        "the computed state, but earlier integration errors and cuts may have shifted this time by "
+                        "{:.1g} s (an estimate, usually too large): try a smaller --tolerance",
                         event.t, width, error)};
     }
     return std::nullopt;
@@ -121,8 +118,8 @@ std::optional<Remark> missed(const Trajectory& trajectory) {
         if (closest.left < closest.right) continue;
         return Remark{
             "eps is not met",
-            fmt::format("the bouncing was cut at t = {:.6g} since shorter flights cannot be resolved in double "
-                        "precision, before what was asked for is met: {}, {:.2g} < {:.2g}, does not hold",
+            fmt::format("the impact sequence was cut at t = {:.6g} because shorter flights cannot be resolved in "
+                        "double precision; the truncation criterion is not met: {}, {:.2g} < {:.2g}, does not hold",
                         event.truncation->t, closest.name, closest.left, closest.right)};
     }
     return std::nullopt;
@@ -149,13 +146,13 @@ std::optional<Remark> horizon_remark(const Trajectory& trajectory, const ErrorEs
         trajectory.model->description().coordinates[static_cast<std::size_t>(course.coordinate())].name +
         (course.is_rate() ? "'" : "");
     const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
-    const std::string advice = used.tolerance > 10.0 * least_tolerance ? ": a smaller --tolerance reaches further" : "";
+    const std::string advice =
+        used.tolerance > 10.0 * least_tolerance ? "; a smaller --tolerance extends this time" : "";
     const std::string label = fmt::format("trusted until t = {:.6g} s", *horizon);
-    return Remark{label,
-                  fmt::format("{}, not to the end: from there on the estimated error of {} is more than {:g} of its "
-                              "range, and what is computed is not the motion of this system{}. Numbers that "
-                              "are not known are printed as {}",
-                              label, name, ErrorCourse::largest_share, advice, unknown_number)};
+    return Remark{
+        label, fmt::format("{}, not to the end: after this time the estimated error of {} exceeds {:g} of its range, "
+                           "and the computed motion is not that of the system{}. Unknown numbers are printed as {}",
+                           label, name, ErrorCourse::largest_share, advice, unknown_number)};
 }
 
 std::vector<Remark> remarks(const Trajectory& trajectory, const ErrorEstimate& estimate) {

@@ -41,7 +41,7 @@ std::vector<double> read_instants(std::string_view text, const std::string& name
         if (!(t >= start && t <= end)) throw refuse(fmt::format("{} is outside the run, {} to {}", t, start, end));
         times.push_back(t);
     }
-    if (times.empty()) throw InputError(name, {}, "there is no time in it", "write one a line");
+    if (times.empty()) throw InputError(name, {}, "the file contains no time", "write one time per line");
     return times;
 }
 

@@ -111,9 +111,10 @@ std::string Sentences::impact(std::size_t index) const {
     text += loss;
     if (is_cut && !loss.empty()) text += " by it and the restart";
     if (!event.opened.empty()) text += "; it opens " + joined_names(*trajectory_.model, event.opened, " and ");
-    if (event.joint && event.joint->order_matters) text += "; their order matters: Moreau's law takes them together";
+    if (event.joint && event.joint->order_matters)
+        text += "; order-dependent outcome: resolved together by Moreau's law";
     if (event.joint && event.joint->not_unique) text += "; impulses not unique";
-    if (is_cut) text += "; the bouncing is cut here";
+    if (is_cut) text += "; the impact sequence is cut here";
     return text;
 }
 
@@ -163,10 +164,9 @@ std::string Sentences::state_at_end() const { return holding(trajectory_.end_hel
 
 std::string Sentences::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
-    const bool is_one = event.contacts.count() == 1;
     const std::string begins = beginning(event);
     // Its impact has told what is lost.
-    if (is_plastic_landing(event)) return begins + ": " + (is_one ? "it lands" : "they land") + " without a bounce";
+    if (is_plastic_landing(event)) return begins + ": plastic impact";
     const Pile pile = pile_of(trajectory_, index);
     std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
     text += lost(pile.loss, event);
@@ -195,10 +195,10 @@ std::string Sentences::own_words(ContactSet contact, std::string ConstraintDescr
 std::string Sentences::release(const Event& event) const {
     const bool is_one = event.contacts.count() == 1;
     if (const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : ""; !ends.empty())
-        return ends + ": its contact force falls to zero";
-    if (!is_of_several_) return "contact ends: the contact force falls to zero";
+        return ends + ": its contact force reaches zero";
+    if (!is_of_several_) return "contact ends: the contact force reaches zero";
     return joined_names(*trajectory_.model, event.contacts, " and ") +
-           (is_one ? " lets go: its force falls to zero" : " let go: their forces fall to zero");
+           (is_one ? " is released: its force reaches zero" : " are released: their forces reach zero");
 }
 
 std::string Sentences::state(ContactSet held) const {

@@ -93,8 +93,8 @@ class Course {
             held = held.with(trajectory_.phases[i].held);
         }
         return fmt::format(
-            "{} phases in a row, t = {} to {} s, with {} impacts: a contact comes to rest and an impact of "
-            "another opens it, again and again ({})\n",
+            "{} consecutive phases, t = {} to {} s, with {} impacts: a contact comes to rest and an impact of another "
+            "opens it, repeatedly ({})\n",
             chatter.last - chatter.first, time(trajectory_.phases[chatter.first].start),
             time(trajectory_.phases[chatter.last - 1].end), impacts, names(held));
     }
@@ -132,7 +132,7 @@ class Course {
         if (!is_of_several()) return "";
         std::string text = " of " + names(impact.contacts);
         if (!impact.opened.empty()) text += ", opens " + names(impact.opened);
-        if (impact.joint && impact.joint->order_matters) text += ", in an order by convention";
+        if (impact.joint && impact.joint->order_matters) text += ", order-dependent outcome";
         if (impact.joint && impact.joint->not_unique) text += ", impulses not unique";
         return text;
     }
@@ -147,7 +147,7 @@ class Course {
         text += indented(sentences_.of(index));
         if (precision_.is_beyond(event.t)) return text;  // a certificate is of the computed motion
         if (event.truncation && !is_plastic)
-            text += fmt::format("            cut short at the last of them, t = {}, gap speed {:.3g}\n",
+            text += fmt::format("            cut at the last of these impacts, t = {}, gap speed {:.3g}\n",
                                 time(event.truncation->t), event.truncation->impact_speed);
         if (!event.certificate) return text;
         text += indented(sentence(*event.certificate, model_.description()));
@@ -156,7 +156,8 @@ class Course {
                 fmt::format("integration error of this time: about {:.1g} s (estimate)", estimate_.events[index]));
         else if (const double error = integration_error_of_time(trajectory_, index); !is_plastic && error > 0.0)
             text += indented(fmt::format(
-                "not covered: integration and cuts before may have moved that time by {:.1g} s, an estimate", error));
+                "not covered: earlier integration errors and cuts may have shifted this time by {:.1g} s (estimate)",
+                error));
         const auto& others = event.certificate->others;
         if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);
@@ -187,16 +188,16 @@ std::string balance(const Trajectory& trajectory, const Precision& precision) {
 
 std::string conventions(int count) {
     return fmt::format(
-        "{} of several contacts at once, whose order matters and cannot be told: Moreau's law decided, all at once\n"
-        "(--json has the rates that each order would give; --simultaneous stop ends the run there).\n",
-        count == 1 ? "One impact was" : fmt::format("{} impacts were", count));
+        "{} an order-dependent outcome; resolved together by Moreau's law\n(--json lists the rates that each order "
+        "would give; --simultaneous stop ends the run at the first).\n",
+        count == 1 ? "One simultaneous impact had" : fmt::format("{} simultaneous impacts had", count));
 }
 
 // What certificates rest on.
 std::string assumed() {
     return fmt::format(
-        "They assume IEEE double arithmetic in round-to-nearest (set where they are\n"
-        "made) and elementary functions within {} ulp ({} for sinh, cosh, tanh), those of {} here.",
+        "They assume IEEE double arithmetic, rounded to nearest\n(set during the computation), and elementary "
+        "functions within {} ulp ({} for sinh, cosh, tanh), here of {}.",
         rounding::libm, rounding::hyperbolic, mathematical_library());
 }
 
@@ -239,20 +240,21 @@ std::string sentence(const Certificate& c, const SystemDescription& description)
     const auto position = [&](double bound) { return bound_text(bound) + unit.position; };
     const auto velocity = [&](double bound) { return bound_text(bound) + unit.velocity; };
     std::string text = fmt::format(
-        "of the exact motion from the computed state at the cut: tau_inf in {} s, the Zeno time; its Zeno point is "
-        "within {} of the position at the cut, its velocity within {} of the restart's: |q_inf - q*|, |v_inf - v*|",
+        "certified for the exact motion from the computed state at the cut: Zeno time tau_inf in {} s; the Zeno point "
+        "is within {} of the position at the cut, and its velocity within {} of the velocity of the restart: |q_inf - "
+        "q*|, |v_inf - v*|",
         interval_text(c.zeno_low, c.zeno_high), position(c.position_bound), velocity(c.velocity_bound));
     if (c.uniform_position && *c.uniform_position > 0.0)
         text += fmt::format(
-            "; from the cut to tau_inf what is drawn is within {} of its position (the bounces not drawn are no "
-            "higher): uniform position; at tau_inf it is within {} and {} of its position and velocity: shadowing "
-            "position and velocity",
+            "; from the cut to tau_inf the computed position is within {} of the exact one (the omitted bounces are no "
+            "higher): uniform position; at tau_inf the computed position and velocity are within {} and {} of the "
+            "exact ones: shadowing position and velocity",
             position(*c.uniform_position), position(*c.shadowing_position), velocity(*c.shadowing_velocity));
-    if (c.below_rounding) text += "; cut there since shorter flights cannot be resolved in double precision";
+    if (c.below_rounding) text += "; cut there because shorter flights cannot be resolved in double precision";
     const Inequality* closest = c.decision ? &c.decision->closest() : nullptr;
     if (closest != nullptr && !(closest->left <= closest->right))
-        return text + fmt::format("; what was asked for is not met: {}, {:.2g} < {:.2g}, does not hold", closest->name,
-                                  closest->left, closest->right);
+        return text + fmt::format("; the truncation criterion is not met: {}, {:.2g} < {:.2g}, does not hold",
+                                  closest->name, closest->left, closest->right);
     return text + fmt::format("; tightest of the {}: {}", c.paper ? "conditions" : "bounds", c.decisive);
 }
 
@@ -282,24 +284,23 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     const bool has_power = model.equations().has_power();
     text +=
         fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", Sentences(trajectory).impacts(),
-                    s.steps, s.evaluations, has_power ? " beside the work" : "", drift_text(s.energy_drift),
+                    s.steps, s.evaluations, has_power ? " (work subtracted)" : "", drift_text(s.energy_drift),
                     least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
     if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
-    if (s.impacts > 0) text += "Gap speeds are |hdot|, at which the gap closes: not the speed of a body.\n";
+    if (s.impacts > 0) text += "Gap speed is |hdot|, the rate at which the gap closes, not the speed of a body.\n";
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.certificate && event.certificate->others && !event.certificate->others->held.empty();
     });
     if (has_forces)
         text +=
-            "Forces are lambda, the multiplier of the gap: the force itself where the gap is a distance between "
+            "Forces are lambda, the multiplier of the gap; this is the contact force if the gap is a distance between "
             "bodies.\n";
-    text +=
-        estimate.trusted_until
-            ? "Digits end where the estimated error begins: it grows along the way, to first order, and another\n"
-              "--tolerance shows how much.\n"
-            : "Digits are those of the computed run: its errors grow along the way, and another --tolerance shows how "
-              "much.\n";
+    text += estimate.trusted_until
+                ? "Numbers have only the digits that the estimated error supports; the estimate is first-order and "
+                  "grows along the run.\nTo check it, rerun with a smaller --tolerance.\n"
+                : "The last digits carry integration error, which grows along the run. To see how much, rerun with a "
+                  "smaller --tolerance.\n";
     const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
     });

@@ -100,7 +100,7 @@ void put(std::string& bytes, const std::vector<Element>& list) {
 
 template <class Element>
 void take(std::string_view& bytes, std::vector<Element>& list, std::size_t count) {
-    if (bytes.size() < count * sizeof(Element)) throw std::runtime_error("its rows are cut short");
+    if (bytes.size() < count * sizeof(Element)) throw std::runtime_error("the rows are incomplete");
     if (count == 0) return;
     list.resize(count);
     std::memcpy(list.data(), bytes.data(), count * sizeof(Element));
@@ -126,10 +126,10 @@ std::string to_bytes(const Rows& rows) {
 
 Rows rows_from(std::string_view bytes, const SweepTable& table) {
     std::uint64_t count = 0;
-    if (bytes.size() < sizeof count) throw std::runtime_error("its rows are cut short");
+    if (bytes.size() < sizeof count) throw std::runtime_error("the rows are incomplete");
     std::memcpy(&count, bytes.data(), sizeof count);
     bytes.remove_prefix(sizeof count);
-    if (count > bytes.size()) throw std::runtime_error("its rows are cut short");
+    if (count > bytes.size()) throw std::runtime_error("the rows are incomplete");
     Rows rows;
     take(bytes, rows.points, count);
     take(bytes, rows.numbers, count * table.measures().numbers());
@@ -140,7 +140,7 @@ Rows rows_from(std::string_view bytes, const SweepTable& table) {
         take(bytes, rows.times, count);
         take(bytes, rows.contacts, count);
     }
-    if (!bytes.empty()) throw std::runtime_error("its rows are of another table");
+    if (!bytes.empty()) throw std::runtime_error("the rows belong to a different table");
     return rows;
 }
 

@@ -34,7 +34,7 @@ std::string fault_of_hdf5(const SweepTable& table) {
 
 #ifndef ACHILLES_HDF5_LIBRARY
 
-std::string why_no_hdf5() { return "this build of Achilles has no HDF5: libhdf5-dev was missing"; }
+std::string why_no_hdf5() { return "this build of Achilles has no HDF5 support: libhdf5-dev was missing"; }
 
 void write_hdf5(const std::string&, const SweepTable&, const SweepOrigin&, const EachRows&) {
     throw std::runtime_error(why_no_hdf5());

@@ -91,9 +91,10 @@ std::string difference(const SweepKey& log, const SweepKey& asked) {
     const auto two = [](const char* what, const std::string& there, const std::string& here) {
         return fmt::format("{}\n    there: {}\n    here:  {}", what, printable(there), here);
     };
-    if (log.software != asked.software) return two("it was begun by another version", log.software, asked.software);
-    if (log.sweep != asked.sweep) return two("it is another sweep", log.sweep, asked.sweep);
-    if (log.files != asked.files) return two("it is kept for other files", log.files, asked.files);
+    if (log.software != asked.software)
+        return two("it was started by a different version", log.software, asked.software);
+    if (log.sweep != asked.sweep) return two("it is a different sweep", log.sweep, asked.sweep);
+    if (log.files != asked.files) return two("it writes other output files", log.files, asked.files);
     if (log.system == asked.system) return "";
     for (int line = 1;; ++line) {
         const std::string there = line_of(log.system, line), here = line_of(asked.system, line);
@@ -118,7 +119,7 @@ SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume, std::uint
     const bool is_file = ::fstat(file_, &there) == 0 && S_ISREG(there.st_mode);
     try {
         if (!is_file) throw InputError(path_, {}, "this is not a file");
-        if (::flock(file_, LOCK_EX | LOCK_NB) != 0) throw InputError(path_, {}, "another process is writing it");
+        if (::flock(file_, LOCK_EX | LOCK_NB) != 0) throw InputError(path_, {}, "another process is writing to it");
         if (there.st_size > 0)
             go_on(key, resume, points);
         else
@@ -133,17 +134,16 @@ SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume, std::uint
 void SweepLog::go_on(const SweepKey& key, bool resume, std::uint64_t points) {
     SweepKey known;
     if (!read_key(known))
-        throw InputError(path_, {}, "an unfinished sweep would be kept here, and this file is none",
+        throw InputError(path_, {}, "the sweep stores its progress here, but this file is not an unfinished sweep",
                          "choose another name");
     find_end();
-    const std::string different = difference(known, key), anew = "remove it to begin anew";
+    const std::string different = difference(known, key), anew = "remove it to start over";
     if (done_ == 0 && !different.empty()) return begin(key);
     if (done_ >= points && different.empty()) return;
     if (!resume && done_ > 0)
-        throw InputError(path_, {}, fmt::format("an unfinished sweep is here, with {} points", done_),
-                         different.empty() ? "--resume goes on with it; " + anew : anew);
-    if (!different.empty())
-        throw InputError(path_, {}, "this unfinished sweep cannot be gone on with: " + different, anew);
+        throw InputError(path_, {}, fmt::format("this is an unfinished sweep with {} points", done_),
+                         different.empty() ? "--resume continues it; " + anew : anew);
+    if (!different.empty()) throw InputError(path_, {}, "this unfinished sweep cannot be resumed: " + different, anew);
 }
 
 SweepLog::~SweepLog() {

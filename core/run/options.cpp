@@ -86,7 +86,7 @@ constexpr Option at(Option said) {
 
 constexpr auto cut = &Options::truncation;
 constexpr std::string_view usage_of_eps = "write: eps 1e-6, or: eps POSITION VELOCITY TIME";
-constexpr std::string_view wrong_eps = "eps must be positive and finite, but it would be {}";
+constexpr std::string_view wrong_eps = "eps must be positive and finite, not {}";
 
 constexpr std::array rows{
     at<&Options::start_time>({.key = "start_time",
@@ -94,7 +94,7 @@ constexpr std::array rows{
                               .flag = "--start-time",
                               .command = "start-time",
                               .usage = "write: start-time NUMBER",
-                              .wrong = "the start time must be finite, but it would be {}",
+                              .wrong = "the start time must be finite, not {}",
                               .unit = "s",
                               .about = "start time of the run",
                               .phrase = "start time {}",
@@ -105,7 +105,7 @@ constexpr std::array rows{
                             .flag = "--end",
                             .command = "end",
                             .usage = "write: end NUMBER",
-                            .wrong = "the end time must be finite, but it would be {}",
+                            .wrong = "the end time must be finite, not {}",
                             .unit = "s",
                             .about = "end time of the run",
                             .phrase = "end time {}",
@@ -115,7 +115,7 @@ constexpr std::array rows{
                              .flag = "--tolerance",
                              .command = "tolerance",
                              .usage = "write: tolerance NUMBER",
-                             .wrong = "the tolerance must be positive and finite, but it would be {}",
+                             .wrong = "the tolerance must be positive and finite, not {}",
                              .about = "local error per step, absolute and relative",
                              .phrase = "tolerance {}",
                              .is_tolerance = true}),
@@ -124,7 +124,7 @@ constexpr std::array rows{
                           .flag = "--method",
                           .command = "method",
                           .usage = "write: method taylor, or: method dopri5",
-                          .wrong = "there is no method '{}'",
+                          .wrong = "unknown method '{}'",
                           .about = "integration method",
                           .phrase = "method {}"}),
     at<&Options::max_impacts>({.key = "max_impacts",
@@ -149,7 +149,7 @@ constexpr std::array rows{
                           .flag = "--memory",
                           .command = "memory",
                           .usage = "write: memory BYTES",
-                          .wrong = "the memory must be positive and finite, but it would be {}",
+                          .wrong = "the memory must be positive and finite, not {}",
                           .unit = "bytes",
                           .about = "maximum memory for the stored run",
                           .phrase = "at most {} bytes",
@@ -196,7 +196,7 @@ constexpr std::array rows{
                                       .flag = "--conditions",
                                       .command = "conditions",
                                       .usage = "write: conditions paper, or: conditions sharp",
-                                      .wrong = "there are no conditions '{}'",
+                                      .wrong = "unknown conditions '{}'",
                                       .about = "criterion for truncating the impact sequence: paper (Def. 7) or sharp",
                                       .phrase = "{} conditions"}),
     at<cut, &Truncation::reinitialization>({.key = "reinitialization",
@@ -204,7 +204,7 @@ constexpr std::array rows{
                                             .flag = "--reinitialization",
                                             .command = "reinitialization",
                                             .usage = "write: reinitialization kinetic, or: reinitialization euclidean",
-                                            .wrong = "there is no reinitialization '{}'",
+                                            .wrong = "unknown reinitialization '{}'",
                                             .about = "velocity at the start of contact",
                                             .phrase = "{} reinitialization"}),
 };

@@ -140,8 +140,8 @@ void Execution::end_sharing() {
     decide(next_.held.with(next_.touching));
     if (outcome_) return;
     if (next_.resting() == resting) return carry_on();
-    stop(Outcome::Kind::undecided,
-         fmt::format("which of {} let go just before cannot be decided, at {}", names_of(resting), where(next_.state)));
+    stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} were released just before, at {}",
+                                               names_of(resting), where(next_.state)));
 }
 
 // Holds these, the carriers, if it can be proved that they do: each force presses, or grows from 0. The others rest with
@@ -237,7 +237,7 @@ void Execution::carry_on() {
     changes_of_carriers_ = next_.state.t == carriers_since_ ? changes_of_carriers_ + 1 : 0;
     carriers_since_ = next_.state.t;
     if (changes_of_carriers_ > many)
-        return stop(Outcome::Kind::undecided, fmt::format("which of {} carry cannot be decided, at {}",
+        return stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} carry load, at {}",
                                                           names_of(next_.resting()), where(next_.state)));
     enter_or_stay();
     begin_stretch(next_.held, run_.options.end_time);

@@ -27,10 +27,10 @@ void Execution::land(std::size_t which, const Contact& contact) {
     if (record_.impacts() >= run_.options.max_impacts) {
         const bool elastic = restitutions_[which] >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
-             fmt::format("{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
-                         next_.state.t,
-                         elastic ? ": with restitution 1 the bouncing does not converge"
-                                 : "; more are allowed by --max-impacts"));
+             fmt::format(
+                 "{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
+                 next_.state.t,
+                 elastic ? ": with restitution 1 the bouncing does not converge" : "; try a larger --max-impacts"));
         return;
     }
     if (surfaces_->count() > 1) {
@@ -80,7 +80,7 @@ void Execution::land_alone(const Contact& contact) {
                 end_chatter(ContactSet::of(which_));
         } else {
             stop(Outcome::Kind::undecided,
-                 "flights became shorter than floating point resolves, and no truncation is certified at " +
+                 "the flights became shorter than double precision resolves, and no truncation is certified, at " +
                      where(next_.state));
         }
     } else if (surfaces_->count() == 1 ||
@@ -159,7 +159,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
         certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
-        certificate.decisive = "restitution 0: nothing is cut short";
+        certificate.decisive = "restitution 0: no impact sequence is truncated";
         certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(contact, collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {

@@ -18,8 +18,7 @@ std::string undefined_among(const Model& model, const Run& run, std::span<const 
                             const State& state, const Values& box, const char* name) {
     const auto found = first_undefined(model, run.parameters, expressions, state, box);
     if (!found) return "";
-    return fmt::format("{} in {} ceases to be defined, with {} = {:.3g}", found->part, name, found->operand,
-                       found->value);
+    return fmt::format("{} in {} becomes undefined, with {} = {:.3g}", found->part, name, found->operand, found->value);
 }
 
 // The first function that may come to its edge in the box, where it has a value and is not smooth; or "".
@@ -31,7 +30,7 @@ std::string first_edge(const Model& model, const Run& run, const State& state, c
         set_box(distance, box);
         distance.run();
         if (certainly_positive(distance.output(0))) continue;
-        return fmt::format("{} in {} comes to where it is not smooth, with {} = {:.3g}",
+        return fmt::format("{} in {} reaches a point where it is not smooth, with {} = {:.3g}",
                            shortened(model, edge.function), edge.place, shortened(model, edge.argument),
                            value_at(model, run.parameters, edge.argument, state));
     }
@@ -50,7 +49,7 @@ std::string first_bad_pivot(const Model& model, const Run& run, const State& sta
     for (std::size_t i = 0; i < program.output_count(); ++i) {
         const Interval pivot = enclosure.output(i);
         if (!pivot.is_defined() || certainly_positive(pivot)) continue;
-        return fmt::format("the mass matrix ceases to be positive definite, with the pivot of '{}' at {:.3g}",
+        return fmt::format("the mass matrix is no longer positive definite: the pivot of '{}' is {:.3g}",
                            model.description().coordinates[i].name, value.output(i));
     }
     return "";

@@ -122,16 +122,14 @@ const StepRequest* Execution::next() {
     if (!is_time_left()) {
         stop(Outcome::Kind::end_time, "reached the end time");
     } else if (record_.steps() >= run_.options.max_steps) {
-        stop(Outcome::Kind::too_many_steps,
-             fmt::format("{} steps by t = {:.9g}: the motion is too fast for this tolerance and end time; more are "
-                         "allowed by --max-steps",
-                         record_.steps(), next_.state.t));
+        stop(Outcome::Kind::too_many_steps, fmt::format("{} steps by t = {:.9g}: the motion is too fast for this "
+                                                        "tolerance and end time; try a larger --max-steps",
+                                                        record_.steps(), next_.state.t));
     } else if (record_.bytes() >= run_.options.memory) {
         stop(Outcome::Kind::out_of_memory,
-             fmt::format(
-                 "{} steps and {} impacts by t = {:.9g} take the {:.4g} MB that the run may have: it may have more "
-                 "(memory), or end earlier",
-                 record_.steps(), record_.impacts(), next_.state.t, run_.options.memory / 1e6));
+             fmt::format("{} steps and {} impacts by t = {:.9g} use all of the {:.4g} MB allowed; increase the memory "
+                         "limit or choose an earlier end time",
+                         record_.steps(), record_.impacts(), next_.state.t, run_.options.memory / 1e6));
     } else if (stalled_ > most_stalled) {
         // Steps of the resolution of time, one after the other, round back to the same state for ever.
         stop_at(StepFailure::step_too_small);
@@ -259,25 +257,26 @@ void Execution::ask_exactly() {
 std::string Execution::doubt(const StepResult& result) const {
     const std::string place = where(next_.state);
     if (next_.held.contains(result.which))
-        return "the contact force comes closer to zero than the integration knows it just after " + place;
-    const std::string known =
-        fmt::format("the gap comes closer to zero than the integration knows it (to {:.1g})", result.remainder);
+        return "cannot decide whether the contact is released: the contact force is within integration error of zero "
+               "just after " +
+               place;
+    const std::string known = fmt::format("the gap is within integration error ({:.1g}) of zero", result.remainder);
     if (is_flat(*model_, run_.parameters, next_.state, result.which))
-        return fmt::format("{}, and dh vanishes where h = 0, so that contact has no normal, just after {}; {}", known,
+        return fmt::format("{}, and dh vanishes where h = 0, so the contact has no normal, just after {}; {}", known,
                            place, flat_hint);
-    return fmt::format("{}: an impact or none cannot be told just after {}", known, place);
+    return fmt::format("{}: cannot decide whether an impact occurs just after {}", known, place);
 }
 
 void Execution::stop_at(StepFailure failure) {
     if (failure == StepFailure::step_too_small && is_chatter()) return end_chatter({});
     const std::string place = where(next_.state);
     if (failure == StepFailure::not_a_number)
-        return stop(Outcome::Kind::not_a_number, "the motion runs away: no finite number follows " + place);
+        return stop(Outcome::Kind::not_a_number, "the motion diverges: the state is not finite just after " + place);
     const std::string edge = edge_of_domain(*model_, run_, next_.state);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, just after {}", edge, place));
     if (failure == StepFailure::left_the_domain)
         return stop(Outcome::Kind::left_the_domain,
-                    "M is not positive definite, or a function undefined, just after " + place);
+                    "M is not positive definite, or a function is undefined, just after " + place);
     stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
 }
 
@@ -285,14 +284,15 @@ void Execution::fail_projection() {
     const std::string edge = edge_of_contact(*model_, run_, next_.state), place = where(next_.state);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, at {}", edge, place));
     stop(Outcome::Kind::left_the_domain,
-         fmt::format("dh = 0 where contact happens: the normal is not defined, at {}; {}", place, flat_hint));
+         fmt::format("dh = 0 at the contact: the normal is not defined, at {}; {}", place, flat_hint));
 }
 
 void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
 void Execution::run_out_of_memory() {
     stop(Outcome::Kind::out_of_memory,
-         fmt::format("{} steps by t = {:.9g}, and the system has no memory for more", record_.steps(), next_.state.t));
+         fmt::format("{} steps by t = {:.9g}, and no more memory is available on this machine", record_.steps(),
+                     next_.state.t));
 }
 
 Trajectory Execution::finish() {

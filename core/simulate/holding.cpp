@@ -16,23 +16,22 @@ void Execution::decide(ContactSet closed, ContactSet vanishing) {
     if (closed.empty()) return;
     if (closed.count() > most_contacts)
         return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("{} contacts are closed at once, more than the {} that can be decided: {}, at {}",
+                    fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 closed.count(), most_contacts, names_of(closed), where(next_.state)));
     const Closed all = surfaces_->at(next_.state, closed);
     const ContactVector<double> hddot = accelerations(all);
     const auto forces = solve_complementarity(all.W, hddot);
     if (!forces)
         return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("no forces hold {}, at {}", names_of(closed), where(next_.state)));
+                    fmt::format("no contact forces can hold {}, at {}", names_of(closed), where(next_.state)));
     not_unique_ = !forces->unique;
     const bool decided = forces->unique ? judge(closed, all.contacts_at(forces->active), vanishing)
                                         : hold_dependent(all, hddot, *forces);
     if (!decided)
-        stop(Outcome::Kind::undecided,
-             fmt::format("the contact force and its rate are zero to within rounding: contact or release cannot be "
-                         "decided{}{} at {}",
-                         surfaces_->count() > 1 ? " for " : "", surfaces_->count() > 1 ? names_of(closed) : "",
-                         where(next_.state)));
+        stop(Outcome::Kind::undecided, fmt::format("the contact force and its rate are zero to within rounding: cannot "
+                                                   "decide between contact and release{}{} at {}",
+                                                   surfaces_->count() > 1 ? " for " : "",
+                                                   surfaces_->count() > 1 ? names_of(closed) : "", where(next_.state)));
 }
 
 // hddot of the free motion, at the state where the run stands.
@@ -187,10 +186,11 @@ void Execution::check_touching() {
         if (!next_.touching.contains(i)) continue;
         const Contact contact = surfaces_->of(i).at(next_.state);
         if (std::abs(contact.h) <= closed * size * contact.g.norm()) continue;
-        return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format(
-                        "{} was closed while {}, and is closed no more: which contacts carry cannot be decided, at {}",
-                        names_of(ContactSet::of(i)), while_held, where(next_.state)));
+        return stop(
+            Outcome::Kind::redundant_contacts,
+            fmt::format(
+                "{} was closed while {}, and is no longer closed: cannot decide which contacts carry load, at {}",
+                names_of(ContactSet::of(i)), while_held, where(next_.state)));
     }
 }
 

@@ -62,7 +62,7 @@ template <class Summarize>
 auto simulate_many(const std::shared_ptr<const Model>& model, std::span<const Run> runs, const Summarize& summarize,
                    int threads = 0, Keep keep = Keep::everything) {
     using Summary = std::invoke_result_t<const Summarize&, std::size_t, Attempt&&>;
-    static_assert(!std::is_same_v<Summary, bool>, "neighbours in a vector<bool> share a byte: return a char");
+    static_assert(!std::is_same_v<Summary, bool>, "neighbors in a vector<bool> share a byte: return a char");
     std::vector<std::optional<Summary>> places(runs.size());
     simulate_many(
         model, runs.size(), [&](std::size_t i) { return runs[i]; },

@@ -50,7 +50,7 @@ double Sampler::work(const Piece& piece, double t) const {
 }
 
 Sample Sampler::at(double t) {
-    if (std::isnan(t)) throw InputError("the time", {}, "it is no number");
+    if (std::isnan(t)) throw InputError("the time", {}, "it is not a number");
     t = std::clamp(t, trajectory_.run.options.start_time, trajectory_.end_time);
     const auto later = [](double time, const auto& x) { return time < x.start; };
     const auto event = std::upper_bound(trajectory_.events.begin(), trajectory_.events.end(), t,

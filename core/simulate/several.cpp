@@ -70,7 +70,7 @@ std::optional<ContactSet> Execution::landing_with(std::size_t which, const Conta
         }
     }
     if (in_doubt.empty() || run_.options.tolerance <= exact_tolerance) return landing.with(in_doubt);
-    stop(Outcome::Kind::undecided, fmt::format("which of {} lands first cannot be told at this tolerance, at {}",
+    stop(Outcome::Kind::undecided, fmt::format("cannot decide at this tolerance which of {} closes first, at {}",
                                                names_of(landing.with(in_doubt)), where(next_.state)));
     return std::nullopt;
 }
@@ -150,10 +150,10 @@ void Execution::collide(ContactSet landing) {
                      all = still.with(landing);
     if (all.count() > most_contacts)
         return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("{} contacts are closed at once, more than the {} that can be decided: {}, at {}",
+                    fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 all.count(), most_contacts, names_of(all), where(next_.state)));
     if (completing())
-        return stop(Outcome::Kind::undecided, fmt::format("{} before the Zeno time of another contact, at {}",
+        return stop(Outcome::Kind::undecided, fmt::format("impact of {} before the Zeno time of another contact, at {}",
                                                           names_of(landing), where(next_.state)));
     if (!surfaces_->project(next_.state, all, still)) return fail_projection();
     const Closed closed = surfaces_->at(next_.state, all);
@@ -167,7 +167,7 @@ void Execution::collide(ContactSet landing) {
     const auto impact = moreau_impact(closed.W, before, e, places);
     if (!impact)
         return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("no impulse obeys the impact law of {}, at {}", names_of(all), where(next_.state)));
+                    fmt::format("no impulses satisfy the impact law of {}, at {}", names_of(all), where(next_.state)));
     const Vector v_before = next_.state.v, v_after = closed.after(v_before, impact->impulses);
     if (complete_pair(landing, v_after, false)) return;
     auto joint = std::make_shared<Joint>();
@@ -188,9 +188,9 @@ void Execution::collide(ContactSet landing) {
     if (joint->order_matters && run_.options.simultaneous == Simultaneous::stop)
         return stop(
             Outcome::Kind::simultaneous_impacts,
-            fmt::format("{} land at once, and what follows depends on which is first (simultaneous = \"stop\"), "
-                        "at {}",
-                        names_of(all.without(held)), where(next_.state)));
+            fmt::format(
+                "{} close at the same time, and the outcome depends on which is first (simultaneous = \"stop\"), at {}",
+                names_of(all.without(held)), where(next_.state)));
     const auto rates = [&](const ContactVector<double>& after) {
         std::vector<std::pair<std::size_t, double>> list;
         for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -340,7 +340,7 @@ void Execution::end_chatter(ContactSet contacts) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
     stop(Outcome::Kind::undecided,
-         fmt::format("contacts {} chatter together, in flights shorter than floating point resolves, at {}",
+         fmt::format("contacts {} chatter together, in flights shorter than double precision resolves, at {}",
                      names_of(contacts), where(next_.state)));
 }
 

@@ -65,7 +65,7 @@ class Walk {
             rebase();
             if (turn > 0.975 && at_.iterations <= 5) ds = std::min(1.6 * ds, longest_step);
         }
-        return fmt::format("it has more than {} points", most_points);
+        return fmt::format("the branch has more than {} points", most_points);
     }
     std::vector<OrbitPoint>& points() { return points_; }
 
@@ -125,7 +125,7 @@ class Walk {
         constexpr double low = 1e-7;  // of the way that the system moves in a period
         const double way = at_.shot.run.run.v.cwiseAbs().maxCoeff() * at_.lap.period, gap = largest_gap();
         if (!(gap < low * way)) return none.what();
-        return fmt::format("the flights shrink to nothing: the gap is never above {:.1e} at {:.6g}", gap, value_of(at_));
+        return fmt::format("the flights shrink to zero: the gap never exceeds {:.1e} at {:.6g}", gap, value_of(at_));
     }
 
     // ---- what happens between two points ----

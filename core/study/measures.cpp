@@ -66,30 +66,32 @@ std::optional<AskedSlope> read_slope(const std::string& print) {
         if (print[i] == ')' && --depth == 0) close = i;
     }
     if (comma == print.npos || close == print.npos)
-        throw refused_slope(print, "a derivative is of a quantity by a name", how_to_differentiate);
+        throw refused_slope(print, "a derivative needs a quantity and a name", how_to_differentiate);
     if (!without_spaces(print.substr(close + 1)).empty())
-        throw refused_slope(print, "a derivative stands alone", "print it and what it is combined with one by one");
+        throw refused_slope(print, "a derivative may not be part of an expression",
+                            "print it and the other terms one by one");
     const AskedSlope asked{without_spaces(print.substr(open + 1, comma - open - 1)),
                            without_spaces(print.substr(comma + 1, close - comma - 1))};
     if (asked.quantity.empty() || asked.name.empty())
-        throw refused_slope(print, "a derivative is of a quantity by a name", how_to_differentiate);
+        throw refused_slope(print, "a derivative needs a quantity and a name", how_to_differentiate);
     return asked;
 }
 
 // Throws InputError where a quantity has no derivative in any run.
 void check_quantity(const SystemDescription& description, const std::string& print, const AskedSlope& asked) {
     if (read_slope(asked.quantity))
-        throw refused_slope(print, "second derivatives are not computed", "differences of first ones approximate them");
+        throw refused_slope(print, "second derivatives are not computed",
+                            "differences of first derivatives approximate them");
     for (const std::string& name : names_in(asked.quantity)) {
         if (is_settable(description, name)) continue;
         if (name == "held" || name == "outcome")
-            throw refused_slope(print, fmt::format("'{}' is a word, and has no derivative", name), "print it alone");
+            throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name), "print it alone");
         if (name == "impacts" || name == "zeno_points" || name == "releases")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print it alone");
         if (name == "least_gap" || name == "work" || name == "loss")
             throw refused_slope(print, fmt::format("derivatives of '{}' are not computed", name),
-                                "print it alone; differences of its values approximate them");
+                                "print it alone; differences of its values approximate its derivatives");
     }
 }
 
@@ -103,16 +105,17 @@ std::size_t direction_of(const SystemDescription& description, const std::string
     if (found != names.end()) return static_cast<std::size_t>(found - names.begin());
     const bool is_option = !options_of_axis(name).empty();
     throw refused_slope(print,
-                        is_option ? fmt::format("'{}' is an option, and nothing is differentiated by it", name)
-                                  : why_not_settable(description, name),
-                        "derivatives are by a start, a rate or a parameter");
+                        is_option
+                            ? fmt::format("'{}' is an option: there are no derivatives with respect to options", name)
+                            : why_not_settable(description, name),
+                        "derivatives are with respect to a coordinate or rate at the start, or a parameter");
 }
 
 // Throws InputError where no run of the sweep has derivatives.
 void check_slopes(const Sweep& sweep, const std::string& print) {
     if (sweep.at && sweep.at->kind == Section::Kind::zero)
-        throw refused_slope(print, fmt::format("there are no derivatives where '{}' passes zero", sweep.at->expression),
-                            "--at impact, --at zeno and --at release have them, and the end");
+        throw refused_slope(print, fmt::format("there are no derivatives at the zeros of '{}'", sweep.at->expression),
+                            "there are derivatives with --at impact, --at zeno, --at release, and without --at");
     Chain::check(sweep.base);
 }
 
@@ -133,7 +136,7 @@ Program section_program(const Model& model, const std::string& zero) {
         const std::vector<std::string> events{"impact", "zeno", "release"};
         const std::string best = nearest(zero, events);
         if (best.empty() && zero.find("event") == zero.npos) throw;
-        throw InputError("--at " + shown(zero), {}, "there is no such event",
+        throw InputError("--at " + shown(zero), {}, "unknown event",
                          best.empty() ? "write --at impact, --at zeno or --at release" : "write --at " + best);
     }
 }

@@ -60,8 +60,9 @@ OrbitQuestion::Along read_along(const std::string& text, const SystemDescription
     if (!(along.low < along.high)) throw InputError(where, {}, "the range must have LOW below HIGH");
     const double value = run.parameters[along.parameter];
     if (!(value >= along.low && value <= along.high))
-        throw InputError(where, {}, fmt::format("{} = {}, where the search begins, does not lie in it", name, value),
-                         fmt::format("--set {}={} begins inside", name, 0.5 * (along.low + along.high)));
+        throw InputError(
+            where, {}, fmt::format("the search starts at {} = {}, outside this range", name, value),
+            fmt::format("start inside it, for example with --set {}={}", name, 0.5 * (along.low + along.high)));
     return along;
 }
 
@@ -146,7 +147,7 @@ OrbitQuestion make_orbit_question(const AskedOrbit& asked, const Run& run, const
         if (!orbit->shift.empty()) whole.closing.shift = orbit->shift;
     }
     if (!asked.guess && !asked.from.empty() && asked.from != "start" && asked.from != "end")
-        throw InputError("--from " + shown(asked.from), {}, "it is start or end");
+        throw InputError("--from " + shown(asked.from), {}, "start or end is expected");
     question.from_end = !asked.guess && asked.from == "end";
     if (asked.guess) {
         begin_at(whole.run, asked.guess->state, has_clock);

@@ -72,7 +72,7 @@ Lap in_flight(const ReturnMap& map, const Trajectory& run, double period, double
     if (at_start && begins_in_flight(flights, run, period)) return lap_from(map, run.run.start(), period);
     std::erase_if(flights, [&](const Flight& flight) { return flight.start < from; });
     const auto flight = longest(flights, from + period);
-    if (!flight) throw NoOrbit("the run never leaves contact: a section must lie in a flight");
+    if (!flight) throw NoOrbit("the run never leaves contact, but the section must lie in free flight");
     return lap_from(map, state_at(run, 0.5 * (flight->start + flight->end)), period);
 }
 

@@ -43,7 +43,7 @@ std::string_view as_bytes(const Value& value) {
 template <class Value>
 Value take(std::string_view& bytes) {
     Value value{};
-    if (bytes.size() < sizeof value) throw std::runtime_error("a message between processes is cut off");
+    if (bytes.size() < sizeof value) throw std::runtime_error("a message between processes is incomplete");
     std::memcpy(&value, bytes.data(), sizeof value);
     bytes.remove_prefix(sizeof value);
     return value;
@@ -138,7 +138,7 @@ class Inbox final : public ChunkSource {
         out_.push_back(message(Kind::done, header + bytes));
     }
     void fail(std::exception_ptr problem) override {
-        std::string text = "has thrown something";
+        std::string text = "stopped with an unknown error";
         try {
             std::rethrow_exception(problem);
         } catch (const std::exception& error) {

@@ -27,13 +27,13 @@ ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const C
     const double T = period(run.parameters).value;
     if (closing.period.text.empty()) {
         if (is_driven())
-            throw InputError("--period", {}, "the system depends on the time: the period of its drive must be given",
-                             "--period 2*pi/om, an expression in the parameters, or period in [orbit]");
+            throw InputError("--period", {}, "the system depends on time: the period of the drive must be given",
+                             "write --period 2*pi/om, an expression in the parameters, or period in [orbit]");
         return;
     }
     if (!(T > 0.0) || !std::isfinite(T))
         throw InputError("--period " + closing.period.text, {},
-                         fmt::format("the period must be positive, but it is {} s", T), "it must be positive");
+                         fmt::format("the period must be positive, but it is {} s", T), "give a positive period");
     if (is_driven()) check_repeats();
 }
 
@@ -58,8 +58,8 @@ void ReturnMap::check_repeats() const {
             size += 1e-8 * std::abs(h);
         }
         if (!(change <= size + 1e-8))
-            throw InputError(fmt::format("--period {}", T), {}, "the forces and gaps do not repeat after that time",
-                             "it must be a period of the drive");
+            throw InputError(fmt::format("--period {}", T), {}, "the forces and gaps do not repeat with this period",
+                             "give a period of the drive");
     }
 }
 
@@ -102,7 +102,7 @@ Trajectory ReturnMap::run_of(const Lap& lap, double length) const {
         if (made.outcome.kind == Outcome::Kind::cancelled) throw NoOrbit("the search was stopped");
         return made;
     } catch (const InputError& error) {
-        throw NoOrbit(fmt::format("a run that was tried cannot start: {}", error.message));
+        throw NoOrbit(fmt::format("a trial run cannot start: {}", error.message));
     }
 }
 
@@ -113,8 +113,8 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
     Shot shot;
     shot.run = run_of(lap, lap.period);
     if (shot.run.outcome.kind != Outcome::Kind::end_time)
-        throw NoOrbit(fmt::format("a run that was tried stopped at t = {:.10g} s: {}", shot.run.end_time,
-                                  shot.run.outcome.message));
+        throw NoOrbit(
+            fmt::format("a trial run stopped at t = {:.10g} s: {}", shot.run.end_time, shot.run.outcome.message));
     if (!shot.run.phases.front().held.empty() || !shot.run.end_held.empty())
         throw NoOrbit(
             "the search reached a start in contact, but needs one in free flight; try another guess (--from, --set)");
@@ -124,9 +124,9 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
         if (k != static_cast<Index>(*parameter)) directions.col(2 * n + k).setZero();
     shot.derivatives = differentiate(shot.run, directions);
     const Derivatives& d = shot.derivatives;
-    if (!d.end) throw NoOrbit(fmt::format("no derivative here: from t = {:.10g} s on, {}", d.broken_from, d.broken));
+    if (!d.end) throw NoOrbit(fmt::format("no derivative from t = {:.10g} s on: {}", d.broken_from, d.broken));
     for (const std::string& refused : d.refused)
-        if (!refused.empty()) throw NoOrbit("no derivative here: " + refused);
+        if (!refused.empty()) throw NoOrbit("no derivative: " + refused);
     shot.M.resize(2 * n, 2 * n);
     shot.P.resize(2 * n, P);
     shot.M << d.end->q.leftCols(2 * n), d.end->v.leftCols(2 * n);
@@ -142,7 +142,7 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
     shot.F0 = rate(lap.parameters, shot.run.run.start(), {});
     shot.F1 = rate(lap.parameters, shot.run.end, {});
     shot.word = signature_of(sequence_of(shot.run), RunEnd(shot.run.outcome.kind));
-    if (!shot.M.allFinite() || !shot.P.allFinite()) throw NoOrbit("no derivative here: it is no number");
+    if (!shot.M.allFinite() || !shot.P.allFinite()) throw NoOrbit("no derivative: it is not finite");
     return shot;
 }
 
@@ -212,7 +212,8 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
         slow = size > 0.1 * last && last < 0.1 ? slow + 1 : 0;
         if (slow == 6)
             throw NoOrbit(
-                "Newton's method converges too slowly: periodic runs are not isolated here, or shrink to one at rest");
+                "Newton's method converges too slowly: the periodic orbit is not isolated, or shrinks to an "
+                "equilibrium");
         // At the rounding of the runs: no step is smaller any more.
         if (size < 1e-15 || (size < 1e-10 && size > 0.25 * last)) {
             closed = {lap, shot, round, size, {}};
@@ -243,9 +244,8 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
         same_word = same_word && shot.word == word;
     }
     throw NoOrbit(fmt::format(
-        "Newton's method does not converge: after {} steps the run misses its start by {:.2g} of its size{}", most,
-        size_of(shot),
-        same_word ? "" : ", and the sequence of events is another from step to step; another guess may help"));
+        "Newton's method does not converge: after {} steps the run misses its start by a relative {:.2g}{}", most,
+        size_of(shot), same_word ? "" : ", and the sequence of events changes from step to step; try another guess"));
 }
 
 }  // namespace achilles

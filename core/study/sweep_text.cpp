@@ -39,9 +39,10 @@ double number(std::string_view flag, std::string_view whole, std::string_view te
 std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::string_view text, double least) {
     const double value = number(flag, whole, text);
     if (!(value >= least) || value != std::floor(value))
-        throw refusal(flag, whole,
-                      fmt::format("the number of values is a whole number from {} on, not {}", least, trimmed(text)),
-                      least > 1.0 ? "one value is --set" : "");
+        throw refusal(
+            flag, whole,
+            fmt::format("the number of values must be a whole number of at least {}, not {}", least, trimmed(text)),
+            least > 1.0 ? "for one value use --set" : "");
     if (value > static_cast<double>(most_points))
         throw refusal(flag, whole, fmt::format("a sweep has at most {} points", most_points));
     return static_cast<std::uint64_t>(value);
@@ -98,14 +99,14 @@ void check_name(const SweepAxis& axis, std::string_view text, const SystemDescri
     }
     for (const double end : {axis.low, axis.high})
         if (!allows(*options.front(), end))
-            throw refusal("--over", text, fmt::format("{} must be positive, and {} is not", axis.name, end));
+            throw refusal("--over", text, fmt::format("{} must be positive, but {} is not", axis.name, end));
 }
 
 // The words behind one --over: "e 0 0.9 10" as e=0:0.9:10.
 InputError apart(const std::vector<std::string>& words) {
     std::string values;
     for (std::size_t i = 1; i < words.size(); ++i) values += (i == 1 ? "" : ":") + words[i];
-    return refusal("--over", fmt::format("{}", fmt::join(words, " ")), "an axis is one word",
+    return refusal("--over", fmt::format("{}", fmt::join(words, " ")), "an axis must be one word",
                    words.size() == 4 ? fmt::format("write --over {}={}", words[0], values) : how_to_vary);
 }
 
@@ -114,22 +115,23 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     if (equals == text.npos && first_colon != text.npos)
         throw refusal("--over", text, "an equals sign is missing",
                       fmt::format("write --over {}={}", text.substr(0, first_colon), text.substr(first_colon + 1)));
-    if (equals == text.npos) throw refusal("--over", text, "there are no values", how_to_vary);
+    if (equals == text.npos) throw refusal("--over", text, "the values are missing", how_to_vary);
     SweepAxis axis;
     axis.name = trimmed(text.substr(0, equals));
     const std::string right = with_colons(std::string(text.substr(equals + 1)));
     std::vector<std::string_view> parts = parts_of(text.substr(equals + 1));
     const bool is_decimal = parts.size() > 2 && right.find("COUNT") == right.npos;  // 0,1:1:3
     if (!right.empty() && !is_decimal)
-        throw refusal("--over", text, "the limits and the number of values have colons between them",
+        throw refusal("--over", text, "the limits and the number of values must be separated by colons",
                       fmt::format("write --over {}={}", axis.name, right));
     axis.logarithmic = trimmed(parts.front()) == "log";
     if (axis.logarithmic) parts.erase(parts.begin());
     if (parts.size() == 1 && !axis.logarithmic)
-        throw refusal("--over", text, "this is one value",
-                      fmt::format("write --over {0}=LOW:HIGH:COUNT; one value is --set {0}={1}", axis.name, parts[0]));
+        throw refusal(
+            "--over", text, "this is a single value",
+            fmt::format("write --over {0}=LOW:HIGH:COUNT; for one value use --set {0}={1}", axis.name, parts[0]));
     if (parts.size() < 2 || parts.size() > 3)
-        throw refusal("--over", text, "it has two limits and a number of values", how_to_vary);
+        throw refusal("--over", text, "two limits and a number of values are expected", how_to_vary);
     const std::string unit = unit_of(description, axis.name);
     axis.low = number("--over", text, parts[0], unit);
     axis.high = number("--over", text, parts[1], unit);
@@ -137,14 +139,14 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     const double count = parts.size() == 3 ? number("--over", text, parts[2]) : 0.0;
     const std::string ours = parts.size() == 3 ? from_steps(axis.low, axis.high, count) : "";
     if (!ours.empty() && !axis.logarithmic && (count < 2.0 || count != std::floor(count)) && axis.high < count)
-        throw refusal("--over", text, "the order is LOW:HIGH:COUNT, and not LOW:STEP:HIGH",
+        throw refusal("--over", text, "the order is LOW:HIGH:COUNT, not LOW:STEP:HIGH",
                       fmt::format("write --over {}={}", axis.name, ours));
     if (axis.low == axis.high)
         throw refusal("--over", text, fmt::format("both limits are {}: nothing varies", axis.low),
-                      "one value is --set");
+                      "for one value use --set");
     if (!std::isfinite(axis.high - axis.low)) throw refusal("--over", text, "the limits are too far apart");
     if (axis.logarithmic && !(axis.low > 0.0 && axis.high > 0.0))
-        throw refusal("--over", text, "the limits of a logarithmic axis are positive");
+        throw refusal("--over", text, "the limits of a logarithmic axis must be positive");
     if (parts.size() < 3) return axis;
     axis.count = whole_number("--over", text, parts[2], 2.0);
     return axis;
@@ -158,7 +160,7 @@ std::vector<SweepAxis> read_axes(const std::vector<std::string>& over, const Sys
     for (const std::string& text : over) {
         const SweepAxis axis = read_axis(text, description);
         for (const SweepAxis& other : axes)
-            if (other.name == axis.name) throw refusal("--over", text, fmt::format("{} is varied already", axis.name));
+            if (other.name == axis.name) throw refusal("--over", text, fmt::format("{} is already varied", axis.name));
         axes.push_back(axis);
     }
     return axes;
@@ -169,13 +171,14 @@ std::optional<RandomPoints> read_random(const AskedSweep& asked, const std::vect
         if (asked.seed) throw refusal("--seed", *asked.seed, "this needs --random N");
         for (std::size_t i = 0; i < axes.size(); ++i)
             if (axes[i].count == 0)
-                throw refusal("--over", asked.over[i], "a number of values is missing",
+                throw refusal("--over", asked.over[i], "the number of values is missing",
                               std::string(how_to_vary) + "; or draw points at random: --random N");
         return std::nullopt;
     }
     for (std::size_t i = 0; i < axes.size(); ++i)
         if (axes[i].count != 0)
-            throw refusal("--over", asked.over[i], "it has a number of values, and --random says how many points",
+            throw refusal("--over", asked.over[i],
+                          "--random gives the number of points, so the number of values is not allowed",
                           fmt::format("write --over {}={}:{}", axes[i].name, axes[i].low, axes[i].high));
     RandomPoints random;
     random.count = whole_number("--random", *asked.random, *asked.random, 1.0);
@@ -183,7 +186,7 @@ std::optional<RandomPoints> read_random(const AskedSweep& asked, const std::vect
         const std::string text = trimmed(*asked.seed);
         const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), random.seed);
         if (problem != std::errc() || end != text.data() + text.size())
-            throw refusal("--seed", *asked.seed, "a whole number from 0 on is expected");
+            throw refusal("--seed", *asked.seed, "a whole number of at least 0 is expected");
     }
     return random;
 }
@@ -214,7 +217,7 @@ std::string read_print(const std::string& text) {
         std::string right = "write";
         for (const std::string& one : several)
             right += one.find(' ') == one.npos ? fmt::format(" --print {}", one) : fmt::format(" --print \"{}\"", one);
-        throw refusal("--print", print, "each expression has a --print of its own", right);
+        throw refusal("--print", print, "each expression needs its own --print", right);
     }
     return print;
 }
@@ -232,9 +235,9 @@ std::optional<Section> read_section(const AskedSweep& asked) {
                                      : Section::Kind::zero;
     if (section.kind == Section::Kind::zero) section.expression = at;
     if (!at.empty() && section.kind == Section::Kind::zero && names_in(at).empty())
-        throw refusal("--at", at, "a number never passes zero",
+        throw refusal("--at", at, "a constant never crosses zero",
                       fmt::format("write --at \"t - {}\" for an instant, or impact, zeno, release", at));
-    if (at.empty()) throw InputError("--at", {}, "it is impact, zeno, release or an expression");
+    if (at.empty()) throw InputError("--at", {}, "impact, zeno, release or an expression is expected");
     if (!asked.after) return section;
     section.after = number("--after", *asked.after, *asked.after);
     return section;
@@ -250,7 +253,7 @@ void refuse_fixed(const SweepAxis& axis, const std::vector<std::string>& fixed) 
         if (name != axis.name && !is_option) continue;
         const std::string given = is_option ? name : "--set " + name;
         throw refusal("--over", axis.name, fmt::format("it is both varied and fixed, by {}", given),
-                      fmt::format("leave {} out, or --over {}", given, axis.name));
+                      fmt::format("remove {} or --over {}", given, axis.name));
     }
 }
 
@@ -259,7 +262,7 @@ void refuse_axis(const std::string& print, const Sweep& sweep, const SystemDescr
     for (const SweepAxis& axis : sweep.axes)
         if (axis.name == print && std::none_of(description.coordinates.begin(), description.coordinates.end(),
                                                [&](const auto& c) { return print == c.name || print == c.name + "'"; }))
-            throw refusal("--print", print, fmt::format("{} varies: it is a column already", print), "leave it out");
+            throw refusal("--print", print, fmt::format("{} is varied: it is already a column", print), "remove it");
 }
 
 }  // namespace
@@ -276,17 +279,16 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
     double points = 1.0;
     for (const SweepAxis& axis : sweep.axes) points *= sweep.random ? 1.0 : static_cast<double>(axis.count);
     if (points > static_cast<double>(most_points))
-        throw InputError("--over", {},
-                         fmt::format("these are {:.3g} points, and a sweep has at most {}", points, most_points));
+        throw InputError("--over", {}, fmt::format("too many points: {:.3g} (maximum {})", points, most_points));
     for (const std::string& text : asked.prints) {
         const std::string print = read_print(text);
         if (std::find(sweep.prints.begin(), sweep.prints.end(), print) != sweep.prints.end())
-            throw refusal("--print", print, "it is printed already");
+            throw refusal("--print", print, "it is already printed");
         refuse_axis(print, sweep, description);
         sweep.prints.push_back(print);
     }
     if (sweep.prints.empty())
-        throw InputError("--print", {}, "nothing is asked of the runs",
+        throw InputError("--print", {}, "name at least one quantity to print",
                          "write --print WHAT, as in --print \"zeno_time(2)\" or --print outcome");
     sweep.at = read_section(asked);
     return sweep;
@@ -307,7 +309,7 @@ OptionValue option_value(const Option& option, const std::string& text) {
     const OptionValue result = std::holds_alternative<int>(option.get({}))
                                    ? OptionValue(static_cast<int>(std::clamp(value, -1.0, 2e9)))
                                    : value;
-    if (!allows(option, result)) throw refusal(option.flag, text, "this is not allowed");
+    if (!allows(option, result)) throw refusal(option.flag, text, "this value is not allowed");
     return result;
 }
 

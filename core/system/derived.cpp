@@ -49,9 +49,10 @@ class Walk {
         const DerivedDescription& first = derived_[circle.front()];
         std::string way;
         for (const std::size_t i : circle) way += derived_[i].name + " -> ";
-        mistakes_.add({first.definition.at,
-                       fmt::format("the parameter '{}' follows from itself: {}{}", first.name, way, first.name),
-                       "one of them needs a number for its value"});
+        mistakes_.add(
+            {first.definition.at,
+             fmt::format("the definition of the parameter '{}' is circular: {}{}", first.name, way, first.name),
+             "give one of them a number as its value"});
     }
 
     std::vector<DerivedDescription>& derived_;

@@ -77,7 +77,7 @@ double* find_value(const SystemDescription& description, Run& run, std::string_v
 std::string why_not_settable(const SystemDescription& description, std::string_view name) {
     for (const DerivedDescription& derived : description.derived)
         if (derived.name == name)
-            return fmt::format("'{}' follows from other parameters, it is {}: set those", name,
+            return fmt::format("'{}' is a derived parameter, {}: set the parameters in this expression", name,
                                shown(derived.definition.text));
     for (const Option& option : all_options())
         if (name == option.key || name == option.command)
@@ -93,7 +93,7 @@ std::string why_not_settable(const SystemDescription& description, std::string_v
         else if (!has_names(e))
             hint += "; to vary the restitution, write restitution = \"e\" and a parameter e in the file";
     }
-    return fmt::format("'{}' is no parameter, coordinate or rate of this system{}", shown(name), hint);
+    return fmt::format("'{}' is not a parameter, coordinate or rate of this system{}", shown(name), hint);
 }
 
 std::string rate_unit(const std::string& unit) { return unit.empty() ? unit : unit + "/s"; }
@@ -132,7 +132,7 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
         const double factor = is_shown_in_degrees ? degrees(1.0) : 1.0;
         told.push_back(fmt::format(
             "{} = {} is outside its range, {:.6g} to {:.6g}{}", name, shown_value, factor * range[0], factor * range[1],
-            seems_degrees ? fmt::format(": an angle in degrees is written {} deg{}", value, unit.substr(3)) : ""));
+            seems_degrees ? fmt::format(": for an angle in degrees write {} deg{}", value, unit.substr(3)) : ""));
     };
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const CoordinateDescription& c = description.coordinates[i];
@@ -158,8 +158,8 @@ std::vector<std::string> unseen_lines(const SystemDescription& description) {
         }
         if (width > 0.0 && width < least)
             told.push_back(
-                fmt::format("line {}: a width of {} cannot be seen: it is in pixels, not in the units of "
-                            "the points; without one it is 2",
+                fmt::format("line {}: a width of {} is too small to see: widths are in pixels, not in the units of the "
+                            "points (default 2)",
                             drawing.width.at.line, width));
     }
     return told;
@@ -174,19 +174,18 @@ void refuse_several(const std::string& name, const std::string& written, const R
         const std::size_t end = std::min(written.find_first_of(",; "), equals);
         std::size_t next = written.find_first_not_of(",; ", end);
         if (end < equals && next < equals)
-            throw refuse("each value has a --set of its own",
+            throw refuse("each value needs its own --set",
                          fmt::format("write --set {}={} --set {}", name, written.substr(0, end), written.substr(next)));
     }
     const bool is_interval = written.find("..") != written.npos;
     const std::size_t colon = written.find(':');
     if (is_interval || colon != written.npos || trimmed(written).starts_with("["))
-        throw refuse(
-            fmt::format("{} is one number", name),
-            fmt::format("achilles prove takes an interval, --set {0}=LOW..HIGH, and achilles sweep a range, --over "
-                        "{0}=LOW:HIGH:COUNT",
-                        name));
+        throw refuse(fmt::format("{} takes one number", name),
+                     fmt::format("achilles prove takes an interval, --set {0}=LOW..HIGH; achilles sweep takes a range, "
+                                 "--over {0}=LOW:HIGH:COUNT",
+                                 name));
     if (written.ends_with('%'))
-        throw refuse(fmt::format("{} is a number", name),
+        throw refuse(fmt::format("{} takes a number", name),
                      fmt::format("write --set {}={}/100", name, written.substr(0, written.size() - 1)));
 }
 
@@ -208,7 +207,7 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
     if (place == nullptr) {
         const std::size_t open = name.find('(');
         if (open != name.npos && name.ends_with("(0)") && find_value(description, run, name.substr(0, open)) != nullptr)
-            throw refuse("the start is set by the name alone",
+            throw refuse("the name alone sets the start",
                          fmt::format("write --set {}={}", name.substr(0, open), written));
         throw refuse(why_not_settable(description, name));
     }
@@ -220,7 +219,7 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
         const auto apart = measured(written);
         if (!apart) throw refuse(error.what(), error.hint);
         throw refuse(
-            "a value is a number without its unit",
+            "a value must be a number without a unit",
             without_unit(*apart, name, unit_of(description, name), fmt::format("--set {}={}", name, apart->number)));
     }
     const bool is_parameter = std::any_of(description.parameters.begin(), description.parameters.end(),

@@ -44,8 +44,8 @@ void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
              fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, instead.empty() ? question : ""),
              !instead.empty() ? std::string(instead)
              : entry.value.kind == TomlValue::Kind::table && is_array_of_tables(meant)
-                 ? fmt::format("write [[{}]], once for each", meant)
-                 : fmt::format("known here: {}", listed(keys))});
+                 ? fmt::format("write one [[{}]] for each", meant)
+                 : fmt::format("known keys: {}", listed(keys))});
     }
 }
 
@@ -120,9 +120,10 @@ std::array<Text, 2> Fields::point(std::string_view key) const { return point(key
 std::array<Text, 2> Fields::point(std::string_view key, const TomlValue& value) const {
     if (value.kind != TomlValue::Kind::array) throw wrong_type(key, value, "a point [x, y]");
     if (value.items.size() != 2) {
-        throw Mistake{value.at,
-                      fmt::format("a point of '{}' in {} has two coordinates, not {}", key, where_, value.items.size()),
-                      {}};
+        throw Mistake{
+            value.at,
+            fmt::format("a point of '{}' in {} must have two coordinates, not {}", key, where_, value.items.size()),
+            {}};
     }
     return {expression(key, value.items[0]), expression(key, value.items[1])};
 }
@@ -166,8 +167,8 @@ Mistake Fields::has_unit(std::string_view key, const TomlValue& value, std::stri
     std::string hint = without_unit(typed, key, unit, right);
     if (unit.empty() && (key == "value" || key == "start"))
         hint = fmt::format("write {}, {}unit = \"{}\"{}", right, is_inline ? "" : "and ", typed.unit,
-                           is_inline ? "" : " in a line of its own");
-    return {value.text.at, fmt::format("'{}' in {} is a number without its unit", key, where_), hint};
+                           is_inline ? "" : " on a separate line");
+    return {value.text.at, fmt::format("'{}' in {} must be a number without a unit", key, where_), hint};
 }
 
 Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const {
@@ -183,10 +184,9 @@ void read_unit(const Fields& fields, std::string& unit) {
         const bool is_radian = word == "radian" || word == "radians";
         if (!is_radian && word != "deg" && word != "degree" && word != "degrees" && word != "\u00b0") continue;
         const std::string right = std::string(unit).replace(end - word.size(), word.size(), "rad");
-        const Mistake mistake{
-            fields.string("unit").at,
-            fmt::format("the unit '{}' is not {}", shown(unit), is_radian ? "known" : "one to compute in"),
-            fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
+        const Mistake mistake{fields.string("unit").at,
+                              fmt::format("the unit '{}' is not {}", shown(unit), is_radian ? "known" : "allowed"),
+                              fmt::format("write unit = \"{}\", and values in degrees as \"30 deg\"", right)};
         unit = right;
         throw mistake;
     }
@@ -200,7 +200,7 @@ std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistak
         if (entry.value.kind != TomlValue::Kind::array) {
             mistakes.add({entry.at,
                           fmt::format("'{}' must be an array of tables, not {}", key, kind_name(entry.value.kind)),
-                          fmt::format("write {}, once for each", where)});
+                          fmt::format("write one {} for each", where)});
             continue;
         }
         constexpr std::size_t most = 1000;

@@ -35,18 +35,18 @@ constexpr Kind of_texts[] = {
     {"<svg", "an SVG picture", reproduce},
     {"<?xml", "an SVG picture or other XML", reproduce},
     {"<", "HTML or XML", start_from_new},
-    {"{", "JSON, and a system file is TOML", start_from_new},
-    {"[{", "JSON, and a system file is TOML", start_from_new},
-    {"%", "Matlab or LaTeX, and a system file is TOML", start_from_new},
-    {"\\documentclass", "LaTeX, and a system file is TOML", start_from_new},
-    {"function ", "Matlab, and a system file is TOML", start_from_new},
-    {"import ", "Python, and a system file is TOML", start_from_new},
-    {"from ", "Python, and a system file is TOML", start_from_new},
-    {"def ", "Python, and a system file is TOML", start_from_new},
-    {"model ", "Modelica, and a system file is TOML", start_from_new},
-    {"package ", "Modelica, and a system file is TOML", start_from_new},
-    {"---", "YAML, and a system file is TOML", start_from_new},
-    {"```", "Markdown", "leave the lines with ``` out"},
+    {"{", "JSON, but a system file is TOML", start_from_new},
+    {"[{", "JSON, but a system file is TOML", start_from_new},
+    {"%", "Matlab or LaTeX, but a system file is TOML", start_from_new},
+    {"\\documentclass", "LaTeX, but a system file is TOML", start_from_new},
+    {"function ", "Matlab, but a system file is TOML", start_from_new},
+    {"import ", "Python, but a system file is TOML", start_from_new},
+    {"from ", "Python, but a system file is TOML", start_from_new},
+    {"def ", "Python, but a system file is TOML", start_from_new},
+    {"model ", "Modelica, but a system file is TOML", start_from_new},
+    {"package ", "Modelica, but a system file is TOML", start_from_new},
+    {"---", "YAML, but a system file is TOML", start_from_new},
+    {"```", "Markdown", "remove the lines with ```"},
 };
 
 [[noreturn]] void refuse(const std::string& name, std::string_view what, std::string_view advice) {
@@ -68,7 +68,7 @@ void refuse_other_files(std::string_view text, const std::string& name) {
     if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff") ||
         (head.size() > 3 && (head[1] == '\0' || head[0] == '\0') && head.find_first_not_of('\0') != head.npos))
         refuse(name, "text in UTF-16", "save it as UTF-8");
-    if (head.find('\0') != head.npos) refuse(name, "no text: it has zero bytes", start_from_new);
+    if (head.find('\0') != head.npos) refuse(name, "not text: it contains zero bytes", start_from_new);
     if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == text.npos) throw InputError(name, {}, "the file is empty", std::string(start_from_new));
@@ -78,7 +78,7 @@ void refuse_other_files(std::string_view text, const std::string& name) {
         const bool is_key = kind.begins.ends_with(' ') && text.substr(kind.begins.size()).starts_with("=");
         if (!is_key) refuse(name, kind.what, kind.advice);
     }
-    if (is_table(text)) refuse(name, "a table, and a system file is TOML", start_from_new);
+    if (is_table(text)) refuse(name, "a table, but a system file is TOML", start_from_new);
 }
 
 }  // namespace achilles

@@ -177,7 +177,8 @@ std::string shown(std::string_view text) {
 }
 
 std::string subnormal_parameter(std::string_view name, double value) {
-    return fmt::format("the parameter '{}' is {}: so small a number has lost digits", name, value);
+    return fmt::format("the parameter '{}' is {}: such a small number is not represented with full precision", name,
+                       value);
 }
 
 }  // namespace achilles

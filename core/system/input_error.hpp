@@ -25,6 +25,6 @@ std::string printable_json(std::string_view json);
 
 // What is wrong with a subnormal parameter, and what would be right.
 std::string subnormal_parameter(std::string_view name, double value);
-inline constexpr const char* subnormal_hint = "0, or at least 2.3e-308 in size: choose units in which it is larger";
+inline constexpr const char* subnormal_hint = "use 0, or choose units in which it is at least 2.3e-308 in size";
 
 }  // namespace achilles

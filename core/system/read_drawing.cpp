@@ -65,7 +65,7 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
         std::any_of(system.parameters.begin(), system.parameters.end(), same) ||
         std::any_of(system.derived.begin(), system.derived.end(), same)) {
         throw Mistake{own.at, fmt::format("the name '{}' is used twice", own.text),
-                      "a curve's own parameter needs a name of its own"};
+                      "choose another name for the curve parameter"};
     }
     drawing.over = own.text;
     drawing.over_limits = {fields.expression("over", over.items[1]), fields.expression("over", over.items[2])};
@@ -99,7 +99,7 @@ std::string read_color(const Fields& fields) {
     const Text color = fields.string("color");
     const bool hexadecimal = color.text.find_first_not_of("0123456789abcdefABCDEF", 1) == std::string::npos;
     if (color.text.size() == 7 && color.text[0] == '#' && hexadecimal) return color.text;
-    throw Mistake{color.at, fmt::format("'{}' is not a colour", shown(color.text)), "a colour is \"#rrggbb\""};
+    throw Mistake{color.at, fmt::format("'{}' is not a color", shown(color.text)), "write a color as \"#rrggbb\""};
 }
 
 }  // namespace

@@ -55,13 +55,13 @@ struct Reading {
 Mistake no_name(const Text& name) {
     const std::string latin = spelled_out(name.text);
     return {name.at, fmt::format("'{}' is not a name", shown(name.text)),
-            is_name(latin) ? "Greek letters have names: write " + latin
-                           : "a name is a letter, then letters, digits and underscores"};
+            is_name(latin) ? "spell out Greek letters: write " + latin
+                           : "a name is a letter followed by letters, digits and underscores"};
 }
 
 Mistake used_twice(const Text& name, const Location& other) {
     return {name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
-            fmt::format("it is the name at line {} already", other.line)};
+            fmt::format("it is already the name at line {}", other.line)};
 }
 
 // A name that nothing else has. Throws Mistake.
@@ -74,10 +74,11 @@ Text read_name(Names& names, const Fields& fields) {
     if (is_reserved(name.text) || is_of_a_gap) {
         names.complete = was_complete;
         names.excused.insert(name.text);
-        throw Mistake{name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
-                      is_of_a_gap ? "with several constraints gap_NAME and lambda_NAME are theirs: choose another name"
-                                  : "functions, t, pi, gap, lambda, energy, work, loss, power and deg keep their "
-                                    "meaning: choose another name"};
+        throw Mistake{
+            name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
+            is_of_a_gap
+                ? "with several constraints gap_NAME and lambda_NAME are reserved: choose another name"
+                : "functions, t, pi, gap, lambda, energy, work, loss, power and deg are reserved: choose another name"};
     }
     const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
     if (!is_new) throw used_twice(name, other->second);
@@ -137,7 +138,7 @@ void read_derived(Reading& reading, const Fields& fields, DerivedDescription der
     reading.system.derived.push_back(std::move(derived));
     if (const TomlValue* range = fields.find("range"))
         reading.mistakes.add({range->at,
-                              fmt::format("'{}' follows from other parameters: it has no slider and no range",
+                              fmt::format("'{}' is a derived parameter: it has no slider and no range",
                                           reading.system.derived.back().name),
                               {}});
 }
@@ -201,7 +202,7 @@ void read_constraint_name(const Fields& fields, bool is_only, std::map<std::stri
         return;
     }
     fields.need("name", {fields.table().at, "missing key 'name' in [[constraint]]",
-                         "where there are several constraints each has a name of its own"});
+                         "with several constraints each needs its own name"});
     const Text text = fields.string("name");
     if (!is_name(text.text)) throw no_name(text);
     const auto [other, is_new] = places.try_emplace(text.text, text.at);
@@ -338,7 +339,7 @@ void read_pictures(Reading& reading) {
             if (view.name.empty() || names.insert(view.name).second) return;
             const Location at = fields.find("name") ? fields.string("name").at : fields.table().at;
             throw Mistake{at, fmt::format("the name '{}' is used twice", shown(view.name)),
-                          "each [[view]] needs a name of its own"};
+                          "each [[view]] needs its own name"};
         });
     }
     if (system.views.empty()) system.views = default_views(system);
@@ -349,7 +350,7 @@ void read_pictures(Reading& reading) {
 FileReading read_tables(std::string text, std::string name) {
     const Ground ground;  // decimals are read to nearest
     if (text.size() > largest_file)
-        throw InputError(name, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
+        throw InputError(name, {}, fmt::format("the file is larger than {} MB", largest_file >> 20));
     refuse_other_files(text, name);
     FileReading read;
     SystemDescription& system = read.system;

@@ -60,7 +60,7 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
         } else if (c == '.') {
             if (++dots > most) {
                 const Location at{line, static_cast<int>(i - line_start) + 1};
-                throw InputError(name, at, fmt::format("a key of more than {} parts", most), {}, line_of(text, line));
+                throw InputError(name, at, fmt::format("a key with more than {} parts", most), {}, line_of(text, line));
             }
         } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
             dots = 0;
@@ -203,14 +203,14 @@ std::string number_meant(std::string text) {
 std::string right_quotes(const std::string& key, const std::string& value) {
     const auto count = std::count(value.begin(), value.end(), '"');
     if (value[0] == '\'' && value.find('\'', 1) < value.size() - 1)
-        return fmt::format("a text with a prime in it stands in double quotes: {} = \"{}\"", key,
+        return fmt::format("put text with a prime in double quotes: {} = \"{}\"", key,
                            shown(value.substr(1, value.size() - (value.ends_with('\'') ? 2 : 1))));
     for (const std::string_view curly : {"\u201c", "\u201d", "\u201e"})
-        if (value.find(curly) != value.npos) return "write the quotes of the keyboard, \"";
+        if (value.find(curly) != value.npos) return "write plain double quotes, \"";
     if (count == 1)
-        return fmt::format("a text ends with a quote: {} = \"{}\"", key,
+        return fmt::format("put text in two quotes: {} = \"{}\"", key,
                            shown(value.substr(value[0] == '"' ? 1 : 0, value.size() - 1)));
-    if (count > 2 && value[0] == '"') return "a quote inside a text is written \\\"";
+    if (count > 2 && value[0] == '"') return "write \\\" for a quote inside text";
     return "";
 }
 
@@ -290,29 +290,29 @@ std::string right_value(const std::string& line) {
     if (const std::string quotes = right_quotes(key, value); !quotes.empty()) return quotes;
     if (value.find('"') != std::string::npos) return "";
     if (value.find("''") != value.npos && value.find("\'\'\'") == value.npos)
-        return "a text with a prime in it stands in double quotes, \"x'\"";
+        return "put text with a prime in double quotes, \"x'\"";
     if (value[0] == '(' || (value[0] == '[' && value.find(';') != value.npos)) {
         std::string list = value;
         std::replace(list.begin(), list.end(), ';', ',');
         list.front() = '[';
         if (list.ends_with(')')) list.back() = ']';
-        return fmt::format("a list stands in square brackets: {} = {}", key, shown(list));
+        return fmt::format("put a list in square brackets: {} = {}", key, shown(list));
     }
     if (const std::size_t dots = value.find("..");
         dots != value.npos && value.find_first_not_of("+-.0123456789eE") == value.npos)
-        return fmt::format("two numbers stand in square brackets: {} = [{}, {}]", key, value.substr(0, dots),
+        return fmt::format("put two numbers in square brackets: {} = [{}, {}]", key, value.substr(0, dots),
                            value.substr(std::min(value.find_first_not_of('.', dots), value.size())));
     if (value[0] == '[' || value[0] == '{') {
         const std::vector<std::string> names = names_in(value);
         const bool has_names = std::any_of(names.begin(), names.end(), [](const std::string& name) {
             return name != "true" && name != "false" && name != "inf" && name != "nan";
         });
-        return has_names ? "names and expressions stand in quotes, at = [\"x\", \"y\"]" : "";
+        return has_names ? "put names and expressions in quotes, at = [\"x\", \"y\"]" : "";
     }
     if (const std::string number = number_meant(value); !number.empty()) {
         if (number == value) return "";
         return fmt::format("{}: {} = {}",
-                           value.find(',') < value.size() - 1 ? "decimals have a point" : "write the number alone", key,
+                           value.find(',') < value.size() - 1 ? "write a decimal point" : "write the number alone", key,
                            number);
     }
     if (const std::string percent = number_meant(trimmed(value.substr(0, value.size() - 1)));
@@ -359,14 +359,14 @@ std::string right_heading(std::string_view message, const std::string& line) {
     if (heading.starts_with("[[")) {
         const std::string single = heading.substr(1, heading.size() - 2);
         if (has_heading(single) || single == "[run]" || single == "[truncation]")
-            return fmt::format("write {} once: its keys stand in one table", shown(single));
+            return fmt::format("write {} once, with all of its keys", shown(single));
         return fmt::format("write {} each time: one above has single brackets", shown(heading));
     }
     if (heading.starts_with("[")) {
         if (has_heading("[" + heading + "]")) return fmt::format("write [{}] each time: there may be several", heading);
-        return fmt::format("its keys stand in one table: write them all under the first {}", shown(heading));
+        return fmt::format("write all keys under the first {}", shown(heading));
     }
-    return "a key stands once in a table: leave one of the two out";
+    return "a key may appear only once in a table: remove one of the two";
 }
 
 }  // namespace

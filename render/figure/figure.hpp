@@ -131,8 +131,9 @@ struct Hatch {
 struct Panel {
     std::string title;  // "(a)", or a view's name
     Axis x, y;
-    bool equal_axes = false;  // one unit is the same length on both axes
-    int rows = 1;             // of the figure's, that it stands beside
+    bool equal_axes = false;   // one unit is the same length on both axes
+    bool shows_proof = false;  // a proof has its tube and its end here: it is a plot over t
+    int rows = 1;              // of the figure's, that it stands beside
     std::vector<Band> bands;
     Hatch hatch;
     Raster raster;  // behind the curves, as is what follows until there

@@ -117,8 +117,8 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
     panel.legend = panel.legend_above = true;
     panel.curves.resize(2);
     Curve &run = panel.curves[0], &limit = panel.curves[1];
-    run.label = "the run";
-    limit.label = "what it tends to";
+    run.label = "run";
+    limit.label = "limit";
     run.stroke = limit.stroke = phase_stroke(theme, Phase::Kind::hybrid, 0, 1);
     run.stroke.dash.clear();
     limit.stroke.dash = {2.0, 2.5};

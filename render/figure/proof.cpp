@@ -262,6 +262,7 @@ Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const P
                  const Framing& framing, const Theme& theme) {
     if (!view.quantities()[0].is_time || framing.difference) return panel;
     const Ground ground;
+    panel.shows_proof = true;
     const std::size_t curves = view.quantities().size() - 1;
     const Enclosure& enclosure = proof.enclosure;
     const std::vector<Known> known = known_of(run, proof, view);
@@ -283,12 +284,16 @@ Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const P
 }
 
 void name_proof(Figure& figure, const Proof& proof, const Theme& theme) {
-    const bool is_drawn = std::any_of(figure.panels.begin(), figure.panels.end(),
-                                      [](const Panel& panel) { return !panel.tubes.empty(); });
-    const Tube tube = proof_tube(theme);
-    const std::string about = told(proof.spread), name = about.empty() ? "proved" : "proved: " + about;
-    figure.keys.push_back({is_drawn ? name : name + " (narrower than the curves)", tube});
-    if (!is_undecided(proof.enclosure)) return;
+    const auto any_panel = [&](auto&& has) { return std::any_of(figure.panels.begin(), figure.panels.end(), has); };
+    const bool is_shown = any_panel([](const Panel&panel) { return panel.shows_proof; }),
+               is_drawn = any_panel([](const Panel&panel) { return !panel.tubes.empty(); });
+    std::string name = "proved";
+    if (!is_shown && is_undecided(proof.enclosure)) name += fmt::format(" until {} s", reach_text(proof.enclosure));
+    if (const std::string about = told(proof.spread); !about.empty()) name += ": " + about;
+    if (!is_shown) name += " (tubes are drawn in plots over t only)";
+    if (is_shown && !is_drawn) name += " (narrower than the curves)";
+    figure.keys.push_back({name, proof_tube(theme)});
+    if (!is_shown || !is_undecided(proof.enclosure)) return;
     const Markers mark = undecided_mark(theme, proof.enclosure);
     figure.keys.push_back({mark.label, mark});
 }

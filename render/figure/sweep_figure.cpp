@@ -35,7 +35,7 @@ std::vector<std::size_t> columns_of(const SweepData& data, const SweepLook& look
 }
 
 [[noreturn]] void refuse(const std::string& why, const std::string& hint) {
-    throw InputError("--out", {}, why, hint + "; --csv and --hdf5 take the table as it is");
+    throw InputError("--out", {}, why, hint + "; --csv and --hdf5 write any table");
 }
 
 }  // namespace
@@ -47,21 +47,23 @@ void check_drawn(const SweepData& data, const SweepLook& look) {
     for (const std::size_t column : columns_of(data, look))
         ++(SweepColumn(data, column).is_number() ? numbers : classes);
     if (form == Form::section && (numbers != 2 || classes > 0))
-        refuse("a section without an axis is drawn as one print over another", "give --print twice, or one --over");
+        refuse("the figure of a section without an axis needs exactly two numeric quantities",
+               "give --print twice, or one --over");
     if (form == Form::diagram && axes > 1)
-        refuse(fmt::format("a section over {} axes has no figure", axes), "one --over makes a diagram of it");
+        refuse(fmt::format("a section over {} axes cannot be drawn", axes), "use one --over for a diagram");
     if (form == Form::diagram && numbers == 0)
-        refuse("a diagram of a section needs a number along its axis", "--print an expression");
+        refuse("the diagram of a section needs a numeric quantity", "use --print with an expression");
     if (axes > 2 || (axes == 0 && form != Form::section))
-        refuse(fmt::format("a sweep over {} axes has no figure", axes), "one --over is drawn as curves, two as a map");
+        refuse(fmt::format("a sweep over {} axes cannot be drawn", axes),
+               "one --over is drawn as curves, two as a map");
     if (!data.is_section() && data.sweep.count() > most_drawn_rows)
-        refuse(fmt::format("{} runs are more rows than a figure has", data.sweep.count()),
-               fmt::format("at most {} are drawn", most_drawn_rows));
+        refuse(fmt::format("{} runs are too many for a figure", data.sweep.count()),
+               fmt::format("at most {} can be drawn", most_drawn_rows));
     if (form != Form::map) return;
     for (const SweepAxis& axis : data.sweep.axes)
         if (axis.count > most_map_side)
-            refuse(fmt::format("{} values of {} are more than a map has cells along a side", axis.count, axis.name),
-                   fmt::format("at most {} are drawn", most_map_side));
+            refuse(fmt::format("{} values of {} are too many for one side of a map", axis.count, axis.name),
+                   fmt::format("at most {} can be drawn", most_map_side));
 }
 
 std::vector<std::string> left_out(const SweepData& data, const SweepLook& look) {

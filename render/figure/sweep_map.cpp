@@ -127,8 +127,8 @@ NumberColors::NumberColors(const SweepColumn& column, const SweepLook& look) : t
     set_limits(bar.axis, range, 0.0);
     if (!bar.axis.ticks.empty()) bar.colors = table;
     const std::array<double, 2> all = column.range();
-    if (all[0] < bar.axis.low) bar.axis.label += fmt::format(", least {:.4g}", all[0]);
-    if (all[1] > bar.axis.high) bar.axis.label += fmt::format(", greatest {:.4g}", all[1]);
+    if (all[0] < bar.axis.low) bar.axis.label += fmt::format(", min {:.4g}", all[0]);
+    if (all[1] > bar.axis.high) bar.axis.label += fmt::format(", max {:.4g}", all[1]);
 }
 
 Color NumberColors::operator()(double value) const {

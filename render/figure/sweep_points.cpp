@@ -42,7 +42,7 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
     const bool are_few = points.size() <= most_markers;
     if (are_few) markers.points = std::move(points);
     if (!what.empty()) {
-        markers.label = are_few ? what : what + "; stronger where there are more (logarithm)";
+        markers.label = are_few ? what : what + "; color strength: number of points (log scale)";
         panel.legend = panel.legend_above = true;
     }
     if (!are_few) panel.dots = {std::move(points), {}, color, 0, 0.0, 0.0};

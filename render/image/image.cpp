@@ -53,7 +53,7 @@ std::string png_bytes(const Image& image, const Compression& compression) {
     const bool opaque = image.alpha.empty();
     if (image.width < 1 || image.height < 1 || image.rgb.size() != bytes(image) ||
         (!opaque && 3 * image.alpha.size() != image.rgb.size()))
-        throw std::runtime_error("an image without pixels cannot become a PNG file");
+        throw std::runtime_error("an image without pixels cannot be written as a PNG file");
     stbi_write_png_compression_level = compression.level;
     stbi_write_force_png_filter = compression.filter;
     std::string out;

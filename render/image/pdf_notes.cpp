@@ -81,7 +81,7 @@ std::string utf8_of_utf16(std::string_view bytes) {
 
 // A string in parentheses, on one line and in ASCII: readable where the text is.
 std::string written(std::string_view text) {
-    if (!is_utf8(text)) throw std::runtime_error("a text that is no UTF-8 cannot stand in a PDF file");
+    if (!is_utf8(text)) throw std::runtime_error("text that is not UTF-8 cannot be stored in a PDF file");
     std::string result = "(";
     for (const char c : is_ascii(text) ? std::string(text) : utf16(text)) {
         if (c == '(' || c == ')' || c == '\\')
@@ -153,7 +153,7 @@ std::string keyword_of(std::string_view name) {
 std::string_view after_last(std::string_view text, std::string_view word, std::string_view end) {
     const std::size_t at = text.rfind(word);
     const std::size_t stop = at == std::string_view::npos ? at : text.find(end, at + word.size());
-    if (stop == std::string_view::npos) throw std::runtime_error("the PDF is of a form that notes cannot be added to");
+    if (stop == std::string_view::npos) throw std::runtime_error("notes cannot be added to this form of PDF file");
     return text.substr(at + word.size(), stop - at - word.size());
 }
 
@@ -200,7 +200,7 @@ Notes pdf_notes(std::string_view pdf) {
     pdf.remove_prefix(begin + begin_notes.size());
     while (!pdf.starts_with(end_notes)) {
         const std::size_t end = pdf.find('\n');
-        if (end == std::string_view::npos) throw std::runtime_error("its notes are cut off");
+        if (end == std::string_view::npos) throw std::runtime_error("its notes are incomplete");
         const std::string_view line = pdf.substr(0, end);
         const std::size_t space = line.find(' ');
         if (!line.starts_with('/') || space == std::string_view::npos || notes.size() == most_notes) throw damaged();

@@ -53,14 +53,14 @@ bool is_text(std::string_view text) { return text.find('\0') == std::string_view
 std::size_t header_end(std::string_view png) {
     const std::size_t end = signature.size() + header_size;
     if (png.size() < end || png.substr(0, signature.size()) != signature)
-        throw std::runtime_error("notes need a PNG file to stand in");
+        throw std::runtime_error("notes can be added only to a PNG file");
     return end;
 }
 
 std::string chunk(const Note& note) {
     if (!is_keyword(note.keyword))
-        throw std::runtime_error("'" + note.keyword + "' is no keyword for a note in a PNG file");
-    if (!is_text(note.text)) throw std::runtime_error("only UTF-8 text without zero bytes can stand in a PNG file");
+        throw std::runtime_error("'" + note.keyword + "' is not a valid keyword of a note in a PNG file");
+    if (!is_text(note.text)) throw std::runtime_error("only UTF-8 text without zero bytes can be stored in a PNG file");
     const std::string_view zeros("\0\0\0\0\0", 5);
     // iTXt: keyword, end, not compressed (2 bytes), no language, no translated keyword, text.
     const std::string body = is_ascii(note.text) ? "tEXt" + note.keyword + std::string(zeros.substr(0, 1)) + note.text
@@ -132,16 +132,16 @@ std::string with_notes(std::string_view png, const Notes& notes) {
 
 // libpng would be longer: it has to be led past the pixels, which it keeps a copy of, and kept from unpacking.
 Notes png_notes(std::string_view png) {
-    if (png.substr(0, signature.size()) != signature) throw std::runtime_error("this is no PNG file");
+    if (png.substr(0, signature.size()) != signature) throw std::runtime_error("this is not a PNG file");
     png.remove_prefix(signature.size());
     Notes notes;
     for (;;) {
-        if (png.size() < 12) throw std::runtime_error("the PNG file is cut off");
+        if (png.size() < 12) throw std::runtime_error("the PNG file is incomplete");
         const std::size_t length = big_endian(png);
-        if (length > png.size() - 12) throw std::runtime_error("the PNG file is cut off");
+        if (length > png.size() - 12) throw std::runtime_error("the PNG file is incomplete");
         const std::string_view body = png.substr(4, 4 + length), name = body.substr(0, 4);
         if (check_sum(body) != big_endian(png.substr(8 + length)))
-            throw std::runtime_error("the PNG file is damaged: a check sum is wrong");
+            throw std::runtime_error("the PNG file is damaged: a checksum is wrong");
         if (name == "IEND") return notes;
         read_note(name, body.substr(4), notes);
         png.remove_prefix(12 + length);

@@ -25,7 +25,7 @@ std::string unescaped(std::string_view text) {
         if (c == '&') {
             for (const auto& [plain, entity] : entities)
                 if (text.substr(0, entity.size()) == entity) c = plain, taken = entity;
-            if (taken.size() == 1) throw std::runtime_error("its notes are damaged: an entity that was never written");
+            if (taken.size() == 1) throw std::runtime_error("its notes are damaged: an unknown entity");
         }
         result += c;
         text.remove_prefix(taken.size());
@@ -36,7 +36,7 @@ std::string unescaped(std::string_view text) {
 // What stands before `mark`, which is taken off together with it.
 std::string_view take_until(std::string_view& text, std::string_view mark) {
     const std::size_t end = text.find(mark);
-    if (end == std::string_view::npos) throw std::runtime_error("its notes are cut off");
+    if (end == std::string_view::npos) throw std::runtime_error("its notes are incomplete");
     const std::string_view taken = text.substr(0, end);
     text.remove_prefix(end + mark.size());
     return taken;
@@ -46,12 +46,12 @@ std::string_view take_until(std::string_view& text, std::string_view mark) {
 
 std::string xml_escaped(std::string_view text) {
     // A sign of its own for broken UTF-8 would come back as another text.
-    if (!is_utf8(text)) throw std::runtime_error("a text that is no UTF-8 cannot stand in an SVG file");
+    if (!is_utf8(text)) throw std::runtime_error("text that is not UTF-8 cannot be stored in an SVG file");
     std::string result;
     for (const char c : text) {
         const auto code = static_cast<unsigned char>(c);
         if (code < 0x20 && c != '\t' && c != '\n' && c != '\r')
-            throw std::runtime_error("a control character cannot stand in an SVG file");
+            throw std::runtime_error("a control character cannot be stored in an SVG file");
         std::string_view written(&c, 1);
         for (const auto& [plain, entity] : entities)
             if (c == plain) written = entity;
@@ -80,7 +80,7 @@ Notes xml_notes_of(std::string_view text) {
         note.keyword = unescaped(take_until(text, end_keyword));
         note.text = unescaped(take_until(text, end_note));
     }
-    if (text.substr(0, end_notes.size()) != end_notes) throw std::runtime_error("its notes are cut off");
+    if (text.substr(0, end_notes.size()) != end_notes) throw std::runtime_error("its notes are incomplete");
     return notes;
 }
 

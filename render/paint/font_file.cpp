@@ -21,7 +21,7 @@ struct FontFile::Face {
 FontFile::FontFile(const std::filesystem::path& fonts) : face_(std::make_unique<Face>()) {
     const std::string file = (fonts / "DejaVuSans.ttf").string();
     if (FT_Init_FreeType(&face_->library) != 0 || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0)
-        throw std::runtime_error(file + ": the font cannot be read; the package fonts-dejavu-core has it");
+        throw std::runtime_error(file + ": the font cannot be read; install the package fonts-dejavu-core");
     // A line is as high as the font's ascent and descent together: so do painters of interfaces count.
     const FT_Face face = face_->face;
     const double height = face->ascender - face->descender;

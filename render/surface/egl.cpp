@@ -54,7 +54,7 @@ const Egl& egl() {
         library.find("eglDestroyContext", egl.destroy_context);
         library.find("eglMakeCurrent", egl.make_current);
         const auto display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.address("eglGetPlatformDisplayEXT"));
-        if (display == nullptr) throw std::runtime_error("libEGL.so.1 knows no platforms");
+        if (display == nullptr) throw std::runtime_error("libEGL.so.1 does not support platforms");
         // A graphics card would draw other bytes.
         const Variable software("LIBGL_ALWAYS_SOFTWARE", "true");
         egl.display = display(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);

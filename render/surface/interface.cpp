@@ -81,7 +81,7 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     // ImGui itself aborts on a missing font.
     for (const char* name : {proportional, monospaced})
         if (const auto file = options.fonts / name; !std::filesystem::is_regular_file(file))
-            throw std::runtime_error(file.string() + ": the font is missing; the package fonts-dejavu-core has it");
+            throw std::runtime_error(file.string() + ": the font is missing; install the package fonts-dejavu-core");
     if (!(options.scale >= 0.1 && options.scale <= 20.0)) throw std::runtime_error("the scale must be 0.1 to 20");
     IMGUI_CHECKVERSION();
     ImGuiContext* before = ImGui::GetCurrentContext();

@@ -44,8 +44,7 @@ MemoryContext memory_context() {
         return egl_context();
     } catch (const std::runtime_error& error) {
         throw std::runtime_error("drawing without a window needs OSMesa or EGL, but " + missing + ", and " +
-                                 error.what() +
-                                 "\nthe package libosmesa6 has the first, libegl1 with libgl1-mesa-dri the second");
+                                 error.what() + "\ninstall the package libosmesa6, or libegl1 and libgl1-mesa-dri");
     }
 }
 

@@ -149,7 +149,7 @@ struct Window::Implementation {
 GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const std::string& title) {
     if (!glfw_works())
         throw std::runtime_error("no window can be opened: " +
-                                 (display_is_named() ? last_glfw_error() : "the variable DISPLAY names no display"));
+                                 (display_is_named() ? last_glfw_error() : "the variable DISPLAY is not set"));
     glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);

@@ -122,7 +122,7 @@ TEST(Browser, of_saving_shows_the_folder_that_is_written_to) {
     hands.press_with_control('A');
     hands.type(tree.at("systems/new"));
     hands.rest(2);
-    EXPECT_TRUE(hands.says("goes to"));
+    EXPECT_TRUE(hands.says("writes to"));
     EXPECT_EQ(names(hands.state.browser.all), (Names{"old/", "mine.toml"}));
     hands.press(key::enter);
     EXPECT_TRUE(fs::exists(tree.path() / "systems/new.toml")) << hands.session.error();

@@ -21,8 +21,8 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     ASSERT_EQ(lines.size(), 5u);
     EXPECT_EQ(lines[0], "Zeno time τ∞ in [2.72514146, 2.72514286]");
     EXPECT_EQ(lines[1].rfind("cut to τ∞: q moves < ", 0), 0u) << lines[1];
-    EXPECT_EQ(lines[2].rfind("drawn until τ∞: q within ", 0), 0u) << lines[2];
-    EXPECT_EQ(lines[3].rfind("drawn at τ∞: q within ", 0), 0u) << lines[3];
+    EXPECT_EQ(lines[2].rfind("error until τ∞: q ≤ ", 0), 0u) << lines[2];
+    EXPECT_EQ(lines[3].rfind("error at τ∞: q ≤ ", 0), 0u) << lines[3];
     EXPECT_EQ(lines[4].rfind("gap'' from −8.5", 0), 0u) << lines[4];
     session.apply(command::UseConditions{Conditions::paper});
     EXPECT_EQ(certificate_lines(first_zeno(session.trajectory())).size(),

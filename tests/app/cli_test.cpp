@@ -124,7 +124,7 @@ TEST(Cli, SaysWhatProofsAssume) {
     const Folder folder;
     const std::string out = folder.run("simulate ball_on_sine --end 3 --verbose").out;
     for (const char* words :
-         {"IEEE double arithmetic in round-to-nearest", "elementary functions within 2 ulp", "4 for sinh, cosh, tanh"})
+         {"IEEE double arithmetic, rounded to nearest", "elementary functions within 2 ulp", "4 for sinh, cosh, tanh"})
         EXPECT_NE(out.find(words), std::string::npos) << out;
     const json assumed = json::parse(folder.run("simulate ball_on_sine --end 3 --json -").out)["assumed"];
     EXPECT_EQ(assumed["ulps"], 2);
@@ -161,7 +161,7 @@ TEST(Cli, TheMemoryOfARunIsLimited) {
     const std::string run = "simulate ball_in_bowl --end 1e8 --max-steps 1000000000 ";
     const Answer own = folder.run(run + "--memory 2e6 --json a.json");
     EXPECT_EQ(own.status, 3);
-    EXPECT_NE(own.err.find("take the 2 MB that the run may have"), std::string::npos) << own.err;
+    EXPECT_NE(own.err.find("use all of the 2 MB allowed"), std::string::npos) << own.err;
     const json root = json::parse(content(folder.path() / "a.json"));
     EXPECT_EQ(root["outcome"]["kind"], "out of memory");
     EXPECT_EQ(root["options"]["memory"], 2e6);
@@ -169,7 +169,8 @@ TEST(Cli, TheMemoryOfARunIsLimited) {
     const Answer systems = folder.run(run + "--memory 1e12", "ulimit -v 300000;");
     EXPECT_EQ(systems.status, 3);
     EXPECT_NE(systems.out.find(" s of 100000000 s: out of memory\n"), std::string::npos) << systems.out;
-    EXPECT_NE(systems.out.find("and the system has no memory for more. Try"), std::string::npos) << systems.out;
+    EXPECT_NE(systems.out.find("and no more memory is available on this machine. Try"), std::string::npos)
+        << systems.out;
     EXPECT_EQ(systems.err, "achilles: the run stopped early: out of memory\n");
 #endif
 }

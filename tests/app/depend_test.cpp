@@ -96,15 +96,15 @@ TEST(Depend, shows_angles_as_the_sliders_do) {
 
 TEST(Depend, says_why_there_is_none) {
     Session session = asking("ball_on_sine", "work");
-    EXPECT_EQ(session.influences()->quantity.refused, "derivatives of work are not carried");
+    EXPECT_EQ(session.influences()->quantity.refused, "derivatives of work are not computed");
     session.apply(command::ShowDependence{"zeno_time(7)"});
     session.settle();
-    EXPECT_EQ(session.influences()->quantity.refused, "it does not exist in this run");
+    EXPECT_EQ(session.influences()->quantity.refused, "the quantity does not exist in this run");
     Slider slider;
     slider.varies = "g";
     put_bar(session, slider);
     EXPECT_FALSE(slider.bar);
-    EXPECT_EQ(slider.bar_about, "no derivative here: it does not exist in this run");
+    EXPECT_EQ(slider.bar_about, "no derivative here: the quantity does not exist in this run");
     session.apply(command::UseReinitialization{Reinitialization::euclidean});
     session.settle();
     EXPECT_EQ(session.influences(), nullptr);
@@ -119,7 +119,7 @@ TEST(Depend, says_why_there_is_none) {
     resting.apply(command::Start{{{"y", 0.06}, {"x'", 0.5}}});
     resting.apply(command::ShowDependence{"x"});
     resting.settle();
-    EXPECT_NE(resting.influences()->find("y")->reason.find("leaves the surface"), std::string::npos);
+    EXPECT_NE(resting.influences()->find("y")->reason.find("changes the gap"), std::string::npos);
     EXPECT_TRUE(resting.influences()->find("x'")->reason.empty());
 }
 
@@ -284,13 +284,13 @@ TEST(DependPanel, says_that_what_it_shows_is_old) {
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();
     hands.rest(2);
-    EXPECT_FALSE(hands.says("of the run before"));
-    EXPECT_TRUE(hands.says("bars: its change over each whole slider"));
+    EXPECT_FALSE(hands.says("from the previous run"));
+    EXPECT_TRUE(hands.says("bars: its linear change over each whole slider"));
     hands.session.set_patience(0.0);
     test::ask_for_a_long_run(hands.session);
     hands.rest(2);
     EXPECT_NE(hands.session.under_way(), nullptr);
-    EXPECT_TRUE(hands.says("of the run before"));
+    EXPECT_TRUE(hands.says("from the previous run"));
     Slider slider;
     slider.varies = "g";
     put_bar(hands.session, slider);

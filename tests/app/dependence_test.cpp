@@ -29,7 +29,7 @@ TEST(Derivatives, OfTheCommandLineAreThoseOfTheContract) {
     EXPECT_NEAR(of[0]["derivatives"][5].get<double>(), -30.31330158465276, 1e-8);
     EXPECT_NEAR(of[1]["derivatives"][5].get<double>(), 6.123710783881202 + 2.0, 1e-9);
     EXPECT_TRUE(of[2]["derivatives"][0].is_null());
-    EXPECT_EQ(of[2]["reason"], "derivatives of work are not carried");
+    EXPECT_EQ(of[2]["reason"], "derivatives of work are not computed");
     EXPECT_GT(run["derivatives"]["margins"]["a_inf"].get<double>(), 1.0);
     EXPECT_TRUE(run["derivatives"]["margins"]["gap_minimum"].is_null());
     EXPECT_TRUE(run["derivatives"]["none_from"].is_null());
@@ -53,12 +53,12 @@ TEST(Derivatives, AreInTheSummary) {
     const Answer answer = folder.run("simulate ball_on_sine --derivatives --of \"impact_speed(1)\"");
     ASSERT_EQ(answer.status, 0) << answer.err;
     for (const char* told : {"zeno_time(1): x -4.02709", "x at the end: x -4.947", "impact_speed(1) = 0.456",
-                             "least -hddot at a Zeno point 1.02", "Certificates do not cover derivatives."})
+                             "smallest -hddot at a Zeno point 1.02", "Certificates do not cover derivatives."})
         EXPECT_NE(answer.out.find(told), std::string::npos) << told << "\n" << answer.out;
     const Answer stop = folder.run("simulate box_dropped_flat --derivatives");
-    EXPECT_NE(stop.out.find("no derivative here: several contacts land at once"), std::string::npos) << stop.out;
+    EXPECT_NE(stop.out.find("no derivative: several contacts close at the same time"), std::string::npos) << stop.out;
     const Answer other = folder.run("simulate ball_on_sine --method dopri5 --derivatives");
-    EXPECT_NE(other.out.find("beside the steps of dopri5"), std::string::npos) << other.out;
+    EXPECT_NE(other.out.find("from the start of each dopri5 step"), std::string::npos) << other.out;
 }
 
 TEST(Derivatives, RefuseWhatCannotBe) {

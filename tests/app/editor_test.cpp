@@ -387,7 +387,7 @@ TEST(Editor, TellsWhatTheRunHasOtherwiseThanTheText) {
     for (const auto& [name, value] : {std::pair{"m", 2.0}, {"g", 2.0}, {"e", 0.6}, {"x", 1.0}, {"y", 3.0}, {"x'", 1.0}})
         hands.session.apply(command::Set{name, value});
     hands.rest(2);
-    EXPECT_TRUE(hands.says("and 2 more: put all back")) << hands.letters();
+    EXPECT_TRUE(hands.says("and 2 more: reset all")) << hands.letters();
     hands.click("reset all");
     EXPECT_EQ(hands.session.run(), hands.session.file_run());
 }

@@ -15,8 +15,8 @@ TEST(EnergyBar, is_shown_by_a_command_and_from_the_menu) {
     hands.click("menu Energy");
     EXPECT_EQ(hands.all, (std::vector<Command>{command::Show{"energy", true}}));
     hands.rest(2);
-    EXPECT_TRUE(hands.says("impacts took"));
-    EXPECT_FALSE(hands.says("forces did")) << "only gravity acts";
+    EXPECT_TRUE(hands.says("impact loss"));
+    EXPECT_FALSE(hands.says("work done")) << "only gravity acts";
     EXPECT_TRUE(hands.state.places.contains("energy course"));
 }
 
@@ -25,7 +25,7 @@ TEST(EnergyBar, goes_where_it_is_pressed) {
     Hands hands("driven_double_pendulum", test::surface(1280, 900));
     hands.session.apply(parse_command("show energy"));
     hands.rest(2);
-    EXPECT_TRUE(hands.says("forces did"));
+    EXPECT_TRUE(hands.says("work done"));
     const Rectangle course = hands.state.places.at("energy course"), player = hands.state.places.at("timeline");
     EXPECT_NEAR(course.x + 0.5 * course.width, player.x + 0.5 * player.width, 1.0);
     hands.click("energy course", 0.5);

@@ -63,7 +63,7 @@ TEST(Equations, of_the_ball) {
     expect_lines(text_of(sheet_of("ball_on_sine")),
                  {"Zeno condition: h\u0308 < 0 where h = h\u0307 = 0", " = x\u0307^2 sin x \u2212 g < 0",
                   "Motion: M q\u0308 + b = 0", "mass matrix", "M [ m  0 ] [ 0  m ]", "b [ 0 ] [ m g ]", "gap",
-                  "h = y \u2212 sin x", "rate of the gap", "contact force while it is held"});
+                  "h = y \u2212 sin x", "rate of the gap", "contact force while held"});
 }
 
 TEST(Equations, of_the_pendulum) {
@@ -88,7 +88,7 @@ TEST(Equations, of_several_contacts) {
     const EquationSheet sheet = sheet_of("ball_in_sloped_box");
     const std::string text = text_of(sheet);
     EXPECT_NE(text.find("Zeno condition of "), std::string::npos) << text;
-    EXPECT_NE(text.find(" is held: h\u0308 < 0 where h = h\u0307 = 0 of both"), std::string::npos) << text;
+    EXPECT_NE(text.find(" is held: h\u0308 < 0 where h = h\u0307 = 0 for both"), std::string::npos) << text;
     EXPECT_GE(sheet.conditions.size(), 4U);
     for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.held.contains(condition.contact));
 }

@@ -54,8 +54,7 @@ TEST(Film, WithoutFfmpegIsRefused) {
         folder.run(short_film + "film.mp4", "PATH=/usr/bin/none:$(dirname $(command -v timeout)) ");
     if (fs::exists("/usr/bin/ffmpeg") || fs::exists("/bin/ffmpeg")) GTEST_SKIP() << "it stands beside timeout";
     EXPECT_EQ(answer.status, 2);
-    EXPECT_EQ(answer.err.rfind("--out film.mp4: ffmpeg, which joins the frames of a film, is not installed\n", 0), 0U)
-        << answer.err;
+    EXPECT_EQ(answer.err.rfind("--out film.mp4: a film needs ffmpeg, which is not installed\n", 0), 0U) << answer.err;
     EXPECT_NE(answer.err.find("achilles frames ball_on_sine --out film.frames"), std::string::npos) << answer.err;
     EXPECT_TRUE(folder.files().empty());
 }
@@ -66,7 +65,8 @@ TEST(Film, HasAnEndingThatCanBeMade) {
         const test::Answer answer = studio.make(short_film + name);
         const std::string ending = fs::path(name).extension().string().substr(1);
         EXPECT_EQ(answer.status, 2) << name;
-        EXPECT_EQ(answer.err.find("--out " + name + ": a film ends in .mp4 or .gif, and this name ends in ."), 0U)
+        EXPECT_EQ(
+            answer.err.find("--out " + name + ": the name of a film ends in .mp4 or .gif, but this one ends in ."), 0U)
             << answer.err;
         EXPECT_FALSE(fs::exists(studio.path() / name));
     }
@@ -164,7 +164,7 @@ TEST(Film, of_a_session_is_checked_before_it_is_begun) {
     }
     folder.put("film.mp4", "there");
     session.apply(parse_command("export " + file));
-    EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+    EXPECT_NE(session.error().find("the file already exists"), std::string::npos);
 }
 
 }  // namespace

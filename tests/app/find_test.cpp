@@ -200,10 +200,10 @@ TEST(Palette, keeps_what_is_refused_and_says_why) {
     hands.rest(3);
     hands.press(key::enter);  // no command yet
     EXPECT_TRUE(hands.all.empty());
-    EXPECT_TRUE(hands.says("'grid' needs more"));
+    EXPECT_TRUE(hands.says("'grid' needs more arguments"));
     EXPECT_TRUE(hands.says("write: grid COLUMNS ROWS"));
     hands.type(" 77");
-    EXPECT_FALSE(hands.says("'grid' needs more")) << "another line is another matter";
+    EXPECT_FALSE(hands.says("'grid' needs more arguments")) << "another line is another matter";
     hands.press(key::enter);  // a command that the session refuses
     EXPECT_FALSE(hands.session.error().empty());
     EXPECT_TRUE(hands.session.scene().shows("palette"));

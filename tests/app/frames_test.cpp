@@ -84,7 +84,7 @@ TEST(Frames, GoOnWhereARunWasInterrupted) {
     const Answer answer = folder.run(short_film + "--out film");
     EXPECT_EQ(answer.status, 0) << answer.err;
     EXPECT_NE(answer.out.find("6 frames of 320x200 in "), std::string::npos);
-    EXPECT_NE(answer.out.find(" (3 were there)\n"), std::string::npos) << answer.out;
+    EXPECT_NE(answer.out.find(" (3 already existed)\n"), std::string::npos) << answer.out;
     EXPECT_EQ(fs::last_write_time(film / "frame_00003.png"), kept);
     EXPECT_EQ(content(film / "notes.txt"), "mine");
     fs::remove(film / "notes.txt");
@@ -98,7 +98,7 @@ TEST(Frames, OfAnotherRunAreNeitherMixedNorLost) {
     const std::string film = "frames ./mine.toml --end 2 --fps 2.5 --size 320x200 --scale 0.5 --view height ";
     ASSERT_EQ(folder.run(film + "--out film").status, 0);
     const auto before = contents(folder.path() / "film");
-    const std::string hint = "\ndraw into another folder, or add --overwrite to replace what is there\n";
+    const std::string hint = "\ndraw into another folder, or add --overwrite to replace this file\n";
 
     const Answer other = folder.run(film + "--set e=0.4 --out film");
     EXPECT_EQ(other.status, 2);
@@ -124,12 +124,12 @@ TEST(Frames, OfAnotherRunAreNeitherMixedNorLost) {
     // The same without the word: they are of the same run.
     const Answer again = folder.run(half + "--out film");
     EXPECT_EQ(again.status, 0) << again.err;
-    EXPECT_NE(again.out.find("(3 were there)"), std::string::npos);
+    EXPECT_NE(again.out.find("(3 already existed)"), std::string::npos);
 
     folder.put("film/frame_00001.png", "my cat");
     const Answer cat = folder.run(half + "--out film");
     EXPECT_EQ(cat.status, 2);
-    EXPECT_EQ(cat.err, "film/frame_00001.png: this is no picture of an animation" + hint);
+    EXPECT_EQ(cat.err, "film/frame_00001.png: this is not a frame of an animation" + hint);
     EXPECT_EQ(content(folder.path() / "film/frame_00001.png"), "my cat");
 }
 
@@ -152,23 +152,23 @@ TEST(Frames, KnowWhereTheyComeFrom) {
 TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
     const Folder folder;
     const std::pair<std::string, std::string> cases[] = {
-        {"--out film --fps 0", "--fps 0: this must lie in [0.001, 1000]\n"},
-        {"--out film --fps x", "--fps x: 'x' is not a finite number: no name but pi has a value here\n"},
-        {"--out film --speed -1", "--speed -1: this must lie in [1e-09, 1000000000]\n"},
-        {"--out film --camera fixed", "--camera fixed: a camera is fit, follow or zeno\n"},
-        {"--out film --jobs 1.5", "--jobs 1.5: 1 to 256 processes can draw\n"},
-        {"--out film --jobs 0", "--jobs 0: 1 to 256 processes can draw\n"},
+        {"--out film --fps 0", "--fps 0: the value must lie in [0.001, 1000]\n"},
+        {"--out film --fps x", "--fps x: 'x' is not a finite number: pi is the only name allowed here\n"},
+        {"--out film --speed -1", "--speed -1: the value must lie in [1e-09, 1000000000]\n"},
+        {"--out film --camera fixed", "--camera fixed: the camera must be fit, follow or zeno\n"},
+        {"--out film --jobs 1.5", "--jobs 1.5: the number of processes must be a whole number from 1 to 256\n"},
+        {"--out film --jobs 0", "--jobs 0: the number of processes must be a whole number from 1 to 256\n"},
         {"--out film --speed 0.001 --fps 60",
-         "achilles: these would be more than 100000 frames\n"
-         "fewer a second (--fps), a higher --speed or an earlier --end make it less\n"},
+         "achilles: this would take more than 100000 frames\nuse a lower --fps, a higher --speed or an earlier "
+         "--end\n"},
         {"--out film --view heigt",
          "--view heigt: this system has no view 'heigt'; did you mean 'height'?\nits views are: horizontal, height, "
          "gap, path, horizontal rate, contact force\n"},
         {"--out film --size 17000x10",
          "--size 17000x10: this is not a size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to "
          "16384\n"},
-        {"--out /dev/null/film", "/dev/null/film: the folder cannot be made: Not a directory\n"},
-        {"--out /proc/film", "/proc/film: the folder cannot be made: No such file or directory\n"},
+        {"--out /dev/null/film", "/dev/null/film: the folder cannot be created: Not a directory\n"},
+        {"--out /proc/film", "/proc/film: the folder cannot be created: No such file or directory\n"},
         {"", "achilles: --out is missing; write --out F.mp4\n"},
     };
     for (const auto& [options, message] : cases) {
@@ -180,7 +180,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
     }
     // A file in the way of the folder; libraries that are missing, which only the drawing processes notice.
     folder.put("film", "mine");
-    EXPECT_EQ(folder.run(short_film + "--out film").err, "film: the folder cannot be made: Not a directory\n");
+    EXPECT_EQ(folder.run(short_film + "--out film").err, "film: the folder cannot be created: Not a directory\n");
     const Folder hidden;
     hidden.put("libOSMesa.so.8", "");
     hidden.put("libEGL.so.1", "");
@@ -304,8 +304,8 @@ TEST(Frames, AKilledProcessIsToldAndLeavesWholePictures) {
     ASSERT_EQ(::kill(drawing.child(), SIGKILL), 0);
     EXPECT_EQ(WEXITSTATUS(drawing.wait()), 3);
     const std::string err = content(folder.path() / "err");
-    EXPECT_EQ(err.rfind("achilles: a process that drew was ended by signal 9: ", 0), 0u) << err;
-    EXPECT_NE(err.find(" of 161 frames are missing\nthe same command draws those that are\n"), std::string::npos)
+    EXPECT_EQ(err.rfind("achilles: a drawing process was ended by signal 9: ", 0), 0u) << err;
+    EXPECT_NE(err.find(" of 161 frames are missing\nrun the same command again to draw them\n"), std::string::npos)
         << err;
     expect_completed(folder);
 }

@@ -260,7 +260,7 @@ TEST(Hand, copies_the_command_line) {
     Hands hands("ball_on_sine");
     hands.click("set e", 0.3);
     hands.click("menu File");
-    hands.click("menu Copy command of the run");
+    hands.click("menu Copy run command");
     hands.rest(2);
     EXPECT_EQ(hands.session.copies(), 1);
     EXPECT_EQ(hands.state.copies, 1);

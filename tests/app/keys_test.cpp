@@ -132,7 +132,7 @@ TEST(Keys, OfANumberChooseNoFileBelowIt) {
     ExportDialog dialog;
     Hands& hands = dialog.hands;
     hands.click("take page");
-    hands.click("take a column of two (85 mm)");
+    hands.click("take one of two columns (85 mm)");
     hands.click("take field width");
     EXPECT_EQ(dialog.row_after_down(), -1);
     hands.press(key::enter);

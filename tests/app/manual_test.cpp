@@ -154,7 +154,7 @@ TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {
     const Answer written = folder.run("new mine");
     EXPECT_EQ(written.status, 0) << written.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"mine.toml"});
-    EXPECT_NE(written.out.find("./mine.toml runs it"), std::string::npos) << written.out;
+    EXPECT_NE(written.out.find("./mine.toml\n"), std::string::npos) << written.out;
     const Answer run = folder.run("simulate ./mine.toml");
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.err, "");
@@ -166,7 +166,7 @@ TEST(Skeleton, HasAName) {
     EXPECT_EQ(folder.run("new ''").status, 2);
     EXPECT_TRUE(folder.files().empty());
     const Answer spaced = folder.run("new 'a b'");
-    EXPECT_NE(spaced.out.find("achilles simulate './a b.toml' runs it"), std::string::npos) << spaced.out;
+    EXPECT_NE(spaced.out.find("to run it: achilles simulate './a b.toml'\n"), std::string::npos) << spaced.out;
 }
 
 TEST(Skeleton, CanBeASystemOfTheGallery) {
@@ -185,7 +185,7 @@ TEST(Skeleton, OverwritesNothing) {
     folder.put("mine.toml", "mine\n");
     const Answer answer = folder.run("new mine.toml");
     EXPECT_EQ(answer.status, 2);
-    EXPECT_EQ(answer.err, "mine.toml: this file is there already\nchoose another name\n");
+    EXPECT_EQ(answer.err, "mine.toml: this file already exists\nchoose another name\n");
     EXPECT_EQ(content(folder.path() / "mine.toml"), "mine\n");
 }
 
@@ -277,9 +277,8 @@ TEST(Schema, HoldsForARunThatWasMadeAgain) {
         "title = \"post\"\n[[coordinate]]\nname = \"a\"\nrate = 1\n[[coordinate]]\nname = \"b\"\nstart = "
         "0.5\n[lagrangian]\nkinetic = \"(a'^2 + b'^2)/2\"\npotential = \"b + 0.3*cos(2*a)\"\n[[constraint]]\ngap = "
         "\"b - 0.395*exp(-40*(a - 2.6)^2)\"\nrestitution = 0.9\n[run]\nend_time = 2.4\ntolerance = 1e-4\n");
-    const std::string what =
-                          "undecided at tolerance 0.0001 (the gap comes closer to zero than the integration knows it",
-                      then = "): the whole run was made again, at tolerance 1e-14, eps_q 1e-12, eps_v 1e-12\n";
+    const std::string what = "undecided at tolerance 0.0001 (the gap is within integration error",
+                      then = "): the whole run was repeated with tolerance 1e-14, eps_q 1e-12, eps_v 1e-12\n";
     const Answer data = folder.run("simulate post.toml --json -");
     EXPECT_EQ(data.status, 0);
     EXPECT_TRUE(data.err.starts_with("achilles: warning: " + what)) << data.err;

@@ -17,7 +17,7 @@ using nlohmann::json;
 TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
     const Folder folder;
     const std::string warning =
-        "achilles: warning: theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 "
+        "achilles: warning: theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 "
         "deg\n";
     for (const char* command : {"simulate double_pendulum --end 0.1 --set theta1=30 --json a.json",
                                 "figure double_pendulum --end 0.1 --set theta1=30 --out a.svg",
@@ -33,8 +33,8 @@ TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
     const Answer none = folder.run("simulate double_pendulum --set 'L1=30 deg'");
     EXPECT_EQ(none.status, 2);
     EXPECT_EQ(none.err,
-              "--set L1=30 deg: '30 deg' is not a finite number: 'deg' may follow a number where the unit is rad, and "
-              "here it is m\n");
+              "--set L1=30 deg: '30 deg' is not a finite number: 'deg' is allowed only where the unit is rad, and here "
+              "it is m\n");
 }
 
 // The same of what commands do.
@@ -46,12 +46,11 @@ TEST(Meant, WhatACommandOverstepsIsTold) {
             folder.run(command + std::string(" --end 3 --do 'set theta1 45' --do 'seek 99' --do 'set theta1 0'"
                                              " --do 'seek -1' --do 'tolerance 1e-30' --do 'seek 3'"));
         EXPECT_EQ(answer.status, 0);
-        EXPECT_EQ(answer.err,
-                  "achilles: warning: theta1 = 45 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is "
-                  "written 45 deg\n"
-                  "achilles: warning: seek 99: the run ends at t = 3 s\n"
-                  "achilles: warning: seek -1: the run begins at t = 0 s\n"
-                  "achilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n")
+        EXPECT_EQ(
+            answer.err,
+            "achilles: warning: theta1 = 45 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write "
+            "45 deg\nachilles: warning: seek 99: the run ends at t = 3 s\nachilles: warning: seek -1: the run begins "
+            "at t = 0 s\nachilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n")
             << command;
     }
 }
@@ -80,7 +79,7 @@ TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
          "^\nput it in quotes: start = \"30 deg\"\n"},
         {with("start = 1.0", "start = 0,4"),
          "f.toml:4:10: not valid TOML: expected a comment or whitespace, saw ','\n    start = 0,4\n             "
-         "^\ndecimals have a point: start = 0.4\n"},
+         "^\nwrite a decimal point: start = 0.4\n"},
         {with("9.81*y", "9.81*y + ydot"),
          "f.toml:10:23: unknown name 'ydot'; rates are written y'\n    potential = \"9.81*y + ydot\"\n                 "
          "     "
@@ -92,8 +91,7 @@ TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
          "f.toml:10:19: names have Latin letters: write theta1 for 'θ1'\n    potential = \"9.81*θ1\"\n               "
          "       ^\n"},
         {with("name = \"y\"", "name = \"θ\""),
-         "f.toml:3:9: 'θ' is not a name\n    name = \"θ\"\n            ^\nGreek letters have names: write "
-         "theta\n"},
+         "f.toml:3:9: 'θ' is not a name\n    name = \"θ\"\n            ^\nspell out Greek letters: write theta\n"},
     };
     const Folder folder;
     for (const auto& [text, message] : mistakes) {
@@ -110,8 +108,8 @@ TEST(Meant, AnEndingThatSaysOtherwiseIsAWarning) {
     const Answer crossed = folder.run("simulate drop.toml --end 0.1 --json a.csv --csv a.json");
     EXPECT_EQ(crossed.status, 0);
     EXPECT_EQ(crossed.err,
-              "achilles: warning: --json a.csv: what is written there is not csv, whatever its name says\n"
-              "achilles: warning: --csv a.json: what is written there is not json, whatever its name says\n");
+              "achilles: warning: --json a.csv: the output is not csv, although the name says so\nachilles: warning: "
+              "--csv a.json: the output is not json, although the name says so\n");
     EXPECT_EQ(folder.run("simulate drop.toml --end 0.1 --json b.json --csv b.csv").err, "");
 }
 
@@ -121,9 +119,8 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
     folder.put("square.toml", with("gap = \"y\"", "gap = \"y^2\""));
     folder.put("broken.toml", with("value = 0.5", "value = 1.5"));
     const std::string flat =
-        "dh = 0 at the start, which is in contact: the normal is not defined\nwrite a gap whose dh is not 0 where h = "
-        "0, "
-        "as x in place of x^2 or x^3\n";
+        "the start is in contact, and dh = 0 there: the normal is not defined\nwrite a gap whose dh is not 0 where h = "
+        "0, for example x instead of x^2 or x^3\n";
     const std::string large = "the restitution must lie in [0, 1], but it is 1.5\n";
     const std::pair<std::string, std::string> mistakes[] = {
         {"simulate drop.toml --set y=2 --set e=1.5", "--set e=1.5: " + large + "0 is plastic, 1 is elastic\n"},
@@ -133,9 +130,9 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         {"simulate square.toml --set y=0", "--set y=0: " + flat},
         {"simulate square.toml --set y=1e-170", "--set y=1e-170: " + flat},
         {"simulate drop.toml --set ydot=1",
-         "--set ydot=1: 'ydot' is no parameter, coordinate or rate of this system; rates are written y'\n"},
+         "--set ydot=1: 'ydot' is not a parameter, coordinate or rate of this system; rates are written y'\n"},
         {"simulate double_pendulum --set θ1=1",
-         "--set θ1=1: 'θ1' is no parameter, coordinate or rate of this system; did you mean 'theta1'?\n"},
+         "--set θ1=1: 'θ1' is not a parameter, coordinate or rate of this system; did you mean 'theta1'?\n"},
         {"simulate broken.toml --set y=2",
          "broken.toml:13:16: " + large + "    restitution = \"e\"\n                   ^\n0 is plastic, 1 is elastic\n"},
         {"figure drop.toml --do \"set e 1.5\" --out a.svg",
@@ -147,7 +144,7 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
         {"simulate drop.toml --set end=3", "--set end=3: 'end' is an option of the run, --end on the command line\n"},
         {"simulate drop.toml --set tolerance=1e-6",
          "--set tolerance=1e-6: 'tolerance' is an option of the run, --tolerance on the command line\n"},
-        {"simulate .", ".: this is a folder, and a system is a file; write the path of one in it, ./broken.toml\n"}};
+        {"simulate .", ".: this is a folder; a system file is expected, for example ./broken.toml\n"}};
     for (const auto& [arguments, message] : mistakes) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 2) << arguments;
@@ -164,7 +161,7 @@ TEST(Meant, AnAngleInDegreesIsToldInDegrees) {
         {"'theta1=3*pi'", "theta1 = 540 deg is outside its range, -90 to 90\n"},
         {"theta1=2", "theta1 = 2 rad is outside its range, -1.5708 to 1.5708\n"},
         {"theta1=30",
-         "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg\n"}};
+         "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg\n"}};
     for (const auto& [setting, warning] : told)
         EXPECT_EQ(folder.run("simulate double_pendulum --end 0.1 --json a.json --set " + std::string(setting)).err,
                   std::string("achilles: warning: ") + warning);
@@ -216,7 +213,7 @@ TEST(Data, InstantsThatCannotBeAreBadInput) {
         {"--times none.txt --csv a.csv", "none.txt: there is no such file\n"},
         {"--samples 1 --csv a.csv", "--samples 1: a whole number from 2 to 1000000 is expected\n"},
         {"--samples 2.5 --csv a.csv", "--samples 2.5: a whole number from 2 to 1000000 is expected\n"},
-        {"--samples 5 --times t.txt --csv a.csv", "--samples: the instants are those of --times already\n"},
+        {"--samples 5 --times t.txt --csv a.csv", "--samples: the instants are already given by --times\n"},
         {"--samples 5", "--samples: this needs --csv F or --json F\n"},
         {"--plain-names --json a.json", "--plain-names: this needs --csv F\n"}};
     for (const auto& [arguments, message] : mistakes) {

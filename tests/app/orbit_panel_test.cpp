@@ -76,9 +76,9 @@ TEST(OrbitSession, follows_a_branch_as_one_change) {
     session.apply(command::Undo{});
     EXPECT_EQ(session.run(), session.file_run()) << "a slider that is dragged is one change";
     session.apply(command::GoOnOrbit{0});
-    EXPECT_NE(session.error().find("it has no point 0"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("the branch has no point 0"), std::string::npos) << session.error();
     session.apply(command::GoOnOrbit{static_cast<int>(found->count()) + 1});
-    EXPECT_NE(session.error().find("count from 1 to"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("numbered from 1 to"), std::string::npos) << session.error();
 }
 
 // A run of e = 0.6 is nearest to the same orbit as that of e = 0.5: from wherever the sliders are.
@@ -95,7 +95,8 @@ TEST(OrbitSession, searches_from_the_present_run) {
 TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
     Session session = test::session("ball_on_floor");
     for (const auto& [text, words] :
-         {std::pair{"--continue q=0:1", "there is no parameter 'q'"}, std::pair{"--from where", "it is start or end"},
+         {std::pair{"--continue q=0:1", "there is no parameter 'q'"},
+          std::pair{"--from where", "start or end is expected"},
           std::pair{"--shift x", "a name and a value are expected"}, std::pair{"--over e=0:1", "not expected here"},
           std::pair{"--from start --from end", "it is given twice"}, std::pair{"--from", "a value is missing"},
           std::pair{"--period 0", "the period must be positive, but it is 0 s"}}) {
@@ -104,7 +105,7 @@ TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
         EXPECT_EQ(session.orbit(), nullptr);
     }
     session.apply(command::GoOnOrbit{1});
-    EXPECT_NE(session.error().find("there is no periodic run to go on"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("no periodic run has been found yet"), std::string::npos) << session.error();
     session.apply(command::FindOrbit{""});
     EXPECT_EQ(session.error(), "");
     ASSERT_TRUE(session.orbit());
@@ -163,17 +164,17 @@ TEST(OrbitPanel, makes_the_run_periodic) {
     Hands hands("ball_down_a_wave");
     hands.press_with_control('6');
     hands.rest(2);
-    EXPECT_TRUE(hands.says("comes back to its start"));
+    EXPECT_TRUE(hands.says("returns to its start"));
     hands.click("make periodic");
     hands.session.settle();
     hands.rest(4);
     EXPECT_EQ(hands.session.orbit_point(), 0u);
-    EXPECT_TRUE(hands.says("the run begins on it"));
+    EXPECT_TRUE(hands.says("run is on the orbit"));
     EXPECT_TRUE(hands.says("period 3.544294647 s"));
     EXPECT_TRUE(hands.says("stable: perturbations shrink to 0.7014 of their size per period"));
     hands.session.apply(command::Set{"e", 0.55});
     hands.rest(3);
-    EXPECT_TRUE(hands.says("the run has left it"));
+    EXPECT_TRUE(hands.says("run is off the orbit"));
 }
 
 TEST(OrbitPanel, goes_along_the_branch) {
@@ -195,7 +196,7 @@ TEST(OrbitPanel, goes_along_the_branch) {
     ASSERT_TRUE(hands.session.orbit_point());
     EXPECT_GT(*hands.session.orbit_point(), found->count() / 2);
     ASSERT_EQ(found->answer.branch->flips.size(), 1u);
-    hands.click("orbit flip 1");
+    hands.click("orbit period doubling 1");
     EXPECT_NEAR(*hands.session.value("b"), found->answer.branch->value(found->answer.branch->flips[0]), 0.01);
     hands.click("tab events");
     EXPECT_FALSE(hands.session.scene().shows("orbit"));

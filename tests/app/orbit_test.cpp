@@ -101,14 +101,14 @@ TEST(OrbitCommand, RefusesWhatItCannotBeAsked) {
     };
     for (const auto& [arguments, words] :
          {std::pair{"ball_down_a_wave --continue ee=0:1", "there is no parameter 'ee'; did you mean 'e'?"},
-          std::pair{"ball_down_a_wave --continue e=0:0.3", "e = 0.5, where the search begins, does not lie in it"},
+          std::pair{"ball_down_a_wave --continue e=0:0.3", "the search starts at e = 0.5, outside this range"},
           std::pair{"ball_down_a_wave --continue e=0.3", "a range is expected"},
           std::pair{"ball_down_a_wave --shift z=1", "there is no coordinate 'z'"},
           std::pair{"ball_down_a_wave --shift x=2*pie", "unknown name 'pie'; did you mean 'pi'?"},
           std::pair{"ball_down_a_wave --from nothing.json", "nothing.json: there is no such file"},
           std::pair{"ball_down_a_wave --reinitialization euclidean", "they need the kinetic reinitialization"},
-          std::pair{"ball_on_table", "the period of its drive must be given"},
-          std::pair{"ball_on_table --period 1", "do not repeat after that time"},
+          std::pair{"ball_on_table", "the period of the drive must be given"},
+          std::pair{"ball_on_table --period 1", "do not repeat with this period"},
           std::pair{"ball_down_a_wave --set e=2", "restitution"}})
         EXPECT_NE(told(arguments).find(words), std::string::npos) << arguments << "\n" << told(arguments);
     const Answer none = folder.run("orbit ball_on_floor --json out.json");

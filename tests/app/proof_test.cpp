@@ -72,11 +72,11 @@ TEST(SessionProof, IsGoneWithTheRunThatItIsOf) {
 
 TEST(SessionProof, IsRefusedAsOnTheCommandLine) {
     Session ball = test::session("ball_on_sine");
-    for (const auto& [line, told] : {std::pair{"prove e=0.6..0.7", "e = 0.5 of the present run is not in [0.6, 0.7]"},
+    for (const auto& [line, told] : {std::pair{"prove e=0.6..0.7", "e = 0.5 in the present run is not in [0.6, 0.7]"},
                                      {"prove e=0.5..1.5", "the part above 1 is impossible"},
                                      {"prove z=0..1", "'z'"},
-                                     {"prove e=0.5", "'e=0.5' is no interval"},
-                                     {"prove e=0.6..0.5", "the interval ends before it begins"}}) {
+                                     {"prove e=0.5", "'e=0.5' is not an interval"},
+                                     {"prove e=0.6..0.5", "LOW is above HIGH"}}) {
         ball.apply(parse_command(line));
         EXPECT_NE(ball.error().find(told), std::string::npos) << line << ": " << ball.error();
         EXPECT_EQ(ball.proof(), nullptr);
@@ -251,7 +251,7 @@ TEST(ProofFigure, SaysWhereItEndsAndWhatItDoesNotCover) {
              {"ball_on_sine --do \"prove e=0.5..1.1\"", "the part above 1 is impossible"},
              {"ball_on_sine --width 1e-6", "add --proof"},
              {"ball_on_sine --proof --mechanism", "leave --mechanism out"},
-             {"ball_on_sine --proof --set e=0.6..0.5", "the interval ends before it begins"},
+             {"ball_on_sine --proof --set e=0.6..0.5", "LOW is above HIGH"},
              {"ball_on_sine --proof --set e=0.9..1.1", "the part above 1 is impossible"}}) {
         const test::Answer refused = folder.run("figure " + arguments + " --out refused.svg");
         EXPECT_EQ(refused.status, 2) << arguments;

@@ -111,9 +111,9 @@ TEST(Prove, PrintsWhatWasTyped) {
 TEST(Prove, RefusesWhatItDoesNotCoverAndWhatIsImpossible) {
     const Folder folder;
     for (const auto& [arguments, told] : std::vector<std::pair<std::string, std::string>>{
-             {"ball_on_sine --set e=0.6..0.5", "the interval ends before it begins"},
+             {"ball_on_sine --set e=0.6..0.5", "LOW is above HIGH"},
              {"ball_on_sine --set e=0.9..1.1", "the part above 1 is impossible"},
-             {"ball_on_sine --set y=-0.1..0.1", "the gap is negative for a part of the starts"},
+             {"ball_on_sine --set y=-0.1..0.1", "the gap is negative in part of the initial box"},
              {"ball_on_sine --set e=0.5..z", "--set e=z"},
              {"ball_on_sine --width -1", "the half-width must be 0 or more"},
              {"ball_on_sine --split 0", "a whole number from 1 to 1000"}}) {

@@ -37,12 +37,12 @@ const Refusal refusals[] = {
      "achilles: there is no system 'ball_on_sin'; did you mean 'ball_on_sine'?\n"},
     {"missing_file", "simulate ./no.toml", "./no.toml: there is no such file\n"},
     {"unknown_setting", "simulate ball_on_sine --set gg=3 --json a.json",
-     "--set gg=3: 'gg' is no parameter, coordinate or rate of this system; did you mean 'g'?\n"},
+     "--set gg=3: 'gg' is not a parameter, coordinate or rate of this system; did you mean 'g'?\n"},
     {"setting_without_value", "simulate ball_on_sine --set g",
      "--set g: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5\n"},
     {"subnormal_parameter", "simulate ball_on_sine --set m=5e-324 --json a.json",
-     "--set m=5e-324: the parameter 'm' is 5e-324: so small a number has lost digits\n"
-     "0, or at least 2.3e-308 in size: choose units in which it is larger\n"},
+     "--set m=5e-324: the parameter 'm' is 5e-324: such a small number is not represented with full precision\nuse 0, "
+     "or choose units in which it is at least 2.3e-308 in size\n"},
     {"unknown_conditions", "simulate ball_on_sine --conditions shap",
      "--conditions shap: there is no such choice; did you mean 'sharp'?\n"
      "write --conditions paper or --conditions sharp\n"},
@@ -51,8 +51,8 @@ const Refusal refusals[] = {
     {"end_not_positive", "simulate ball_on_sine --end -1", "--end: the end time -1 is not after the start time 0\n"},
     {"not_a_number", "simulate ball_on_sine --eps nan", "--eps nan: 'nan' is not a finite number\n"},
     {"number_with_a_tail", "simulate ball_on_sine --tolerance 1e-8x",
-     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: it is written without its unit "
-     "(a file has the key unit for that), and a product with '*'\n"},
+     "--tolerance 1e-8x: '1e-8x' is not a finite number: 'x' may not follow a number: write numbers without units (a "
+     "file has the key unit for that) and products with '*'\n"},
     {"no_impacts", "simulate ball_on_sine --max-impacts 0", "--max-impacts: at least one impact must be allowed\n"},
     {"no_steps", "simulate ball_on_sine --max-steps 0", "--max-steps: at least one step must be allowed\n"},
     {"half_a_step", "simulate ball_on_sine --max-steps 1.5",
@@ -64,7 +64,7 @@ const Refusal refusals[] = {
     {"output_is_a_folder", "simulate ball_on_sine --json /tmp", "/tmp: the file cannot be written: Is a directory\n"},
     {"full_device", "simulate ball_on_sine --json /dev/full",
      "/dev/full: the file cannot be written: No space left on device\n"},
-    {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same place\n"},
+    {"one_file_twice", "simulate ball_on_sine --json a --csv ./a", "./a: two outputs cannot go to the same file\n"},
     {"unknown_command", "simulat ball_on_sine",
      "achilles: there is no command or system 'simulat'; write achilles simulate ball_on_sine\n"},
     {"unknown_option", "simulate ball_on_sine --tolerence 1",
@@ -76,16 +76,16 @@ const Refusal refusals[] = {
     {"refused_step", "screenshot --do 'seek 2' --do 'set e 1.5' --out a.png --record r.journal",
      "set e 1.5: e = 1.5: the restitution must lie in [0, 1], but it is 1.5\n0 is plastic, 1 is elastic\n"},
     {"lens_of_nothing", "screenshot --do 'lens 1' --out a.png",
-     "lens 1: the lens looks at a Zeno point, and none is selected\nselect it first: select 10\n"},
+     "lens 1: the lens needs a Zeno point, but none is selected\nselect it first: select 10\n"},
     {"screenshot_as_svg", "screenshot --out q.svg",
-     "--out q.svg: this name says SVG, but what is drawn is PNG\n"
-     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+     "--out q.svg: this name says SVG, but the picture is PNG\nend it in .png; for the plots alone as SVG or PDF: "
+     "achilles figure\n"},
     {"screenshot_as_jpg", "screenshot --out q.JPG",
-     "--out q.JPG: this name says JPG, but what is drawn is PNG\n"
-     "end it in .png; the plots alone are drawn as SVG and PDF, too: achilles figure\n"},
+     "--out q.JPG: this name says JPG, but the picture is PNG\nend it in .png; for the plots alone as SVG or PDF: "
+     "achilles figure\n"},
     {"format_against_name", "figure ball_on_sine --format pdf --out q.png",
-     "--out q.png: this name says PNG, but what is drawn is PDF\n"
-     "end it in .pdf, or leave --format out: the name tells\n"},
+     "--out q.png: this name says PNG, but the picture is PDF\nend it in .pdf, or leave --format out: the name gives "
+     "the format\n"},
     {"bad_size", "screenshot --out a.png --size 1600",
      "--size 1600: this is not a size in pixels\nwrite WIDTHxHEIGHT, as in --size 1600x1000; each from 64 to 16384\n"},
 };
@@ -135,10 +135,10 @@ TEST(Cli, ARunThatLeavesTheDomainSaysWhenWhereAndWhy) {
     const struct {
         std::string kinetic, potential, gap, beginning;
     } runs[] = {
-        {"y'^2/2", "log(y)", "y + 1", "log(y) in the potential ceases to be defined, with y = "},
-        {"y'^2/2", "-1/y", "y + 1", "(-1)/y in the potential ceases to be defined, with y = "},
-        {"y*y'^2/2", "y", "y + 1", "the mass matrix ceases to be positive definite, with the pivot of 'y' at "},
-        {"y'^2/2", "9.81*y", "y^3", "dh = 0 where contact happens: the normal is not defined, at t = 0.45"},
+        {"y'^2/2", "log(y)", "y + 1", "log(y) in the potential becomes undefined, with y = "},
+        {"y'^2/2", "-1/y", "y + 1", "(-1)/y in the potential becomes undefined, with y = "},
+        {"y*y'^2/2", "y", "y + 1", "the mass matrix is no longer positive definite: the pivot of 'y' is "},
+        {"y'^2/2", "9.81*y", "y^3", "dh = 0 at the contact: the normal is not defined, at t = 0.45"},
     };
     for (const auto& run : runs) {
         folder.put("edge.toml",

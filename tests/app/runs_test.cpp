@@ -66,7 +66,7 @@ TEST(Runs, stand_at_places_that_stay) {
     EXPECT_EQ(places(session), (std::vector<int>{1, 3, 2, 6}));
     apply(session, "unpin\n");
     EXPECT_EQ(places(session), (std::vector<int>{1, 3, 2})) << "the last that was pinned";
-    EXPECT_EQ(refused(session, "pin 3"), "there is a run pinned at 3\nunpin 3 first, or: pin");
+    EXPECT_EQ(refused(session, "pin 3"), "a run is already pinned at 3\nunpin 3 first, or: pin");
     EXPECT_NE(refused(session, "pin 7").find("there is no place 7"), std::string::npos);
     EXPECT_NE(refused(session, "unpin 6").find("there is no run pinned at 6"), std::string::npos);
     EXPECT_NE(refused(session, "recall 5").find("there is no run pinned at 5"), std::string::npos);
@@ -81,7 +81,7 @@ TEST(Runs, stand_at_places_that_stay) {
 TEST(Runs, are_pinned_once) {
     Session session = test::session("ball_on_floor");
     apply(session, "pin\nset e 0.1\nreset\n");
-    EXPECT_NE(refused(session, "pin").find("this run is pinned already, as 1"), std::string::npos);
+    EXPECT_NE(refused(session, "pin").find("this run is already pinned, as 1"), std::string::npos);
 }
 
 // What a hand does after that leaves them alone.
@@ -103,7 +103,7 @@ TEST(Runs, leave_with_their_system_and_come_back) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\npin\nset e 0.4\nopen double_pendulum\n");
     EXPECT_TRUE(session.pinned().empty());
-    EXPECT_EQ(session.notice(), "2 pinned runs of ball_on_sine are let go; undo brings them back");
+    EXPECT_EQ(session.notice(), "2 pinned runs of ball_on_sine were unpinned; undo restores them");
     apply(session, "undo\n");
     EXPECT_EQ(session.system(), "ball_on_sine");
     EXPECT_EQ(places(session), (std::vector<int>{1, 2}));
@@ -125,7 +125,7 @@ TEST(Runs, leave_with_their_system_and_come_back) {
     session.apply(command::Text{text});
     ASSERT_TRUE(session.document().problems.empty()) << session.document().problems[0].what();
     EXPECT_TRUE(session.pinned().empty());
-    EXPECT_EQ(session.notice(), "2 pinned runs of ball_on_sine are let go; undo brings them back");
+    EXPECT_EQ(session.notice(), "2 pinned runs of ball_on_sine were unpinned; undo restores them");
     apply(session, "undo\n");
     EXPECT_EQ(places(session), (std::vector<int>{1, 2}));
 }
@@ -191,8 +191,8 @@ TEST(RunTable, says_in_words_where_runs_part) {
     ASSERT_EQ(session.run_table().partings.size(), 1U) << to_text(session.run_table());
     EXPECT_EQ(session.run_table().partings[0].first, 1U);
     EXPECT_EQ(session.run_table().partings[0].second,
-              "after Zeno 1: release at 3.7318 s; the present run: nothing more until 3 s");
-    EXPECT_NE(to_text(session.run_table()).find("same course until | \u2013 | Zeno 1 *\n"), std::string::npos)
+              "after Zeno 1: release at 3.7318 s; the present run: no further event until 3 s");
+    EXPECT_NE(to_text(session.run_table()).find("same events until | \u2013 | Zeno 1 *\n"), std::string::npos)
         << to_text(session.run_table());
 }
 
@@ -329,7 +329,7 @@ TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
     }
     session.apply(command::Pin{});
     session.apply(command::Pin{});
-    EXPECT_NE(session.error().find("this run is pinned, as 2"), std::string::npos) << session.error();
+    EXPECT_NE(session.error().find("this run will be pinned, as 2"), std::string::npos) << session.error();
     EXPECT_EQ(session.pins_under_way(), (std::vector<int>{1, 2}));
     EXPECT_TRUE(session.pinned().empty());
     EXPECT_TRUE(session.run_table().rows.empty());

@@ -83,7 +83,7 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
     session.apply(parse_command("set theta1 30"));
     EXPECT_EQ(session.run().q[0], 30.0);
     EXPECT_EQ(session.notice(),
-              "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an angle in degrees is written 30 deg");
+              "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg");
     session.apply(parse_command("set m1 2"));
     EXPECT_EQ(session.notice(), "") << "it was told once";
     // A file that is opened with such a value is no other case.
@@ -101,8 +101,8 @@ TEST(Session, starts_outside_their_ranges_are_told) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("start theta1 30 theta1' 0.5 theta2 0.2"));
     EXPECT_EQ(session.warnings(),
-              (std::vector<std::string>{"theta1 = 30 rad is outside its range, -1.5708 to 1.5708: an "
-                                        "angle in degrees is written 30 deg"}));
+              (std::vector<std::string>{
+                  "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg"}));
     EXPECT_EQ(session.notice(), "") << "no card comes and goes under a hand that drags";
     session.apply(parse_command("start theta2 0.3"));
     EXPECT_TRUE(session.warnings().empty());
@@ -112,7 +112,7 @@ TEST(Session, starts_outside_their_ranges_are_told) {
 TEST(Session, the_lens_opens_at_a_zeno_point) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Lens{2.0});
-    EXPECT_EQ(session.error(), "the lens looks at a Zeno point, and none is selected\nselect it first: select 10");
+    EXPECT_EQ(session.error(), "the lens needs a Zeno point, but none is selected\nselect it first: select 10");
     EXPECT_FALSE(session.scene().shows("lens"));
     session.apply(command::Select{10});
     session.apply(command::Lens{2.0});
@@ -308,7 +308,7 @@ TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
     session.apply(command::Set{"g", 2.0});
     session.apply(command::Text{session.document().text + "# mine\n"});
     session.apply(command::Save{other});
-    EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+    EXPECT_NE(session.error().find("the file already exists"), std::string::npos);
     EXPECT_EQ(test::content(other), "other");
     session.apply(command::Save{session.description().file});
     EXPECT_NE(session.error(), "") << "an asset is no file of the user's";

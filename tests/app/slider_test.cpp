@@ -63,8 +63,9 @@ int pixels(SliderHand& hands, const std::string& place, const Color& color) {
 }
 
 TEST(Slider, what_is_no_number_turns_the_field_red_and_says_why) {
-    for (const auto& [text, why] : {std::pair{"0,4", "decimals have a point, 0.4"}, std::pair{"abc", "no name but pi"},
-                                    std::pair{"1/", "ends where a value"}, std::pair{"30 deg", "the unit is rad"}}) {
+    for (const auto& [text, why] :
+         {std::pair{"0,4", "write a decimal point, 0.4"}, std::pair{"abc", "pi is the only name allowed here"},
+          std::pair{"1/", "ends where a value"}, std::pair{"30 deg", "the unit is rad"}}) {
         SliderHand hands("ball_on_sine");
         hands.double_click("value of set g");
         EXPECT_EQ(pixels(hands, "set g", light_theme().error_card), 0);

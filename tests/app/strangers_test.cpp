@@ -89,7 +89,7 @@ TEST_F(Strangers, a_journal_that_is_trusted_overwrites_nothing) {
         const Answer answer = screenshot("open mine.toml\n" + line + "\n", "--allow-files");
         EXPECT_EQ(answer.status, 2) << line;
         EXPECT_NE(answer.err.find("x.journal:2:1: "), std::string::npos) << answer.err;
-        EXPECT_NE(answer.err.find("a journal overwrites nothing"), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("a journal never overwrites files"), std::string::npos) << answer.err;
     }
     EXPECT_EQ(held_by("victim.toml") + held_by("a.svg"), "minemine");
 }
@@ -144,9 +144,9 @@ TEST_F(Strangers, AskForNoMoreWorkThanTheirBudget) {
         EXPECT_EQ(answer.err.find(place), 0U) << answer.err;
         EXPECT_NE(answer.err.find(message), std::string::npos) << answer.err;
     };
-    const std::string memory = "a run of a journal or a picture keeps at most 1000 MB";
-    const std::string steps = "a run of a journal or a picture takes at most 2000000";
-    const std::string points = "a sweep of a journal or a picture has at most 4194304";
+    const std::string memory = "a run of a journal or a picture may keep at most 1000 MB";
+    const std::string steps = "a run of a journal or a picture may take at most 2000000";
+    const std::string points = "a sweep of a journal or a picture may have at most 4194304";
     const auto begin = std::chrono::steady_clock::now();
     is_refused(screenshot("open ball_on_sine\nmemory 1e300\nmax-steps 1000000000\nend 1e9\nset e 1\n"),
                "x.journal:2:1: ", memory);
@@ -177,11 +177,11 @@ TEST_F(Strangers, PicturesAreMadeAgainWithinABudget) {
         const Answer answer = folder.run("reproduce p.png");
         EXPECT_EQ(answer.status, 2) << command;
         EXPECT_NE(answer.err.find(message), std::string::npos) << command << answer.err;
-        EXPECT_NE(answer.err.find("its command makes it without this limit:\nachilles " + command), std::string::npos)
+        EXPECT_NE(answer.err.find("to make it without this limit, run:\nachilles " + command), std::string::npos)
             << answer.err;
         EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)) << command;
     };
-    const std::string memory = "keeps at most 1000 MB", steps = "takes at most 2000000";
+    const std::string memory = "keep at most 1000 MB", steps = "take at most 2000000";
     for (const std::string command : {"figure ./s.toml", "frames ./s.toml", "screenshot ./s.toml", "orbit ./s.toml",
                                       "sweep ./s.toml --over y=1:2:5 --print y", "figure ./s.toml --mechanism"}) {
         refused(command + " --memory 1e300", memory);
@@ -189,7 +189,7 @@ TEST_F(Strangers, PicturesAreMadeAgainWithinABudget) {
         refused(command, memory, "memory = 1e300\n");
     }
     refused("paper", steps, "max_steps = 1000000000\n");
-    refused("sweep ./s.toml --over y=1:2:900000000 --print y", "a picture has at most 4194304");
+    refused("sweep ./s.toml --over y=1:2:900000000 --print y", "a picture may have at most 4194304");
     refused("sweep ./s.toml --over memory=1e9:1e300:5 --print y", memory);
 }
 
@@ -230,7 +230,7 @@ TEST(TimeLimitDeathTest, EndsTheProcess) {
         limit.arm("say so", 1);
         for (;;) std::this_thread::sleep_for(std::chrono::milliseconds(100));
     };
-    EXPECT_EXIT(endless(), testing::ExitedWithCode(2), "takes longer than 1 s, and nothing is written\nsay so");
+    EXPECT_EXIT(endless(), testing::ExitedWithCode(2), "takes longer than 1 s; nothing is written\nsay so");
     TimeLimit limit;
     limit.arm("say so", 1);
     limit.disarm();
@@ -243,7 +243,7 @@ TEST(FileQuestion, is_asked_and_answered) {
     for (const bool allowed : {false, true}) {
         hands.state.file_question = FileQuestion{"a.journal", "write /home/me/a.toml", 1, {}};
         hands.rest(3);
-        EXPECT_TRUE(hands.says("write /home/me/a.toml, and then one more file")) << hands.letters();
+        EXPECT_TRUE(hands.says("write /home/me/a.toml, and one more file")) << hands.letters();
         hands.press(key::enter);
         ASSERT_TRUE(hands.state.file_question);
         EXPECT_FALSE(hands.state.file_question->answer);
@@ -286,7 +286,7 @@ TEST_F(Strangers, a_yes_is_for_one_file) {
         FAIL();
     } catch (const Forbidden& problem) {
         EXPECT_TRUE(problem.wants.empty());
-        EXPECT_NE(std::string(problem.what()).find("overwrites nothing"), std::string::npos);
+        EXPECT_NE(std::string(problem.what()).find("never overwrites files"), std::string::npos);
     }
 }
 

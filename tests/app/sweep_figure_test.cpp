@@ -75,7 +75,7 @@ TEST(SweepPicture, GoesOnWhereItWasInterrupted) {
     // An end of its own after some chunks: the file cannot grow further.
     const Answer cut = folder.run(sweep + "a.png", "ulimit -f 40; trap '' XFSZ; ");
     EXPECT_EQ(cut.status, 3) << cut.err;
-    EXPECT_NE(cut.err.find("--resume goes on from a.png.part"), cut.err.npos) << cut.err;
+    EXPECT_NE(cut.err.find("--resume continues from a.png.part"), cut.err.npos) << cut.err;
     EXPECT_EQ(files_in(folder), (std::vector<std::string>{"a.png.part", "whole.png"}));
     const Answer rest = folder.run(sweep + "a.png --resume");
     EXPECT_EQ(rest.status, 0) << rest.err;
@@ -102,7 +102,7 @@ TEST(SweepPicture, SaysWhatItLeavesOut) {
     const std::string sweep = "sweep ball_in_sloped_box --over e_floor=0.3:0.9:4 --at impact --print x --print held ";
     const Answer answer = folder.run(sweep + "--end 2 --csv a.csv --out a.svg");
     EXPECT_EQ(answer.status, 0);
-    const std::string warning = "achilles: warning: --print held: words are not drawn in a section\n";
+    const std::string warning = "achilles: warning: --print held: text values are not drawn in a section\n";
     EXPECT_EQ(answer.err.rfind(warning, 0), 0U) << answer.err;
     EXPECT_EQ(folder.run(sweep + "--end 2 --csv a.csv").err.find("warning"), std::string::npos) << "the table has it";
 }
@@ -116,10 +116,10 @@ TEST(SweepPicture, IsRefusedBeforeTheWork) {
         return answer.err;
     };
     EXPECT_NE(refused("--over e=0:1:3 --over x=0:1:3 --over y=1:2:3 --print t --out a.png")
-                  .find("--out: a sweep over 3 axes has no figure"),
+                  .find("--out: a sweep over 3 axes cannot be drawn"),
               std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out a.txt").find("a.txt"), std::string::npos);
-    EXPECT_NE(refused("--over e=0:1:3 --print t --out -").find("written into a file"), std::string::npos);
+    EXPECT_NE(refused("--over e=0:1:3 --print t --out -").find("needs a file"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out a.png --out a.png").find("a.png"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:20000000 --print t --out a.png").find("rows"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --dark").find("--dark: this needs --out F"), std::string::npos);

@@ -88,7 +88,7 @@ TEST(SweepPanel, ShowsDerivatives) {
 // More points than a picture has, and more rows.
 TEST(SweepPanel, RefusesMoreThanItDraws) {
     Session session = test::session("ball_on_sine");
-    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points has no picture"),
+    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points cannot be drawn"),
               std::string::npos)
         << session.error();
 }
@@ -128,7 +128,8 @@ TEST(SweepPanel, is_made_anew_where_something_else_changes) {
 TEST(SweepPanel, refuses_what_cannot_be_shown_and_keeps_what_there_is) {
     Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print x");
     EXPECT_NE(refused(session, "--over f=0:1:8 --print x").find("'f'"), std::string::npos) << session.error();
-    EXPECT_NE(refused(session, "--over e=0:0.9:8").find("nothing is asked"), std::string::npos) << session.error();
+    EXPECT_NE(refused(session, "--over e=0:0.9:8").find("name at least one quantity to print"), std::string::npos)
+        << session.error();
     EXPECT_NE(refused(session, "--over e=0:0.9:8 --print nonsense").find("nonsense"), std::string::npos);
     EXPECT_NE(refused(session, "--over e=0:0.9:8 --print x --set g=3").find("sliders"), std::string::npos);
     EXPECT_NE(refused(session, "--over e=0:0.9:8 --over x=0:1:8 --over y=0:1:8 --print x").find("two axes"),

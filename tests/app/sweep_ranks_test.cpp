@@ -97,7 +97,7 @@ std::string interrupted(const std::string& sweep, const std::string& how) {
 // A rank is killed, then rank 0 is asked to stop; --resume goes on, with ranks and without.
 TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:100000 --print x --print t ",
-                      told = " of 100000 runs: the same command with --resume goes on from a.csv.part\n";
+                      told = " of 100000 runs: the same command with --resume continues from a.csv.part\n";
     EXPECT_EQ(script(interrupted(sweep, "KILL $(cat pid1)")), 137);
     EXPECT_EQ(count_of(told, file("err")), 1) << file("err");
     ASSERT_TRUE(has("a.csv.part"));
@@ -115,10 +115,10 @@ TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
 TEST_F(SweepRanks, StopWhenMpirunIsInterrupted) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:1e7 --print x ";
     EXPECT_NE(script(interrupted(sweep, "INT $m")), 0);
-    EXPECT_EQ(count_of(" of 10000000 runs: the same command with --resume goes on from a.csv.part\n", file("err")), 1)
+    EXPECT_EQ(count_of(" of 10000000 runs: the same command with --resume continues from a.csv.part\n", file("err")), 1)
         << file("err");
     const Answer again = folder_.run(sweep + "--csv a.csv");
-    EXPECT_NE(again.err.find("an unfinished sweep is here, with "), std::string::npos) << again.err;
+    EXPECT_NE(again.err.find("this is an unfinished sweep with "), std::string::npos) << again.err;
 }
 
 // The limit would be one of memory that ranks share, too: they speak over the loopback.
@@ -145,14 +145,15 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:5 --print x --csv a.csv",
                       assets = "export ACHILLES_ASSETS=" ACHILLES_BINARY_DIR "/assets\n";
     EXPECT_EQ(script(assets + mpirun + "-n 2 ./achilles " + sweep + " 2>err"), 2);
-    EXPECT_EQ(count_of("achilles: 2 processes were started, which cannot share a sweep: ", file("err")), 1)
+    EXPECT_EQ(count_of("achilles: 2 processes were started, but they cannot share a sweep: ", file("err")), 1)
         << file("err");
     EXPECT_EQ(count_of("lib/achilles/libachilles_mpi.so is missing", file("err")), 1) << file("err");
     EXPECT_FALSE(has("a.csv"));
     EXPECT_EQ(script(assets + "ACHILLES_MPI=0 " + mpirun + "-n 1 ./achilles " + sweep), 0);
     const Answer other = folder_.run(sweep, with_mpi + "PMI_RANK=0 PMI_SIZE=3");
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("3 processes were started, which cannot share a sweep: each reaches 1"), other.err.npos);
+    EXPECT_NE(other.err.find("3 processes were started, but they cannot share a sweep: each reaches 1"),
+              other.err.npos);
 }
 
 // What other processes make of an order, from its text alone.

@@ -79,7 +79,7 @@ TEST(SweepCommand, LeavesEmptyWhatThereIsNot) {
         folder.run("sweep ball_on_sine --over y=-3:3:3 --print \"impact_time(9)\" --print held --end 1");
     EXPECT_EQ(answer.status, 0);
     EXPECT_TRUE(answer.err.starts_with("achilles: warning: y = -3 m is outside its range")) << answer.err;
-    EXPECT_NE(answer.err.find("warning: 1 of the runs: cannot start; the first has y = -3: "), std::string::npos)
+    EXPECT_NE(answer.err.find("warning: 1 of the runs: cannot start; first at y = -3: "), std::string::npos)
         << answer.err;
     const auto lines = lines_of(answer.out);
     ASSERT_EQ(lines.size(), 4u);
@@ -125,15 +125,15 @@ TEST(SweepCommand, GoesOnWhereItWasInterrupted) {
         EXPECT_NE(stopped.err.find("achilles: the file cannot be written: part.csv.part: File too large"),
                   std::string::npos)
             << stopped.err;
-        EXPECT_NE(stopped.err.find("--resume goes on from part.csv.part"), std::string::npos) << stopped.err;
+        EXPECT_NE(stopped.err.find("--resume continues from part.csv.part"), std::string::npos) << stopped.err;
         EXPECT_FALSE(std::filesystem::exists(folder.path() / "part.csv"));
     }
     const Answer anew = folder.run(std::string(grid) + files("part"));
     EXPECT_EQ(anew.status, 2);
-    EXPECT_NE(anew.err.find("part.csv.part: an unfinished sweep is here, with "), std::string::npos) << anew.err;
+    EXPECT_NE(anew.err.find("part.csv.part: this is an unfinished sweep with "), std::string::npos) << anew.err;
     const Answer other = folder.run(std::string(grid) + files("part") + " --resume --set e=0.3");
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("it is another sweep\n    there: --over x=-3:3:40"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("it is a different sweep\n    there: --over x=-3:3:40"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find(" --set e=0.3 --end 9\n"), std::string::npos) << other.err;
     // A record that was being written, and what follows it.
     std::ofstream(folder.path() / "part.csv.part", std::ios::app) << "half a record";
@@ -178,7 +178,7 @@ TEST(SweepCommand, StopsBetweenChunksWhenAskedTo) {
         std::filesystem::remove(folder.path() / "long.csv.part");
         EXPECT_EQ(ended_by(folder, signal, "sweep ball_on_sine --over x=-3:3:1e7 --print x"), "3\n");
         const std::string told = content(folder.path() / "err");
-        EXPECT_NE(told.find(" of 10000000 runs: the same command with --resume goes on from long.csv.part"),
+        EXPECT_NE(told.find(" of 10000000 runs: the same command with --resume continues from long.csv.part"),
                   std::string::npos)
             << told;
     }
@@ -190,7 +190,7 @@ TEST(SweepCommand, LosesOnlyChunksUnderWayWhenItIsKilled) {
     const std::string status = ended_by(folder, "KILL", command);
     if (status == "137\n") {
         const Answer answer = folder.run(command + " --csv long.csv");
-        EXPECT_NE(answer.err.find("an unfinished sweep is here, with "), std::string::npos) << answer.err;
+        EXPECT_NE(answer.err.find("this is an unfinished sweep with "), std::string::npos) << answer.err;
     }
     EXPECT_EQ(folder.run(command + " --csv long.csv --resume").status, 0);
     EXPECT_EQ(folder.run(command + " --csv whole.csv").status, 0);
@@ -204,19 +204,21 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
     const std::string sweep = "sweep ./drop.toml --over y=1:2:5 --print t ";
     const std::vector<std::pair<std::string, std::string>> cases{
         {"sweep ./drop.toml --print t", "--over: nothing is varied"},
-        {"sweep ./drop.toml --over y=1:2:0 --print t --csv a.csv", "--over y=1:2:0: the number of values is a whole"},
+        {"sweep ./drop.toml --over y=1:2:0 --print t --csv a.csv",
+         "--over y=1:2:0: the number of values must be a whole"},
         {"sweep ./drop.toml --over y=1:2:5 --print tt --csv a.csv",
          "--print tt: unknown name 'tt'; did you mean 't'?\n    tt\n    ^\n"},
-        {sweep + "--at impcat", "--at impcat: there is no such event\nwrite --at impact"},
-        {sweep + "--set y=1.5", "--over y: it is both varied and fixed, by --set y\nleave --set y out, or --over y"},
+        {sweep + "--at impcat", "--at impcat: unknown event\nwrite --at impact"},
+        {sweep + "--set y=1.5", "--over y: it is both varied and fixed, by --set y\nremove --set y or --over y"},
         {sweep + "--threads 0", "--threads 0: a whole number from 1 to 1024 is expected"},
         {sweep + "--units --hdf5 a.h5", "--units: this needs --csv F"},
-        {sweep + "--hdf5 -", "--hdf5 -: HDF5 is written into a file"},
+        {sweep + "--hdf5 -", "--hdf5 -: HDF5 output needs a file"},
         {sweep + "--resume", "--resume: this needs a file"},
-        {sweep + "--csv drop.toml", "drop.toml: this output would destroy "},
+        {sweep + "--csv drop.toml", "drop.toml: this output would overwrite the input file "},
         {sweep + "--csv ./here/a.csv", "there is no folder ./here"},
-        {sweep + "--csv mine.csv", "mine.csv.part: an unfinished sweep would be kept here, and this file is none"},
-        {sweep + "--csv a.csv --hdf5 a.csv", "two outputs cannot go to the same place"},
+        {sweep + "--csv mine.csv",
+         "mine.csv.part: the sweep stores its progress here, but this file is not an unfinished sweep"},
+        {sweep + "--csv a.csv --hdf5 a.csv", "two outputs cannot go to the same file"},
     };
     for (const auto& [command, wrong] : cases) {
         const Answer answer = folder.run(command);
@@ -244,10 +246,9 @@ TEST(SweepCommand, DrawsOrSaysWhyNot) {
     }
     const Answer full = folder.run(sweep + "png", "trap '' XFSZ; ulimit -f 6;");
     EXPECT_EQ(full.status, 3);
-    EXPECT_EQ(
-        full.err,
-        "achilles: the file cannot be written: a.png: File too large\nachilles: all 10 runs are made, but not all "
-        "of the files; they are kept in a.png.part, and the same command makes the files of them\n");
+    EXPECT_EQ(full.err,
+              "achilles: the file cannot be written: a.png: File too large\nachilles: all 10 runs are done, but not "
+              "all files are written; the runs are kept in a.png.part: the same command writes the files\n");
     const Answer other = folder.run(sweep + "png --set y=1.5 --end 3");
     EXPECT_EQ(other.status, 2) << "of another sweep they are not thrown away";
     const Answer again = folder.run(sweep + "png");
@@ -313,7 +314,7 @@ TEST(SweepCommand, SaysWhatExistsInNoRunAndDrawsNothingOfIt) {
     EXPECT_EQ(folder.run(sweep).err, "achilles: warning: zeno_time(1) exists in none of the 3 runs\n");
     const Answer nothing = folder.run(sweep + "--csv a.csv --out a.svg");
     EXPECT_EQ(nothing.status, 3);
-    EXPECT_NE(nothing.err.find("nothing is drawn"), std::string::npos) << nothing.err;
+    EXPECT_NE(nothing.err.find("no picture is drawn"), std::string::npos) << nothing.err;
     EXPECT_NE(nothing.err.find("zeno_time(1)   exists in none of the 3 runs\nwrote a.csv\n"), std::string::npos)
         << nothing.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.csv"});
@@ -427,8 +428,8 @@ TEST_F(SweepHdf5, IsMadeOfTheLogWhereItCouldNotBeWritten) {
     const Answer full = folder_.run(sweep + "a.h5", "trap '' XFSZ; ulimit -f 6;");
     EXPECT_EQ(full.status, 3);
     EXPECT_EQ(full.err,
-              "achilles: the file cannot be written: a.h5: File too large\nachilles: all 30 runs are made, but not all "
-              "of the files; they are kept in a.h5.part, and the same command makes the files of them\n");
+              "achilles: the file cannot be written: a.h5: File too large\nachilles: all 30 runs are done, but not all "
+              "files are written; the runs are kept in a.h5.part: the same command writes the files\n");
     EXPECT_EQ(folder_.files().size(), 2u) << "the whole one, and the log";
     EXPECT_EQ(folder_.run(sweep + "a.h5 --resume").status, 0);
     EXPECT_EQ(content(folder_.path() / "a.h5"), content(folder_.path() / "whole.h5"));

@@ -20,7 +20,7 @@ TEST(TakeAway, the_dialog_says_the_size_and_writes_it) {
     hands.rest(3);
     EXPECT_TRUE(hands.says("1200 \u00d7 800 px"));
     hands.click("take page");
-    hands.click("take a column of two (85 mm)");
+    hands.click("take one of two columns (85 mm)");
     hands.rest(2);
     EXPECT_TRUE(hands.says("85 \u00d7 56.67 mm, text of 8 pt")) << hands.letters();
     hands.click("take png");
@@ -56,7 +56,7 @@ TEST(TakeAway, a_size_that_is_none_is_told_and_nothing_is_written) {
     hands.state.take_away.width = 5.0;
     hands.state.editor.path = (folder.path() / "a.svg").string();
     hands.rest(2);
-    EXPECT_TRUE(hands.says("a picture cannot have a width of 5 mm: it may be 20 to 1200 mm"));
+    EXPECT_TRUE(hands.says("the width of a picture cannot be 5 mm: use 20 to 1200 mm"));
     hands.click("dialog Export");
     EXPECT_TRUE(hands.session.scene().shows("export"));
     hands.press(key::escape);
@@ -116,11 +116,11 @@ TEST(TakeAway, FilmNeedsFfmpeg) {
     hands.rest(3);
     EXPECT_EQ(hands.state.editor.path, "ball_on_sine.mp4");
     EXPECT_FALSE(can_press(hands, "dialog Export"));
-    EXPECT_TRUE(hands.says("ffmpeg, which joins the pictures of a film, is not installed"));
+    EXPECT_TRUE(hands.says("a film needs ffmpeg, which is not installed"));
     hands.type((folder.path() / "short").string());
     hands.press(key::enter);
     hands.rest(2);
-    EXPECT_TRUE(hands.says("ffmpeg, which joins the pictures of a film, is not installed")) << "the dialog is closed";
+    EXPECT_TRUE(hands.says("a film needs ffmpeg, which is not installed")) << "the dialog is closed";
     EXPECT_TRUE(folder.files().empty());
     EXPECT_EQ(hands.session.error(), "");
     // It is there: the same dialog exports.
@@ -161,7 +161,7 @@ TEST(TakeAway, WidthIsWrongOnlyWhereItIs) {
     hands.session.apply(parse_command("show export"));
     hands.rest(3);
     hands.click("take page");
-    hands.click("take a column of two (85 mm)");
+    hands.click("take one of two columns (85 mm)");
     hands.click("path");
     hands.press_with_control('A');
     for (const char* path : {"a", "a.s", "a.csv", "a.5", "a.svg"}) {
@@ -172,7 +172,7 @@ TEST(TakeAway, WidthIsWrongOnlyWhereItIs) {
     }
     hands.state.take_away.width = 0.0;
     hands.rest(2);
-    EXPECT_TRUE(hands.says("width: a number above 0, not 0"));
+    EXPECT_TRUE(hands.says("width must be above 0, not 0"));
     EXPECT_FALSE(can_press(hands, "dialog Export"));
     EXPECT_TRUE(hands.state.places.contains("take field width")) << "its field is there to be mended";
 }
@@ -186,7 +186,7 @@ TEST(TakeAway, SizeIsReadWhole) {
         hands.click("menu Figure as PNG\u2026");
         hands.rest(3);
         hands.click("take page");
-        hands.click("take a column of two (85 mm)");
+        hands.click("take one of two columns (85 mm)");
         hands.rest(3);
         const double right = scale * (640.0 + 280.0 - 16.0), unit = scale * 32.0;
         for (const char* field : {"width", "height", "font", "dpi"}) {
@@ -218,7 +218,7 @@ TEST(TakeAway, FilmNeedsANumberOfPicturesASecond) {
     hands.type("-5");
     hands.press(key::enter);
     EXPECT_FALSE(can_press(hands, "dialog Export"));
-    EXPECT_TRUE(hands.says("pictures a second: a number above 0, not -5"));
+    EXPECT_TRUE(hands.says("the frames per second must be above 0, not -5"));
 }
 
 }  // namespace

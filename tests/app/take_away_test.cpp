@@ -155,7 +155,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
         EXPECT_EQ(session.error(), "");
         EXPECT_EQ(session.notice(), "wrote " + in_folder(name));
         session.apply(command::Export{in_folder(name), false});
-        EXPECT_NE(session.error().find("there is a file already"), std::string::npos);
+        EXPECT_NE(session.error().find("the file already exists"), std::string::npos);
         session.apply(command::Export{in_folder(name), true});
         EXPECT_EQ(session.error(), "");
     }
@@ -192,7 +192,7 @@ TEST(Export, takes_one_plot_alone) {
         session.apply(command::Export{(folder.path() / "two.svg").string(), false, count + 1});
         EXPECT_NE(session.error().find(fmt::format("there is no plot {}", count + 1)), std::string::npos);
         session.apply(command::Export{(folder.path() / "run.json").string(), false, 1});
-        EXPECT_NE(session.error().find("end it in .svg, .png or .pdf"), std::string::npos) << session.error();
+        EXPECT_NE(session.error().find("end the name in .svg, .png or .pdf"), std::string::npos) << session.error();
         EXPECT_EQ(folder.files().size(), 2U);
     }
 }

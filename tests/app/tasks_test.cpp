@@ -98,7 +98,7 @@ TEST(Tasks, one_plot_is_saved_after_two_clicks_and_Enter) {
         hands.rest(2);
         const std::string name = hands.state.editor.path;
         EXPECT_EQ(name.rfind(time == 1 ? "ball_on_sine-height.svg" : "ball_on_sine-height-2.svg", 0), 0U) << name;
-        EXPECT_TRUE(hands.says("goes to " + folder.path().string() + "/" + name)) << hands.letters();
+        EXPECT_TRUE(hands.says("writes to " + folder.path().string() + "/" + name)) << hands.letters();
         hands.all.clear();
         hands.press(key::enter);
         EXPECT_EQ(hands.all, std::vector<Command>{(command::Export{name, false, 2})});

@@ -109,7 +109,7 @@ TEST(TenTasks, the_last_bounces_are_seen_in_the_mechanism) {
     hands.click(result(hands));
     hands.press(key::left);
     use(hands, "camera", "camera");
-    use(hands, "camera_zeno", "menu zeno: closer to the next Zeno point");
+    use(hands, "camera_zeno", "menu zeno: zoom in on the next Zeno point");
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
     // The picture is a thousandth of that of the whole run, or less.
     const auto width = [&](CameraMode mode) {
@@ -144,7 +144,7 @@ TEST(TenTasks, what_impacts_took_is_said_beside_the_energy) {
     use(hands, "view", "menu View");
     use(hands, "view_energy", "menu Energy");
     use(hands, "zeno_over_energy", result(hands));
-    EXPECT_TRUE(hands.says("impacts took")) << hands.letters();
+    EXPECT_TRUE(hands.says("impact loss")) << hands.letters();
 }
 
 TEST(TenTasks, a_file_of_yesterday_stands_in_the_menu) {

@@ -63,10 +63,10 @@ TEST(CameraMenu, chooses_each_camera) {
         ASSERT_TRUE(hands.state.places.contains("menu " + item)) << item;
         hands.click("menu " + item);
     };
-    choose("follow: with the body");
+    choose("follow: move with the body");
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::follow);
     const Rectangle before = hands.state.places.at("body");
-    choose("fixed: as it is now");
+    choose("fixed: the current view");
     ASSERT_TRUE(hands.session.scene().look());
     // It stays as it was, and from then on whatever time it is.
     EXPECT_NEAR(hands.state.places.at("body").x, before.x, 0.5);
@@ -75,9 +75,9 @@ TEST(CameraMenu, chooses_each_camera) {
     hands.session.apply(command::Seek{9.0});
     hands.rest(2);
     EXPECT_EQ(hands.session.scene().look()->x, look.x);
-    choose("zeno: closer to the next Zeno point");
+    choose("zeno: zoom in on the next Zeno point");
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
-    choose("fit: all of the run");
+    choose("fit: the whole run");
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::fit);
     EXPECT_TRUE(hands.state.places.contains("scale bar"));
 }
@@ -134,7 +134,7 @@ TEST(CameraMenu, tells_where_it_is) {
     tell("menu", "camera");
     tell("picture", "mechanism");
     hands.click("camera");
-    tell("zeno", "menu zeno: closer to the next Zeno point");
+    tell("zeno", "menu zeno: zoom in on the next Zeno point");
 }
 
 }  // namespace

@@ -180,7 +180,7 @@ TEST(Record, is_written_by_a_screenshot) {
     EXPECT_EQ(folder.run("reproduce a.png").status, 0);
     const Answer again = folder.run("screenshot --record r.journal --out c.png" + size);
     EXPECT_EQ(again.status, 2);
-    EXPECT_EQ(again.err.find("r.journal: there is a file already"), 0U) << again.err;
+    EXPECT_EQ(again.err.find("r.journal: the file already exists"), 0U) << again.err;
 }
 
 }  // namespace

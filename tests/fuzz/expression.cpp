@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     Graph graph;
     Scope scope;
     scope.allowed = {{"x", graph.symbol(0)}, {"x'", graph.symbol(1)}, {"z", graph.symbol(2)}};
-    scope.forbidden = {{"gap", "'gap' may stand in a [[view]] only"}};
+    scope.forbidden = {{"gap", "'gap' is allowed only in a [[view]]"}};
     try {
         const Expression e = parse(text, scope, graph);
         require_readable(e, scope);

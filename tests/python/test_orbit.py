@@ -112,7 +112,7 @@ def test_of_a_drive(program):
     found = achilles.orbit("ball_on_table", period="2*pi/om", from_="end")
     assert found.to_json() == program("orbit", "ball_on_table", "--from", "end", "--period", "2*pi/om", "--json", "-")
     assert found.section == "time" and len(found.multipliers) == 2 * len(found.system.coordinates)
-    with pytest.raises(achilles.InputError, match="the period of its drive must be given"):
+    with pytest.raises(achilles.InputError, match="the period of the drive must be given"):
         achilles.orbit("ball_on_table")
 
 
@@ -161,21 +161,21 @@ def test_figures_are_made_again(wave, program, tmp_path):
 
 
 def test_none_is_told():
-    with pytest.raises(achilles.NoOrbit, match="^Newton's method converges too slowly: periodic runs are not isolated here") as problem:
+    with pytest.raises(achilles.NoOrbit, match="^Newton's method converges too slowly: the periodic orbit is not isolated") as problem:
         achilles.orbit("ball_on_floor")
     assert isinstance(problem.value, RuntimeError) and "--" not in str(problem.value)
 
 
 @pytest.mark.parametrize("words, told", [
     ({"continue_": {"ee": (0, 1)}}, "^continue_ ee=0:1: there is no parameter 'ee'; did you mean 'e'"),
-    ({"continue_": "e=0:0.3"}, "e = 0.5, where the search begins, does not lie in it\\ne=0.15 begins inside"),
+    ({"continue_": "e=0:0.3"}, "the search starts at e = 0.5, outside this range\\nstart inside it, for example with e=0.15"),
     ({"continue_": "e=0.3"}, "a range is expected"),
     ({"shift": {"z": 1}}, "^shift z=1: there is no coordinate 'z'"),
     ({"shift": "x=2*pie"}, "unknown name 'pie'; did you mean 'pi'"),
     ({"from_": "nothing.json"}, "nothing.json: there is no such file"),
-    ({"from_": {"q": [1, 2]}}, "from_: it has no v, a number for each of x, y"),
-    ({"from_": {"q": [1, 2], "v": [1]}}, "from_: v is a finite number for each of x, y, not"),
-    ({"from_": {"q": [1, np.nan], "v": [1, 1]}}, "from_: q is a finite number for each of x, y, not"),
+    ({"from_": {"q": [1, 2]}}, "from_: v is missing: give a number for each of x, y"),
+    ({"from_": {"q": [1, 2], "v": [1]}}, "from_: v needs a finite number for each of x, y, not"),
+    ({"from_": {"q": [1, np.nan], "v": [1, 1]}}, "from_: q needs a finite number for each of x, y, not"),
     ({"from_": {"q": [1, 1], "v": [1, 1], "t": np.inf}}, "from_: t: inf does not lie in"),
     ({"reinitialization": "euclidean"}, "they need the kinetic reinitialization"),
     ({"e": 2}, "^e=2: "),
@@ -197,7 +197,7 @@ def test_what_is_wrong(words, told):
     ({"shift": {"x": None}}, "shift: x: a number or a text"),
     ({"period": [1]}, "period: a number or a text"),
     ({"from_": 3}, "from_: \"start\", \"end\", a file"),
-    ({"from_": {"q": ["a", "b"], "v": [1, 1]}}, "from_: q are numbers"),
+    ({"from_": {"q": ["a", "b"], "v": [1, 1]}}, "from_: q must be numbers"),
     ({"from_": {"q": [1, 1], "v": [1, 1], "t": "now"}}, "from_: t: a number is expected"),
 ])
 def test_what_is_of_a_wrong_kind(words, told):

@@ -106,7 +106,7 @@ def test_times_outside_of_the_run(t, told):
     for ask in (run, lambda t: run.evaluate("x", t), run.to_csv, run.to_json):
         with pytest.raises(achilles.InputError, match=told):
             ask(t)
-    with pytest.raises(TypeError, match="times are numbers"):
+    with pytest.raises(TypeError, match="times must be numbers"):
         run("now")
 
 
@@ -192,17 +192,17 @@ def test_figures(program, tmp_path):
         run.figure("hight")
     with pytest.raises(achilles.InputError, match="size: 10 does not lie in"):
         run.figure(size=(10, 10))
-    with pytest.raises(ValueError, match="ends in none of .svg, .png and .pdf"):
+    with pytest.raises(ValueError, match="the name must end in .svg, .png or .pdf"):
         figure.save(tmp_path / "f.jpg")
-    with pytest.raises(TypeError, match="size: .width, height. in pixels is expected, as .1200, 800., not 600"):
+    with pytest.raises(TypeError, match="size: .width, height. in pixels is expected, such as .1200, 800., not 600"):
         run.figure(size=600)
     with pytest.raises(TypeError, match="scale: a number is expected, not str"):
         run.figure(scale="large")
     with pytest.raises(TypeError, match=r"size: two numbers are expected, not a text; write size=\(800, 600\)"):
         run.figure(size="800x600")
-    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, as \(1200, 800\), not 'large'"):
+    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, such as \(1200, 800\), not 'large'"):
         run.figure(size="large")
-    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, as \(1200, 800\), not \(1, 2, 3\)"):
+    with pytest.raises(TypeError, match=r"size: \(width, height\) in pixels is expected, such as \(1200, 800\), not \(1, 2, 3\)"):
         run.figure(size=(1, 2, 3))
     with pytest.raises(achilles.InputError, match="size: a whole number from 64 to 16384 is expected, not 600.5"):
         run.figure(size=(800, 600.5))

@@ -88,7 +88,7 @@ def test_random_points_and_sections(program):
 
 
 def test_a_run_that_fails_is_a_point():
-    with pytest.warns(achilles.AchillesWarning, match="3 of the runs: cannot start; the first has y = -3.0"):
+    with pytest.warns(achilles.AchillesWarning, match="3 of the runs: cannot start; first at y = -3.0"):
         below = achilles.sweep("ball_on_sine", {"y": (-3, 3, 7)}, "t")
     assert below["outcome"][0] == "cannot start" and np.isnan(below["t"][0]) and below["outcome"][-1] == "end time"
 
@@ -119,11 +119,11 @@ def test_control_c_ends_it_within_a_chunk():
 
 
 @pytest.mark.parametrize("over, asked, words, told", [
-    ({"ee": (0, 1, 5)}, "t", {}, "^over ee=0:1:5: 'ee' is no parameter, coordinate or rate of this system; did you mean 'e'"),
-    ({"e": (0, 1)}, "t", {}, "a number of values is missing"),
+    ({"ee": (0, 1, 5)}, "t", {}, "^over ee=0:1:5: 'ee' is not a parameter, coordinate or rate of this system; did you mean 'e'"),
+    ({"e": (0, 1)}, "t", {}, "the number of values is missing"),
     ({"e": (0, 1, 1)}, "t", {}, "a whole number from 2 on"),
     ({"e": (0, 1, 5)}, "zeno_tim(2)", {}, "zeno_tim"),
-    ({"e": (0, 1, 5)}, [], {}, "nothing is asked of the runs"),
+    ({"e": (0, 1, 5)}, [], {}, "name at least one quantity to print"),
     ({}, "t", {}, "nothing is varied"),
     ({"e": (0, 1, 5)}, "t", {"threads": 0}, "threads=0: a whole number from 1 to 1024"),
     ({"e": (0, 1, 5)}, "t", {"seed": 4}, "this needs random N"),
@@ -137,7 +137,7 @@ def test_what_is_wrong(over, asked, words, told):
 
 @pytest.mark.parametrize("over, asked, words, told", [
     (5, "t", {}, "over: a dict such as"),
-    ({"e": 0.5}, "t", {}, "over: e has"),
+    ({"e": 0.5}, "t", {}, "over: e must be"),
     ({"e": (0, None, 3)}, "t", {}, "e: a number or a text such as 'pi/6' is expected, not None"),
     ({"e": (0, 1, 5)}, [3], {}, "print: a text"),
     ({"e": (0, 1, 5)}, "t", {"progress": 3}, "progress: a function"),

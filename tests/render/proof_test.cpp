@@ -192,6 +192,24 @@ TEST(ProofTube, IsInTheLegendAndInEveryKindOfPicture) {
 }
 
 // Its fill is one colour, also where its pieces meet, and nothing is painted outside.
+// A path has no tube. Its legend must not read as if one were hidden by the curve.
+TEST(ProofTube, IsNotClaimedWhereNoPlotIsOverTime) {
+    const Proven proven("ball_on_sine", 5.0, {0.05, {}});
+    ViewDescription path = over_time({"y"});
+    path.x.text = "x";
+    const auto keys = [&](const std::vector<ViewDescription>& views) {
+        return publication(proven.run, views, {}, &proven.proof, {}).keys;
+    };
+    ASSERT_EQ(proven.proof.enclosure.outcome.kind, Enclosure::Outcome::Kind::undecided);
+    const auto alone = keys({path});
+    ASSERT_EQ(alone.size(), 1U);
+    EXPECT_TRUE(alone[0].label.starts_with("proved until ")) << alone[0].label;
+    EXPECT_TRUE(alone[0].label.ends_with("(tubes are drawn in plots over t only)")) << alone[0].label;
+    const auto both = keys({path, over_time({"y"})});
+    ASSERT_EQ(both.size(), 2U);
+    EXPECT_EQ(both[0].label.find("only"), std::string::npos) << both[0].label;
+}
+
 TEST(ProofTube, IsFilledEvenly) {
     Offscreen surface(support::options(200, 100));
     const Image image = support::picture(surface, [](ImDrawList* list) {

@@ -78,7 +78,7 @@ TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
     Panel panel = compose_sweep(data, only(0)).panels[0];
     EXPECT_EQ(panel.color_bar.axis.low, 0.0);
     EXPECT_EQ(panel.color_bar.axis.high, 99.0);
-    EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s), greatest 5000");
+    EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s), max 5000");
     SweepLook look = only(0);
     look.range = std::array<double, 2>{0.0, 5000.0};
     panel = compose_sweep(data, look).panels[0];
@@ -124,7 +124,7 @@ TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {
     ASSERT_GT(data.count(), 3000u);
     EXPECT_EQ(panel.dots.points.size(), data.count());
     EXPECT_EQ(panel.dots.columns, 60);
-    EXPECT_EQ(panel.markers[0].label, "at every impact; stronger where there are more (logarithm)");
+    EXPECT_EQ(panel.markers[0].label, "at every impact; color strength: number of points (log scale)");
 }
 
 TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
@@ -328,13 +328,13 @@ TEST(SweepFigure, says_what_has_none) {
         }
         return "";
     };
-    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --over y=1:2:3 --print t"), "a sweep over 3 axes has no figure");
-    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --print t --at impact"), "a section over 2 axes has no figure");
-    EXPECT_EQ(refusal("--over e=0:1:3 --print held --at impact"),
-              "a diagram of a section needs a number along its axis");
-    EXPECT_EQ(refusal("--print t --at impact"), "a section without an axis is drawn as one print over another");
+    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --over y=1:2:3 --print t"), "a sweep over 3 axes cannot be drawn");
+    EXPECT_EQ(refusal("--over e=0:1:3 --over x=0:1:3 --print t --at impact"), "a section over 2 axes cannot be drawn");
+    EXPECT_EQ(refusal("--over e=0:1:3 --print held --at impact"), "the diagram of a section needs a numeric quantity");
+    EXPECT_EQ(refusal("--print t --at impact"),
+              "the figure of a section without an axis needs exactly two numeric quantities");
     EXPECT_EQ(refusal("--over e=0:1:5000 --over x=0:1:3 --print t"),
-              "5000 values of e are more than a map has cells along a side");
+              "5000 values of e are too many for one side of a map");
     EXPECT_EQ(refusal("--over e=0:1:5000 --print t"), "");
     EXPECT_EQ(refusal("--over e=0:1 --over x=0:1 --random 9 --print t"), "");
 }

@@ -94,10 +94,10 @@ constexpr OtherWords other_options[] = {
 
 // Options of other programs that achilles does not need, and what to do instead.
 constexpr OtherWords no_options[] = {
-    {"the step follows from --tolerance, and --samples N chooses the rows of a file",
+    {"the step size follows from --tolerance; --samples N sets the number of rows in a file",
      "dt step stepsize step-size timestep"},
-    {"the system stands alone: achilles COMMAND SYSTEM", "system model input i"},
-    {"the options of a run stand in [run] of the system file", "config"},
+    {"the system needs no option: achilles COMMAND SYSTEM", "system model input i"},
+    {"the options of a run are set in [run] of the system file", "config"},
     {"write an angle in degrees as --set \"theta1=30 deg\"", "degrees deg"},
     {"leave it out, and send the output to /dev/null", "quiet q silent"},
 };
@@ -293,8 +293,8 @@ class CommandLine {
             return message("a system is missing",
                            fmt::format("write achilles {} NAME: a name from 'achilles list', or a .toml file", name_));
         if (missing == "PICTURE")
-            return message("a picture is missing", "write achilles reproduce F.png: one that Achilles made");
-        if (missing == "NAME") return message("a name is missing", "write achilles new mine: that is mine.toml");
+            return message("a picture is missing", "write achilles reproduce F.png, with a picture that Achilles made");
+        if (missing == "NAME") return message("a name is missing", "for example, achilles new mine writes mine.toml");
         if (option == nullptr) return message(what, help());
         for (const std::string& extra : program_.remaining(true))
             if (const std::string writer = writer_of(extra); !writer.empty())
@@ -309,7 +309,7 @@ class CommandLine {
         if (what.find("At Most") != what.npos) return message(fmt::format("{} is given twice", name), "leave one out");
         if (option->get_items_expected_max() == 0) return message(name + " takes no value", "write it alone");
         const bool is_stream = name == "--csv" || name == "--json";
-        return message(name + " is given without a value",
+        return message(name + " needs a value",
                        fmt::format("write {}{}", with_value(*option, ""),
                                    is_stream ? fmt::format(", or {} - for standard output", name) : ""));
     }

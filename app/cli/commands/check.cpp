@@ -39,7 +39,8 @@ int check(const CheckArguments& arguments) {
     files.commit();
     // 50 digits and steps of 1e-11 leave less than 1e-15 where the system is as smooth as it should be.
     if (disagreement <= 1e-9) return reached_end;
-    print_clean(stderr, "achilles: the derived equations disagree with differences of L by {:.1e}\n", disagreement);
+    print_clean(stderr, "achilles: the derived equations differ from finite differences of L by {:.1e}\n",
+                disagreement);
     return stopped_early;
 }
 

@@ -91,7 +91,7 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
     command
         .add_option(
             "--set", settings,
-            "value of a parameter, a start x=0.3 or a rate x'=1.5; pi/6 and \"30 deg\" are values, too; repeatable")
+            "value of a parameter, a start x=0.3 or a rate x'=1.5; pi/6 and \"30 deg\" are also accepted; repeatable")
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
@@ -101,7 +101,7 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
             add_option(command, *option, common, "set --eps-q, --eps-v and --eps-t together", overrides);
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
         add_option(command, *option, flag,
-                   fmt::format("{}{} (default: the file's, else {})", option->about, unit, to_text(option->get({}))),
+                   fmt::format("{}{} (default: from the file, else {})", option->about, unit, to_text(option->get({}))),
                    overrides);
     }
 }
@@ -121,7 +121,7 @@ void add_width_option(CLI::App& command, double& width, const std::string& about
 void add_step_option(CLI::App& command, std::vector<std::string>& steps, bool& allow_files) {
     command.add_flag(
         "--allow-files", allow_files,
-        "trust the journal: let it write files, read the files it names, and take the time and memory it wants");
+        "trust the journal: it may write files, read the files it names, and use time and memory without limit");
     command.add_option("--do", steps, "command of the explorer, such as \"seek 3.2\"; repeatable")
         ->type_name("COMMAND")
         ->expected(1)

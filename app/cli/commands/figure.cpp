@@ -88,8 +88,8 @@ std::optional<Spread> spread_of(const FigureArguments& arguments, const SystemDe
 int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
         throw arguments.mechanism
-            ? InputError("--view " + arguments.views[0], {}, "the mechanism is drawn alone", "leave --view out")
-            : InputError("--view " + arguments.views[0], {}, "a journal tells what is plotted",
+            ? InputError("--view " + arguments.views[0], {}, "--mechanism draws no plots", "leave --view out")
+            : InputError("--view " + arguments.views[0], {}, "the journal or --do already sets the plots",
                          "leave --view out, or --journal and --do");
     std::vector<Command> steps;
     job.inputs().trust(
@@ -115,16 +115,17 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
 }
 
 int draw(const FigureArguments& arguments, PictureJob& job) {
-    const std::string format = format_for(arguments.out, arguments.format, ", or leave --format out: the name tells");
+    const std::string format =
+        format_for(arguments.out, arguments.format, ", or leave --format out: the name gives the format");
     if (format == "pdf") need_pdf_writer("--out " + arguments.out);
     check(arguments.page, "--width-mm");
     if (!arguments.at.empty() && !arguments.mechanism)
-        throw InputError("--at " + arguments.at, {}, "only a mechanism has an instant", "add --mechanism");
+        throw InputError("--at " + arguments.at, {}, "an instant applies only to the mechanism", "add --mechanism");
     if (arguments.width > 0.0 && !arguments.proof)
-        throw InputError(fmt::format("--width {}", arguments.width), {}, "only a proof is about starts around this one",
+        throw InputError(fmt::format("--width {}", arguments.width), {}, "a half-width applies only to a proof",
                          "add --proof; --width-mm is the width of the picture");
     if (arguments.proof && arguments.mechanism)
-        throw InputError("--proof", {}, "a proof is drawn in plots over time, and the mechanism is none",
+        throw InputError("--proof", {}, "a proof is drawn in plots over time, not in the mechanism",
                          "leave --mechanism out");
     if (format == "png") job.check_size(arguments.size.width, arguments.size.height);
     if (!arguments.steps.empty() || !arguments.journal.empty() || arguments.mechanism)
@@ -157,7 +158,7 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
 void take_columns(const std::string& text, int& columns) {
     const double number = number_from("--columns", text);
     if (!(number >= 1.0 && number <= 20.0 && number == static_cast<int>(number)))
-        throw InputError("--columns " + text, {}, "the panels stand in 1 to 20 columns");
+        throw InputError("--columns " + text, {}, "the number of columns must be a whole number from 1 to 20");
     columns = static_cast<int>(number);
 }
 
@@ -174,7 +175,7 @@ void add_figure(CLI::App& program, int& status, PictureJob& job) {
     command->add_option("--journal", arguments->journal, "journal to replay first; its plots are drawn")
         ->type_name("F");
     add_step_option(*command, arguments->steps, arguments->allow_files);
-    add_format_option(*command, arguments->format, "where the name of --out does not tell");
+    add_format_option(*command, arguments->format, "format, if the name of --out does not give it");
     command
         ->add_option_function<std::string>(
             "--columns", [arguments](const std::string& text) { take_columns(text, arguments->style.columns); },

@@ -49,8 +49,8 @@ struct Clock {
 
 void check_count(const Clock& clock) {
     if (clock.last() < static_cast<double>(most_frames)) return;
-    throw InputError({}, {}, fmt::format("these would be more than {} frames", most_frames),
-                     "fewer a second (--fps), a higher --speed or an earlier --end make it less");
+    throw InputError({}, {}, fmt::format("this would take more than {} frames", most_frames),
+                     "use a lower --fps, a higher --speed or an earlier --end");
 }
 
 // Without names, the first that are over time: they fit beside a mechanism.
@@ -89,7 +89,7 @@ void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept)
     const fs::path folder = fs::absolute(folder_of(arguments));
     const StillSize& size = arguments.size;
     print_clean(stdout, "{} frames of {}x{} in {}{}\n", count, size.width, size.height, folder.string(),
-                kept > 0 ? fmt::format(" ({} were there)", kept) : "");
+                kept > 0 ? fmt::format(" ({} already existed)", kept) : "");
     const std::string film = is_film(arguments.out) ? fs::absolute(arguments.out).string()
                                                     : fs::path(arguments.system).stem().string() + ".mp4";
     std::string line;
@@ -117,7 +117,7 @@ int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
     }
     job.commit();
     remove_frames(folder, count);
-    print_clean(stdout, "{}: {} frames of {}x{}, {:g} a second\n", fs::absolute(arguments.out).string(), count,
+    print_clean(stdout, "{}: {} frames of {}x{}, {:g} per second\n", fs::absolute(arguments.out).string(), count,
                 arguments.size.width, arguments.size.height, arguments.fps);
     return reached_end;
 }
@@ -142,8 +142,8 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
     }
     if (outcome.done < numbers.size()) {
         print_clean(stderr,
-                    "achilles: a process that drew was ended by signal {}: {} of {} frames are missing\n"
-                    "the same command draws those that are\n",
+                    "achilles: a drawing process was ended by signal {}: {} of {} frames are missing\nrun the same "
+                    "command again to draw them\n",
                     outcome.signal, numbers.size() - outcome.done, count);
         return stopped_early;
     }
@@ -172,7 +172,7 @@ Scenario plain(const FramesArguments& arguments, PictureJob& job) {
 // After some commands of the explorer: its plots. Its thread ends here: processes are made after it.
 Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
     if (!arguments.views.empty())
-        throw InputError("--view " + arguments.views[0], {}, "the commands tell what is plotted",
+        throw InputError("--view " + arguments.views[0], {}, "--do already sets the plots",
                          "leave --view out, or --do");
     job.inputs().trust(trust_of(arguments.allow_files, {arguments.system}, work_options(arguments.overrides)));
     Session session = open_session(arguments.system, job.inputs().system(arguments.system), arguments.settings,
@@ -211,14 +211,14 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
 CameraMode camera_from(const std::string& text) {
     const auto mode = camera_mode_from(text);
     if (!mode || *mode == CameraMode::fixed)
-        throw InputError("--camera " + text, {}, "a camera is fit, follow or zeno");
+        throw InputError("--camera " + text, {}, "the camera must be fit, follow or zeno");
     return *mode;
 }
 
 int jobs_from(const std::string& text) {
     const double number = number_from("--jobs", text);
     if (!(number >= 1.0 && number <= 256.0 && number == std::floor(number)))
-        throw InputError("--jobs " + text, {}, "1 to 256 processes can draw");
+        throw InputError("--jobs " + text, {}, "the number of processes must be a whole number from 1 to 256");
     return static_cast<int>(number);
 }
 
@@ -226,7 +226,8 @@ int jobs_from(const std::string& text) {
 double within(const std::string& option, const std::string& text, double low, double high) {
     const double number = number_from(option, text);
     if (!(number >= low && number <= high))
-        throw InputError(fmt::format("{} {}", option, text), {}, fmt::format("this must lie in [{}, {}]", low, high));
+        throw InputError(fmt::format("{} {}", option, text), {},
+                         fmt::format("the value must lie in [{}, {}]", low, high));
     return number;
 }
 
@@ -239,10 +240,9 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
         program.add_subcommand("frames", "Draws the mechanism in motion beside its plots: a film, or numbered PNGs");
     add_system_argument(*command, arguments->system);
     command
-        ->add_option(
-            "--out", arguments->out,
-            "a film, which ffmpeg joins (it must be installed); or the folder of the frames, where those of the same "
-            "command stay")
+        ->add_option("--out", arguments->out,
+                     "film to write (needs ffmpeg), or folder for the frames; frames that the same command already "
+                     "drew are kept")
         ->required()
         ->type_name("F.mp4|F.gif|DIR");
     const auto add_number = [&](const char* option, double& target, double low, double high, const char* about) {
@@ -259,7 +259,7 @@ void add_frames(CLI::App& program, int& status, PictureJob& job) {
     command
         ->add_option_function<std::string>(
             "--camera", [arguments](const std::string& text) { arguments->camera = camera_from(text); },
-            "camera: fit (the whole run, the default), follow (the body), zeno (closer and closer to a Zeno point)")
+            "camera: fit (the whole run, the default), follow (the body), zeno (zooms in on a Zeno point)")
         ->type_name("fit|follow|zeno");
     command
         ->add_option_function<std::string>(

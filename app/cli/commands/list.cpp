@@ -32,7 +32,7 @@ void list() {
 }  // namespace
 
 void add_list(CLI::App& program, int& status) {
-    program.add_subcommand("list", "The systems there are, and their titles")->callback([&status] {
+    program.add_subcommand("list", "Lists the systems of the gallery and their titles")->callback([&status] {
         list();
         status = reached_end;
     });

@@ -23,32 +23,32 @@ std::string contents() {
     std::size_t width = 0;
     for (const ManualTopic& topic : topics) width = std::max(width, topic.name.size());
     for (const ManualTopic& topic : topics) text += fmt::format("  {:<{}}  {}\n", topic.name, width, topic.title);
-    return text + "\nachilles COMMAND --help tells the options of a command, achilles --help the commands.\n";
+    return text + "\nachilles COMMAND --help lists the options of a command, achilles --help the commands.\n";
 }
 
 // Writes `text` to NAME.toml, which must not exist.
 void write_new(const std::string& name, const std::string& text) {
     if (name.find_first_not_of(' ') == std::string::npos)
-        throw InputError("new", {}, "the name is empty", "write achilles new mine: that is mine.toml");
+        throw InputError("new", {}, "the name is empty", "for example, achilles new mine writes mine.toml");
     std::filesystem::path file = name;
     if (file.extension() != ".toml") file += ".toml";
     std::error_code problem;
     if (std::filesystem::symlink_status(file, problem).type() != std::filesystem::file_type::not_found)
-        throw InputError(file.string(), {}, "this file is there already", "choose another name");
+        throw InputError(file.string(), {}, "this file already exists", "choose another name");
     OutputFiles files;
     files.add(file.string());
     files.put(file.string(), text);
     files.commit();
     const std::string path = (file.has_parent_path() ? "" : "./") + file.string();
-    fmt::print("{} is written; {} runs it\n", file.string(), shell_line({"simulate", path}));
+    fmt::print("wrote {}; to run it: {}\n", file.string(), shell_line({"simulate", path}));
 }
 
 }  // namespace
 
 void add_manual(CLI::App& program, int& status) {
-    CLI::App* help = program.add_subcommand("help", "The manual, a page for each topic");
+    CLI::App* help = program.add_subcommand("help", "Prints the manual, one page per topic");
     const auto topic = std::make_shared<std::string>();
-    help->add_option("TOPIC", *topic, "a page or a command (default: the list of pages)")->type_name("");
+    help->add_option("TOPIC", *topic, "page or command (default: the list of pages)")->type_name("");
     help->callback([topic, &program, &status] {
         // Some commands have a page of their own, which says more than their options.
         const auto pages = manual_topics();
@@ -73,8 +73,8 @@ void add_manual(CLI::App& program, int& status) {
     });
     CLI::App* create = program.add_subcommand("new", "Writes NAME.toml, a system file to start from");
     const auto name = std::make_shared<std::string>(), from = std::make_shared<std::string>();
-    create->add_option("NAME", *name, "the file, with or without .toml")->required()->type_name("");
-    create->add_option("--from", *from, "a system to copy (default: a ball on a floor, with every key explained)")
+    create->add_option("NAME", *name, "file to write, with or without .toml")->required()->type_name("");
+    create->add_option("--from", *from, "system to copy (default: a ball on a floor, with every key explained)")
         ->type_name("SYSTEM");
     create->callback([name, from, &status] {
         write_new(*name, from->empty() ? skeleton_system() : read_text(find_system(*from)));

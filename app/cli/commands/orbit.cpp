@@ -100,7 +100,7 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
         "initial guess: the start of the run, its end, or the state in a file written by orbit --json or simulate "
         "--json (default: [orbit] of the system, else the start)");
     add("--period", arguments->asked.period, "EXPRESSION",
-        "period, an expression in the parameters such as 2*pi/om: that of the drive, or without a drive a guess, s");
+        "period in s, an expression in the parameters such as 2*pi/om: of the drive, or a guess if there is no drive");
     command
         ->add_option("--shift", arguments->asked.shifts,
                      "shift of a coordinate after one period, such as x=2*pi; repeatable")
@@ -109,10 +109,10 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add("--continue", arguments->asked.along, "NAME=LOW:HIGH",
         "follow the branch in a parameter, in both directions and through folds, until a Zeno point is lost");
-    add("--json", arguments->json, "F", "where to write all of it as JSON, instead of text; - is standard output");
+    add("--json", arguments->json, "F", "write the results as JSON instead of text; - is standard output");
     add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
     add_view_option(*command, arguments->views, "with --out: view of the system; repeatable (default: all)");
-    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, margins, options");
+    command->add_flag("--verbose", arguments->verbose, "print margins, impacts and options, too");
     command->add_flag("--transparent", arguments->style.transparent, "with --out: leave out the background");
     command->add_flag("--dark", arguments->style.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, arguments->page);

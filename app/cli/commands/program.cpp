@@ -54,7 +54,7 @@ void finish_output() {
     std::cout.flush();
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0 && std::cout) return;
     throw InputError("standard output", {},
-                     fmt::format("not all of it could be written{}{}", errno == 0 ? "" : ": ",
+                     fmt::format("the output could not be written completely{}{}", errno == 0 ? "" : ": ",
                                  errno == 0 ? "" : std::strerror(errno)));
 }
 

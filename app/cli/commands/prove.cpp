@@ -44,7 +44,7 @@ Claim claim_of(const ProveArguments& arguments, const SystemDescription& descrip
 std::vector<double> times_of(const ProveArguments& arguments, const Run& run) {
     const double start = run.options.start_time, end = run.options.end_time;
     if (arguments.samples && !arguments.times.empty())
-        throw InputError("--samples", {}, "the instants are those of --times already");
+        throw InputError("--samples", {}, "the instants are already given by --times");
     if (arguments.samples) return equidistant(*arguments.samples, start, end);
     if (arguments.times.empty()) return {};
     return read_instants(read_text(arguments.times), arguments.times, start, end);
@@ -104,8 +104,10 @@ void add_prove(CLI::App& program, int& status) {
             },
             "number of equidistant instants, both ends included, at which the state is enclosed")
         ->type_name("N");
-    command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
-    command->add_flag("--verbose", arguments->verbose, "print everything: impacts, velocities, wall time");
+    command->add_option("--times", arguments->times, "file of instants instead of --samples, one per line, s")
+        ->type_name("F");
+    command->add_flag("--verbose", arguments->verbose,
+                      "print the first impacts, the full assumptions and the wall time; --json has every impact");
     command->add_flag("--timing", arguments->timing, "print the wall time on standard error");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->get_option("--set")->description(

@@ -37,8 +37,9 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
     add_pictures(program, status, job);
     std::vector<std::string> words = words_of(origin.command);
     if (words.size() > most_words)
-        throw InputError(picture, {},
-                         fmt::format("its command has {} words; at most {} are run here", words.size(), most_words));
+        throw InputError(
+            picture, {},
+            fmt::format("its command has {} words; at most {} are allowed here", words.size(), most_words));
     words.insert(words.end(), {"--out", "picture." + format});
     std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
     try {
@@ -47,7 +48,8 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
         throw InputError(picture, {}, fmt::format("its command cannot be run here: {}", error.what()), origin.command);
     }
     if (!job.made())
-        throw InputError(picture, {}, fmt::format("its command makes no picture '{}'", origin.picture), origin.command);
+        throw InputError(picture, {}, fmt::format("its command does not make the picture '{}'", origin.picture),
+                         origin.command);
     return status;
 }
 
@@ -56,7 +58,7 @@ int reproduce(const std::string& picture, const std::string& out) {
     files.spare(picture);
     if (!out.empty()) files.add(out);
     const std::string before = read_text(picture, largest_picture);
-    if (before.size() > largest_picture) throw InputError(picture, {}, "this is too large for a picture");
+    if (before.size() > largest_picture) throw InputError(picture, {}, "this file is too large for a picture");
     const Origin origin = with_name(picture, [&] { return origin_of(before); });
     if (!out.empty()) format_for(out, picture_format(before));
     PictureJob job(origin);
@@ -67,11 +69,11 @@ int reproduce(const std::string& picture, const std::string& out) {
     files.commit();
     if (out != "-") print_clean(stdout, "{}\n", origin.command);
     if (after == before) {
-        print_clean(stderr, "achilles: {}: made again it has the same bytes\n", picture);
+        print_clean(stderr, "achilles: {}: reproduced with the same bytes\n", picture);
         return status;
     }
     const std::string here = "Achilles " + version();
-    print_clean(stderr, "achilles: {}: made again it has other bytes{}\n", picture,
+    print_clean(stderr, "achilles: {}: reproduced with different bytes{}\n", picture,
                 origin.software == here ? "" : fmt::format(" (it was made by {}, this is {})", origin.software, here));
     return made_differently;
 }
@@ -93,7 +95,7 @@ void add_reproduce(CLI::App& program, int& status) {
     };
     const auto arguments = std::make_shared<Arguments>();
     CLI::App* command = program.add_subcommand(
-        "reproduce", "Prints the command that made a picture, and makes the same bytes again from the picture alone");
+        "reproduce", "Prints the command that made a picture, and reproduces its bytes from the picture alone");
     command
         ->add_option("PICTURE", arguments->picture,
                      "PNG, SVG or PDF made by figure, sweep, orbit, frames, paper or screenshot")

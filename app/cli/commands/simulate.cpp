@@ -55,7 +55,7 @@ void check_files(const SimulateArguments& arguments) {
           std::tuple{"--of", !arguments.of.empty(), !arguments.derivatives, "--derivatives"}})
         if (is_given && is_useless) throw InputError(flag, {}, fmt::format("this needs {}", needs));
     if (arguments.samples && !arguments.times.empty())
-        throw InputError("--samples", {}, "the instants are those of --times already");
+        throw InputError("--samples", {}, "the instants are already given by --times");
 }
 
 // A name that says otherwise than what is in the file is most likely a slip.
@@ -63,8 +63,8 @@ void warn_of_endings(const SimulateArguments& arguments) {
     for (const auto& [flag, path, other] :
          {std::tuple{"--json", &arguments.json, ".csv"}, std::tuple{"--csv", &arguments.csv, ".json"}})
         if (path->ends_with(other))
-            print_clean(stderr, "achilles: warning: {} {}: what is written there is not {}, whatever its name says\n",
-                        flag, *path, other + 1);
+            print_clean(stderr, "achilles: warning: {} {}: the output is not {}, although the name says so\n", flag,
+                        *path, other + 1);
 }
 
 Instants instants_of(const SimulateArguments& arguments, const Run& run) {
@@ -73,7 +73,7 @@ Instants instants_of(const SimulateArguments& arguments, const Run& run) {
     if (arguments.times.empty()) return {};
     const std::string text = read_text(arguments.times);
     if (text.size() > largest_file)
-        throw InputError(arguments.times, {}, fmt::format("it is larger than {} MB", largest_file >> 20));
+        throw InputError(arguments.times, {}, fmt::format("the file is larger than {} MB", largest_file >> 20));
     return read_instants(text, arguments.times, start, end);
 }
 
@@ -145,16 +145,17 @@ void add_simulate(CLI::App& program, int& status) {
             "--samples", [arguments](const std::string& text) { arguments->samples = samples_from(text); },
             "number of equidistant instants, both ends included, for the rows of --csv and `samples` of --json")
         ->type_name("N");
-    command->add_option("--times", arguments->times, "file with the instants instead, one per line, s")->type_name("F");
+    command->add_option("--times", arguments->times, "file of instants instead of --samples, one per line, s")
+        ->type_name("F");
     command->add_flag("--plain-names", arguments->plain_names,
-                      "name the columns of --csv as Python can: theta1_rate for theta1'");
+                      "use column names in --csv that are valid in Python: theta1_rate for theta1'");
     command->add_flag("--units", arguments->units, "add a second line with the units of the columns to --csv");
-    command->add_flag(
-        "--derivatives", arguments->derivatives,
-        "also compute derivatives of every event and of the final state with respect to starts and parameters");
+    command->add_flag("--derivatives", arguments->derivatives,
+                      "also compute derivatives of every event and of the final state with respect to the initial "
+                      "values and the parameters");
     command
         ->add_option("--of", arguments->of,
-                     "with --derivatives: an expression to differentiate, as --print of a sweep; repeatable")
+                     "with --derivatives: expression to differentiate, as for --print of a sweep; repeatable")
         ->type_name("EXPRESSION")
         ->allow_extra_args(false);
     command->add_flag("--verbose", arguments->verbose,

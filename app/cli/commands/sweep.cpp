@@ -134,7 +134,7 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     progress.end();
     const std::string how = output.how_to_go_on();
     if (output.done() == points)
-        print_clean(stderr, "achilles: all {} runs are made, but not all of the files{}\n", points, how);
+        print_clean(stderr, "achilles: all {} runs are done, but not all files are written{}\n", points, how);
     else
         print_clean(stderr, "achilles: the sweep stopped early, at {} of {} runs{}\n", output.done(), points, how);
     return stopped_early;
@@ -152,9 +152,8 @@ void add_texts(CLI::App& command, const char* flag, std::vector<std::string>& te
 
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks) {
     const auto arguments = std::make_shared<SweepArguments>();
-    CLI::App* command = program.add_subcommand("sweep",
-                                               "Simulates many runs over parameters, starts and options: a table, a "
-                                               "curve, a map");
+    CLI::App* command = program.add_subcommand(
+        "sweep", "Simulates many runs over parameters, initial values and options: a table, a curve, a map");
     add_system_argument(*command, arguments->system);
     AskedSweep& asked = arguments->asked;
     add_texts(
@@ -173,8 +172,9 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
                 flag, [&place](const std::string& text) { place = text; }, about)
             ->type_name(type);
     };
-    text_option("--at", asked.at, "impact|zeno|release|EXPRESSION",
-                "tabulate at every such event, or where the expression crosses zero upward, instead of at the end");
+    text_option(
+        "--at", asked.at, "impact|zeno|release|EXPRESSION",
+        "tabulate at every event of this kind, or where the expression crosses zero upward, instead of at the end");
     text_option("--after", asked.after, "T", "with --at: tabulate from this time on, s (default: the start)");
     text_option("--random", asked.random, "N",
                 "number of random points instead of a grid; --over then takes NAME=LOW:HIGH");

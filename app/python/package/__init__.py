@@ -6,18 +6,18 @@
     run.t, run.q, run.v                  # NumPy arrays: every step and every event
     q, v = run(3.2)                      # the state at a time, or at an array of them
     run["y - sin(x)"]                    # any expression of the run, along run.t
-    run.events[0].kind, run.certificates # what happened, and what is proved of it
+    run.events[0].kind, run.certificates # the events, and the certificates
     run.figure("height").save("f.pdf")   # as `achilles figure` draws it; a notebook shows it
 
     map = achilles.sweep("ball_on_sine", over={"e": (0, 0.95, 200)}, print="zeno_time(2)")
     map["zeno_time(2)"]                  # an array in the shape of the grid
 
     orbit = achilles.orbit("ball_down_a_wave", continue_={"e": (0.1, 0.9)})
-    orbit.period, orbit.multipliers      # a periodic run, and what it leaves of a small change
+    orbit.period, orbit.multipliers      # a periodic run, and its multipliers
     orbit.branch.value, orbit.branch.q   # the same along a parameter
 
-Systems are named as by `achilles list` (`achilles.gallery()`), by the path of a file, or are a `System` made of text. Numbers
-are in the units of the file, angles in radians, times in seconds. What is wrong with what was asked for is an `InputError`.
+A system is a name from `achilles list` (`achilles.gallery()`), the path of a file, or a `System` made from text. Numbers are in
+the units of the file, angles in radians, times in seconds. Wrong input raises `InputError`.
 """
 
 from . import _core

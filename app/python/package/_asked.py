@@ -1,4 +1,4 @@
-"""What Python says of a run as the command line says it: one table of options, one way to read a value."""
+"""Values and options of a run, as on the command line: one table of options, one way to read a value."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def text_of(name: str, value: object) -> str:
 
 
 def number_in(name: str, value: object, least: float, most: float) -> float:
-    """A number that lies between these."""
+    """A number in this range."""
     if isinstance(value, str):
         raise TypeError(f"{name}: a number is expected, not {_kind(value)}")
     number = float(text_of(name, value))
@@ -44,7 +44,7 @@ def number_in(name: str, value: object, least: float, most: float) -> float:
 
 
 def whole_number_in(name: str, value: object, least: int, most: int) -> int:
-    """A whole number that lies between these."""
+    """A whole number in this range."""
     number = number_in(name, value, least, most)
     if number != int(number):
         raise InputError(f"{name}: a whole number from {least} to {most} is expected, not {value}")
@@ -80,10 +80,10 @@ class Asked:
                 if value is not None:
                     self._take(name, value)
                     if name in system.settable:
-                        told = f"{name} is taken as the option; the value of the system that is called so goes into set"
+                        told = f"{name} is taken as the option; the value of the system with this name goes into set"
                         warnings.warn(told, AchillesWarning, stacklevel=3)
             elif name in values:
-                raise TypeError(f"{name} is given twice, in set, too")
+                raise TypeError(f"{name} is given twice: as an argument and in set")
             else:
                 _check_name(system, name)
                 values[name] = value
@@ -93,7 +93,7 @@ class Asked:
     def _take(self, name: str, value: object) -> None:
         flag = _flags[name]
         if flag in self.options:
-            raise TypeError(f"{name} is given twice, by another name")
+            raise TypeError(f"{name} is given twice, under two names")
         self.options[flag] = text_of(name, value)
 
 
@@ -104,12 +104,12 @@ def _check_name(system: Any, name: str) -> None:
     guess = _core.did_you_mean(name, system.settable) or _core.did_you_mean(name, options)
     known = ", ".join(system.settable)
     told = f"there is no value or option '{name}'{guess}"
-    hint = f"its values are {known}; what is no name in Python goes into set={{\"x'\": 1.5}}"
+    hint = f"its values are {known}; a name that is not valid in Python goes into set={{\"x'\": 1.5}}"
     raise InputError(f"{told}\n{hint}", [(told, name, 0, 0, told, hint)])
 
 
 def with_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Gives a function that takes **values the options of the table, in its signature and its text."""
+    """Adds the options of the table to the signature and the docstring of a function that takes **values."""
     signature = inspect.signature(function)
     kept = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
     rest = [p for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]

@@ -1,4 +1,4 @@
-"""What is told to a person."""
+"""Errors and warnings."""
 
 from __future__ import annotations
 
@@ -7,33 +7,33 @@ import re
 
 
 class AchillesWarning(UserWarning):
-    """What a run asks for or came to is no mistake, but perhaps not what was meant."""
+    """Something in the input or the result of a run that is allowed, but may not be intended."""
 
 
 class NoOrbit(RuntimeError):
-    """No periodic run was found near where the search began. Its text says why."""
+    """No periodic run was found near the start of the search. Its text says why."""
 
 
 class InputError(ValueError):
-    """What was asked for cannot be. Its text is that of the command line: where, what is wrong, the line with a caret, a hint.
+    """Wrong input. Its text is that of the command line: the place, what is wrong, the line with a caret, a hint.
 
-    Of several mistakes in one file the attributes are those of the first; `mistakes` has all.
+    If a file has several mistakes, the attributes are those of the first; `mistakes` has all.
     """
 
     file: str
-    """Which file, or which argument; empty where it is none."""
+    """The file or the argument; empty if there is neither."""
     line: int | None
-    """In the file, from 1; None where it stands at no place."""
+    """Line in the file, from 1; None if the mistake has no place in a file."""
     column: int | None
-    """In the line, from 1."""
+    """Column in the line, from 1; None if there is no line."""
     message: str
     """What is wrong."""
     hint: str
-    """What would be right; may be empty."""
+    """What to write instead; may be empty."""
     caret: str
-    """The line, and below it a caret under the place; empty where there is none."""
+    """The line, and below it a caret at the place; empty if there is no line."""
     mistakes: tuple[InputError, ...]
-    """All of them, this one first."""
+    """All mistakes, this one first."""
 
     def __init__(self, told: str, mistakes: list[tuple[str, str, int, int, str, str]] | None = None) -> None:
         mistakes = mistakes or [(told, "", 0, 0, told, "")]
@@ -49,7 +49,7 @@ class InputError(ValueError):
 
 
 def as_arguments(text: str) -> str:
-    """The flags of a command line as the arguments that they are here: `--set e=2` is e=2, `--eps-q` eps_q, `--from` from_."""
+    """Replaces the flags of the command line by the arguments of Python: `--set e=2` is e=2, `--eps-q` eps_q, `--from` from_."""
 
     def argument(flag: re.Match[str]) -> str:
         name = flag[1].replace("-", "_")

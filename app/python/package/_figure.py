@@ -1,4 +1,4 @@
-"""Figures of a run, and of a periodic one."""
+"""Figures of a run and of a periodic run."""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from ._errors import InputError
 
 
 class Figure:
-    """Views of a run, drawn as `achilles figure` draws them, or of a periodic one, as `achilles orbit` does. A notebook shows it;
-    `save` writes it. Made by Run.figure and Orbit.figure."""
+    """Views of a run, drawn as by `achilles figure`, or of a periodic run, as by `achilles orbit`. A notebook shows it; `save`
+    writes it to a file. Returned by Run.figure and Orbit.figure."""
 
     def __init__(self, drawn: Any, look: tuple[Any, ...]) -> None:
         self._drawn, self._look = drawn, look
@@ -25,17 +25,17 @@ class Figure:
         return self.bytes("svg").decode()
 
     def bytes(self, format: str) -> bytes:
-        """The figure as a file: "svg", "png" (where there is a renderer) or "pdf" (where there is rsvg-convert)."""
+        """The figure as a file: "svg", "png" (needs a renderer) or "pdf" (needs rsvg-convert)."""
         if format not in ("svg", "png", "pdf"):
-            raise ValueError(f"a figure is svg, png or pdf, not {format!r}")
+            raise ValueError(f"the format of a figure is svg, png or pdf, not {format!r}")
         return self._drawn.figure(self._look, format)
 
     def save(self, path: str | os.PathLike[str], format: str | None = None) -> None:
-        """Writes it; the ending of the name says as what, .svg, .png or .pdf. It carries the command that makes it again."""
+        """Writes the figure; the name ends in .svg, .png or .pdf. The file contains the command that reproduces it."""
         name = os.fspath(path)
         ending = os.path.splitext(name)[1].lower()
         if format is None and ending not in (".svg", ".png", ".pdf"):
-            raise ValueError(f"{name}: its name ends in none of .svg, .png and .pdf, which say what it is")
+            raise ValueError(f"{name}: the name must end in .svg, .png or .pdf, or format must be given")
         content = self.bytes(format or ending[1:])
         with open(name, "wb") as file:
             file.write(content)
@@ -47,7 +47,7 @@ class Figure:
 
 def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tuple[int, int], scale: float,
               paper: dict[str, float], columns: int, dark: bool, transparent: bool) -> Figure:
-    """A figure of what can draw itself; of the views that are known."""
+    """A figure of these views, which must be known."""
     for view in views:
         if view not in known:
             guess = _core.did_you_mean(view, list(known)) if isinstance(view, str) else ""
@@ -59,7 +59,7 @@ def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tupl
 
 
 def _pixels(size: Any) -> tuple[int, int]:
-    """Width and height; "800x600" is how the command line has them."""
+    """Width and height; "800x600" is the form of the command line."""
     typed = re.fullmatch(r"\s*(\d+)\s*[x*,]\s*(\d+)\s*", size) if isinstance(size, str) else None
     if typed:
         raise TypeError(f"size: two numbers are expected, not a text; write size=({typed[1]}, {typed[2]})")
@@ -68,5 +68,5 @@ def _pixels(size: Any) -> tuple[int, int]:
             raise TypeError
         width, height = size
     except (TypeError, ValueError):
-        raise TypeError(f"size: (width, height) in pixels is expected, as (1200, 800), not {size!r}") from None
+        raise TypeError(f"size: (width, height) in pixels is expected, such as (1200, 800), not {size!r}") from None
     return whole_number_in("size", width, 64, 16384), whole_number_in("size", height, 64, 16384)

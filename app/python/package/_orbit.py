@@ -23,42 +23,42 @@ from ._system import System, system_of
 
 
 class Branch:
-    """A periodic run followed in a parameter: arrays along it, and what happens on the way as lists of points."""
+    """A branch of periodic runs in a parameter: arrays along the branch, and lists of its special points."""
 
     parameter: str
-    """Its name."""
+    """Name of the parameter."""
     points: list[OrbitPoint]
-    """Along the branch, n of them."""
+    """The n points of the branch."""
     value: np.ndarray
-    """Of the parameter."""
+    """Values of the parameter."""
     period: np.ndarray
-    """s."""
+    """Periods, s."""
     t: np.ndarray
-    """When the period begins, s."""
+    """Start times of the period, s."""
     q: np.ndarray
-    """The coordinates there, n x dof."""
+    """Coordinates at the start of the period, n x dof."""
     v: np.ndarray
-    """Their rates, n x dof."""
+    """Rates at the start of the period, n x dof."""
     multipliers: np.ndarray
     """n x 2 dof complex numbers."""
     stable: np.ndarray
-    """n booleans."""
+    """Whether each point is stable: n booleans."""
     a_inf: np.ndarray
-    """The least -hddot at a Zeno point; NaN where there is none."""
+    """The minimum of -hddot over the Zeno points; NaN if there is none."""
     psi: np.ndarray
     """a_inf^(1/kappa(e)), linear in the parameter where a Zeno point is lost."""
     folds: list[OrbitPoint]
-    """Where the parameter turns back."""
+    """Folds: the parameter turns back."""
     flips: list[OrbitPoint]
-    """Where a multiplier is -1: the period doubles."""
+    """Period doublings: a multiplier is -1."""
     circles: list[OrbitPoint]
-    """Where two conjugate multipliers are 1 in size."""
+    """Neimark-Sacker points: two conjugate multipliers have size 1."""
     lost: list[OrbitPoint]
-    """Where a release overtakes a Zeno point: there the branch ends."""
+    """Points where a release overtakes a Zeno point; the branch ends there."""
     changes: list[OrbitPoint]
-    """The first points past a change of the sequence of events."""
+    """The first points after a change of the sequence of events."""
     ends: list[str]
-    """Why it goes no further at its first point and at its last."""
+    """Why the branch ends at its first point and at its last."""
 
     def __init__(self, told: Record) -> None:
         self.parameter, self.ends = told.parameter, list(told.ends)
@@ -80,12 +80,12 @@ class Branch:
 
 
 def _numbers(values: Any) -> np.ndarray:
-    """What is None is NaN."""
+    """An array with NaN in place of None."""
     return np.array([math.nan if value is None else value for value in values], dtype=float)
 
 
 class Orbit:
-    """A periodic run: one that comes back to its start after a period, or moved on by a shift."""
+    """A periodic run: it returns to its start after one period, possibly moved by a shift."""
 
     system: System
 
@@ -100,38 +100,38 @@ class Orbit:
 
     @property
     def period(self) -> float:
-        """s."""
+        """The period, s."""
         return self._told["period"]
 
     @property
     def state(self) -> Record:
-        """Where the period begins: t, q, v."""
+        """The state at the start of the period: t, q, v."""
         return self._told["state"]
 
     @property
     def section(self) -> str:
-        """What is there: "release", past a Zeno point, or "flight"; of a drive "time", the start time."""
+        """Where the period starts: "release", after a Zeno point, "flight", or with a drive "time", the start time."""
         return self._told["section"]
 
     @property
     def multipliers(self) -> np.ndarray:
-        """How much of a small change is left after a period: 2 dof complex numbers, the greatest first, but that of a shift in
-        time, 1, before all; a drive has none. The last `zero_multipliers` are exactly 0."""
+        """The factors by which small perturbations grow per period: 2 dof complex numbers, the largest first. Without a drive the
+        multiplier 1 of a shift in time comes before all others. The last `zero_multipliers` are exactly 0."""
         return self._told["multipliers"]
 
     @property
     def zero_multipliers(self) -> int:
-        """So many are exactly 0: a Zeno point forgets two directions."""
+        """The number of multipliers that are exactly 0: a Zeno point removes two directions."""
         return self._told["zero_multipliers"]
 
     @property
     def stable(self) -> bool:
-        """Whether all multipliers but that of a shift in time are less than 1 in size."""
+        """Whether all multipliers, except that of a shift in time, are less than 1 in size."""
         return self._told["stable"]
 
     @property
     def margins(self) -> Record:
-        """How near the run is to where it has no derivative: grazing_speed, gap_minimum, a_inf, release_jerk."""
+        """How close the run is to a point without derivatives: grazing_speed, gap_minimum, a_inf, release_jerk."""
         return self._told["margins"]
 
     @property
@@ -141,59 +141,59 @@ class Orbit:
 
     @property
     def events(self) -> list[Event]:
-        """Those of one period, as Run.events has them."""
+        """The events of one period, in the form of Run.events."""
         return self._told["events"]
 
     @property
     def derivatives(self) -> Record:
-        """What a parameter changes: derivatives["e"].period, .q and .v, of the state where the period begins."""
+        """Derivatives with respect to a parameter: derivatives["e"].period, and .q and .v at the start of the period."""
         return self._told["derivatives"]
 
     @property
     def newton(self) -> Record:
-        """How it was found: the steps of Newton's method, and error, the last of them, of the state's own size."""
+        """The steps of Newton's method, and error, the size of the last step relative to the state."""
         return self._told["newton"]
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Of this run."""
+        """The parameters of this run."""
         return dict(self._told["system"]["parameters"])
 
     @property
     def options(self) -> Record:
-        """Of this run, which is made as exactly as double precision allows where nothing else was asked for."""
+        """The options of this run. By default its tolerances are the smallest that double precision supports."""
         return self._told["options"]
 
     @property
     def warnings(self) -> list[str]:
-        """What a person should know of what was asked for."""
+        """Warnings about the input."""
         return self._core.warnings
 
     @functools.cached_property
     def run(self) -> Run:
-        """One period as a run, from a flight to that flight."""
+        """One period as a run, from flight to flight."""
         return _made(self.system, *self._core.of_period())
 
     @functools.cached_property
     def branch(self) -> Branch | None:
-        """Along the parameter of `continue_`, where one was given."""
+        """The branch in the parameter of `continue_`; None if that was not given."""
         told = self._told["branch"]
         return None if told is None else Branch(told)
 
     @property
     def command(self) -> str:
-        """What `achilles` is asked to find the same. Where the search began at a state of Python's, orbit.json, run.json or
-        state.json stands for a file that holds it; pictures carry it."""
+        """The `achilles` command that finds the same orbit. If the search began at a state from Python, orbit.json, run.json or
+        state.json stands for a file with that state; figures contain this command."""
         return self._core.command
 
     def to_json(self) -> str:
-        """What `achilles orbit --json` writes, the same bytes."""
+        """The same bytes that `achilles orbit --json` writes."""
         return self._core.json()
 
     def figure(self, *views: str, size: tuple[int, int] = (1200, 800), scale: float = 1.0, width_mm: float = 0.0,
                height_mm: float = 0.0, font_pt: float = 0.0, dpi: float = 0.0, dark: bool = False,
                transparent: bool = False) -> Figure:
-        """Views of one period for print, all if none is named, or the branch, as `achilles orbit --out` draws them."""
+        """Views of one period for print (all views if none is named), or of the branch, as drawn by `achilles orbit --out`."""
         paper = {"width_mm": width_mm, "height_mm": height_mm, "font_pt": font_pt, "dpi": dpi}
         return figure_of(self._core, self.system.views, views, size, scale, paper, 0, dark, transparent)
 
@@ -201,7 +201,7 @@ class Orbit:
         return self.figure()._repr_svg_()
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """It is found again: the same search has the same bytes."""
+        """Pickles the search, which is repeated: it gives the same bytes."""
         return _found, (self.system, *self._asked)
 
     def __str__(self) -> str:
@@ -230,15 +230,16 @@ def orbit(system: System | str | os.PathLike[str], *,
           shift: Mapping[str, float | str] | str | Sequence[str] | None = None,
           continue_: Mapping[str, tuple[float | str, float | str]] | str | None = None,
           set: Mapping[str, float | str] | None = None, **values: float | str) -> Orbit:
-    """A periodic run of a system, with its multipliers, and its branch in a parameter, as `achilles orbit` finds it.
+    """Finds a periodic run of a system, its multipliers, and its branch in a parameter, as `achilles orbit` does.
 
-    The search begins at `from_`: the "start" or the "end" of the system's run, where an Orbit, a point of a branch or a dict with q,
-    v and t is, at the end of a Run, or at the state in a file of JSON; without it at [orbit] of the system, else at the start.
-    `period` is that of a drive, "2*pi/om"; without a drive a guess. With shift={"x": "2*pi"} the run comes back moved on by so much.
-    continue_={"e": (0.1, 0.9)} follows it in a parameter, both ways and through folds; the branch ends where a Zeno point is lost.
-    Runs are made as exactly as double precision allows (tolerance 1e-14, eps 1e-11), but for options that are given.
+    The search begins at `from_`: the "start" or the "end" of the system's run, an Orbit, a point of a branch, a dict with q, v and
+    t, the end of a Run, or the state in a JSON file. Without `from_` it begins at [orbit] of the system, else at the start.
+    `period` is that of a drive, "2*pi/om"; without a drive it is a guess. With shift={"x": "2*pi"} the run returns moved by 2 pi.
+    continue_={"e": (0.1, 0.9)} follows the run in a parameter, in both directions and through folds, until a Zeno point is lost.
+    Options that are not given have the smallest tolerances that double precision supports (tolerance 1e-14, eps 1e-11).
 
-    Raises NoOrbit where none is found, and InputError. Other threads run meanwhile; Ctrl-C ends the search with KeyboardInterrupt.
+    Raises NoOrbit if no periodic run is found, and InputError. Other threads keep running; Ctrl-C ends the search with
+    KeyboardInterrupt.
     """
     what = system_of(system)
     of_run = Asked(what._core, set, values)
@@ -251,7 +252,7 @@ def orbit(system: System | str | os.PathLike[str], *,
 
 
 def _place(system: System, from_: Any) -> tuple[str, str | None]:
-    """Where the search begins as --from has it, and what that file holds."""
+    """The start of the search in the form of --from, and the contents of that file."""
     if from_ is None:
         return "", None
     if isinstance(from_, (str, os.PathLike)):
@@ -272,12 +273,12 @@ def _state(system: System, state: Mapping[str, Any], period: Any) -> str:
     told: dict[str, Any] = {"t": _time("t", state.get("t", 0.0))}
     for name in ("q", "v"):
         if name not in state:
-            raise InputError(f"from_: it has no {name}, a number for each of {', '.join(system.coordinates)}")
+            raise InputError(f"from_: {name} is missing: give a number for each of {', '.join(system.coordinates)}")
         numbers = np.asarray(state[name])
         if numbers.dtype.kind not in "iuf":
-            raise TypeError(f"from_: {name} are numbers, not {numbers.dtype}")
+            raise TypeError(f"from_: {name} must be numbers, not {numbers.dtype}")
         if numbers.shape != (len(system.coordinates),) or not np.isfinite(numbers).all():
-            raise InputError(f"from_: {name} is a finite number for each of {', '.join(system.coordinates)}, not {state[name]}")
+            raise InputError(f"from_: {name} needs a finite number for each of {', '.join(system.coordinates)}, not {state[name]}")
         told[name] = numbers.astype(float).tolist()
     whole: dict[str, Any] = {"state": told}
     if period is not None:
@@ -290,7 +291,7 @@ def _time(name: str, value: Any) -> float:
 
 
 def _shifts(shift: Any) -> list[str]:
-    """As --shift has them."""
+    """The shifts in the form of --shift."""
     if shift is None:
         return []
     if isinstance(shift, str):
@@ -303,7 +304,7 @@ def _shifts(shift: Any) -> list[str]:
 
 
 def _along(range_: Any) -> str:
-    """As --continue has it."""
+    """The branch in the form of --continue."""
     if range_ is None:
         return ""
     if isinstance(range_, str):

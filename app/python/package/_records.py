@@ -1,4 +1,4 @@
-"""Events, certificates, phases, points of branches: what `achilles simulate --json` and `orbit --json` say, under its names."""
+"""Events, certificates, phases, points of branches, with the names of `achilles simulate --json` and `orbit --json`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ _states = ("q", "v", "v_before", "v_after")
 
 
 class Record(dict):
-    """A dict whose entries are attributes, too: event["t"] is event.t. States are NumPy arrays; what does not apply is None."""
+    """A dict whose entries are also attributes: event["t"] is event.t. States are NumPy arrays; None marks what does not apply."""
 
     def __getattr__(self, name: str) -> Any:
         try:
@@ -42,7 +42,7 @@ def _same(one: Any, other: Any) -> bool:
 
 
 class Certificate(Record):
-    """What is proved about a bouncing that was cut short; `achilles help data` says what each bound is of."""
+    """The certificate of a truncated impact sequence; `achilles help data` explains each bound."""
 
     certified: bool
     conditions: str
@@ -74,7 +74,7 @@ class Certificate(Record):
 
 
 class Event(Record):
-    """An impact, a Zeno point or a release. An impact has v_before and v_after, the others v; a Zeno point its certificate."""
+    """An impact, a Zeno point or a release. An impact has v_before and v_after, the others have v; a Zeno point has a certificate."""
 
     kind: str
     t: float
@@ -138,7 +138,7 @@ def _record(pairs: list[tuple[str, Any]]) -> Record:
 
 
 def records(text: str) -> Record:
-    """A JSON of ours as records."""
+    """JSON text of achilles as records."""
     return json.loads(text, object_pairs_hook=_record)
 
 

@@ -20,18 +20,18 @@ from ._system import System, system_of
 
 
 class State(NamedTuple):
-    """Where a system is: q, v = run(t)."""
+    """The state of a system: q, v = run(t)."""
 
     q: np.ndarray
     """Coordinates, the last axis in the order of the file."""
     v: np.ndarray
-    """Their rates."""
+    """Rates, in the same order."""
 
 
 class Run:
     """A completed execution. Its arrays have a row at every step end and two at every event, before it and after it.
 
-    They are the run's own memory, not copies, may not be written to, and outlive it.
+    The arrays are views of the memory of the run, not copies. They are read-only and stay valid after the run is deleted.
     """
 
     system: System
@@ -46,7 +46,7 @@ class Run:
 
     @property
     def t(self) -> np.ndarray:
-        """The times, s: n of them."""
+        """The n times, s."""
         return self._arrays["t"]
 
     @property
@@ -61,23 +61,23 @@ class Run:
 
     @property
     def j(self) -> np.ndarray:
-        """How many events there were until then: (t, j) is the hybrid time."""
+        """The number of events so far: (t, j) is the hybrid time."""
         return self._arrays["j"]
 
     @property
     def constrained(self) -> np.ndarray:
-        """Whether it is in a constrained phase, n booleans."""
+        """Whether the run is in a constrained phase: n booleans."""
         return self._arrays["constrained"]
 
     def __call__(self, t: float | Sequence[float] | np.ndarray) -> State:
-        """The state at a time, at an event that after it; of an array of times, of any shape, all of them at once."""
+        """The state at a time, or at an array of times of any shape. At an event it is the state after the event."""
         times = self._times(t)
         arrays = self._core.arrays(times.ravel())
         shape = (*times.shape, len(self.system.coordinates))
         return State(arrays["q"].reshape(shape), arrays["v"].reshape(shape))
 
     def __getitem__(self, expression: str) -> np.ndarray:
-        """A quantity along run.t: "x", "x'", "energy", "gap", "lambda", "y - sin(x)", whatever a [[view]] may have."""
+        """A quantity along run.t: "x", "x'", "energy", "gap", "lambda", "y - sin(x)", or any other expression of a [[view]]."""
         return self.evaluate(expression)
 
     def evaluate(self, expression: str, t: float | Sequence[float] | np.ndarray | None = None) -> np.ndarray:
@@ -92,7 +92,7 @@ class Run:
     def _times(self, t: Any) -> np.ndarray:
         times = np.asarray(t)
         if times.dtype.kind not in "iuf" and times.size:
-            raise TypeError(f"times are numbers, not {times.dtype}")
+            raise TypeError(f"times must be numbers, not {times.dtype}")
         times = times.astype(float)
         start, end = self._core.start_time, self._core.end_time
         wrong = ~((times >= start) & (times <= end))
@@ -113,21 +113,21 @@ class Run:
 
     @property
     def certificates(self) -> list[Certificate]:
-        """Those of the Zeno points."""
+        """The certificates of the Zeno points."""
         return [event["certificate"] for event in self.events if "certificate" in event]
 
     @functools.cached_property
     def derivatives(self) -> Record:
-        """On what the run depends: what `achilles simulate --derivatives` says. `directions` are the starts, rates and parameters;
-        events[i].t, .q and .v (of an impact v_before, v_after) follow event i, end.q and end.v are at the end time, each with a
-        last axis of directions; `margins` say how near the run is to where there are none. NaN where there are none."""
+        """Derivatives of the run, as from `achilles simulate --derivatives`. `directions` are the initial coordinates, rates and
+        parameters. events[i].t, .q and .v (of an impact v_before, v_after) follow event i; end.q and end.v are at the end time. The
+        last axis of each is `directions`. `margins` say how close the run is to a point without derivatives; NaN: no derivative."""
         told = json.loads(self._core.dependence([]))
         parts = {**told["derivatives"], "events": [event["derivatives"] for event in told["events"]],
                  "end": told["end"]["derivatives"]}
         return derivative_records(parts)
 
     def derivatives_of(self, expression: str) -> np.ndarray:
-        """Of an expression at the end, as --of has it ("zeno_time(2)"), one for each of derivatives.directions."""
+        """Derivatives of an expression at the end, such as "zeno_time(2)", one for each of derivatives.directions."""
         of = json.loads(self._core.dependence([expression]))["derivatives"]["of"][0]["derivatives"]
         return np.array(of, dtype=float)
 
@@ -138,40 +138,40 @@ class Run:
 
     @property
     def outcome(self) -> Record:
-        """Why it ended: kind, "end time" if all went well, and message."""
+        """Why the run ended: kind, "end time" if it was completed, and message."""
         return self._told["outcome"]
 
     @property
     def end(self) -> Record:
-        """Where it ended: t, q, v, phase, held, work, loss, error_estimate."""
+        """The end of the run: t, q, v, phase, held, work, loss, error_estimate."""
         return self._told["end"]
 
     @property
     def error_estimate(self) -> Record | None:
-        """How wrong the end is, estimated and not proved: q, v (true less computed), norm, sigma, reach. None: no_error_estimate
-        of `end` says why. Every event has one of its time, s."""
+        """Estimated error of the final state, not proved: q, v (true minus computed), norm, sigma, reach. If it is None,
+        no_error_estimate of `end` says why. Every event has an estimate for its time, s."""
         return self.end["error_estimate"]
 
     @property
     def trusted_until(self) -> float | None:
-        """s: the first step end or event where the estimated error of some coordinate or rate exceeds 1e-3 of its range so far, and
-        the end of the run where that never happens. Digits that come later mean nothing. None: there is no estimate, and
-        no_error_estimate of `end` says why. Making it takes longer than the run: it is made when it is asked for."""
+        """Time, s, of the first step end or event where the estimated error of some coordinate or rate exceeds 1e-3 of its range so
+        far; the end of the run if that never happens. Later digits mean nothing. If it is None there is no estimate, and
+        no_error_estimate of `end` says why. Computing it takes longer than the run, so it is computed on first use."""
         return self._core.trusted_until
 
     @property
     def start(self) -> Record:
-        """Where it started: t, q, v."""
+        """The start of the run: t, q, v."""
         return self._told["start"]
 
     @property
     def parameters(self) -> dict[str, float]:
-        """Of this run."""
+        """The parameters of this run."""
         return dict(self._told["system"]["parameters"])
 
     @property
     def options(self) -> Record:
-        """Of this run."""
+        """The options of this run."""
         return self._told["options"]
 
     @property
@@ -181,26 +181,26 @@ class Run:
 
     @property
     def warnings(self) -> list[str]:
-        """What a person should know of how the run was made."""
+        """Warnings about the run."""
         return self._told["warnings"]
 
     def to_json(self, t: Sequence[float] | np.ndarray | None = None) -> str:
-        """What `achilles simulate --json` writes, the same bytes; with times t the array `samples` has the states there."""
+        """The same bytes that `achilles simulate --json` writes; with times t the array `samples` has the states at these times."""
         return self._core.json(None if t is None else self._times(t).ravel())
 
     def to_csv(self, t: Sequence[float] | np.ndarray | None = None, plain_names: bool = False, units: bool = False) -> str:
-        """What `achilles simulate --csv` writes; with times t the rows are those."""
+        """The text that `achilles simulate --csv` writes; with times t it has a row for each of them."""
         return self._core.csv(None if t is None else self._times(t).ravel(), plain_names, units)
 
     def figure(self, *views: str, size: tuple[int, int] = (1200, 800), scale: float = 1.0, width_mm: float = 0.0,
                height_mm: float = 0.0, font_pt: float = 0.0, dpi: float = 0.0, columns: int = 0, dark: bool = False,
                transparent: bool = False) -> Figure:
-        """Views of the run for print, all if none is named: in pixels, or with width_mm as wide as that on paper."""
+        """Views of the run for print (all views if none is named), sized in pixels, or with width_mm in millimeters on paper."""
         paper = {"width_mm": width_mm, "height_mm": height_mm, "font_pt": font_pt, "dpi": dpi}
         return figure_of(self._core, self.system.views, views, size, scale, paper, columns, dark, transparent)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """It is made again: the same run has the same bytes."""
+        """Pickles the settings of the run, which is repeated: it gives the same bytes."""
         return _made, (self.system, self._core.settings, self._core.given)
 
     def __str__(self) -> str:
@@ -218,11 +218,11 @@ def _made(system: System, settings: list[str], options: dict[str, str]) -> Run:
 @with_options
 def simulate(system: System | str | os.PathLike[str], *, set: Mapping[str, float | str] | None = None,
              **values: float | str) -> Run:
-    """One completed execution of a system: a System, a path, or a name of the gallery.
+    """Simulates one completed execution of a system: a System, a path, or a name from the gallery.
 
-    Values that differ from the file are arguments, e=0.3, or stand in `set` where their name is none in Python,
-    set={"x'": 1.5}; an expression is a text, "pi/6" or "30 deg". A run that stops early is returned, with a warning, and its
-    `outcome` says why. Other threads run meanwhile; Ctrl-C ends it with KeyboardInterrupt. Raises InputError.
+    Values that differ from the file are arguments, e=0.3. If a name is not valid in Python, put it into `set`, set={"x'": 1.5}.
+    An expression is a string, "pi/6" or "30 deg". A run that stops early is returned with a warning, and its `outcome` says why.
+    Other threads keep running; Ctrl-C ends the run with KeyboardInterrupt. Raises InputError.
     """
     what = system_of(system)
     asked = Asked(what._core, set, values)

@@ -17,21 +17,21 @@ from ._system import System, system_of
 
 
 class Sweep(Mapping):
-    """What was asked of many runs: a dict of NumPy arrays by what was printed, and "outcome".
+    """Results of many runs: a dict of NumPy arrays, one for each quantity of `print`, and "outcome".
 
-    Of a grid an array has its shape, the first axis slowest; of random points and sections it has a row for each, and a
-    section has "t" and "contact", too. What does not exist is NaN. Axes are found by their names, too.
+    For a grid, an array has the shape of the grid, the first axis slowest. For random points and sections it has one row per
+    point; a section also has "t" and "contact". A value that does not exist is NaN. Axes can be read by their names, too.
     """
 
     system: System
     axes: dict[str, np.ndarray]
-    """The values along each axis of a grid, else those of every row."""
+    """The values along each axis of a grid; otherwise the values of every row."""
     units: dict[str, str]
-    """Of axes and prints, where they are known."""
+    """Units of axes and quantities, where they are known."""
     shape: tuple[int, ...]
-    """Of the arrays."""
+    """Shape of the arrays."""
     command: str
-    """What `achilles` is asked to make the same table."""
+    """The `achilles` command that makes the same table."""
 
     def __init__(self, system: System, told: Mapping[str, Any]) -> None:
         self.system = system
@@ -72,12 +72,12 @@ class Sweep(Mapping):
         return len({*self._values, *self.axes})
 
     def rows(self) -> dict[str, np.ndarray]:
-        """The table as the CSV has it, column by column: pandas.DataFrame(sweep.rows()). An axis that is also printed is "x(0)"."""
+        """The table of the CSV, column by column: pandas.DataFrame(sweep.rows()). An axis that is also printed is "x(0)"."""
         table = {name + "(0)" if name in self._values else name: column for name, column in self._axis_rows.items()}
         return table | {name: array.ravel() for name, array in self._values.items()}
 
     def _failures(self, points: np.ndarray) -> Iterator[str]:
-        """Of each way in which runs failed, how many did, and the first of them."""
+        """For each kind of failure, the number of runs and the first of them."""
         _, first_rows = np.unique(points, return_index=True)  # a section has several rows of a run
         outcomes = self._values["outcome"].ravel()[first_rows]
         for outcome in dict.fromkeys(outcomes.tolist()):
@@ -85,7 +85,7 @@ class Sweep(Mapping):
                 where = np.flatnonzero(outcomes == outcome)
                 row = first_rows[where[0]]
                 first = ", ".join(f"{name} = {column[row]!r}" for name, column in self._axis_rows.items())
-                yield f"{len(where)} of the runs: {outcome}; the first has {first}"
+                yield f"{len(where)} of the runs: {outcome}; first at {first}"
 
     def __repr__(self) -> str:
         return f"<achilles.Sweep {'x'.join(map(str, self.shape))}: {self.command}>"
@@ -96,18 +96,18 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
           *, at: str | None = None, after: float | str | None = None, random: int | None = None, seed: int | None = None,
           threads: int | None = None, progress: Callable[[int, int], object] | None = None,
           set: Mapping[str, float | str] | None = None, **values: float | str) -> Sweep:
-    """Many runs as a table, as `achilles sweep` makes it, on all cores.
+    """Simulates many runs on all cores and returns a table, as `achilles sweep` does.
 
-    `over` says what varies: {"e": (0, 0.95, 200)}, {"e": ("log", 1e-3, 0.9, 100)}, an array of equidistant values, or the
-    command's own texts, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N, seed=S it is
-    {"x": (-1, 1)}, and N points are drawn. `print` is what is asked of the runs: expressions over the end, zeno_time(k),
+    `over` has the axes: {"e": (0, 0.95, 200)}, {"e": ("log", 1e-3, 0.9, 100)}, an array of equidistant values, or strings as on
+    the command line, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N and seed=S, give {"x": (-1, 1)},
+    and N random points are drawn. `print` has the quantities to tabulate: expressions at the end of the run, zeno_time(k),
     impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; or the derivative
-    of one of these numbers by a start, a rate or a parameter, "d(zeno_time(1), e)". `at` asks at
-    every "impact", "zeno" or "release", or where an expression passes zero upwards, from time `after` on. A failed run is
-    a point with an outcome, and a warning counts them.
+    of one of these numbers with respect to an initial coordinate, rate or parameter, "d(zeno_time(1), e)". With `at` they are
+    tabulated at every "impact", "zeno" or "release", or where an expression crosses zero upward, from time `after` on. A failed
+    run is a point with its outcome, and a warning gives the number of such runs.
 
-    progress(done, count) is called a few times a second; what it raises ends the sweep, as Ctrl-C does, when the chunks under
-    way (of a quarter of a second) have ended. Other threads run meanwhile. Raises InputError.
+    progress(done, count) is called a few times per second. An exception from it ends the sweep, as Ctrl-C does, once the current
+    chunks (a quarter of a second each) are done. Other threads keep running. Raises InputError.
     """
     what = system_of(system)
     if threads is not None and not (isinstance(threads, int) and 1 <= threads <= 1024):
@@ -129,7 +129,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
 
 
 def _axes(over: Any) -> list[str]:
-    """The axes as --over has them."""
+    """The axes in the form of --over."""
     if isinstance(over, str):
         return [over]
     if isinstance(over, Mapping):
@@ -148,7 +148,7 @@ def _span(name: str, span: Any) -> str:
         return ":".join(["log", *limits] if is_log else limits)
     values = np.asarray(span)
     if values.ndim != 1 or values.size < 2 or values.dtype.kind not in "iuf":
-        raise TypeError(f"over: {name} has (low, high, count), (\"log\", low, high, count) or an array of values")
+        raise TypeError(f"over: {name} must be (low, high, count), (\"log\", low, high, count) or an array of values")
     low, high, count = float(values[0]), float(values[-1]), values.size
     limits = f"{low!r}:{high!r}:{count}"
     if np.allclose(values, np.linspace(low, high, count), rtol=0, atol=1e-12 * max(abs(low), abs(high))):

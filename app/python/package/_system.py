@@ -1,4 +1,4 @@
-"""A system: what a file says, and what is derived from it."""
+"""A system: its file, and what is derived from it."""
 
 from __future__ import annotations
 
@@ -10,29 +10,29 @@ from . import _core
 
 
 class System:
-    """A system, read and derived: from the text of a system file, or from the name of one of the gallery.
+    """A system, read and derived from the text of a system file, or from a name in the gallery.
 
-    Runs of one System need not derive it again. Raises InputError with every mistake, each with its line and a caret.
+    All runs of one System share the derived equations. Raises InputError with every mistake, each with its line and a caret.
     """
 
     name: str
-    """In the gallery, or the path of its file, or "<text>"."""
+    """Name in the gallery, or the path of the file, or "<text>"."""
     title: str
     source: str
     text: str
-    """Of its file."""
+    """Text of the file."""
     coordinates: list[str]
     parameters: dict[str, float]
-    """Their values in the file, those that follow from others included."""
+    """The values in the file, including derived parameters."""
     start: dict[str, float]
-    """The coordinates and rates, x and x', at the start."""
+    """Initial coordinates and rates, x and x'."""
     options: dict[str, Any]
-    """Of its runs: those of the file, else the defaults."""
+    """Options of its runs, from the file or by default."""
     contacts: list[str]
     views: list[str]
-    """What figures can show."""
+    """The views that figures can show."""
     units: dict[str, str]
-    """Of coordinates, rates and parameters, where the file gives them."""
+    """Units of coordinates, rates and parameters, where the file gives them."""
 
     def __init__(self, text: str, name: str | None = None) -> None:
         if not isinstance(text, str):
@@ -55,11 +55,11 @@ class System:
 
     @functools.cached_property
     def equations(self) -> list[tuple[str, str]]:
-        """The derived equations, each with what it is: (words, LaTeX). Simplified, which may take a second."""
+        """The derived equations as pairs (description, LaTeX). They are simplified, which may take a second."""
         return self._core.equations()
 
     def latex(self) -> str:
-        """All equations as one display for a page."""
+        """All equations as one LaTeX display."""
         lines = []
         for words, formula in self.equations:
             if words:
@@ -83,7 +83,7 @@ def gallery() -> dict[str, str]:
 
 
 def system_of(system: System | str | os.PathLike[str]) -> System:
-    """What a run is asked of: a System, a path or a name."""
+    """The system of an argument: a System, a path or a name."""
     if isinstance(system, System):
         return system
     if isinstance(system, os.PathLike):
@@ -91,7 +91,7 @@ def system_of(system: System | str | os.PathLike[str]) -> System:
     if not isinstance(system, str):
         raise TypeError(f"a System, a path or a name of the gallery is expected, not {type(system).__name__}")
     if "\n" in system:
-        raise TypeError("a System, a path or a name of the gallery is expected; of a text make achilles.System(text)")
+        raise TypeError("a System, a path or a name of the gallery is expected; for the text of a system use achilles.System(text)")
     return System(_core.read_text(_core.find_system(system)), system)
 
 
@@ -101,7 +101,7 @@ def _of_file(name: str) -> Any:
 
 @functools.lru_cache(maxsize=64)
 def _derived(text: str, name: str) -> Any:
-    """The same file is derived once."""
+    """Derives each file once."""
     return _core.system(text, name)
 
 

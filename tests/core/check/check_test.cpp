@@ -65,7 +65,7 @@ TEST(Check, WritesWhatItCannotSimplify) {
     double disagreement = 1.0;
     const std::string report = check_report(*model, model->default_run(), 0.0, Notation::text, disagreement);
     EXPECT_LT(disagreement, 1e-15);
-    EXPECT_NE(report.find("neither simplified nor written out: as derived it has "), std::string::npos) << report;
+    EXPECT_NE(report.find("neither simplified nor printed: the derived form has "), std::string::npos) << report;
     EXPECT_NE(report.find("cos(a2) + 2"), std::string::npos) << report;
     EXPECT_FALSE(equation_sheet(*model, model->default_run()).blocks.empty());
 }
@@ -279,13 +279,13 @@ TEST(CheckReport, TellsForcesAndEveryContact) {
           "h knee = th2", "h wall = 0.35 - th1", "restitution wall 0.4", "Free motion: M q'' + bias = Q\n",
           "tau*cos(om*t) - d*th1'", "\nContact knee\n", "\nContact wall\n",
           "Zeno condition of knee: hddot < 0 where h = 0 and hdot = 0",
-          "Zeno condition of wall while knee is held: hddot < 0 where h = 0 and hdot = 0 of both",
+          "Zeno condition of wall while knee is held: hddot < 0 where h = 0 and hdot = 0 for both",
           "hddot while others are held"})
         EXPECT_NE(stops.find(words), std::string::npos) << words << "\n" << stops;
     const std::string table = text_report("vibrating_table");
     EXPECT_NE(table.find("a*om^2*sin(om*t) - 1 < 0"), std::string::npos) << table;
     EXPECT_NE(table.find("there y = a*sin(om*t)"), std::string::npos) << table;
-    EXPECT_NE(text_report("ball_in_box").find("while two or more others are held are not written out"),
+    EXPECT_NE(text_report("ball_in_box").find("with two or more other contacts held are not printed"),
               std::string::npos);
 }
 
@@ -294,13 +294,33 @@ TEST(CheckReport, SaysWhatTheRestitutionDoes) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
     double disagreement = 1.0;
-    for (const auto& [e, words] : {std::pair{0.5, "and 0 < restitution < 1: it is 0.5 here"},
+    for (const auto& [e, words] : {std::pair{0.5, "and 0 < restitution < 1 (here 0.5)"},
                                    {1.0, "but no Zeno point: restitution is 1 here"},
                                    {0.0, "but no Zeno point: restitution is 0 here"}}) {
         run.parameters[2] = e;
         const std::string report = check_report(*ball, run, 0.001, Notation::text, disagreement);
         EXPECT_NE(report.find(words), std::string::npos) << report;
     }
+}
+
+// Where the inequality has parameters alone, it is decided for those of the run.
+TEST(CheckReport, DecidesAConditionOnParameters) {
+    const auto report = [](double k) {
+        const auto spring = test::typed(fmt::format(R"toml(
+title = "A mass on a spring against a wall"
+coordinate = [{{name = "x", start = 0.5}}]
+parameter = [{{name = "k", value = {}, range = [-9, 9]}}]
+lagrangian = {{kinetic = "1/2*x'^2", potential = "k/2*(x - 1)^2"}}
+constraint = [{{gap = "x", restitution = 0.8}}]
+)toml",
+                                                    k));
+        double disagreement = 1.0;
+        return check_report(*spring, spring->default_run(), 0.001, Notation::text, disagreement);
+    };
+    EXPECT_NE(report(4.0).find("it does not hold with these parameters, so impacts do not pile up: 4 >= 0"),
+              std::string::npos)
+        << report(4.0);
+    EXPECT_NE(report(-4.0).find("it holds with these parameters: -4 < 0"), std::string::npos) << report(-4.0);
 }
 
 // What a gap was solved for may name what hddot does not.
@@ -355,7 +375,7 @@ TEST(CheckReport, TellsOfAGapWhoseNormalVanishes) {
         double disagreement = 1.0;
         const std::string report = check_report(*model, model->default_run(), 0.001, Notation::text, disagreement);
         return report.find("dh = 0 where h = 0, near ") != std::string::npos &&
-               report.find("as x in place of x^2 or x^3") != std::string::npos &&
+               report.find("for example x instead of x^2 or x^3") != std::string::npos &&
                report.find("without crossing") == std::string::npos &&
                (near.empty() || report.find("near " + near + ":") != std::string::npos);
     };

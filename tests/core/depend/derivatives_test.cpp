@@ -152,7 +152,7 @@ TEST(Derivatives, OfARunThatStartsInContactAreThoseAlongTheSurface) {
     ASSERT_EQ(trajectory.phases.front().kind, Phase::Kind::constrained);
     const auto d = differentiate(trajectory);
     for (std::size_t k = 0; k < 4; ++k)  // each coordinate by itself leaves the surface
-        EXPECT_NE(d.refused[k].find(k < 2 ? "leaves the surface" : "speed across it"), std::string::npos)
+        EXPECT_NE(d.refused[k].find(k < 2 ? "changes the gap" : "changes the gap rate"), std::string::npos)
             << d.refused[k];
     EXPECT_EQ(d.refused[5], "");
     EXPECT_TRUE(std::isnan(d.end->q(0, 0)));
@@ -187,12 +187,12 @@ TEST(Derivatives, AreRefusedPastTheEuclideanProjection) {
     }
 }
 
-// Two contacts that land at once: the order of their landings depends on the direction.
+// Two contacts that close at the same time: the order of their landings depends on the direction.
 TEST(Derivatives, EndWhereThereAreNone) {
     const auto model = load("box_dropped_flat");
     const Trajectory trajectory = simulate(model, model->default_run());
     const auto d = differentiate(trajectory);
-    EXPECT_NE(d.broken.find("land at once"), std::string::npos) << d.broken;
+    EXPECT_NE(d.broken.find("close at the same time"), std::string::npos) << d.broken;
     EXPECT_FALSE(d.end.has_value());
     EXPECT_LT(d.events.size(), trajectory.events.size());
 }

@@ -298,13 +298,14 @@ TEST(EstimatedError, IsNoneWhereNothingIsKnown) {
         return estimate.none_since;
     };
     EXPECT_EQ(why([](Options& o) { o.method = Method::dopri5; }),
-              "errors are estimated of runs by Taylor's method alone");
+              "errors are estimated only for Taylor's method (--method taylor)");
     EXPECT_EQ(why([](Options& o) { o.truncation.reinitialization = Reinitialization::euclidean; }),
-              "errors are estimated where cuts restart kinetically, not by the Euclidean projection");
+              "errors are estimated only with the kinetic reinitialization, not with the Euclidean one");
     const Trajectory all = simulate(model, model->default_run());
     const Event zeno = events_of(all, Event::Kind::zeno).at(0);
-    EXPECT_EQ(why([&](Options& o) { o.end_time = 0.5 * (zeno.t + zeno.truncation->t); }),
-              "the run ends between a cut and its Zeno point, where what is drawn is not the motion");
+    EXPECT_EQ(
+        why([&](Options& o) { o.end_time = 0.5 * (zeno.t + zeno.truncation->t); }),
+        "the run ends between a cut and its Zeno point, where the computed motion leaves out the remaining impacts");
     std::stop_source source;
     source.request_stop();
     EXPECT_FALSE(estimate_error(all, source.get_token()).end);

@@ -33,7 +33,7 @@ TEST(Claim, SaysWhichPartOfItIsImpossible) {
     EXPECT_NE(refused(*model, claim).find("in [0.9, 1.1]: the part above 1 is impossible"), std::string::npos);
     claim.parameters.back() = Interval(0.5);
     claim.q[1] = Interval(-0.1, 0.1);
-    EXPECT_NE(refused(*model, claim).find("negative for a part of the starts: h <= -0.1 at x = 0, y = -0.1"),
+    EXPECT_NE(refused(*model, claim).find("negative in part of the initial box: h <= -0.1 at x = 0, y = -0.1"),
               std::string::npos)
         << refused(*model, claim);
 }

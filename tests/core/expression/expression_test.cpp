@@ -142,7 +142,7 @@ TEST_F(Expressions, ErrorsNameThePlaceAndTheLikelyWord) {
     EXPECT_EQ(error("x +"), "3: the expression ends where a value is expected");
     EXPECT_EQ(error(""), "0: an expression is missing");
     EXPECT_EQ(error("(x"), "0: this '(' is never closed");
-    EXPECT_EQ(error("x)"), "1: this ')' closes nothing");
+    EXPECT_EQ(error("x)"), "1: this ')' has no matching '('");
     EXPECT_EQ(error("2x"), "1: an operator is missing here; write '*' for a product");
     EXPECT_EQ(error("abs(x)"),
               "0: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives");
@@ -175,9 +175,9 @@ TEST_F(Expressions, TowersOfPowersEndAtOnce) {
 TEST_F(Expressions, HugeNumbersEndAtOnce) {
     EXPECT_EQ(error("1 + 1e999999"), "4: this number is out of range: it has an exponent beyond 400");
     EXPECT_EQ(error("1e" + std::string(1000000, '9')),
-              "0: this number is out of range: it has a number of more than 400 characters");
+              "0: this number is out of range: it has a number with more than 400 characters");
     EXPECT_EQ(error(std::string(1000000, '7')),
-              "0: this number is out of range: it has a number of more than 400 characters");
+              "0: this number is out of range: it has a number with more than 400 characters");
     EXPECT_TRUE(std::isinf(value("10^10^10")));
     EXPECT_EQ(value("(1/10)^10^10"), 0.0);
     EXPECT_EQ(value("x^10^10", 0.5), 0.0);
@@ -190,11 +190,10 @@ TEST_F(Expressions, SizesHaveStatedLimits) {
     std::string fractions = "1/3";
     for (int i = 2; i < 20000; ++i) fractions += " + 1/" + std::to_string(2 * i + 1);
     EXPECT_EQ(error(fractions).substr(error(fractions).find(':')),
-              ": this expression is too large: an exact number in it takes more than 16384 bits");
+              ": this expression is too large: an exact number has more than 16384 bits");
     std::string sum = "x";
     for (int i = 0; i < 100000; ++i) sum += " + sin(x + " + std::to_string(i) + ")";
-    EXPECT_EQ(error(sum).substr(error(sum).find(':')),
-              ": this expression is too large: it takes more than 200000 operations");
+    EXPECT_EQ(error(sum).substr(error(sum).find(':')), ": this expression is too large: more than 200000 operations");
     std::string digits = "0";  // each within the limits: 1300 bits
     for (int i = 0; i < 60000; ++i) digits += " + " + std::string(i % 2 == 0 ? "1e400" : "1/3e400");
     Graph fresh;

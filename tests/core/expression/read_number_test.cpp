@@ -70,12 +70,12 @@ std::string told(const std::string& text, const std::string& unit = {}) {
 }
 
 TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
-    EXPECT_EQ(told("0,4"), "0 '0,4' is not a finite number: decimals have a point, 0.4");
-    EXPECT_EQ(told("abc"), "0 'abc' is not a finite number: no name but pi has a value here");
-    EXPECT_EQ(told("p/6"), "0 'p/6' is not a finite number: no name but pi has a value here; did you mean 'pi'?");
-    EXPECT_EQ(told("ten"), "0 'ten' is not a finite number: no name but pi has a value here");
+    EXPECT_EQ(told("0,4"), "0 '0,4' is not a finite number: write a decimal point, 0.4");
+    EXPECT_EQ(told("abc"), "0 'abc' is not a finite number: pi is the only name allowed here");
+    EXPECT_EQ(told("p/6"), "0 'p/6' is not a finite number: pi is the only name allowed here; did you mean 'pi'?");
+    EXPECT_EQ(told("ten"), "0 'ten' is not a finite number: pi is the only name allowed here");
     EXPECT_EQ(told("tam(1)"), "0 'tam(1)' is not a finite number: unknown function 'tam'; did you mean 'tan'?");
-    EXPECT_EQ(told(" 2*x'"), "3 '2*x'' is not a finite number: no name but pi has a value here");
+    EXPECT_EQ(told(" 2*x'"), "3 '2*x'' is not a finite number: pi is the only name allowed here");
     EXPECT_EQ(told(""), "0 a number is missing");
     EXPECT_EQ(told("  "), "0 a number is missing");
     EXPECT_EQ(told("inf"), "0 'inf' is not a finite number");
@@ -84,22 +84,22 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
     EXPECT_EQ(told("log(0)"), "0 'log(0)' is not a finite number");
     EXPECT_EQ(told("1/0"), "1 '1/0' is not a finite number: division by zero");
     EXPECT_EQ(told("0x10"),
-              "1 '0x10' is not a finite number: 'x10' may not follow a number: it is written without its unit (a file "
-              "has the key unit for that), and a product with '*'");
+              "1 '0x10' is not a finite number: 'x10' may not follow a number: write numbers without units (a file has "
+              "the key unit for that) and products with '*'");
     EXPECT_EQ(told("1e"), "1 '1e' is not a finite number: write the exponent, as in 1e-3");
     for (const char* unit : {"", "m", "rad"})
         EXPECT_EQ(told("1.0 m/s^2", unit),
-                  "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: it is written without its unit "
-                  "(a file has the key unit for that), and a product with '*'");
+                  "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: write numbers without units (a "
+                  "file has the key unit for that) and products with '*'");
     EXPECT_EQ(told("2pi"), "1 '2pi' is not a finite number: an operator is missing here; write '*' for a product");
     EXPECT_EQ(told("30 deg", "m"),
-              "3 '30 deg' is not a finite number: 'deg' may follow a number where the unit is rad, and here it is m");
-    EXPECT_EQ(told("30\u00b0"),
-              "2 '30\u00b0' is not a finite number: '\u00b0' may follow a number where the unit is rad, and here it is "
-              "not");
+              "3 '30 deg' is not a finite number: 'deg' is allowed only where the unit is rad, and here it is m");
+    EXPECT_EQ(
+        told("30\u00b0"),
+        "2 '30\u00b0' is not a finite number: '\u00b0' is allowed only where the unit is rad, and here it is not");
     EXPECT_EQ(told("deg", "m").find("0 'deg' is not a finite number: "), 0u);
-    EXPECT_EQ(told("30 deg deg", "rad"), "7 '30 deg deg' is not a finite number: a value has one unit");
-    EXPECT_EQ(told("deg", "rad"), "0 'deg' is not a finite number: no name but pi has a value here");
+    EXPECT_EQ(told("30 deg deg", "rad"), "7 '30 deg deg' is not a finite number: a value may have only one unit");
+    EXPECT_EQ(told("deg", "rad"), "0 'deg' is not a finite number: pi is the only name allowed here");
     EXPECT_EQ(told(std::string(1000, '(')).substr(0, 80).find("\n"), std::string::npos);
     EXPECT_NE(told("9^9^9^9^9").find("is not a finite number"), std::string::npos);
 }

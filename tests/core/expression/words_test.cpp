@@ -21,7 +21,7 @@ TEST(Words, GreekLettersHaveNames) {
     EXPECT_EQ(spelled_out("2*θ1 + Ω"), "2*theta1 + Omega");
     EXPECT_EQ(spelled_out("theta"), "theta");
     EXPECT_EQ(did_you_mean("θ1", std::vector<std::string>{"theta1", "theta2"}), "; did you mean 'theta1'?");
-    EXPECT_EQ(did_you_mean("φ", std::vector<std::string>{"theta1"}), "; Greek letters have names: phi");
+    EXPECT_EQ(did_you_mean("φ", std::vector<std::string>{"theta1"}), "; spell out Greek letters: phi");
 }
 
 }  // namespace

@@ -86,29 +86,26 @@ TEST_P(WrongForces, IsToldWithItsPlace) {
 
 const WrongForce wrong_forces[] = {
     {kinetic_text, "m/2*(x'^2 + theta'^2)*t",
-     "f.toml:15:34: 't' may not stand in the kinetic energy, which may not depend on time: what moves belongs into the "
-     "gap, the potential or a force\n    kinetic = \"m/2*(x'^2 + theta'^2)*t\"\n                                     "
-     "^"},
+     "f.toml:15:34: 't' is not allowed in the kinetic energy: write prescribed motion in the gap, the potential or a "
+     "force\n    kinetic = \"m/2*(x'^2 + theta'^2)*t\"\n                                     ^"},
     {"restitution = \"e\"", "restitution = \"e*t\"",
-     "f.toml:19:18: 't' may not stand in the restitution: parameters alone\n    restitution = \"e*t\"\n                "
-     " "
-     "    ^"},
+     "f.toml:19:18: 't' is not allowed in the restitution: use only parameters\n    restitution = \"e*t\"\n            "
+     "         ^"},
     {"\"m*x\"", "\"m*x'\"",
-     "f.toml:16:16: the rate x' may not stand in the potential: what depends on rates is a force, or dissipation\n    "
-     "potential = \"m*x'\"\n                   ^"},
+     "f.toml:16:16: the rate x' is not allowed in the potential: write terms with rates in a force or in the "
+     "dissipation\n    potential = \"m*x'\"\n                   ^"},
     {gap_text, "x + theta'",
-     "f.toml:18:12: the rate theta' may not stand in the gap: it depends on coordinates and time alone\n    gap = \"x "
-     "+ "
-     "theta'\"\n               ^"},
+     "f.toml:18:12: the rate theta' is not allowed in the gap: it may depend only on coordinates, parameters and "
+     "time\n    gap = \"x + theta'\"\n               ^"},
     {theta_name, theta_name + "force = \"m*thta'\"\n",
      "f.toml:8:12: unknown name thta'; did you mean theta'?\n    force = \"m*thta'\"\n               ^"},
     {theta_name, theta_name + "force = \"m*x +\"\n",
      "f.toml:8:15: the expression ends where a value is expected\n    force = \"m*x +\"\n                  ^"},
     {theta_name, theta_name + "force = \"m*lambda\"\n",
-     "f.toml:8:12: 'lambda' may stand in a [[view]] only\n    force = \"m*lambda\"\n               ^"},
+     "f.toml:8:12: 'lambda' is allowed only in a [[view]]\n    force = \"m*lambda\"\n               ^"},
     {theta_name, theta_name + "force = \"m*x''\"\n",
-     "f.toml:8:12: the acceleration x'' may not stand in an expression: it follows from them\n    force = \"m*x''\"\n  "
-     "             ^"},
+     "f.toml:8:12: the acceleration x'' is not allowed in an expression: it follows from the equations of motion\n    "
+     "force = \"m*x''\"\n               ^"},
     {theta_name, theta_name + "force = \"\"\n",
      "f.toml:8:10: 'force' in [[coordinate]] is empty\n    force = \"\"\n             ^\nan expression is expected"},
     {theta_name, theta_name + "force = true\n",
@@ -116,8 +113,7 @@ const WrongForce wrong_forces[] = {
      "= true\n            ^"},
     {theta_name, theta_name + "forces = \"m\"\n",
      "f.toml:8:1: unknown key 'forces' in [[coordinate]]; did you mean 'force'?\n    forces = \"m\"\n    ^\nknown "
-     "here: "
-     "name, start, rate, force, unit, range, rate_range"},
+     "keys: name, start, rate, force, unit, range, rate_range"},
     {potential_line, potential_line + "dissipation = \"c/2*x'^2\"\n",
      "f.toml:17:16: unknown name 'c'\n    dissipation = \"c/2*x'^2\"\n                   ^"},
 };

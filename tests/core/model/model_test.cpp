@@ -225,17 +225,18 @@ std::string error_of(std::string text, const std::string& from, const std::strin
 
 TEST(BadSystems, AreToldWhatIsWrong) {
     const std::string right = odd_system;
-    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy is of degree 1 in the rates");
-    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "sin(c')"), "the kinetic energy is no polynomial in the rates: sin(c')");
+    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy has degree 1 in the rates");
+    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "sin(c')"),
+              "the kinetic energy is not a polynomial in the rates: sin(c')");
     EXPECT_EQ(error_of(right, "c^4/4", "c'^2"),
-              "the rate c' may not stand in the potential: what depends on rates is a force, or dissipation");
+              "the rate c' is not allowed in the potential: write terms with rates in a force or in the dissipation");
     EXPECT_EQ(error_of(right, "a^2*c/3", "a'"),
-              "the rate a' may not stand in the gap: it depends on coordinates and time alone");
-    EXPECT_EQ(error_of(right, "c^4/4", "gap"), "'gap' may stand in a [[view]] only");
+              "the rate a' is not allowed in the gap: it may depend only on coordinates, parameters and time");
+    EXPECT_EQ(error_of(right, "c^4/4", "gap"), "'gap' is allowed only in a [[view]]");
     EXPECT_EQ(error_of(right, "restitution = \"k\"", "restitution = \"2*k\""),
               "the restitution must lie in [0, 1], but it is 1.4");
     EXPECT_EQ(error_of(right, "restitution = \"k\"", "restitution = \"a\""),
-              "the coordinate 'a' may not stand in the restitution: parameters alone");
+              "the coordinate 'a' is not allowed in the restitution: use only parameters");
     EXPECT_EQ(error_of(right, "(2 + sin(a))", "(sin(a) - 2)"),
               "the mass matrix is not positive definite at the start (the pivot of 'b' is -1.3534919379767696)");
     EXPECT_EQ(error_of(right, "start = 0.5", "start = -0.5"), "the gap is negative at the start: h = -0.5");
@@ -266,14 +267,14 @@ TEST(BadSystems, IndefiniteMassesAreToldEvenWhereTheyCancel) {
                        "(2 + sin(a))*a'^2/2 + (a'*cos(b) + b')^2*k + (3 + c^2)*(c' - k*a')*(c' - k*a')/2 + "
                        "exp(b)*c'^2",
                        "a'^2 - b'^2 + c'^2"),
-              "the mass matrix is positive definite nowhere: dh M^-1 dh' is 0");
+              "the mass matrix is not positive definite at any state: dh M^-1 dh' is 0");
 }
 
 TEST(BadSystems, EquationsHaveAStatedLimit) {
     std::string potential = "c";
     for (int i = 1; i < 30000; ++i) potential += " + " + std::to_string(i) + "*sin(a + " + std::to_string(i) + "*b)";
     EXPECT_EQ(error_of(odd_system, "c^4/4", potential),
-              "the equations of motion are too large: it takes more than 200000 operations");
+              "the equations of motion are too large: more than 200000 operations");
 }
 
 }  // namespace

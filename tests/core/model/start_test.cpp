@@ -32,8 +32,8 @@ TEST(SubnormalParameters, AreNumbersThatHaveLostDigits) {
 
 TEST(SubnormalParameters, AreRefusedWhereTheyStand) {
     EXPECT_EQ(told(text_with("5e-324", "m*x'^2/2", "m*x", "x")),
-              "f.toml:7:9: the parameter 'm' is 5e-324: so small a number has lost digits\n    value = 5e-324\n"
-              "            ^\n0, or at least 2.3e-308 in size: choose units in which it is larger");
+              "f.toml:7:9: the parameter 'm' is 5e-324: such a small number is not represented with full precision\n   "
+              " value = 5e-324\n            ^\nuse 0, or choose units in which it is at least 2.3e-308 in size");
     EXPECT_EQ(told(text_with("3e-308", "m*x'^2/2", "m*x", "x")), "");
     EXPECT_EQ(told(text_with("0", "x'^2/2", "m*x", "x")), "");
 }
@@ -46,8 +46,8 @@ TEST(SubnormalParameters, AreRefusedWhereTheyAreSet) {
         FAIL();
     } catch (const InputError& error) {
         EXPECT_EQ(std::string(error.what()),
-                  "--set m=-1e-310: the parameter 'm' is -1e-310: so small a number has lost digits\n"
-                  "0, or at least 2.3e-308 in size: choose units in which it is larger");
+                  "--set m=-1e-310: the parameter 'm' is -1e-310: such a small number is not represented with full "
+                  "precision\nuse 0, or choose units in which it is at least 2.3e-308 in size");
     }
     assign(set, description, "x=5e-324");  // a start is what it is
     const auto model = test::typed(text_with("1", "m*x'^2/2", "m*x", "x"));

@@ -32,7 +32,7 @@ TEST(ToldErrors, StandInJson) {
 TEST(ToldErrors, AreNullWithAReason) {
     const auto json = nlohmann::json::parse(to_json(ball(Method::dopri5)));
     EXPECT_TRUE(json["end"]["error_estimate"].is_null());
-    EXPECT_EQ(json["end"]["no_error_estimate"], "errors are estimated of runs by Taylor's method alone");
+    EXPECT_EQ(json["end"]["no_error_estimate"], "errors are estimated only for Taylor's method (--method taylor)");
     for (const auto& event : json["events"]) EXPECT_TRUE(event["error_estimate"].is_null());
 }
 
@@ -41,7 +41,7 @@ TEST(ToldErrors, AreCalledAnEstimate) {
     EXPECT_NE(told.find("\nestimated error 4e-09 at the end: an estimate, not a proof\n"), std::string::npos) << told;
     EXPECT_NE(told.find("integration error of this time: about 1e-08 s (estimate)"), std::string::npos) << told;
     EXPECT_NE(
-        summary(ball(Method::dopri5)).find("\nno estimate of the error at the end: errors are estimated of runs by "),
+        summary(ball(Method::dopri5)).find("\nno estimate of the error at the end: errors are estimated only for "),
         std::string::npos);
 }
 

@@ -45,8 +45,8 @@ class Reader {
             next_line();
         }
         EXPECT_EQ(text_.find(message, text_.find(message) + 1), std::string::npos) << "twice: " << message;
-        if (line_.starts_with("Times of")) next_line(), next_line();
-        EXPECT_EQ(line_, "It stands on " + json_["assumptions"].get<std::string>() + ".");
+        if (line_.starts_with("The end time")) next_line(), next_line();
+        EXPECT_EQ(line_, "Assumptions: " + json_["assumptions"].get<std::string>() + ".");
     }
 
     int conclusions = 0, cuts = 0;

@@ -19,12 +19,12 @@ TEST(Remarks, ABoundAsLargeAsTheMotion) {
     run.options.end_time = 0.1;
     const std::vector<Remark> large = remarks(simulate(floor, run));
     ASSERT_GE(large.size(), 1u);
-    EXPECT_NE(large[0].sentence.find("eps_q = 1e-06 is large beside this motion: the bouncing was cut at its first "
+    EXPECT_NE(large[0].sentence.find("eps_q = 1e-06 is large for this motion: the impact sequence was cut at its first "
                                      "impact, t = 0.000201"),
               std::string::npos)
         << large[0].sentence;
     EXPECT_EQ(nlohmann::json::parse(to_json(simulate(floor, run)))["warnings"][0], large[0].sentence);
-    EXPECT_NE(large[0].sentence.find("the gap is never above 2e-07: try --eps 1e-11"), std::string::npos)
+    EXPECT_NE(large[0].sentence.find("the gap never exceeds 2e-07: try --eps 1e-11"), std::string::npos)
         << large[0].sentence;
     run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-11;
     const Trajectory better = simulate(floor, run);
@@ -41,7 +41,7 @@ TEST(Remarks, ALooseTolerance) {
     const Trajectory loose = simulate(ball, run);
     const std::vector<Remark> said = remarks(loose);
     ASSERT_EQ(said.size(), 1u);
-    EXPECT_NE(said[0].sentence.find("may have moved that time by"), std::string::npos);
+    EXPECT_NE(said[0].sentence.find("may have shifted this time by"), std::string::npos);
     const auto zeno_of = [](const Trajectory& of) {
         return *std::find_if(of.events.rbegin(), of.events.rend(),
                              [](const Event& e) { return e.kind == Event::Kind::zeno; });
@@ -74,7 +74,7 @@ TEST(Remarks, AnEpsThatIsNotMet) {
     });
     ASSERT_NE(missed, fine.events.end());
     const std::string told = sentence(*missed->certificate, ball->description());
-    EXPECT_NE(told.find("what was asked for is not met: "), std::string::npos) << told;
+    EXPECT_NE(told.find("the truncation criterion is not met: "), std::string::npos) << told;
     EXPECT_EQ(told.find("least room"), std::string::npos) << told;
     const std::vector<Remark> said = remarks(fine);
     EXPECT_EQ(std::count_if(said.begin(), said.end(), [](const Remark& r) { return r.label == "eps is not met"; }), 1);
@@ -92,8 +92,7 @@ TEST(Remarks, AnEndBeforeTheZenoPoint) {
     run.options.end_time = 0.5 * (zeno->truncation->t + zeno->t);
     const std::vector<Remark> told = remarks(simulate(floor, run));
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_NE(told[0].sentence.find(
-                  fmt::format("the cut of a bouncing, t = {:.9g}, and its Zeno point", zeno->truncation->t)),
+    EXPECT_NE(told[0].sentence.find(fmt::format("between a cut, t = {:.9g}, and its Zeno point", zeno->truncation->t)),
               std::string::npos)
         << told[0].sentence;
     run.options.end_time = zeno->truncation->t - 1e-3;

@@ -67,28 +67,27 @@ const double pi = std::acos(-1.0);
 const Edge edges[] = {
     // x'' = -1/x from rest at 1: t = sqrt(pi/2)
     {"log", "1.0", "0.0", "x'^2/2", "log(x)", "x + 1", left,
-     "log(x) in the potential ceases to be defined, with x = ", std::sqrt(pi / 2)},
+     "log(x) in the potential becomes undefined, with x = ", std::sqrt(pi / 2)},
     {"sqrt", "1.0", "-1.0", "x'^2/2", "0*x + 1e-9*sqrt(x)", "x + 1", left,
-     "sqrt(x) in the potential ceases to be defined, with x = ", 1.0},
+     "sqrt(x) in the potential becomes undefined, with x = ", 1.0},
     // no force: x = 1 - t, and the gap is undefined from x = 1/2 on
     {"gap", "1.0", "-1.0", "x'^2/2", "0", "sqrt(x - 1/2) + 1/2", left,
-     "sqrt(x - 1/2) in the gap ceases to be defined, with x - 1/2 = ", 0.5},
+     "sqrt(x - 1/2) in the gap becomes undefined, with x - 1/2 = ", 0.5},
     {"pole_of_the_gap", "1.0", "1.0", "x'^2/2", "0", "1/(2 - x)", left,
-     "1/(2 - x) in the gap ceases to be defined, with 2 - x = ", 1.0},
+     "1/(2 - x) in the gap becomes undefined, with 2 - x = ", 1.0},
     // x'' = -1/x^2, x = 1/2 (1 + cos(u)), from x' = -1: the cycloid's remainder, t = pi/2 - 1
     {"division", "1.0", "-1.0", "x'^2/2", "-1/x", "x + 1", left,
-     "(-1)/x in the potential ceases to be defined, with x = ", pi / 2 - 1},
+     "(-1)/x in the potential becomes undefined, with x = ", pi / 2 - 1},
     // x x'^2 is constant: x^(3/2) = 1 - 3/2 t
     {"mass", "1.0", "-1.0", "x*x'^2/2", "0", "x + 1", left,
-     "the mass matrix ceases to be positive definite, with the pivot of 'x' at ", 2.0 / 3},
+     "the mass matrix is no longer positive definite: the pivot of 'x' is ", 2.0 / 3},
     // x = 1 - t^2/2 meets h = x^3 at its flat zero
     {"flat_contact", "1.0", "0.0", "x'^2/2", "x", "x^3", left,
-     "dh = 0 where contact happens: the normal is not defined, at t = ", std::sqrt(2.0)},
+     "dh = 0 at the contact: the normal is not defined, at t = ", std::sqrt(2.0)},
     // and h = x^2 only touches: no number of digits tells whether there is an impact
     {"touching_contact", "1.0", "0.0", "x'^2/2", "x", "x^2", Outcome::Kind::undecided,
-     "the gap comes closer to zero than the integration knows it (to 7e-14), and dh vanishes where h = 0, so that "
-     "contact "
-     "has no normal, just after t = ",
+     "the gap is within integration error (7e-14) of zero, and dh vanishes where h = 0, so the contact has no normal, "
+     "just after t = ",
      std::sqrt(2.0)},
 };
 

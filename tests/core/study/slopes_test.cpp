@@ -158,16 +158,16 @@ TEST(SweepSlopes, RefuseWhatHasNone) {
         {"d(impacts, e)", "'impacts' is a whole number, and has no derivative"},
         {"d(2*zeno_points, e)", "'zeno_points' is a whole number"},
         {"d(releases, e)", "'releases' is a whole number"},
-        {"d(outcome, e)", "'outcome' is a word, and has no derivative"},
-        {"d(held, e)", "'held' is a word"},
+        {"d(outcome, e)", "'outcome' is text, and has no derivative"},
+        {"d(held, e)", "'held' is text"},
         {"d(least_gap, e)", "derivatives of 'least_gap' are not computed"},
         {"d(loss, e)", "derivatives of 'loss' are not computed"},
-        {"d(x, end)", "'end' is an option, and nothing is differentiated by it"},
+        {"d(x, end)", "'end' is an option: there are no derivatives with respect to options"},
         {"d(x, z)", "'z'"},
         {"d(x)", "write d(QUANTITY, NAME)"},
         {"d(x,)", "write d(QUANTITY, NAME)"},
         {"d(x, e", "write d(QUANTITY, NAME)"},
-        {"d(x, e)/2", "a derivative stands alone"},
+        {"d(x, e)/2", "a derivative may not be part of an expression"},
         {"d(d(x, e), e)", "second derivatives are not computed"},
         {"d(xx, e)", "unknown name 'xx'"},
     };
@@ -175,7 +175,7 @@ TEST(SweepSlopes, RefuseWhatHasNone) {
         EXPECT_NE(refusal(print).find(message), std::string::npos) << print << ": " << refusal(print);
         EXPECT_EQ(refusal(print).find("--print "), 0u) << refusal(print);
     }
-    EXPECT_NE(refusal("d(x, e)", " --at \"gap'\"").find("there are no derivatives where 'gap'' passes zero"),
+    EXPECT_NE(refusal("d(x, e)", " --at \"gap'\"").find("there are no derivatives at the zeros of 'gap''"),
               std::string::npos)
         << refusal("d(x, e)", " --at \"gap'\"");
     EXPECT_NE(refusal("d(x, e)", " --reinitialization euclidean").find("kinetic"), std::string::npos);

@@ -20,19 +20,16 @@ TEST_P(Advice, IsGiven) {
 const Change with_advice[] = {
     {"\"m*x\"\n", "\"m*x\n",
      "f.toml:16:17: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly prohibited\n   "
-     " potential = \"m*x\n                    ^\na text ends with a quote: potential = \"m*x\""},
+     " potential = \"m*x\n                    ^\nput text in two quotes: potential = \"m*x\""},
     {"\"drop\"", "\u201cdrop\u201d",
      "f.toml:1:9: not valid TOML: could not determine value type\n    title = \u201cdrop\u201d\n            ^\nwrite "
-     "the "
-     "quotes of the keyboard, \""},
+     "plain double quotes, \""},
     {"\"drop\"", "\"a \"big\" drop\"",
      "f.toml:1:13: not valid TOML: expected a comment or whitespace, saw 'b'\n    title = \"a \"big\" drop\"\n         "
-     "  "
-     "     ^\na quote inside a text is written \\\""},
+     "       ^\nwrite \\\" for a quote inside text"},
     {"\"m/2*(x'^2 + theta'^2)\"", "'m/2*x'^2'",
      "f.toml:15:18: not valid TOML: expected a comment or whitespace, saw '^'\n    kinetic = 'm/2*x'^2'\n              "
-     " "
-     "      ^\na text with a prime in it stands in double quotes: kinetic = \"m/2*x'^2\""},
+     "       ^\nput text with a prime in double quotes: kinetic = \"m/2*x'^2\""},
     {"restitution = \"e\"", "restitution = e",
      "f.toml:19:15: not valid TOML: could not determine value type\n    restitution = e\n                  ^\nput it "
      "in "
@@ -47,39 +44,34 @@ const Change with_advice[] = {
     {"start = 1\n", "start: 1\n",
      "f.toml:4:6: not valid TOML: expected '=', saw ':'\n    start: 1\n         ^\nwrite an equals sign: start = 1"},
     {"[truncation]", "[run]",
-     "f.toml:22:1: not valid TOML: cannot redefine existing table 'run'\n    [run]\n    ^\nits keys stand in one "
-     "table: write them all under the first [run]"},
+     "f.toml:22:1: not valid TOML: cannot redefine existing table 'run'\n    [run]\n    ^\nwrite all keys under the "
+     "first [run]"},
     {"[[coordinate]]", "[coordinate]",
      "f.toml:6:1: not valid TOML: cannot redefine existing table 'coordinate' as array-of-tables\n    [[coordinate]]\n "
      "   "
      "^\nwrite [[coordinate]] each time: one above has single brackets"},
     {"[[constraint]]", "[constraints]",
      "f.toml:17:2: unknown key 'constraints' in a system file; did you mean 'constraint'?\n    [constraints]\n     "
-     "^\nwrite "
-     "[[constraint]], once for each"},
+     "^\nwrite one [[constraint]] for each"},
     {"gap = \"x", "h = \"x",
      "f.toml:18:1: unknown key 'h' in [[constraint]]; did you mean 'gap'?\n    h = \"x - sin(theta)/9\"\n    ^\nknown "
-     "here: "
-     "name, gap, restitution, begins, ends, drawing"},
+     "keys: name, gap, restitution, begins, ends, drawing"},
     {"rate = 0.5", "velocity = 0.5",
      "f.toml:5:1: unknown key 'velocity' in [[coordinate]]; did you mean 'rate'?\n    velocity = 0.5\n    ^\nknown "
-     "here: "
-     "name, start, rate, force, unit, range, rate_range"},
+     "keys: name, start, rate, force, unit, range, rate_range"},
     {"name = \"theta\"", "name = \"theta\"\nunit = \"radians\"",
      "f.toml:8:9: the unit 'radians' is not known\n    unit = \"radians\"\n            ^\nwrite unit = \"rad\", and "
      "values "
      "in degrees as \"30 deg\""},
     {"start = 1\n", "start = \"1.0 m\"\n",
-     "f.toml:4:10: 'start' in [[coordinate]] is a number without its unit\n    start = \"1.0 m\"\n             "
-     "^\nwrite "
-     "start = 1.0, and unit = \"m\" in a line of its own"},
+     "f.toml:4:10: 'start' in [[coordinate]] must be a number without a unit\n    start = \"1.0 m\"\n             "
+     "^\nwrite start = 1.0, and unit = \"m\" on a separate line"},
     {"start = 1\n", "start = 1 m\n",
      "f.toml:4:11: not valid TOML: expected a comment or whitespace, saw 'm'\n    start = 1 m\n              ^\nwrite "
      "the number alone: start = 1 if the unit is m, else convert it"},
     {"value = 2\n", "value = \"5 s\"\n",
-     "f.toml:10:10: 'value' in [[parameter]] is a number without its unit\n    value = \"5 s\"\n             ^\nwrite "
-     "value "
-     "= 5, and unit = \"s\" in a line of its own"},
+     "f.toml:10:10: 'value' in [[parameter]] must be a number without a unit\n    value = \"5 s\"\n             "
+     "^\nwrite value = 5, and unit = \"s\" on a separate line"},
     {"[[parameter]]", "[parameter]",
      "f.toml:11:1: not valid TOML: cannot redefine existing table 'parameter' as array-of-tables\n    [[parameter]]\n  "
      "  "
@@ -97,8 +89,7 @@ const Change with_advice[] = {
      "   "
      "    ^\nwrite 0.5*x^2"},
     {"rate = 0.5", "rate = \"20 deg\"\nunit = \"m\"",
-     "f.toml:5:12: 'rate' in [[coordinate]]: '20 deg' is not a finite number: 'deg' may follow a number where the unit "
-     "is "
+     "f.toml:5:12: 'rate' in [[coordinate]]: '20 deg' is not a finite number: 'deg' is allowed only where the unit is "
      "rad, and here it is m/s\n    rate = \"20 deg\"\n               ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Lines, Advice, testing::ValuesIn(with_advice));
@@ -110,32 +101,29 @@ const Change of_other_languages[] = {
     {"\"m*x\"", "\"m*x\u00b2\"",
      "f.toml:16:17: unexpected '\u00b2'; write ^2\n    potential = \"m*x\u00b2\"\n                    ^\nwrite m*x^2"},
     {"\"m*x\"", "\"m*x \u2212 1\"",
-     "f.toml:16:18: unexpected '\u2212'; write the minus sign of the keyboard, -\n    potential = \"m*x \u2212 1\"\n   "
-     "     "
-     "             ^\nwrite m*x - 1"},
+     "f.toml:16:18: unexpected '\u2212'; write the keyboard minus sign, -\n    potential = \"m*x \u2212 1\"\n          "
+     "           ^\nwrite m*x - 1"},
     {"\"m*x\"", "\"m.*x\"",
      "f.toml:16:15: unexpected '.'; write '*'\n    potential = \"m.*x\"\n                  ^\nwrite m*x"},
     {"\"m*x\"", "\"pi()*x\"",
      "f.toml:16:14: 'pi' is not a function; write '*' for a product\n    potential = \"pi()*x\"\n                 ^"},
     {"\"m*x\"", "\"V = m*x\"",
-     "f.toml:16:14: an expression stands alone, without 'V' and '='\n    potential = \"V = m*x\"\n                 "
+     "f.toml:16:14: write the expression alone, without 'V' and '='\n    potential = \"V = m*x\"\n                 "
      "^\nwrite m*x"},
     {"\"m*x\"", "\"pow(x, 2)\"",
-     "f.toml:16:14: unknown function 'pow'; a power is written x^2\n    potential = \"pow(x, 2)\"\n                 "
+     "f.toml:16:14: unknown function 'pow'; write x^2 for a power\n    potential = \"pow(x, 2)\"\n                 "
      "^\nwrite x^2"},
     {"\"m*x\"", "\"np.sin(x)\"",
-     "f.toml:16:14: unknown name 'np'; functions stand alone: sin(x)\n    potential = \"np.sin(x)\"\n                 "
-     "^\nwrite sin(x)"},
+     "f.toml:16:14: unknown name 'np'; write the function without a prefix: sin(x)\n    potential = \"np.sin(x)\"\n    "
+     "             ^\nwrite sin(x)"},
     {"\"x - sin(theta)/9\"", "\"x >= 0\"",
-     "f.toml:18:10: unexpected '>'; an expression stands alone: a gap is open where it is positive\n    gap = \"x >= "
-     "0\"\n    "
-     "         ^\nwrite x"},
+     "f.toml:18:10: unexpected '>'; write the expression alone: the contact is open where the gap is positive\n    gap "
+     "= \"x >= 0\"\n             ^\nwrite x"},
     {"y = [\"gap'\"]", "y = [\"h\", \"v\", \"E\"]",
      "f.toml:31:7: unknown name 'h'; the gap is called gap\n    y = [\"h\", \"v\", \"E\"]\n          "
-     "^\n\nf.toml:31:12: "
-     "unknown name 'v'; rates are written theta'\n    y = [\"h\", \"v\", \"E\"]\n               ^\n\nf.toml:31:17: "
-     "unknown "
-     "name 'E'; it is called energy\n    y = [\"h\", \"v\", \"E\"]\n                    ^"},
+     "^\n\nf.toml:31:12: unknown name 'v'; rates are written theta'\n    y = [\"h\", \"v\", \"E\"]\n               "
+     "^\n\nf.toml:31:17: unknown name 'E'; the energy is called energy\n    y = [\"h\", \"v\", \"E\"]\n                "
+     "    ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Habits, Advice, testing::ValuesIn(of_other_languages));
 

@@ -67,7 +67,7 @@ TEST(Constraints, have_drawings_of_their_own) {
               "f.toml:24:8: unknown name 'z'\n    to = [\"z\", 1]\n           ^");
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(drawn, {{"radius", "raduis"}}) + wall)),
               "f.toml:28:1: unknown key 'raduis' in [[drawing]] of shape disc; did you mean 'radius'?\n    raduis = "
-              "\"m\"\n    ^\nknown here: shape, color, width, fill, at, radius");
+              "\"m\"\n    ^\nknown keys: shape, color, width, fill, at, radius");
 }
 
 std::string sixteen_and(int more) {
@@ -87,29 +87,27 @@ TEST(Constraints, are_at_most_sixteen) {
 TEST(Constraints, of_several_each_needs_a_name_of_its_own) {
     const std::string no_name = changed(wall, {{"name = \"wall\"\n", ""}});
     EXPECT_EQ(told_by_reading(with_constraints(knee + no_name)),
-              "f.toml:21:1: missing key 'name' in [[constraint]]\n    [[constraint]]\n    ^\nwhere there are several "
-              "constraints each has a name of its own");
-    EXPECT_EQ(
-        told_by_reading(with_constraints(knee + changed(wall, {{"wall", "knee"}}))),
-        "f.toml:22:9: the name 'knee' is used twice\n    name = \"knee\"\n            ^\nit is the name at line 18 "
-        "already");
+              "f.toml:21:1: missing key 'name' in [[constraint]]\n    [[constraint]]\n    ^\nwith several constraints "
+              "each needs its own name");
+    EXPECT_EQ(told_by_reading(with_constraints(knee + changed(wall, {{"wall", "knee"}}))),
+              "f.toml:22:9: the name 'knee' is used twice\n    name = \"knee\"\n            ^\nit is already the name "
+              "at line 18");
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(wall, {{"wall", "the wall"}}))),
-              "f.toml:22:9: 'the wall' is not a name\n    name = \"the wall\"\n            ^\na name is a letter, then "
-              "letters, digits and underscores");
+              "f.toml:22:9: 'the wall' is not a name\n    name = \"the wall\"\n            ^\na name is a letter "
+              "followed by letters, digits and underscores");
     EXPECT_EQ(told_by_reading(changed(good, {{only_one, changed(knee, {{"knee", "2"}})}})).substr(0, 25),
               "f.toml:18:9: '2' is not a");
 }
 
 TEST(Constraints, of_several_a_plain_gap_is_of_none) {
     EXPECT_EQ(told_by_reading(changed(with_constraints(knee + wall), {{"gap_knee'", "gap''"}})),
-              "f.toml:36:7: gap'' is of one constraint, and there are several: gap_knee'', gap_wall''\n    y = "
-              "[\"gap''\"]\n          ^");
+              "f.toml:36:7: gap'' is ambiguous with several constraints: gap_knee'', gap_wall''\n    y = [\"gap''\"]\n "
+              "         ^");
     EXPECT_EQ(told_by_reading(changed(with_constraints(knee + wall), {{"gap_knee'", "gap_kne"}})),
               "f.toml:36:7: unknown name 'gap_kne'; did you mean 'gap_knee'?\n    y = [\"gap_kne\"]\n          ^");
     EXPECT_EQ(
         told_by_reading(changed(with_constraints(knee + wall), {{"\"m*x\"", "\"m*gap_wall\""}})),
-        "f.toml:16:16: 'gap_wall' may stand in a [[view]] only\n    potential = \"m*gap_wall\"\n                   "
-        "^");
+        "f.toml:16:16: 'gap_wall' is allowed only in a [[view]]\n    potential = \"m*gap_wall\"\n                   ^");
 }
 
 TEST(Constraints, of_several_have_names_for_their_gaps_and_forces) {
@@ -118,7 +116,7 @@ TEST(Constraints, of_several_have_names_for_their_gaps_and_forces) {
     EXPECT_EQ(told_by_reading(changed(good, renamed)), "") << "of one gap it is free";
     EXPECT_EQ(told_by_reading(changed(with_constraints(knee + wall), renamed)),
               "f.toml:9:9: the name 'gap_m' is reserved\n    name = \"gap_m\"\n            ^\nwith several constraints "
-              "gap_NAME and lambda_NAME are theirs: choose another name");
+              "gap_NAME and lambda_NAME are reserved: choose another name");
 }
 
 }  // namespace

@@ -118,7 +118,7 @@ TEST(Derived, are_not_set) {
         assign(run, system, "J=3");
         FAIL();
     } catch (const InputError& error) {
-        EXPECT_STREQ(error.what(), "--set J=3: 'J' follows from other parameters, it is m/8: set those");
+        EXPECT_STREQ(error.what(), "--set J=3: 'J' is a derived parameter, m/8: set the parameters in this expression");
     }
     EXPECT_EQ(run, before);
 }
@@ -138,43 +138,36 @@ TEST_P(WrongDerived, IsToldWithItsPlace) {
 
 const WrongParameters wrong_parameters[] = {
     {parameter("J", "m*J"),
-     "f.toml:16:10: the parameter 'J' follows from itself: J -> J\n    value = \"m*J\"\n             ^\none of them "
-     "needs "
-     "a number for its value"},
+     "f.toml:16:10: the definition of the parameter 'J' is circular: J -> J\n    value = \"m*J\"\n             ^\ngive "
+     "one of them a number as its value"},
     {parameter("a", "m + c") + parameter("b", "2*a") + parameter("c", "b - 1") + parameter("d", "a + b"),
-     "f.toml:16:10: the parameter 'a' follows from itself: a -> c -> b -> a\n    value = \"m + c\"\n             "
-     "^\none "
-     "of them needs a number for its value"},
+     "f.toml:16:10: the definition of the parameter 'a' is circular: a -> c -> b -> a\n    value = \"m + c\"\n         "
+     "    ^\ngive one of them a number as its value"},
     {parameter("d", "b + 1") + parameter("b", "2*c") + parameter("c", "b"),
-     "f.toml:19:10: the parameter 'b' follows from itself: b -> c -> b\n    value = \"2*c\"\n             ^\none of "
-     "them "
-     "needs a number for its value"},
+     "f.toml:19:10: the definition of the parameter 'b' is circular: b -> c -> b\n    value = \"2*c\"\n             "
+     "^\ngive one of them a number as its value"},
     {parameter("J", "m*l^2"), "f.toml:16:12: unknown name 'l'\n    value = \"m*l^2\"\n               ^"},
     {parameter("theta0", "1") + parameter("J", "2*theto0"),
      "f.toml:19:12: unknown name 'theto0'; did you mean 'theta0'?\n    value = \"2*theto0\"\n               ^"},
     {parameter("J", "m*x"),
-     "f.toml:16:12: the coordinate 'x' may not stand in a derived parameter: parameters alone\n    value = \"m*x\"\n   "
-     "  "
-     "          ^"},
+     "f.toml:16:12: the coordinate 'x' is not allowed in a derived parameter: use only parameters\n    value = "
+     "\"m*x\"\n               ^"},
     {parameter("J", "m*t"),
-     "f.toml:16:12: 't' may not stand in a derived parameter: parameters alone\n    value = \"m*t\"\n               ^"},
+     "f.toml:16:12: 't' is not allowed in a derived parameter: use only parameters\n    value = \"m*t\"\n              "
+     " ^"},
     {parameter("J", "m*energy"),
-     "f.toml:16:12: 'energy' may stand in a [[view]] only\n    value = \"m*energy\"\n               ^"},
+     "f.toml:16:12: 'energy' is allowed only in a [[view]]\n    value = \"m*energy\"\n               ^"},
     {parameter("J", "m*"),
      "f.toml:16:12: the expression ends where a value is expected\n    value = \"m*\"\n               ^"},
     {parameter("J", "m + 30 deg"),
-     "f.toml:16:17: 'deg' may follow a number where the unit is rad, and here it is not\n    value = \"m + 30 deg\"\n  "
-     "  "
-     "                ^"},
+     "f.toml:16:17: 'deg' is allowed only where the unit is rad, and here it is not\n    value = \"m + 30 deg\"\n      "
+     "              ^"},
     {parameter("J", "2*m", "range = [0, 1]\n"),
-     "f.toml:17:9: 'J' follows from other parameters: it has no slider and no range\n    range = [0, 1]\n            "
-     "^"},
+     "f.toml:17:9: 'J' is a derived parameter: it has no slider and no range\n    range = [0, 1]\n            ^"},
     {parameter("m", "2*e"),
-     "f.toml:15:9: the name 'm' is used twice\n    name = \"m\"\n            ^\nit is the name at line 9 already"},
+     "f.toml:15:9: the name 'm' is used twice\n    name = \"m\"\n            ^\nit is already the name at line 9"},
     {parameter("J", "log(e - 1)"),
-     "f.toml:16:10: the parameter 'J', which follows from others, is not finite\n    value = \"log(e - 1)\"\n          "
-     "  "
-     " ^"},
+     "f.toml:16:10: the derived parameter 'J' is not finite\n    value = \"log(e - 1)\"\n             ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Reading, WrongDerived, testing::ValuesIn(wrong_parameters));
 
@@ -200,16 +193,15 @@ TEST(Degrees, may_stand_wherever_the_unit_is_rad) {
     EXPECT_NEAR(run.v[1], 30 * degree, 1e-15);
     EXPECT_NEAR(run.parameters[2], 60 * degree, 1e-15);
     EXPECT_EQ(told(changed(good, {{"rate = 0.5", "rate = \"30 deg\"\nunit = \"m\""}})),
-              "f.toml:5:12: 'rate' in [[coordinate]]: '30 deg' is not a finite number: 'deg' may follow a number where "
-              "the unit is rad, and here it is m/s\n    rate = \"30 deg\"\n               ^");
+              "f.toml:5:12: 'rate' in [[coordinate]]: '30 deg' is not a finite number: 'deg' is allowed only where the "
+              "unit is rad, and here it is m/s\n    rate = \"30 deg\"\n               ^");
     for (const char* range : {"90 deg", "90 deg/s", "90\u00b0/s"})
         EXPECT_EQ(told(changed(
                       good, {{"value = 2", fmt::format("value = 2\nrange = [0, \"{}\"]\nunit = \"rad/s\"", range)}})),
                   "");
-    EXPECT_EQ(
-        told(changed(good, {{"value = 2", "value = 2\nrange = [0, \"90 deg\"]\nunit = \"rad/s^2\""}})),
-        "f.toml:11:17: 'range' in [[parameter]]: '90 deg' is not a finite number: 'deg' may follow a number where "
-        "the unit is rad, and here it is rad/s^2\n    range = [0, \"90 deg\"]\n                    ^");
+    EXPECT_EQ(told(changed(good, {{"value = 2", "value = 2\nrange = [0, \"90 deg\"]\nunit = \"rad/s^2\""}})),
+              "f.toml:11:17: 'range' in [[parameter]]: '90 deg' is not a finite number: 'deg' is allowed only where "
+              "the unit is rad, and here it is rad/s^2\n    range = [0, \"90 deg\"]\n                    ^");
 }
 
 }  // namespace

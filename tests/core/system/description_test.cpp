@@ -260,7 +260,7 @@ TEST(Description, hostile_files_end_in_a_message) {
     EXPECT_LT(message_of(title + many + " = 1\n" + least).size(), 600u);
     std::string dots = "a";
     for (int i = 0; i < 200000; ++i) dots += ".a";
-    EXPECT_EQ(message_of("x = 1 # ' \"\n[" + dots + "]").rfind("f.toml:2:35: a key of more than 16 parts", 0), 0u);
+    EXPECT_EQ(message_of("x = 1 # ' \"\n[" + dots + "]").rfind("f.toml:2:35: a key with more than 16 parts", 0), 0u);
     EXPECT_EQ(message_of("extra = {a = \"\"\"x\"\"\"\", " + dots + " = 1}").rfind("f.toml:1:", 0), 0u);
     for (const std::string& open : {std::string("["), std::string("{a="), std::string("(")}) {
         std::string nest = "extra = ";
@@ -272,7 +272,7 @@ TEST(Description, hostile_files_end_in_a_message) {
     EXPECT_NE(message_of("extra = " + nest + std::string(100, ']')).find("more than 64 levels of nesting"),
               std::string::npos);
     EXPECT_NE(message_of("title = \"\xff\xfe\"").find("f.toml:1:"), std::string::npos);
-    EXPECT_EQ(message_of(std::string("a = \0\1\2", 7)).rfind("f.toml: this is no text: it has zero bytes", 0), 0u)
+    EXPECT_EQ(message_of(std::string("a = \0\1\2", 7)).rfind("f.toml: this is not text: it contains zero bytes", 0), 0u)
         << message_of(std::string("a = \0\1\2", 7));
     for (const std::string& text : {std::string("\""), std::string("'''"), std::string("\"\\"), std::string("#"),
                                     std::string("\xef\xbb\xbf"), std::string("\n\n\n["), std::string(1, '\0')}) {
@@ -291,7 +291,7 @@ TEST(Description, hostile_files_end_in_a_message) {
     EXPECT_EQ(message_of(lines + "]\n" + title + least), "");
     EXPECT_EQ(message_of(one_line + "]\n" + title + least), "");
     EXPECT_NE(message_of(one_line + "]\ntitle = 1").find("f.toml:2:9"), std::string::npos);
-    EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: it is larger than 4 MB");
+    EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: the file is larger than 4 MB");
     // Every prefix of a good file is either good or a message.
     for (std::size_t size = 0; size < least.size(); ++size) message_of(least.substr(0, size));
 }
@@ -318,10 +318,10 @@ TEST(Description, assigns) {
     EXPECT_EQ(run.q[0], -1e-3);
     EXPECT_EQ(run.v[0], 4.0);
     EXPECT_EQ(assignment_error("mas=2"),
-              "--set mas=2: 'mas' is no parameter, coordinate or rate of this system; did you mean 'mass'?");
+              "--set mas=2: 'mas' is not a parameter, coordinate or rate of this system; did you mean 'mass'?");
     EXPECT_EQ(assignment_error("mass=1x"),
-              "--set mass=1x: '1x' is not a finite number: 'x' may not follow a number: it is written without its unit "
-              "(a file has the key unit for that), and a product with '*'");
+              "--set mass=1x: '1x' is not a finite number: 'x' may not follow a number: write numbers without units (a "
+              "file has the key unit for that) and products with '*'");
     EXPECT_EQ(assignment_error("mass=inf"), "--set mass=inf: 'inf' is not a finite number");
     EXPECT_EQ(assignment_error("mass"),
               "--set mass: a value is missing\nwrite --set NAME=VALUE, as in --set g=9.81 or --set x'=1.5");
@@ -366,10 +366,9 @@ TEST(Description, values_outside_a_range_of_the_file_are_told) {
     assign(run, system, "tilt=1000");  // its range is the slider's alone
     assign(run, system, "L=2");
     EXPECT_EQ(outside_ranges(system, run),
-              (std::vector<std::string>{"theta = 30 rad is outside its range, -3.14159 to 3.14159: an angle in degrees "
-                                        "is written 30 deg",
-                                        "theta' = -6 rad/s is outside its range, -5 to 6.28319",
-                                        "L = 2 m is outside its range, 0.1 to 1"}));
+              (std::vector<std::string>{
+                  "theta = 30 rad is outside its range, -3.14159 to 3.14159: for an angle in degrees write 30 deg",
+                  "theta' = -6 rad/s is outside its range, -5 to 6.28319", "L = 2 m is outside its range, 0.1 to 1"}));
 }
 
 TEST(Description, lines_too_thin_to_be_seen_are_told) {
@@ -378,9 +377,10 @@ TEST(Description, lines_too_thin_to_be_seen_are_told) {
     const auto line = std::count(text.begin(), text.end(), '\n') + 1;
     for (const char* width : {"0.02", "\"1/50\""})
         EXPECT_EQ(unseen_lines(parse_system(text + width + "\n")),
-                  (std::vector<std::string>{"line " + std::to_string(line) +
-                                            ": a width of 0.02 cannot be seen: it is in pixels, not in the units of "
-                                            "the points; without one it is 2"}));
+                  (std::vector<std::string>{
+                      "line " + std::to_string(line) +
+                      ": a width of 0.02 is too small to see: widths are in pixels, not in the units of "
+                      "the points (default 2)"}));
     for (const char* width : {"0", "0.5", "\"L/50\""})  // no line is meant; a fine one; what a slider moves
         EXPECT_TRUE(unseen_lines(parse_system(text + width + "\n")).empty()) << width;
 }
@@ -398,7 +398,7 @@ TEST(Description, unreadable_files_say_why) {
     EXPECT_EQ(reading_error("no/such.toml"), "no/such.toml: there is no folder no");
     EXPECT_EQ(reading_error("such.toml"), "such.toml: there is no such file");
     EXPECT_EQ(reading_error("/"), "/: cannot read the file: it is a directory");
-    EXPECT_EQ(reading_error("/dev/zero"), "/dev/zero: it is larger than 4 MB");
+    EXPECT_EQ(reading_error("/dev/zero"), "/dev/zero: the file is larger than 4 MB");
     // Nobody will ever write to it.
     const std::string pipe = (std::filesystem::temp_directory_path() / "achilles_description_test.toml").string();
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);

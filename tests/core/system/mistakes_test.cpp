@@ -25,9 +25,8 @@ const Change in_toml[] = {
     {"[lagrangian]", "[lagrangian",
      "f.toml:14:12: not valid TOML: expected ']', saw '\\n'\n    [lagrangian\n               ^\nwrite [lagrangian]"},
     {"value = 2\n", "value = 2\nvalue = 3\n",
-     "f.toml:11:9: not valid TOML: cannot redefine existing integer 'value'\n    value = 3\n            ^\na key "
-     "stands "
-     "once in a table: leave one of the two out"},
+     "f.toml:11:9: not valid TOML: cannot redefine existing integer 'value'\n    value = 3\n            ^\na key may "
+     "appear only once in a table: remove one of the two"},
     {"start = 1\n", "start = 1e\n",
      "f.toml:4:11: not valid TOML: expected decimal digit, saw '\\n'\n    start = 1e\n              ^"},
 };
@@ -35,21 +34,20 @@ INSTANTIATE_TEST_SUITE_P(Toml, Mistakes, testing::ValuesIn(in_toml));
 
 const Change in_keys[] = {
     {"start = 1", "strat = 1",
-     "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n    strat = 1\n    ^\nknown here: "
+     "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n    strat = 1\n    ^\nknown keys: "
      "name, start, rate, force, unit, range, rate_range"},
     {"[lagrangian]", "[langrangian]",
      "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
-     "^\nknown here: title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, "
+     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, "
      "orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
-     "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown here: "
+     "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown keys: "
      "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, orbit, extra"},
     {"end_time = 5", "zeno = 5",
-     "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown here: start_time, end_time, tolerance, "
-     "method, "
-     "max_impacts, max_steps, memory, simultaneous"},
+     "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown keys: start_time, end_time, tolerance, "
+     "method, max_impacts, max_steps, memory, simultaneous"},
     {"eps_q", "epsq",
-     "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown here: "
+     "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown keys: "
      "eps_q, eps_v, eps_t, conditions, reinitialization"},
     {"name = \"x\"\n", "", "f.toml:2:1: missing key 'name' in [[coordinate]]\n    [[coordinate]]\n    ^"},
     {"value = 2\n", "", "f.toml:8:1: missing key 'value' in [[parameter]]\n    [[parameter]]\n    ^"},
@@ -70,22 +68,22 @@ const Change in_types[] = {
     {"title = \"drop\"", "title = 1",
      "f.toml:1:9: 'title' in a system file must be a string, not a number\n    title = 1\n            ^"},
     {"start = 1", "start = \"2*fast\"",
-     "f.toml:4:12: 'start' in [[coordinate]]: '2*fast' is not a finite number: no name but pi has a value here\n    "
+     "f.toml:4:12: 'start' in [[coordinate]]: '2*fast' is not a finite number: pi is the only name allowed here\n    "
      "start = \"2*fast\"\n               ^"},
     {"start = 1", "start = \"0,4\"",
-     "f.toml:4:10: 'start' in [[coordinate]]: '0,4' is not a finite number: decimals have a point, 0.4\n    start = "
+     "f.toml:4:10: 'start' in [[coordinate]]: '0,4' is not a finite number: write a decimal point, 0.4\n    start = "
      "\"0,4\"\n             ^"},
     {"value = 2", "value = \"30 deg\"",
-     "f.toml:10:13: 'value' in [[parameter]]: '30 deg' is not a finite number: 'deg' may follow a number where the "
-     "unit is rad, and here it is not\n    value = \"30 deg\"\n                ^"},
+     "f.toml:10:13: 'value' in [[parameter]]: '30 deg' is not a finite number: 'deg' is allowed only where the unit is "
+     "rad, and here it is not\n    value = \"30 deg\"\n                ^"},
     {"value = 2", "value = 2\nunit = \"deg\"",
-     "f.toml:11:9: the unit 'deg' is not one to compute in\n    unit = \"deg\"\n            ^\nwrite unit = "
+     "f.toml:11:9: the unit 'deg' is not allowed\n    unit = \"deg\"\n            ^\nwrite unit = "
      "\"rad\", and values in degrees as \"30 deg\""},
     {"start = 1", "start = \"60 deg\"\nunit = \"deg\"",
-     "f.toml:5:9: the unit 'deg' is not one to compute in\n    unit = \"deg\"\n            ^\nwrite unit = "
+     "f.toml:5:9: the unit 'deg' is not allowed\n    unit = \"deg\"\n            ^\nwrite unit = "
      "\"rad\", and values in degrees as \"30 deg\""},
     {"value = 2", "value = 2\nunit = \"N*m/deg\"",
-     "f.toml:11:9: the unit 'N*m/deg' is not one to compute in\n    unit = \"N*m/deg\"\n            ^\nwrite unit = "
+     "f.toml:11:9: the unit 'N*m/deg' is not allowed\n    unit = \"N*m/deg\"\n            ^\nwrite unit = "
      "\"N*m/rad\", and values in degrees as \"30 deg\""},
     {"rate = 0.5", "rate = [0.5]",
      "f.toml:5:8: 'rate' in [[coordinate]] must be a number, not an array\n    rate = [0.5]\n           ^"},
@@ -97,19 +95,19 @@ const Change in_types[] = {
      "f.toml:16:13: 'potential' in [lagrangian] must be an expression (a string or a number), not an array\n    "
      "potential = [\"m*x\"]\n                ^"},
     {"[[constraint]]", "[constraint]",
-     "f.toml:17:2: 'constraint' must be an array of tables, not a table\n    [constraint]\n     ^\nwrite "
-     "[[constraint]], once for each"},
+     "f.toml:17:2: 'constraint' must be an array of tables, not a table\n    [constraint]\n     ^\nwrite one "
+     "[[constraint]] for each"},
     {"[run]\nend_time = 5\n", "[[run]]\nend_time = 5\n",
      "f.toml:20:1: [run] must be a table, not an array\n    [[run]]\n    ^\nwrite [run] once, and its keys below"},
     {"end_time = 5", "end_time = \"soon\"",
-     "f.toml:21:13: 'end_time' in [run]: 'soon' is not a finite number: no name but pi has a value here\n    "
-     "end_time = \"soon\"\n                ^"},
+     "f.toml:21:13: 'end_time' in [run]: 'soon' is not a finite number: pi is the only name allowed here\n    end_time "
+     "= \"soon\"\n                ^"},
     {"[\"s\", \"s^2\"]", "\"s\"",
      "f.toml:27:6: 'at' in [[drawing]] of shape curve must be a point [x, y], not a string\n    at = \"s\"\n         "
      "^"},
     {"[\"s\", \"s^2\"]", "[\"s\", \"s^2\", \"s\"]",
-     "f.toml:27:6: a point of 'at' in [[drawing]] of shape curve has two coordinates, not 3\n    at = [\"s\", \"s^2\", "
-     "\"s\"]\n         ^"},
+     "f.toml:27:6: a point of 'at' in [[drawing]] of shape curve must have two coordinates, not 3\n    at = [\"s\", "
+     "\"s^2\", \"s\"]\n         ^"},
     {"[\"s\", -1, 1]", "[\"s\", -1]",
      "f.toml:26:8: 'over' in [[drawing]] must be [\"name\", low, high]\n    over = [\"s\", -1]\n           ^"},
     {"\"x - sin(theta)/9\"", "\"\"",
@@ -125,11 +123,10 @@ const Change in_types[] = {
     {"shape = \"curve\"\nover = [\"s\", -1, 1]", "shape = \"curv\"\ncolor = \"red\"\nover = [\"s\", \"ss\", 1]",
      "f.toml:25:10: unknown shape 'curv'; did you mean 'curve'?\n    shape = \"curv\"\n             ^\nshapes are: "
      "disc, circle, box, segment, spring, damper, ground, curve, polyline, text\n\nf.toml:26:10: 'red' is not a "
-     "colour\n    color = \"red\"\n             ^\na colour is \"#rrggbb\"\n\nf.toml:27:15: unknown name 'ss'; did you "
-     "mean 's'?\n    over = [\"s\", \"ss\", 1]\n            "
-     "      ^"},
+     "color\n    color = \"red\"\n             ^\nwrite a color as \"#rrggbb\"\n\nf.toml:27:15: unknown name 'ss'; did "
+     "you mean 's'?\n    over = [\"s\", \"ss\", 1]\n                  ^"},
     {"shape = \"curve\"", "shape = \"curve\"\ncolor = \"red\"",
-     "f.toml:26:10: 'red' is not a colour\n    color = \"red\"\n             ^\na colour is \"#rrggbb\""},
+     "f.toml:26:10: 'red' is not a color\n    color = \"red\"\n             ^\nwrite a color as \"#rrggbb\""},
     {"shape = \"curve\"", "shape = \"curve\"\nfill = 1",
      "f.toml:26:8: 'fill' in [[drawing]] of shape curve must be true or false, not a number\n    fill = 1\n           "
      "^"},
@@ -197,40 +194,34 @@ INSTANTIATE_TEST_SUITE_P(Values, Mistakes, testing::ValuesIn(in_values));
 const Change in_namesof[] = {
     {"name = \"theta\"", "name = \"sin\"",
      "f.toml:7:9: the name 'sin' is reserved\n    name = \"sin\"\n            ^\nfunctions, t, pi, gap, lambda, "
-     "energy, work, loss, power and deg keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n "
-     "   kinetic = "
-     "\"m/2*(x'^2 + "
-     "theta'^2)\"\n                           ^"},
+     "energy, work, loss, power and deg are reserved: choose another name\n\nf.toml:15:24: unknown name theta'\n    "
+     "kinetic = \"m/2*(x'^2 + theta'^2)\"\n                           ^"},
     {"name = \"m\"", "name = \"gap\"",
      "f.toml:9:9: the name 'gap' is reserved\n    name = \"gap\"\n            ^\nfunctions, t, pi, gap, lambda, "
-     "energy, work, loss, power and deg keep their meaning: choose another name\n\nf.toml:15:12: unknown name 'm'\n    "
-     "kinetic = "
-     "\"m/2*(x'^2 + "
-     "theta'^2)\"\n               ^"},
+     "energy, work, loss, power and deg are reserved: choose another name\n\nf.toml:15:12: unknown name 'm'\n    "
+     "kinetic = \"m/2*(x'^2 + theta'^2)\"\n               ^"},
     {"name = \"theta\"", "name = \"floor\"",
      "f.toml:7:9: the name 'floor' is reserved\n    name = \"floor\"\n            ^\nfunctions, t, pi, gap, lambda, "
-     "energy, work, loss, power and deg keep their meaning: choose another name\n\nf.toml:15:24: unknown name theta'\n "
-     "   kinetic = "
-     "\"m/2*(x'^2 + "
-     "theta'^2)\"\n                           ^"},
+     "energy, work, loss, power and deg are reserved: choose another name\n\nf.toml:15:24: unknown name theta'\n    "
+     "kinetic = \"m/2*(x'^2 + theta'^2)\"\n                           ^"},
     {"name = \"theta\"", "name = \"x\"",
-     "f.toml:7:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is the name at line 3 already"},
+     "f.toml:7:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is already the name at line 3"},
     {"name = \"m\"", "name = \"x\"",
-     "f.toml:9:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is the name at line 3 already"},
+     "f.toml:9:9: the name 'x' is used twice\n    name = \"x\"\n            ^\nit is already the name at line 3"},
     {"name = \"theta\"", "name = \"2x\"",
-     "f.toml:7:9: '2x' is not a name\n    name = \"2x\"\n            ^\na name is a letter, then letters, digits and "
-     "underscores"},
+     "f.toml:7:9: '2x' is not a name\n    name = \"2x\"\n            ^\na name is a letter followed by letters, digits "
+     "and underscores"},
     {"name = \"theta\"", "name = \"the ta\"",
-     "f.toml:7:9: 'the ta' is not a name\n    name = \"the ta\"\n            ^\na name is a letter, then letters, "
-     "digits and underscores"},
+     "f.toml:7:9: 'the ta' is not a name\n    name = \"the ta\"\n            ^\na name is a letter followed by "
+     "letters, digits and underscores"},
     {"[\"s\", -1, 1]", "[\"x\", -1, 1]",
-     "f.toml:26:10: the name 'x' is used twice\n    over = [\"x\", -1, 1]\n             ^\na curve's own parameter "
-     "needs a name of its own"},
+     "f.toml:26:10: the name 'x' is used twice\n    over = [\"x\", -1, 1]\n             ^\nchoose another name for the "
+     "curve parameter"},
     {"[\"s\", -1, 1]", "[\"t\", -1, 1]",
      "f.toml:26:10: the name 't' is reserved\n    over = [\"t\", -1, 1]\n             ^"},
     {"y = [\"gap'\"]\n", "y = [\"gap'\"]\n[[view]]\nname = \"path\"\nx = \"t\"\ny = \"x\"\n",
-     "f.toml:33:9: the name 'path' is used twice\n    name = \"path\"\n            ^\neach [[view]] needs a name of "
-     "its own"},
+     "f.toml:33:9: the name 'path' is used twice\n    name = \"path\"\n            ^\neach [[view]] needs its own "
+     "name"},
 };
 INSTANTIATE_TEST_SUITE_P(Names, Mistakes, testing::ValuesIn(in_namesof));
 
@@ -244,16 +235,17 @@ const Change in_expression[] = {
     {"\"m*x\"", "\"m'*x\"",
      "f.toml:16:14: 'm' is a parameter: it has no rate\n    potential = \"m'*x\"\n                 ^"},
     {"\"m*x\"", "\"m*x''\"",
-     "f.toml:16:16: the acceleration x'' may not stand in an expression: it follows from them\n    potential = "
-     "\"m*x''\"\n                   ^"},
+     "f.toml:16:16: the acceleration x'' is not allowed in an expression: it follows from the equations of motion\n    "
+     "potential = \"m*x''\"\n                   ^"},
     {"\"m*x\"", "\"m*lambda\"",
-     "f.toml:16:16: 'lambda' may stand in a [[view]] only\n    potential = \"m*lambda\"\n                   ^"},
+     "f.toml:16:16: 'lambda' is allowed only in a [[view]]\n    potential = \"m*lambda\"\n                   ^"},
     {"restitution = \"e\"", "restitution = \"e*x\"",
-     "f.toml:19:18: the coordinate 'x' may not stand in the restitution: parameters alone\n    restitution = \"e*x\"\n "
-     "                    ^"},
+     "f.toml:19:18: the coordinate 'x' is not allowed in the restitution: use only parameters\n    restitution = "
+     "\"e*x\"\n                     ^"},
     {"\"m*x\"", "\"m*(x + 1\"",
      "f.toml:16:16: this '(' is never closed\n    potential = \"m*(x + 1\"\n                   ^"},
-    {"\"m*x\"", "\"m*x)\"", "f.toml:16:17: this ')' closes nothing\n    potential = \"m*x)\"\n                    ^"},
+    {"\"m*x\"", "\"m*x)\"",
+     "f.toml:16:17: this ')' has no matching '('\n    potential = \"m*x)\"\n                    ^"},
     {"\"m*x\"", "\"m x\"",
      "f.toml:16:16: an operator is missing here; write '*' for a product\n    potential = \"m x\"\n                   "
      "^\nwrite m*x"},
@@ -270,29 +262,29 @@ const Change in_expression[] = {
     {"\"m*x\"", "\"m*x/0\"", "f.toml:16:17: division by zero\n    potential = \"m*x/0\"\n                    ^"},
     {"\"m*x\"", "\"m*abs(x)\"",
      "f.toml:16:16: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
-     "potential = \"m*abs(x)\"\n                   ^\nsqrt(x^2 + w^2) is nearly |x|, with a small w"},
+     "potential = \"m*abs(x)\"\n                   ^\nsqrt(x^2 + w^2) approximates |x| for small w"},
     {"\"m*x\"", "\"m*|x|\"",
-     "f.toml:16:16: |x| is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
-     "potential = \"m*|x|\"\n                   ^\nsqrt(x^2 + w^2) is nearly |x|, with a small w"},
+     "f.toml:16:16: |x| is not allowed: it is not smooth, and the equations of motion need derivatives\n    potential "
+     "= \"m*|x|\"\n                   ^\nsqrt(x^2 + w^2) approximates |x| for small w"},
     {"\"m*x\"", "\"m|x|\"",
-     "f.toml:16:15: |x| is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
-     "potential = \"m|x|\"\n                  ^\nsqrt(x^2 + w^2) is nearly |x|, with a small w"},
+     "f.toml:16:15: |x| is not allowed: it is not smooth, and the equations of motion need derivatives\n    potential "
+     "= \"m|x|\"\n                  ^\nsqrt(x^2 + w^2) approximates |x| for small w"},
     {"\"m*x\"", "\"min(m, x)\"",
      "f.toml:16:14: 'min' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
-     "potential = \"min(m, x)\"\n                 ^\ntwo gaps are two [[constraint]]; else (a + b - sqrt((a - b)^2 + "
-     "w^2))/2 is nearly min(a, b), with a small w"},
+     "potential = \"min(m, x)\"\n                 ^\nwrite one [[constraint]] for each of two gaps; elsewhere (a + b - "
+     "sqrt((a - b)^2 + w^2))/2 approximates min(a, b) for small w"},
     {"\"m*x\"", "\"floor(x)\"",
      "f.toml:16:14: 'floor' is not allowed: it is not smooth, and the equations of motion need derivatives\n    "
-     "potential = \"floor(x)\"\n                 ^\na step at x = 0 is nearly (1 + tanh(x/w))/2, with a small w"},
+     "potential = \"floor(x)\"\n                 ^\n(1 + tanh(x/w))/2 approximates a step at x = 0 for small w"},
     {"name = \"theta\"\n", "name = \"theta\"\nforce = \"-m*sign(x')\"\n",
      "f.toml:8:13: 'sign' is not allowed: it is not smooth, and the equations of motion need derivatives\n    force = "
-     "\"-m*sign(x')\"\n                ^\ntanh(x/w) is nearly sign(x), with a small w"},
+     "\"-m*sign(x')\"\n                ^\ntanh(x/w) approximates sign(x) for small w"},
     {"name = \"theta\"\n", "name = \"theta\"\nforce = \"-m*sgn(x')\"\n",
      "f.toml:8:13: 'sgn' is not allowed: it is not smooth, and the equations of motion need derivatives\n    force = "
-     "\"-m*sgn(x')\"\n                ^\ntanh(x/w) is nearly sign(x), with a small w"},
+     "\"-m*sgn(x')\"\n                ^\ntanh(x/w) approximates sign(x) for small w"},
     {"name = \"theta\"\n", "name = \"theta\"\nforce = \"max(x, m)\"\n",
      "f.toml:8:10: 'max' is not allowed: it is not smooth, and the equations of motion need derivatives\n    force = "
-     "\"max(x, m)\"\n             ^\n(a + b + sqrt((a - b)^2 + w^2))/2 is nearly max(a, b), with a small w"},
+     "\"max(x, m)\"\n             ^\n(a + b + sqrt((a - b)^2 + w^2))/2 approximates max(a, b) for small w"},
     {"\"m*x\"", "\"sni(x)\"",
      "f.toml:16:14: unknown function 'sni'; did you mean 'sin'?\n    potential = \"sni(x)\"\n                 ^"},
     {"\"m*x\"", "\"ln(x)\"",
@@ -310,9 +302,8 @@ const Change in_expression[] = {
      "^"},
     {"\"s^2\"", "\"r^2\"", "f.toml:27:13: unknown name 'r'\n    at = [\"s\", \"r^2\"]\n                ^"},
     {"\"s^2\"", "\"x'\"",
-     "f.toml:27:13: the rate x' may not stand in the drawing: it depends on coordinates and time alone\n    at = "
-     "[\"s\", "
-     "\"x'\"]\n                ^"},
+     "f.toml:27:13: the rate x' is not allowed in the drawing: it may depend only on coordinates, parameters and "
+     "time\n    at = [\"s\", \"x'\"]\n                ^"},
     {"y = [\"gap'\"]", "y = [\"t\", \"gap'''\"]",
      "f.toml:31:12: unknown name gap'''; did you mean gap''?\n    y = [\"t\", \"gap'''\"]\n               ^"},
     {"y = [\"gap'\"]", "y = [\"lamda\"]",
@@ -322,33 +313,32 @@ INSTANTIATE_TEST_SUITE_P(Expression, Mistakes, testing::ValuesIn(in_expression))
 
 const Change in_kinetic[] = {
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + x'",
-     "f.toml:15:36: the term x' of the kinetic energy is of degree 1 in the rates\n    kinetic = \"m/2*(x'^2 + "
-     "theta'^2) + x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in "
-     "m/2*x'^2"},
+     "f.toml:15:36: the term x' of the kinetic energy has degree 1 in the rates\n    kinetic = \"m/2*(x'^2 + theta'^2) "
+     "+ x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) - 3*x*x'^3",
-     "f.toml:15:36: the term 3*x*x'^3 of the kinetic energy is of degree 3 in the rates\n    kinetic = \"m/2*(x'^2 + "
+     "f.toml:15:36: the term 3*x*x'^3 of the kinetic energy has degree 3 in the rates\n    kinetic = \"m/2*(x'^2 + "
      "theta'^2) - 3*x*x'^3\"\n                                       ^\nkinetic energy must be quadratic in the rates, "
      "as in m/2*x'^2"},
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + m*x",
-     "f.toml:15:36: the term m*x of the kinetic energy is of degree 0 in the rates\n    kinetic = \"m/2*(x'^2 + "
-     "theta'^2) + m*x\"\n                                       ^\nwhat has no rate in it belongs to the potential, "
-     "with the other sign"},
+     "f.toml:15:36: the term m*x of the kinetic energy has degree 0 in the rates\n    kinetic = \"m/2*(x'^2 + "
+     "theta'^2) + m*x\"\n                                       ^\nmove terms without rates to the potential, with "
+     "opposite sign"},
     {"m/2*(x'^2 + theta'^2)", "(x' + 1)^2 + theta'^2",
-     "f.toml:15:12: the term 1 of the kinetic energy is of degree 0 in the rates\n    kinetic = \"(x' + 1)^2 + "
-     "theta'^2\"\n               ^\nwhat has no rate in it belongs to the potential, with the other sign"},
+     "f.toml:15:12: the term 1 of the kinetic energy has degree 0 in the rates\n    kinetic = \"(x' + 1)^2 + "
+     "theta'^2\"\n               ^\nmove terms without rates to the potential, with opposite sign"},
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + sqrt(x'^2 + 1)",
-     "f.toml:15:36: the kinetic energy is no polynomial in the rates: sqrt(x'^2 + 1)\n    kinetic = \"m/2*(x'^2 + "
+     "f.toml:15:36: the kinetic energy is not a polynomial in the rates: sqrt(x'^2 + 1)\n    kinetic = \"m/2*(x'^2 + "
      "theta'^2) + sqrt(x'^2 + 1)\"\n                                       ^\nkinetic energy must be quadratic in the "
      "rates, as in m/2*x'^2"},
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + 1/x'",
-     "f.toml:15:36: the kinetic energy is no polynomial in the rates: 1/x'\n    kinetic = \"m/2*(x'^2 + theta'^2) + "
+     "f.toml:15:36: the kinetic energy is not a polynomial in the rates: 1/x'\n    kinetic = \"m/2*(x'^2 + theta'^2) + "
      "1/x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
     {"m/2*(x'^2 + theta'^2)", "x'^2 + x'*theta'",
      "f.toml:15:12: the kinetic energy has no term in theta'^2\n    kinetic = \"x'^2 + x'*theta'\"\n               "
      "^\nevery coordinate needs a positive inertia"},
     {"m/2*(x'^2 + theta'^2)", "x'^9 + theta'^2",
-     "f.toml:15:12: the kinetic energy is of a degree above 8 in the rates: x'^9\n    kinetic = \"x'^9 + theta'^2\"\n  "
-     "             ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
+     "f.toml:15:12: the kinetic energy has a degree above 8 in the rates: x'^9\n    kinetic = \"x'^9 + theta'^2\"\n    "
+     "           ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
     {"m/2*(x'^2 + theta'^2)", "0",
      "f.toml:15:12: the kinetic energy has no term in x'^2\n    kinetic = \"0\"\n               ^\nevery coordinate "
      "needs a positive inertia"},
@@ -371,8 +361,8 @@ const Change in_start[] = {
      "f.toml:15:12: the mass matrix is not positive definite at the start (the pivot of 'x' is 0)\n    kinetic = "
      "\"m/2*(x'^2 + theta'^2)\"\n               ^\nevery coordinate needs a positive inertia"},
     {"\"x - sin(theta)/9\"", "\"(x - 1)^2\"",
-     "f.toml:18:8: dh = 0 at the start, which is in contact: the normal is not defined\n    gap = \"(x - 1)^2\"\n      "
-     "     ^\nwrite a gap whose dh is not 0 where h = 0, as x in place of x^2 or x^3"},
+     "f.toml:18:8: the start is in contact, and dh = 0 there: the normal is not defined\n    gap = \"(x - 1)^2\"\n     "
+     "      ^\nwrite a gap whose dh is not 0 where h = 0, for example x instead of x^2 or x^3"},
     {"\"x - sin(theta)/9\"", "\"log(x - 2)\"",
      "f.toml:18:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n    gap = \"log(x - 2)\"\n      "
      "     ^"},

@@ -27,32 +27,15 @@ TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
                                             {"\"m*x\"", "\"m*abs(x)\""},
                                             {"end_time = 5", "end_time = -5"},
                                             {"[\"gap'\"]", "[\"lamda\", \"y\"]"}});
-    EXPECT_EQ(told(text),
-              "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n"
-              "    strat = 1\n"
-              "    ^\n"
-              "known here: name, start, rate, force, unit, range, rate_range\n"
-              "\n"
-              "f.toml:10:9: 'value' in [[parameter]] must be a number, not an array\n"
-              "    value = [2]\n"
-              "            ^\n"
-              "\n"
-              "f.toml:16:16: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives\n"
-              "    potential = \"m*abs(x)\"\n"
-              "                   ^\n"
-              "sqrt(x^2 + w^2) is nearly |x|, with a small w\n"
-              "\n"
-              "f.toml:21:12: the end time -5 is not after the start time 0\n"
-              "    end_time = -5\n"
-              "               ^\n"
-              "\n"
-              "f.toml:31:7: unknown name 'lamda'; did you mean 'lambda'?\n"
-              "    y = [\"lamda\", \"y\"]\n"
-              "          ^\n"
-              "\n"
-              "f.toml:31:16: unknown name 'y'\n"
-              "    y = [\"lamda\", \"y\"]\n"
-              "                   ^");
+    EXPECT_EQ(
+        told(text),
+        "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n    strat = 1\n    ^\nknown keys: "
+        "name, start, rate, force, unit, range, rate_range\n\nf.toml:10:9: 'value' in [[parameter]] must be a number, "
+        "not an array\n    value = [2]\n            ^\n\nf.toml:16:16: 'abs' is not allowed: it is not smooth, and the "
+        "equations of motion need derivatives\n    potential = \"m*abs(x)\"\n                   ^\nsqrt(x^2 + w^2) "
+        "approximates |x| for small w\n\nf.toml:21:12: the end time -5 is not after the start time 0\n    end_time = "
+        "-5\n               ^\n\nf.toml:31:7: unknown name 'lamda'; did you mean 'lambda'?\n    y = [\"lamda\", "
+        "\"y\"]\n          ^\n\nf.toml:31:16: unknown name 'y'\n    y = [\"lamda\", \"y\"]\n                   ^");
 }
 
 // What is drawn has no say in how a run starts: both are told.
