@@ -164,7 +164,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
     EXPECT_EQ(test::content(in_folder("a.csv")).rfind("t,phase,", 0), 0U);
     EXPECT_EQ(test::content(in_folder("a.journal")), "open ball_on_sine\n");
     for (const auto& [name, says] : {std::pair{"a.bmp", "does not say what to export"},
-                                     {"no/folder/a.svg", "cannot be written"},
+                                     {"no/folder/a.svg", "there is no folder"},
                                      {"", "missing"},
                                      {"-", "missing"}}) {
         session.apply(command::Export{*name == '\0' || *name == '-' ? name : in_folder(name), false});
