@@ -133,7 +133,8 @@ TEST(OrbitCommand, DrawsWhatIsMadeAgain) {
         EXPECT_NE(again.err.find("the same bytes"), std::string::npos) << again.err;
     }
     const std::string drawn = content(folder.path() / "branch.svg");
-    for (const char* words : {"flip", "not stable", "stable"}) EXPECT_NE(drawn.find(words), std::string::npos) << words;
+    for (const char* words : {"period doubling", "not stable", "stable"})
+        EXPECT_NE(drawn.find(words), std::string::npos) << words;
 }
 
 }  // namespace
