@@ -107,11 +107,10 @@ fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const
     throw InputError(
         {}, {},
         fmt::format("there is no {} '{}'{}", kind, shown(wanted),
-                    !meant.empty()
-                        ? meant
-                        : fmt::format("; write the path of a {} file, or {}", extension,
-                                      extension == of_systems ? "a name that 'achilles list' prints"
-                                                              : fmt::format("one of: {}", fmt::join(names, ", ")))));
+                    !meant.empty()            ? meant
+                    : extension == of_systems ? "; SYSTEM is the path of a .toml file or a name from 'achilles list'"
+                                              : fmt::format("; write the path of a {} file, or one of: {}", extension,
+                                                            fmt::join(names, ", "))));
 }
 
 }  // namespace

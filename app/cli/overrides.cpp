@@ -20,14 +20,14 @@ namespace achilles {
 
 std::string common_flag(const Option& option) { return "--" + std::string(option.command); }
 
-double number_from(const std::string& option, std::string_view text) {
+double number_from(const std::string& option, std::string_view text, std::string_view unit) {
     try {
         return read_number(text).value;
     } catch (const ParseError& error) {
         const auto apart = measured(text);
         throw apart
             ? InputError(fmt::format("{} {}", option, shown(text)), {}, "this value must be a number without a unit",
-                         fmt::format("write {} {}", option, apart->number))
+                         without_unit(*apart, option, unit, fmt::format("{} {}", option, apart->number)))
             : InputError(fmt::format("{} {}", option, shown(text)), {}, error.what(), error.hint);
     }
 }
@@ -46,7 +46,7 @@ int integer_from(const std::string& option, std::string_view text) {
 
 OptionValue value_from(const Option& option, const std::string& flag, const std::string& text) {
     if (std::holds_alternative<int>(option.get({}))) return integer_from(flag, text);
-    if (option.words.empty()) return number_from(flag, text);
+    if (option.words.empty()) return number_from(flag, text, option.unit);
     const auto found = std::find(option.words.begin(), option.words.end(), text);
     if (found != option.words.end()) return *found;
     const std::vector<std::string> choices(option.words.begin(), option.words.end());

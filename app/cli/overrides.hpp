@@ -27,7 +27,7 @@ struct OptionOverrides {
 std::string common_flag(const Option& option);
 
 // A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
-double number_from(const std::string& option, std::string_view text);
+double number_from(const std::string& option, std::string_view text, std::string_view unit = {});
 
 // The value of an option as typed: one of its words, a whole number, or a number. Throws InputError about the flag.
 OptionValue value_from(const Option& option, const std::string& flag, const std::string& text);

@@ -14,6 +14,7 @@
 
 #include "cli/terminal.hpp"
 #include "system/description.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -22,6 +23,10 @@ namespace fs = std::filesystem;
 namespace {
 
 [[noreturn]] void cannot_write(const std::string& path, int reason) {
+    std::error_code ignored;
+    const fs::path folder = fs::path(path).parent_path();
+    if (reason == ENOENT && !folder.empty() && !fs::is_directory(folder, ignored))
+        throw InputError(path, {}, "there is no folder " + shown(folder.string()));
     throw InputError(path == "-" ? "standard output" : path, {},
                      fmt::format("the file cannot be written: {}", std::strerror(reason)));
 }

@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "pictures/frame_folder.hpp"
+#include "pictures/origin.hpp"
 #include "pictures/picture_format.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"
@@ -88,15 +89,17 @@ std::size_t frames_in(const std::string& text) {
 
 bool has_film_joiner() { return !find_program(joiner).empty(); }
 
-void need_film_joiner(const std::string& option) {
+void need_film_joiner(const std::string& option, const std::string& system, const std::string& film) {
     if (!has_film_joiner())
-        throw InputError(option, {}, "a film needs ffmpeg, which is not installed",
-                         "install ffmpeg, or draw only the frames into a folder: achilles frames --out FOLDER");
+        throw InputError(
+            option, {}, "a film needs ffmpeg, which is not installed",
+            fmt::format("install ffmpeg, or draw only the frames into a folder: achilles frames {} --out {}",
+                        shell_word(system), shell_word(frames_folder(film).string())));
 }
 
-void check_frames_out(const std::string& out) {
+void check_frames_out(const std::string& out, const std::string& system) {
     const std::string ending = ending_of(out), option = "--out " + shown(out);
-    if (is_film(out)) return need_film_joiner(option);
+    if (is_film(out)) return need_film_joiner(option, system, out);
     const bool has_letter =
         std::any_of(ending.begin(), ending.end(), [](unsigned char c) { return std::isalpha(c) != 0; });
     std::error_code ignored;

@@ -14,13 +14,14 @@ namespace achilles {
 // Whether a name's ending says so.
 bool is_film(const std::string& file);
 
-// Whether ffmpeg is there to join one. need_film_joiner() throws InputError about an option where it is not.
+// Whether ffmpeg is there to join one. need_film_joiner() throws InputError about an option where it is not; the advice is the
+// command that draws the frames of this film of the system.
 bool has_film_joiner();
-void need_film_joiner(const std::string& option);
+void need_film_joiner(const std::string& option, const std::string& system, const std::string& film);
 
 // What --out of `achilles frames` names: a film that can be joined, or a folder. Throws InputError for a film where there is no
 // ffmpeg, and for an ending of another kind of file, unless a folder of that name is there.
-void check_frames_out(const std::string& out);
+void check_frames_out(const std::string& out, const std::string& system);
 
 // Where the pictures of a film are drawn: "film.frames" beside film.mp4.
 std::filesystem::path frames_folder(const std::string& film);

@@ -62,8 +62,8 @@ std::string format_for(const std::string& out, const std::string& wanted, const 
     const std::string ending = ending_of(out), said = ending_of_picture(out), option = "--out " + shown(out);
     if (wanted.empty() && out == "-") return "png";
     if (wanted.empty() && said.empty())
-        throw InputError(option, {}, "this name does not give the format of the picture",
-                         "end it in .png, .svg or .pdf, or add --format png, svg or pdf");
+        throw InputError(option, {}, "the file name must end in .png, .svg or .pdf",
+                         is_among(ending, other_formats) ? "" : "or add --format png, svg or pdf");
     if (wanted.empty()) return said;
     if (said != wanted && (!said.empty() || is_among(ending, other_formats)))
         throw InputError(option, {},

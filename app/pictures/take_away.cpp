@@ -273,8 +273,9 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
     if (!(extent.frames <= most_film_frames))
         throw InputError(what.file, {}, fmt::format("this would take more than {:.0f} frames", most_film_frames),
                          "use a higher speed or fewer frames per second");
-    need_film_joiner(what.file);
-    Words words{"frames", name_anywhere(session.system())};
+    const std::string system = name_anywhere(session.system());
+    need_film_joiner(what.file, system, what.file);
+    Words words{"frames", system};
     const Words options = run_options(session);
     words.insert(words.end(), options.begin(), options.end());
     if (const auto views = views_of(session, session.plotted()))

@@ -336,10 +336,9 @@ Command parse_command(std::string_view text, const std::string& file, int line_n
     if (line.count() == 0) throw line.error(1, "there is no command here");
     if (auto command = command::read_as_any(line, command::any)) return *std::move(command);
     const std::vector<std::string> names = command::names_of_all(command::any);
-    throw line.error(
-        line.word(0).column,
-        fmt::format("there is no command '{}'{}", line.word(0).text, did_you_mean(line.word(0).text, names)),
-        fmt::format("the commands are: {}", fmt::join(names, ", ")));
+    const std::string meant = did_you_mean(line.word(0).text, names);
+    throw line.error(line.word(0).column, fmt::format("there is no command '{}'{}", line.word(0).text, meant),
+                     meant.empty() ? fmt::format("the commands are: {}", fmt::join(names, ", ")) : "");
 }
 
 std::vector<std::string> command_usages() { return command::usages_of_all(command::any); }

@@ -16,27 +16,22 @@ constexpr std::array terms{
     Term{"restitution", "e = -gap'(after)/gap'(before)",
          "The normal speed after an impact over that before: 0 is plastic, 1 is elastic.", "paper (4)"},
     Term{"normal acceleration", "gap''",
-         "The acceleration of the gap in free motion. Where it is negative, the bodies are pressed together.",
-         "paper (8)"},
+         "Of the gap in free motion. Where it is negative, the bodies are pressed together.", "paper (8)"},
     Term{"Zeno point", "gap = 0, gap' = 0, gap'' < 0",
-         "Where 0 < e < 1, infinitely many impacts end here in finite time: each flight lasts about e times as long as "
-         "the last.",
+         "The limit of infinitely many impacts in finite time: with 0 < e < 1 each flight is about e times the last.",
          "paper, Thm. 2"},
     Term{"truncation", "w < c1, w < c2, w < c3",
-         "The impact sequence is cut at the first impact where the error of the cut is certified to be small enough.",
-         "paper, Def. 7"},
+         "Impacts are cut at the first one where the error of the cut is certified to be small.", "paper, Def. 7"},
     Term{"conditions", "a_min <= -gap'' <= a_max",
-         "What must be certified before the cut: the paper's inequalities, or the sharp ones, which choose their own "
-         "neighborhood.",
+         "What is certified before the cut: the paper's inequalities, or sharp ones with their own neighborhood.",
          "paper (9)-(11); theory 6"},
     Term{"certificate", "t(Zeno) - t(cut) <= A*w",
-         "Bounds by interval arithmetic on the Zeno time, and on the distance of the true Zeno point from the computed "
-         "one.",
+         "Interval bounds on the Zeno time, and on the distance of the true Zeno point from the computed one.",
          "paper, Thm. 3; theory 4"},
-    Term{"restart", "v(after) = v - gap'*n",
-         "The state from which the motion continues after the cut: by the kinetic metric, a plastic impact, or by the "
-         "paper's Euclidean projection.",
-         "paper, Def. 7; theory 5"},
+    Term{
+        "restart", "v(after) = v - gap'*n",
+        "Where the motion continues after the cut: by a plastic impact (kinetic), or the paper's Euclidean projection.",
+        "paper, Def. 7; theory 5"},
     Term{"constrained phase", "gap = 0, gap' = 0, lambda > 0", "The contact is held: the motion stays on the surface.",
          "paper (5), Def. 5"},
     Term{"contact force", "lambda = -gap''/W", "The force that holds the gap closed. It can push, but not pull.",
@@ -46,13 +41,9 @@ constexpr std::array terms{
     Term{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
          "paper, Defs. 4, 5"},
     Term{"work and loss", "energy = energy(0) + work - loss",
-         "Work is done by forces, including dampers (theirs is negative), and by moving contacts; loss is the energy "
-         "that impacts dissipate.",
-         ""},
+         "Work is done by forces, dampers (negative) and moving contacts; loss is what impacts dissipate.", ""},
     Term{"undecided", "",
-         "Double precision cannot decide what comes next: the run is repeated at the minimum tolerances, and stops if "
-         "that does not help.",
-         "theory 6"},
+         "Double precision cannot decide what comes next, even at the minimum tolerances: the run stops.", "theory 6"},
 };
 
 constexpr std::array keys{

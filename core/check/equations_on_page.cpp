@@ -304,8 +304,9 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
 
 void EquationsOnPage::zeno_here(const ZenoCondition& zeno) {
     const Layout& layout = model_.layout();
-    std::vector<std::uint32_t> varying(layout.t() + 1);
+    std::vector<std::uint32_t> varying(2 * layout.dof);  // the state
     std::iota(varying.begin(), varying.end(), 0U);
+    varying.push_back(layout.t());
     const Expression decisive = expression_of(zeno.decisive, *zeno.algebra);
     if (depends_on(decisive, varying)) return;
     const Program program(std::span(&decisive, 1), layout.slots());

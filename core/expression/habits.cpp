@@ -48,6 +48,7 @@ constexpr Habit signs[] = {
     {"\u2264", comparison, ""},
     {"\u2265", comparison, ""},
     {";", "leave out the semicolon", ""},
+    {"\\dot", "the rate of x is written x'", ""},
     {"\\", "expressions are not LaTeX", ""},
 };
 

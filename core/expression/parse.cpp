@@ -36,6 +36,15 @@ std::string shown(std::string_view rest) {
     return in_quotes(rest.substr(0, length));
 }
 
+constexpr std::string_view functions_are = "; the functions are ";
+
+std::string the_functions() {
+    std::string list;
+    for (const Function& function : functions)
+        list += std::string(list.empty() ? functions_are : ", ") + std::string(function.name);
+    return list;
+}
+
 class Parser {
  public:
     Parser(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts)
@@ -229,7 +238,17 @@ class Parser {
         refuse_greek();
         refuse_bar();
         if (peek() == '\'') throw ParseError(at_, "a prime may only follow the name of a coordinate");
+        if (peek() == '[' && follows_name()) throw ParseError(at_, "unexpected '['; coordinates have no index");
         throw ParseError(at_, "unexpected " + shown(text_.substr(at_)) + instead_of_sign(text_.substr(at_)));
+    }
+
+    // Behind a name that stands for one value.
+    bool follows_name() const {
+        std::size_t begin = text_.find_last_not_of(" \t\r\n", at_ - 1) + 1;
+        const std::size_t end = begin;
+        while (begin > 0 && is_name_part(text_[begin - 1])) --begin;
+        const std::string_view name = text_.substr(begin, end - begin);
+        return scope_.allowed.find(name) != scope_.allowed.end() && scope_.listed.find(name) == scope_.listed.end();
     }
 
     // 1.0 m, where m is no name.
@@ -240,6 +259,7 @@ class Parser {
         while (end < text_.size() && is_name_part(text_[end])) ++end;
         const std::string_view word = text_.substr(at_, end - at_);
         if (scope_.allowed.find(word) != scope_.allowed.end() || is_reserved(word)) return;
+        if (word == "e" || word == "E") throw ParseError(at_, "write the exponent, as in 1e-3");
         throw ParseError(at_, in_quotes(word) +
                                   " may not follow a number: write numbers without units (a file has the key unit for "
                                   "that) and products with '*'");
@@ -332,9 +352,9 @@ class Parser {
         for (const Function& function : functions) known.emplace_back(function.name);
         for (const auto& [word, element] : scope_.listed) known.push_back(word);
         if (peek() == '(' && scope_.allowed.find(full) == scope_.allowed.end()) {
-            const std::string habit = instead_of_name(bare, [](std::string_view) { return false; });
-            throw ParseError(
-                begin, "unknown function " + in_quotes(full) + (habit.empty() ? did_you_mean(bare, known) : habit));
+            std::string hint = instead_of_name(bare, [](std::string_view) { return false; });
+            if (hint.empty()) hint = did_you_mean(bare, known);
+            throw ParseError(begin, "unknown function " + in_quotes(full) + (hint.empty() ? the_functions() : hint));
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
@@ -386,7 +406,8 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
         if (right.empty()) throw;
         // A guess at the name alone would contradict it.
         const std::string message = error.what();
-        throw ParseError(error.offset, message.substr(0, message.find("; did you mean")), error.name, right);
+        const std::size_t end = std::min(message.find("; did you mean"), message.find(functions_are));
+        throw ParseError(error.offset, message.substr(0, end), error.name, right);
     } catch (const TooLarge& problem) {
         throw ParseError(parser.at(), std::string("this expression is too large: ") + problem.what());
     }

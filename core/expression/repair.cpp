@@ -115,6 +115,14 @@ std::string with_plain_signs(std::string_view text) {
             if (i < text.size() && is_letter(text[i])) result += ' ';
             continue;
         }
+        const bool is_last = rest.find_first_not_of(" \t\r\n", 1) == rest.npos;
+        const std::size_t before = result.find_last_not_of(' ');
+        if (rest[0] == '%' && is_last && before != result.npos && is_digit(result[before])) {  // 60%
+            result.resize(before + 1);
+            result += "/100";
+            ++i;
+            continue;
+        }
         const bool is_between_digits = i > 0 && rest.size() > 1 && is_digit(text[i - 1]) && is_digit(rest[1]);
         const bool is_decimal = i > 0 && is_digit(text[i - 1]) && rest[0] == '.';  // 2.*x
         if (rest[0] == ',' && is_between_digits) {
@@ -373,6 +381,21 @@ class Words {
 
 // ---- statements ----
 
+// y for y[1], and x1 for x[1] where the scope has that.
+std::string without_index(std::string text, const Scope& scope) {
+    for (std::size_t open = text.find('['); open != text.npos; open = text.find('[', open + 1)) {
+        std::size_t begin = open, end = open + 1;
+        while (begin > 0 && is_name_part(text[begin - 1])) --begin;
+        while (end < text.size() && is_digit(text[end])) ++end;
+        const std::string name = text.substr(begin, open - begin);
+        if (end == open + 1 || end == text.size() || text[end] != ']' || scope.listed.contains(name)) continue;
+        const std::string whole = name + text.substr(open + 1, end - open - 1);
+        const bool is_whole = scope.allowed.contains(whole);
+        if (is_whole || scope.allowed.contains(name)) text.replace(begin, end + 1 - begin, is_whole ? whole : name);
+    }
+    return text;
+}
+
 // y - sin(x) for y >= sin(x) and for y = sin(x); what stands behind "V =" or "h(q) =" where the left side is no value.
 std::string without_relation(const std::string& text, const Scope& scope) {
     struct Relation {
@@ -400,7 +423,7 @@ std::string without_relation(const std::string& text, const Scope& scope) {
 }  // namespace
 
 std::string repaired(std::string_view text, const Scope& scope) {
-    std::string plain = trimmed(with_plain_signs(without_latex(std::string(text))));
+    std::string plain = trimmed(with_plain_signs(without_index(without_latex(std::string(text)), scope)));
     while (plain.ends_with(';') || plain.ends_with(',')) plain = trimmed(plain.substr(0, plain.size() - 1));
     return text_of(Words(tokens_of(without_relation(plain, scope)), scope).repaired());
 }

@@ -107,9 +107,14 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     const Interval h = gap.output(0);
     const double error = rad(h);
     if (!std::isfinite(error)) throw no_value(*this, run, at, "the gap", {&equations_.gaps[contact], 1});
-    if (mid(h) < -4.0 * error)
-        throw Mistake{at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
-                      "choose a start with h(q) >= 0"};
+    if (mid(h) < -4.0 * error) {
+        const Run file = default_run();
+        const bool is_of_file = run.q == file.q && run.parameters == file.parameters;  // else the gap was right there
+        throw Mistake{
+            at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
+            fmt::format("choose a start with h(q) >= 0{}",
+                        is_of_file ? ", or reverse its sign: the gap is positive where the system is free" : "")};
+    }
     if (std::abs(mid(h)) > 4.0 * error) return;
     auto terms = evaluator(programs_of(contact).contact_terms, run.parameters);
     set_state(terms, start);

@@ -172,7 +172,7 @@ std::string branch_text(const Branch& branch, const SystemDescription& descripti
                                 point.period, named(description, point.state.q, ""), multipliers_text(point, 11));
     };
     tell("fold", branch.folds);
-    tell("flip (mu = -1)", branch.flips);
+    tell("period doubling (mu = -1)", branch.flips);
     tell("|mu| = 1, complex", branch.circles);
     tell("Zeno point lost", branch.lost);
     tell("event sequence changes", branch.changes);

@@ -46,9 +46,11 @@ std::string indented(std::string sentence) {
 }
 
 // " holding knee", of a system with several contacts.
-std::string holding(const Trajectory& trajectory, ContactSet held) {
+// "in flight", "in contact", or of several contacts "in contact with knee".
+std::string contact_state(const Trajectory& trajectory, ContactSet held) {
     const Model& model = *trajectory.model;
-    return model.contacts() > 1 && !held.empty() ? " holding " + joined_names(model, held) : "";
+    if (held.empty()) return "in flight";
+    return model.contacts() > 1 ? "in contact with " + joined_names(model, held) : "in contact";
 }
 
 // Phase by phase, event by event.
@@ -83,8 +85,8 @@ class Course {
     std::string time(double t) const { return known_digits(t, precision_.of_time(t), 10); }
 
     std::string phase_line(const Phase& phase) const {
-        return fmt::format("{} phase{}, t = {} to {} s{}\n", to_text(phase.kind), holding(trajectory_, phase.held),
-                           time(phase.start), time(phase.end), phase.not_unique() ? ", forces not unique" : "");
+        return fmt::format("{}, t = {} to {} s{}\n", contact_state(trajectory_, phase.held), time(phase.start),
+                           time(phase.end), phase.not_unique() ? ", forces not unique" : "");
     }
 
     std::string chatter_line(const Chatter& chatter) const {
@@ -278,8 +280,8 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += Course(trajectory, estimate).told();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
-    text += fmt::format("\nend at t = {:.10g} s, {}{}: {}; {}", trajectory.end_time, to_text(trajectory.end_phase),
-                        holding(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, errors.q),
+    text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,
+                        contact_state(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, errors.q),
                         named(model, n, trajectory.end.v, errors.v));
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);

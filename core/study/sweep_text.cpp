@@ -185,6 +185,11 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     axis.low = number("--over", text, parts[0], unit);
     axis.high = number("--over", text, parts[1], unit);
     check_name(axis, text, description);
+    const double count = parts.size() == 3 ? number("--over", text, parts[2]) : 0.0;
+    const std::string ours = parts.size() == 3 ? from_steps(axis.low, axis.high, count) : "";
+    if (!ours.empty() && !axis.logarithmic && (count < 2.0 || count != std::floor(count)) && axis.high < count)
+        throw refusal("--over", text, "the order is LOW:HIGH:COUNT, not LOW:STEP:HIGH",
+                      fmt::format("write --over {}={}", axis.name, ours));
     if (axis.low == axis.high)
         throw refusal("--over", text, fmt::format("both limits are {}: nothing varies", axis.low),
                       "for one value use --set");
@@ -192,11 +197,6 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     if (axis.logarithmic && !(axis.low > 0.0 && axis.high > 0.0))
         throw refusal("--over", text, "the limits of a logarithmic axis must be positive");
     if (parts.size() < 3) return axis;
-    const double count = number("--over", text, parts[2]);
-    const std::string ours = from_steps(axis.low, axis.high, count);
-    if (!ours.empty() && !axis.logarithmic && (count < 2.0 || count != std::floor(count)) && axis.high < count)
-        throw refusal("--over", text, "the order is LOW:HIGH:COUNT, not LOW:STEP:HIGH",
-                      fmt::format("write --over {}={}", axis.name, ours));
     axis.count = whole_number("--over", text, parts[2], 2.0);
     return axis;
 }
@@ -301,7 +301,7 @@ void refuse_fixed(const SweepAxis& axis, const std::vector<std::string>& fixed) 
         });
         if (name != axis.name && !is_option) continue;
         const std::string given = is_option ? name : "--set " + name;
-        throw refusal("--over", axis.name, fmt::format("{} fixes the value of {}", given, axis.name),
+        throw refusal("--over", axis.name, fmt::format("it is both varied and fixed, by {}", given),
                       fmt::format("remove {} or --over {}", given, axis.name));
     }
 }

@@ -1,6 +1,7 @@
 #include "system/description.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -81,8 +82,18 @@ std::string why_not_settable(const SystemDescription& description, std::string_v
     for (const Option& option : all_options())
         if (name == option.key || name == option.command)
             return fmt::format("'{}' is an option of the run, {} on the command line", name, option.flag);
-    return fmt::format("'{}' is not a parameter, coordinate or rate of this system{}", shown(name),
-                       did_you_mean(name, settable_names(description)));
+    const std::vector<std::string> settable = settable_names(description);
+    std::string hint = did_you_mean(name, settable);
+    constexpr std::size_t few = 10;
+    if (hint.empty() && settable.size() <= few) hint = fmt::format("; these may be set: {}", fmt::join(settable, ", "));
+    if (has_word("e restitution eps epsilon cor", name) && !description.constraints.empty()) {
+        const std::string& e = description.constraints.front().restitution.text;
+        if (std::find(settable.begin(), settable.end(), e) != settable.end())
+            hint = fmt::format("; did you mean '{}'?", e);
+        else if (!has_names(e))
+            hint += "; to vary the restitution, write restitution = \"e\" and a parameter e in the file";
+    }
+    return fmt::format("'{}' is not a parameter, coordinate or rate of this system{}", shown(name), hint);
 }
 
 std::string rate_unit(const std::string& unit) { return unit.empty() ? unit : unit + "/s"; }
@@ -207,10 +218,9 @@ void assign(Run& run, const SystemDescription& description, std::string_view nam
     } catch (const ParseError& error) {
         const auto apart = measured(written);
         if (!apart) throw refuse(error.what(), error.hint);
-        const std::string unit = unit_of(description, name);
-        throw refuse("a value must be a number without a unit",
-                     fmt::format("write --set {}={}{}", name, apart->number,
-                                 unit.empty() ? "" : fmt::format(": it is in {}", unit)));
+        throw refuse(
+            "a value must be a number without a unit",
+            without_unit(*apart, name, unit_of(description, name), fmt::format("--set {}={}", name, apart->number)));
     }
     const bool is_parameter = std::any_of(description.parameters.begin(), description.parameters.end(),
                                           [&](const ParameterDescription& p) { return p.name == name; });

@@ -80,12 +80,7 @@ double Fields::number(std::string_view key, const TomlValue& value, std::string_
         try {
             return read_number(value.text.text, unit).value;
         } catch (const ParseError& error) {
-            if (const auto apart = measured(value.text.text))
-                throw Mistake{value.text.at, fmt::format("'{}' in {} must be a number without a unit", key, where_),
-                              fmt::format("write {} = {}{}", key, apart->number,
-                                          key == "value" || key == "start"
-                                              ? fmt::format(", and unit = \"{}\" on a separate line", apart->unit)
-                                              : "")};
+            if (const auto apart = measured(value.text.text)) throw has_unit(key, value, unit, *apart);
             throw Mistake{place_in(value.text, error.offset), fmt::format("'{}' in {}: {}", key, where_, error.what()),
                           error.hint};
         }
@@ -97,8 +92,8 @@ double Fields::number(std::string_view key, const TomlValue& value, std::string_
     return value.number;
 }
 
-double Fields::positive(std::string_view key) const {
-    const double x = number(key);
+double Fields::positive(std::string_view key, std::string_view unit) const {
+    const double x = number(key, unit);
     if (x > 0.0) return x;
     const TomlValue& value = need(key);
     throw Mistake{value.at, fmt::format("'{}' in {} must be positive, not {}", key, where_, value.text.text), {}};
@@ -163,6 +158,17 @@ std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 
         throw Mistake{value->at, fmt::format("'{}' in {} must be finite with low < high", key, where_), {}};
     }
     return range;
+}
+
+Mistake Fields::has_unit(std::string_view key, const TomlValue& value, std::string_view unit,
+                         const Measured& typed) const {
+    const bool is_in_list = &value != find(key), is_inline = value.at.line == table_.at.line;
+    const std::string right = is_in_list ? typed.number : fmt::format("{} = {}", key, typed.number);
+    std::string hint = without_unit(typed, key, unit, right);
+    if (unit.empty() && (key == "value" || key == "start"))
+        hint = fmt::format("write {}, {}unit = \"{}\"{}", right, is_inline ? "" : "and ", typed.unit,
+                           is_inline ? "" : " on a separate line");
+    return {value.text.at, fmt::format("'{}' in {} must be a number without a unit", key, where_), hint};
 }
 
 Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const {

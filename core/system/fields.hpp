@@ -9,6 +9,7 @@
 #include "system/description.hpp"
 #include "system/mistakes.hpp"
 #include "system/toml_tree.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -29,8 +30,8 @@ class Fields {
     Text string(std::string_view key) const;
     // Finite; a string is a constant expression, in which deg may stand where the unit is rad.
     double number(std::string_view key, std::string_view unit = {}) const;
-    double positive(std::string_view key) const;  // finite and > 0
-    Text expression(std::string_view key) const;  // a string or a finite number
+    double positive(std::string_view key, std::string_view unit = {}) const;  // finite and > 0
+    Text expression(std::string_view key) const;                              // a string or a finite number
     std::array<Text, 2> point(std::string_view key) const;
     // The same with a value for absence.
     Text expression_or_none(std::string_view key) const;  // an empty text
@@ -45,6 +46,7 @@ class Fields {
     double number(std::string_view key, const TomlValue& value, std::string_view unit) const;
 
     Mistake wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const;
+    Mistake has_unit(std::string_view key, const TomlValue& value, std::string_view unit, const Measured& typed) const;
 
     const TomlValue& table() const { return table_; }
     const std::string& where() const { return where_; }

@@ -22,7 +22,7 @@ constexpr Kind of_bytes[] = {
     {"\xff\xd8\xff", "a JPEG picture", start_from_new},
     {"GIF8", "a GIF picture", start_from_new},
     {"\x89HDF", "an HDF5 file", start_from_new},
-    {"PK\x03\x04", "a ZIP archive, as .slx and .xlsx files are", start_from_new},
+    {"PK\x03\x04", "a ZIP archive (a Simulink .slx is one), not a system file", start_from_new},
     {"\x1f\x8b", "a compressed file", "unpack it first: gunzip FILE"},
     {"\x7f"
      "ELF",

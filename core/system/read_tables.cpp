@@ -249,7 +249,8 @@ OptionValue read_option(const Option& option, const Fields& fields) {
                       fmt::format("unknown {} '{}'{}", option.key, shown(text.text), did_you_mean(text.text, names)),
                       fmt::format("known: {}", listed(names))};
     }
-    const double number = option.any_sign ? fields.number(option.key) : fields.positive(option.key);
+    const double number =
+        option.any_sign ? fields.number(option.key, option.unit) : fields.positive(option.key, option.unit);
     if (std::holds_alternative<double>(usual)) return number;
     const TomlValue& value = fields.need(option.key);
     if (!value.integer || number > INT_MAX)

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
 #include <tuple>
 
 #include <toml++/toml.h>
@@ -11,6 +14,7 @@
 #include "expression/parse.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -228,6 +232,36 @@ std::string right_brackets(const std::string& line) {
     return heading_of(line.substr(begin, std::min(line.find_first_of("] #", begin), line.size()) - begin));
 }
 
+// The entry of an inline table at this byte of a line, "value = 9,81"; the whole line where there is none.
+std::string entry_at(const std::string& line, std::size_t byte) {
+    std::size_t begin = 0, end = line.size();
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        if (line[i] == '"' || line[i] == '\'' || line[i] == '#') i = skip(line, i);
+        if (line[i] != '{' && line[i] != ',' && line[i] != '}') continue;
+        const std::size_t next = std::min(line.find_first_of("={},\"'#", i + 1), line.size());
+        const bool is_start =
+            next < line.size() && line[next] == '=' && is_name(trimmed(line.substr(i + 1, next - i - 1)));
+        if (is_start && i < byte) begin = i + 1;
+        if (i < byte || (!is_start && line[i] != '}')) continue;
+        end = i;
+        break;
+    }
+    if (begin == 0) return line;
+    const std::string entry = line.substr(begin, end - begin);
+    return std::count(entry.begin(), entry.end(), '"') % 2 == 0 ? entry : "";
+}
+
+// A comment of another language behind a value.
+bool has_other_comment(const std::string& value) {
+    for (std::size_t i = 0; i < value.size(); ++i) {
+        if (value[i] == '"' || value[i] == '\'') i = skip(value, i);
+        const std::string_view rest = std::string_view(value).substr(i);
+        if (i > 0 && ((rest.starts_with("//") && value[i - 1] == ' ') || (rest.starts_with("%") && rest.size() > 1)))
+            return true;
+    }
+    return false;
+}
+
 // What would be right in a line like gap = y - sin(x), or start = 0,4; "" where that is not what is wrong.
 std::string right_value(const std::string& line) {
     const std::size_t equals = line.find('=');
@@ -252,6 +286,7 @@ std::string right_value(const std::string& line) {
     const std::string key = trimmed(line.substr(0, equals)), rest = line.substr(equals + 1);
     const std::string value = trimmed(rest.substr(0, rest.find('#')));
     if (!is_name(key) || value.empty()) return "";
+    if (has_other_comment(value)) return "a comment begins with #";
     if (const std::string quotes = right_quotes(key, value); !quotes.empty()) return quotes;
     if (value.find('"') != std::string::npos) return "";
     if (value.find("''") != value.npos && value.find("\'\'\'") == value.npos)
@@ -280,12 +315,41 @@ std::string right_value(const std::string& line) {
                            value.find(',') < value.size() - 1 ? "write a decimal point" : "write the number alone", key,
                            number);
     }
+    if (const std::string percent = number_meant(trimmed(value.substr(0, value.size() - 1)));
+        value.ends_with('%') && !percent.empty())
+        return fmt::format("write {} = {}", key, std::strtod(percent.c_str(), nullptr) / 100.0);
     const std::size_t end = std::min(value.find(' '), value.size());
     const std::string number = value.substr(0, end), unit = trimmed(value.substr(end));
+    std::optional<Measured> apart = measured(value);
     if (!unit.empty() && number_meant(number) == number && !unit.starts_with("deg") &&
         std::isalpha(static_cast<unsigned char>(unit[0])) != 0)
-        return fmt::format("write the number alone, without its unit: {} = {}", key, number);
+        apart = {number, unit};
+    if (apart)
+        return fmt::format("write the number alone: {} = {} if the unit is {}, else convert it", key, apart->number,
+                           shown(apart->unit));
     return fmt::format("put it in quotes: {} = \"{}\"", key, shown(value));
+}
+
+// The same where a list lacks its closing bracket or a comma.
+std::string right_list(std::string_view message, const std::string& line, std::size_t byte) {
+    if (message.starts_with("encountered end-of-file"))
+        return "a list or a table in the file is not closed: ] or } is missing";
+    const auto begins_with_key = [](std::string entry) {
+        std::erase(entry, '.');
+        const std::size_t equals = entry.find('=');
+        return equals != entry.npos && is_name(trimmed(entry.substr(0, equals)));
+    };
+    const bool wants_comma = message.starts_with("expected comma or closing");
+    const std::string_view of_values[] = {"could not determine value type", "expected 'true'", "expected 'false'",
+                                          "expected 'inf'", "expected 'nan'"};
+    if (!wants_comma && std::none_of(std::begin(of_values), std::end(of_values),
+                                     [&](std::string_view one) { return message.starts_with(one); }))
+        return "";
+    const bool is_heading = line.starts_with('[') && "write " + trimmed(line) == right_brackets(line);
+    if (is_heading || (begins_with_key(line) && byte < line.find('=')))
+        return "the list above is not closed: ] is missing";
+    const std::string rest = line.substr(byte);
+    return wants_comma && (begins_with_key(rest) || rest.starts_with('{')) ? "a comma is missing here" : "";
 }
 
 // The same of a table that stands twice, or of which there may be several.
@@ -338,12 +402,17 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
             if (const auto colon = message.find(": "); colon != message.npos) message.remove_prefix(colon + 2);
         }
         const Location at = location(error.source().begin);
-        const std::string line = line_of(text, at.line), hint = right_heading(message, line);
+        const std::string line = line_of(text, at.line);
+        const std::size_t byte = byte_of_column(line, at.column);
+        std::string hint = right_heading(message, line);
+        if (hint.empty()) hint = right_list(message, line, byte);
+        if (hint.empty()) hint = right_value(entry_at(line, byte));
+        if (hint.empty() && message.find("escape sequence") != message.npos)
+            hint = "expressions are not LaTeX: write x' for \\dot{x}, (a)/(b) for \\frac{a}{b}, sin(x) for \\sin x";
         // A line break that it shows where it ends: "saw 't\n'".
         std::string plain(message);
         std::erase_if(plain, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
-        throw InputError(name, at, fmt::format("not valid TOML: {}", plain), hint.empty() ? right_value(line) : hint,
-                         line);
+        throw InputError(name, at, fmt::format("not valid TOML: {}", plain), hint, line);
     }
 }
 

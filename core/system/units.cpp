@@ -216,6 +216,18 @@ std::string unit_of_quotient(std::string_view above, std::string_view below) {
     return unit ? written(*unit) : "";
 }
 
+namespace {
+
+// m/s^2 for m/s².
+std::string with_plain_powers(std::string unit) {
+    for (const auto& [sign, right] : {std::pair{"\u00b2", "^2"}, std::pair{"\u00b3", "^3"}, std::pair{"\u00b7", "*"}})
+        for (std::size_t i = unit.find(sign); i != std::string::npos; i = unit.find(sign))
+            unit.replace(i, std::string_view(sign).size(), right);
+    return unit;
+}
+
+}  // namespace
+
 std::optional<Measured> measured(std::string_view text) {
     constexpr std::array<std::string_view, 36> words{
         "kg", "g", "mg", "t",  "m", "mm", "cm", "dm",  "km", "um",  "s",   "ms",  "us",   "min", "h",  "N",  "kN", "mN",
@@ -231,10 +243,7 @@ std::optional<Measured> measured(std::string_view text) {
     const auto [last, problem] = std::from_chars(first, plain.data() + plain.size(), value);
     if (problem != std::errc()) return std::nullopt;
     result.number.assign(first, last);
-    result.unit = plain.substr(static_cast<std::size_t>(last - plain.data()));
-    for (const auto& [sign, right] : {std::pair{"\u00b2", "^2"}, std::pair{"\u00b3", "^3"}, std::pair{"\u00b7", "*"}})
-        for (std::size_t i = result.unit.find(sign); i != std::string::npos; i = result.unit.find(sign))
-            result.unit.replace(i, std::string_view(sign).size(), right);
+    result.unit = with_plain_powers(plain.substr(static_cast<std::size_t>(last - plain.data())));
     result.unit.erase(0, std::min(result.unit.find_first_not_of(" \t*"), result.unit.size()));
     result.unit.erase(result.unit.find_last_not_of(" \t") + 1);
     const std::vector<std::string> names = names_in(result.unit);
@@ -246,6 +255,15 @@ std::optional<Measured> measured(std::string_view text) {
         std::string::npos;
     if (!is_unit || has_signs || !std::isalpha(static_cast<unsigned char>(result.unit[0]))) return std::nullopt;
     return result;
+}
+
+std::string without_unit(const Measured& typed, std::string_view name, std::string_view unit,
+                         const std::string& right) {
+    if (unit.empty()) return fmt::format("{} has no unit here: write the number alone", name);
+    const std::string own = with_plain_powers(std::string(unit));
+    const MaybeUnit known = read(typed.unit);
+    if (typed.unit == own || (known && known == read(own))) return "write " + right;
+    return fmt::format("{} is in {}: convert {} {} and write the number alone", name, unit, typed.number, typed.unit);
 }
 
 }  // namespace achilles

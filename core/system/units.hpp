@@ -27,4 +27,8 @@ struct Measured {
 };
 std::optional<Measured> measured(std::string_view text);
 
+// What to write in place of a number with a unit: `right`, the number alone, where `unit`, that of the quantity, is the typed
+// one. Else the number must be converted first: 200 g is not 200 kg.
+std::string without_unit(const Measured& typed, std::string_view name, std::string_view unit, const std::string& right);
+
 }  // namespace achilles

@@ -254,7 +254,7 @@ Markers marked(const Theme& theme, const char* label, Markers::Shape shape, doub
 std::vector<Happening> happenings(const Branch& branch, const Theme& theme) {
     using Shape = Markers::Shape;
     return {{&branch.folds, marked(theme, "fold", Shape::square, 7.0)},
-            {&branch.flips, marked(theme, "flip, \U0001D707 = \u22121", Shape::circle, 8.0)},
+            {&branch.flips, marked(theme, "period doubling, \U0001D707 = \u22121", Shape::circle, 8.0)},
             {&branch.circles, marked(theme, "|\U0001D707| = 1, complex", Shape::triangle, 9.0)},
             {&branch.lost, marked(theme, "Zeno point lost", Shape::diamond, 10.0)}};
 }

@@ -211,7 +211,7 @@ TEST(Cli, SimulateAnswersFirst) {
 TEST(Cli, SummaryNamesPhasesAndTheZenoPoint) {
     const Answer answer = Folder().run("simulate ball_on_sine --verbose");
     EXPECT_EQ(answer.status, 0);
-    for (const char* part : {"hybrid phase", "constrained phase", "zeno      t = 2.725142", "release"})
+    for (const char* part : {"\nin flight, t = 0 to ", "\nin contact, t = ", "zeno      t = 2.725142", "release"})
         EXPECT_NE(answer.out.find(part), std::string::npos) << part;
 }
 

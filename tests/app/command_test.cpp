@@ -205,6 +205,16 @@ TEST(Command, is_listed_once) {
     EXPECT_EQ(all.size(), 63u) << list;
 }
 
+TEST(Command, ListsAllWhereNoneIsNear) {
+    try {
+        parse_command("seekk 3");
+        ADD_FAILURE();
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.message, "there is no command 'seekk'; did you mean 'seek'?");
+        EXPECT_EQ(error.hint, "");
+    }
+}
+
 // Every option has a command of its own, or shares one; values that no run can have are refused when it is done.
 TEST(Command, sets_every_option) {
     for (const auto group : options_by_command()) {

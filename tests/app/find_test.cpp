@@ -256,7 +256,8 @@ TEST(Enlarged, goes_by_steps_and_back) {
     hands.press_with_control('=');
     EXPECT_EQ(record(hands), "") << "as large as it gets";
     hands.session.apply(parse_command("enlarge 3.5"));
-    EXPECT_NE(hands.session.error().find("0.5 to 3 times as large"), std::string::npos) << hands.session.error();
+    EXPECT_NE(hands.session.error().find("from 0.5 to 3 times the default"), std::string::npos)
+        << hands.session.error();
     EXPECT_EQ(hands.session.scene().enlarged(), 3.0);
 }
 

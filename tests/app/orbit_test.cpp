@@ -88,7 +88,7 @@ TEST(OrbitCommand, FollowsABranch) {
     ASSERT_EQ(branch["lost"].size(), 1u);
     EXPECT_NEAR(branch["lost"][0]["value"].get<double>(), 0.6632133961, 1e-8);
     const Answer text = Folder().run("orbit ball_down_a_wave --set e=0.3 --continue b=0.04:0.08 --verbose");
-    EXPECT_NE(text.out.find("flip (mu = -1)             b = 0.0666907604986"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("period doubling (mu = -1)  b = 0.0666907604986"), std::string::npos) << text.out;
 }
 
 TEST(OrbitCommand, RefusesWhatItCannotBeAsked) {
@@ -133,7 +133,8 @@ TEST(OrbitCommand, DrawsWhatIsMadeAgain) {
         EXPECT_NE(again.err.find("the same bytes"), std::string::npos) << again.err;
     }
     const std::string drawn = content(folder.path() / "branch.svg");
-    for (const char* words : {"flip", "not stable", "stable"}) EXPECT_NE(drawn.find(words), std::string::npos) << words;
+    for (const char* words : {"period doubling", "not stable", "stable"})
+        EXPECT_NE(drawn.find(words), std::string::npos) << words;
 }
 
 }  // namespace

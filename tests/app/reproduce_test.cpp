@@ -259,13 +259,13 @@ TEST(Reproduce, StrangersNotesChangeNothing) {
 TEST(Figure, RefusalsAreOneMessageAndLeaveNothing) {
     const Folder folder;
     const std::pair<std::string, std::string> cases[] = {
-        {"figure ball_on_sine --out a.jpg",
-         "--out a.jpg: this name does not give the format of the picture\nend it in .png, .svg or .pdf, or add "
-         "--format png, svg or pdf\n"},
+        {"figure ball_on_sine --out a.jpg", "--out a.jpg: the file name must end in .png, .svg or .pdf\n"},
+        {"figure ball_on_sine --out a",
+         "--out a: the file name must end in .png, .svg or .pdf\nor add --format png, svg or pdf\n"},
         {"figure ball_on_sine --out a.png --view heigt",
          "--view heigt: this system has no view 'heigt'; did you mean 'height'?\nits views are: horizontal, height, "
          "gap, path, horizontal rate, contact force\n"},
-        {"figure ball_on_sine --out none/a.png", "none/a.png: the file cannot be written: No such file or directory\n"},
+        {"figure ball_on_sine --out none/a.png", "none/a.png: there is no folder none\n"},
         {"figure ball_on_sine --out a.svg --columns 0",
          "--columns 0: the number of columns must be a whole number from 1 to 20\n"},
         {"figure ball_on_sine --out /dev/full --format svg",

@@ -121,7 +121,8 @@ TEST(SweepPicture, IsRefusedBeforeTheWork) {
     EXPECT_NE(refused("--over e=0:1:3 --print t --out a.txt").find("a.txt"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out -").find("needs a file"), std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --out a.png --out a.png").find("a.png"), std::string::npos);
-    EXPECT_NE(refused("--over e=0:1:20000000 --print t --out a.png").find("rows"), std::string::npos);
+    EXPECT_NE(refused("--over e=0:1:20000000 --print t --out a.png").find("runs are too many for a figure"),
+              std::string::npos);
     EXPECT_NE(refused("--over e=0:1:3 --print t --dark").find("--dark: this needs --out F"), std::string::npos);
     EXPECT_NE(refused("--print t").find("nothing is varied"), std::string::npos);
 }

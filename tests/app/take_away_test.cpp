@@ -164,7 +164,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
     EXPECT_EQ(test::content(in_folder("a.csv")).rfind("t,phase,", 0), 0U);
     EXPECT_EQ(test::content(in_folder("a.journal")), "open ball_on_sine\n");
     for (const auto& [name, says] : {std::pair{"a.bmp", "does not say what to export"},
-                                     {"no/folder/a.svg", "cannot be written"},
+                                     {"no/folder/a.svg", "there is no folder"},
                                      {"", "missing"},
                                      {"-", "missing"}}) {
         session.apply(command::Export{*name == '\0' || *name == '-' ? name : in_folder(name), false});
@@ -192,7 +192,8 @@ TEST(Export, takes_one_plot_alone) {
         session.apply(command::Export{(folder.path() / "two.svg").string(), false, count + 1});
         EXPECT_NE(session.error().find(fmt::format("there is no plot {}", count + 1)), std::string::npos);
         session.apply(command::Export{(folder.path() / "run.json").string(), false, 1});
-        EXPECT_NE(session.error().find("end the name in .svg, .png or .pdf"), std::string::npos) << session.error();
+        EXPECT_NE(session.error().find("end it in .png, .svg or .pdf"), std::string::npos)
+            << session.error();
         EXPECT_EQ(folder.files().size(), 2U);
     }
 }

@@ -121,7 +121,7 @@ def test_control_c_ends_it_within_a_chunk():
 @pytest.mark.parametrize("over, asked, words, told", [
     ({"ee": (0, 1, 5)}, "t", {}, "^over ee=0:1:5: 'ee' is not a parameter, coordinate or rate of this system; did you mean 'e'"),
     ({"e": (0, 1)}, "t", {}, "the number of values is missing"),
-    ({"e": (0, 1, 1)}, "t", {}, "a whole number from 2 on"),
+    ({"e": (0, 1, 1)}, "t", {}, "a whole number of at least 2"),
     ({"e": (0, 1, 5)}, "zeno_tim(2)", {}, "zeno_tim"),
     ({"e": (0, 1, 5)}, [], {}, "name at least one quantity to print"),
     ({}, "t", {}, "nothing is varied"),

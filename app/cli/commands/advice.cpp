@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iterator>
 #include <optional>
+#include <sstream>
 #include <string_view>
 
 #include "cli/assets.hpp"
@@ -54,7 +55,7 @@ constexpr OtherWords other_options[] = {
     {"json", "output"},
     {"csv", "o"},
     {"hdf5", "hdf h5"},
-    {"end", "t-end tend tmax t-max t-final tfinal tf t1 duration time t stop stop-time until tspan"},
+    {"end", "t-end tend tmax t-max t-final tfinal tf t1 duration time t stop stop-time until tspan t-span timespan"},
     {"start-time", "t0 tstart start t-start"},
     {"tolerance", "tol rtol atol reltol abstol accuracy precision"},
     {"method", "solver integrator scheme taylor dopri5 rk45 ode45"},
@@ -129,6 +130,20 @@ std::string with_value(const CLI::Option& option, const std::string& value) {
     std::string type = option.get_type_name();
     type = type.substr(0, type.find('|'));
     return fmt::format("{} {}", option.get_name(), value.empty() ? type : shell_word(value));
+}
+
+bool is_number(const std::string& word) {
+    return !word.empty() && word.find_first_not_of("+-.0123456789eE") == word.npos;
+}
+
+// "write --start-time 0 --end 5" for 0:5, [0, 5] or 0:0.01:5; "" for one value.
+std::string span_of(std::string value) {
+    for (char& c : value)
+        if (std::string_view("[](),:").find(c) != std::string_view::npos) c = ' ';
+    std::istringstream stream(value);
+    const Words times{std::istream_iterator<std::string>(stream), {}};
+    if (times.size() < 2) return "";
+    return fmt::format("write --start-time {} --end {}", shell_word(times.front()), shell_word(times.back()));
 }
 
 class CommandLine {
@@ -219,9 +234,11 @@ class CommandLine {
         const auto has = [&](const char* flag) { return option_of(*command_, flag) != nullptr; };
         const bool is_picture = !ending_of_picture(file).empty();
         if ((is_picture || ending == "mp4" || ending == "gif") && has("out")) return "write --out " + shell_word(file);
-        if (is_picture) return fmt::format("write achilles figure SYSTEM --out {}", shell_word(file));
+        const std::optional<SystemDescription> described = system();
+        const std::string typed = described ? shell_word(described->file) : "SYSTEM";
+        if (is_picture) return fmt::format("write achilles figure {} --out {}", typed, shell_word(file));
         if (ending == "mp4" || ending == "gif")
-            return fmt::format("write achilles frames SYSTEM --out {}", shell_word(file));
+            return fmt::format("write achilles frames {} --out {}", typed, shell_word(file));
         for (const auto& [known, flag] : {std::pair{"csv", "csv"}, std::pair{"json", "json"}, std::pair{"h5", "hdf5"},
                                           std::pair{"hdf5", "hdf5"}, std::pair{"journal", "journal"}})
             if (ending == known && has(flag)) return fmt::format("write --{} {}", flag, shell_word(file));
@@ -242,6 +259,8 @@ class CommandLine {
         for (const OtherWords& other : other_options) {
             const CLI::Option* meant = has_word(other.typed, option.name) ? option_of(*command_, other.known) : nullptr;
             if (meant == nullptr) continue;
+            if (const std::string both = option.name.ends_with("span") ? span_of(value) : ""; !both.empty())
+                return both;
             const bool is_word =
                 other.known == "method" || other.known == "conditions" || other.known == "simultaneous";
             const bool is_setting = other.known == "set" && value.find('=') == value.npos;
@@ -259,7 +278,9 @@ class CommandLine {
 
     InputError of_option(const std::string& word) const {
         TypedOption option(word);
-        const std::string value = option.value.empty() ? value_behind(word) : option.value;
+        std::string value = option.value.empty() ? value_behind(word) : option.value;
+        if (const std::string end = value_behind(value); option.name.ends_with("span") && is_number(end))
+            value += ":" + end;
         return message(name_.empty() ? fmt::format("there is no option {}", shown(option.typed))
                                      : fmt::format("{} has no option {}", name_, shown(option.typed)),
                        advice_for(option, value));

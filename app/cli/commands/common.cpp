@@ -160,7 +160,11 @@ void add_page_options(CLI::App& command, PaperSize& page) {
     const auto add = [&](const char* option, double& target, const char* type, const std::string& about) {
         command
             .add_option_function<std::string>(
-                option, [&target, option](const std::string& text) { target = number_from(option, text); }, about)
+                option,
+                [&target, option, unit = std::string_view(type) == "MM" ? "mm" : ""](const std::string& text) {
+                    target = number_from(option, text, unit);
+                },
+                about)
             ->type_name(type)
             ->group(paper_options);
     };

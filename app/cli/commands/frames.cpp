@@ -183,7 +183,7 @@ Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
 
 int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     job.check_size(arguments.size.width, arguments.size.height);
-    if (!job.reproduces()) check_frames_out(arguments.out);
+    if (!job.reproduces()) check_frames_out(arguments.out, arguments.system);
     const Scenario scenario = arguments.steps.empty() ? plain(arguments, job) : after_steps(arguments, job);
     const Trajectory& trajectory = scenario.trajectory;
     const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};

@@ -31,6 +31,10 @@ TEST(Claim, SaysWhichPartOfItIsImpossible) {
     EXPECT_EQ(refused(*model, claim), "");
     claim.parameters.back() = Interval(0.9, 1.1);
     EXPECT_NE(refused(*model, claim).find("in [0.9, 1.1]: the part above 1 is impossible"), std::string::npos);
+    claim.parameters.back() = Interval(0.5, 1.0 + 1e-6);  // more than rounding
+    EXPECT_NE(refused(*model, claim).find("the part above 1 is impossible"), std::string::npos);
+    claim.parameters.back() = Interval(0.5, 1.0 + 1e-15);
+    EXPECT_EQ(refused(*model, claim), "");
     claim.parameters.back() = Interval(0.5);
     claim.q[1] = Interval(-0.1, 0.1);
     EXPECT_NE(refused(*model, claim).find("negative in part of the initial box: h <= -0.1 at x = 0, y = -0.1"),

@@ -148,6 +148,11 @@ TEST_F(Expressions, ErrorsNameThePlaceAndTheLikelyWord) {
               "0: 'abs' is not allowed: it is not smooth, and the equations of motion need derivatives");
     EXPECT_EQ(error("sin x"), "0: the function 'sin' needs parentheses: sin(...)");
     EXPECT_EQ(error("sni(x)"), "0: unknown function 'sni'; did you mean 'sin'?");
+    EXPECT_EQ(
+        error("square(x)"),
+        "0: unknown function 'square'; the functions are sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, "
+        "exp, log");
+    EXPECT_EQ(error("x[1]"), "1: unexpected '['; coordinates have no index");
     EXPECT_EQ(error("ln(x)"), "0: unknown function 'ln'");
     EXPECT_EQ(error("x(2)"), "0: 'x' is not a function; write '*' for a product");
     EXPECT_EQ(error("x^y"), "1: the exponent of '^' must be a number, or its base a positive number");

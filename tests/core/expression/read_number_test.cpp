@@ -86,6 +86,7 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
     EXPECT_EQ(told("0x10"),
               "1 '0x10' is not a finite number: 'x10' may not follow a number: write numbers without units (a file has "
               "the key unit for that) and products with '*'");
+    EXPECT_EQ(told("1e"), "1 '1e' is not a finite number: write the exponent, as in 1e-3");
     for (const char* unit : {"", "m", "rad"})
         EXPECT_EQ(told("1.0 m/s^2", unit),
                   "4 '1.0 m/s^2' is not a finite number: 'm' may not follow a number: write numbers without units (a "

@@ -260,7 +260,7 @@ TEST_F(Outputs, TheSummarySpeaksOfEveryZenoPointAndOfWhatIsNotCovered) {
 
 TEST_F(Outputs, TheSummarySaysUnitsAndInWordsWhatIsBounded) {
     const std::string text = summary(simulate(model, with(Conditions::sharp)));
-    for (const char* words : {"hybrid phase, t = 0 to 2.72514216 s", "x = 4.6088", " m, y = -0.99",
+    for (const char* words : {"in flight, t = 0 to 2.72514216 s", "x = 4.6088", " m, y = -0.99",
                               "from the computed state at the cut: Zeno time tau_inf in [", "the Zeno point is within ",
                               " of the position at the cut, and its velocity within ",
                               "from the cut to tau_inf the computed position is within ", "gap speed 0.456469",

@@ -137,7 +137,7 @@ TEST(Remarks, ABoundAsLargeAsTheMotionAfterSeveralImpacts) {
     run.options.end_time = 0.1;
     const std::vector<Remark> large = remarks(simulate(floor, run));
     ASSERT_GE(large.size(), 1u);
-    EXPECT_NE(large[0].sentence.find("the bouncing was cut after "), std::string::npos) << large[0].sentence;
+    EXPECT_NE(large[0].sentence.find("the impact sequence was cut after "), std::string::npos) << large[0].sentence;
 }
 
 }  // namespace

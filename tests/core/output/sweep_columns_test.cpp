@@ -32,7 +32,8 @@ TEST(Library, SetsValuesByName) {
     assign(by_hand, model->description(), "x=-0.5");
     EXPECT_EQ(run, by_hand);
     EXPECT_EQ(run.get("x'"), 1.2);
-    EXPECT_EQ(told([&] { run.set("rr", 1.0); }), "'rr' is not a parameter, coordinate or rate of this system");
+    EXPECT_EQ(told([&] { run.set("rr", 1.0); }),
+              "'rr' is not a parameter, coordinate or rate of this system; these may be set: x, x', y, y', m, g, e");
     EXPECT_NE(told([&] { run.set("y''", 1.0); }).find("'y''' is not a parameter"), std::string::npos);
     EXPECT_NE(told([&] { run.get("ee"); }).find("did you mean 'e'?"), std::string::npos);
     EXPECT_EQ(run, by_hand);

@@ -129,7 +129,8 @@ TEST(Redundant, IsTold) {
     EXPECT_EQ(json["phases"][0]["not_unique"], true);
     EXPECT_EQ(json["phases"][0]["held"], (nlohmann::json{"c0", "c1", "c2"}));
     EXPECT_FALSE(json["phases"][1].contains("not_unique"));
-    EXPECT_NE(summary(trajectory).find("holding c0, c1, c2, t = 0 to 1.5 s, forces not unique\n"), std::string::npos)
+    EXPECT_NE(summary(trajectory).find("in contact with c0, c1, c2, t = 0 to 1.5 s, forces not unique\n"),
+              std::string::npos)
         << summary(trajectory);
 }
 

@@ -136,6 +136,24 @@ TEST(Branch, OfTheBallDownAWaveFlipsWhereItIsPinned) {
         EXPECT_LT(branch.value(branch.points[i - 1]), branch.value(branch.points[i]));
 }
 
+// x'' + c x' + x = F cos(om t) above a floor that it never reaches. The multipliers are exp((-c/2 +- i w) T) with
+// w^2 = 1 - c^2/4 and T = 2 pi/om: at c = 0 both are on the unit circle, at the angle T.
+TEST(Branch, OfADrivenOscillatorCrossesTheUnitCircleWithoutDamping) {
+    const auto model = typed(R"toml(
+title = "A driven oscillator above a floor"
+coordinate = [{name = "x", start = 0.5, force = "-c*x' - x + F*cos(om*t)"}]
+parameter = [{name = "c", value = 0.1, range = [-1, 1]}, {name = "F", value = 0.3}, {name = "om", value = 1.5}]
+lagrangian = {kinetic = "x'^2/2", potential = "0"}
+constraint = [{gap = "x + 5", restitution = 0.8}]
+)toml");
+    const Branch branch = followed(model, asked(*model, {}, "2*pi/om"), "c", -0.1, 0.2);
+    ASSERT_EQ(branch.circles.size(), 1u);
+    EXPECT_NEAR(branch.value(branch.circles[0]), 0.0, 1e-10);
+    EXPECT_NEAR(branch.circles[0].multipliers[0].real(), std::cos(2 * pi / 1.5), 1e-10);
+    EXPECT_NEAR(std::abs(branch.circles[0].multipliers[0].imag()), std::abs(std::sin(2 * pi / 1.5)), 1e-10);
+    EXPECT_TRUE(branch.folds.empty() && branch.flips.empty() && branch.lost.empty() && branch.changes.empty());
+}
+
 TEST(Branch, OfTheBallDownAWaveLosesItsZenoPointWhereItIsPinned) {
     const auto model = load("ball_down_a_wave");
     const Branch branch = followed(model, asked(*model, {}), "e", 0.4, 0.8);

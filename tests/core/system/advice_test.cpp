@@ -68,8 +68,7 @@ const Change with_advice[] = {
      "^\nwrite start = 1.0, and unit = \"m\" on a separate line"},
     {"start = 1\n", "start = 1 m\n",
      "f.toml:4:11: not valid TOML: expected a comment or whitespace, saw 'm'\n    start = 1 m\n              ^\nwrite "
-     "the "
-     "number alone, without its unit: start = 1"},
+     "the number alone: start = 1 if the unit is m, else convert it"},
     {"value = 2\n", "value = \"5 s\"\n",
      "f.toml:10:10: 'value' in [[parameter]] must be a number without a unit\n    value = \"5 s\"\n             "
      "^\nwrite value = 5, and unit = \"s\" on a separate line"},

@@ -350,7 +350,7 @@ INSTANTIATE_TEST_SUITE_P(Kinetic, Mistakes, testing::ValuesIn(in_kinetic));
 const Change in_start[] = {
     {"start = 1", "start = -1",
      "f.toml:18:8: the gap is negative at the start: h = -1\n    gap = \"x - sin(theta)/9\"\n           ^\nchoose a "
-     "start with h(q) >= 0"},
+     "start with h(q) >= 0, or reverse its sign: the gap is positive where the system is free"},
     {"value = 0.5", "value = 1.5",
      "f.toml:19:16: the restitution must lie in [0, 1], but it is 1.5\n    restitution = \"e\"\n                   "
      "^\n0 is plastic, 1 is elastic"},
