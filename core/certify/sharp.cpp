@@ -17,12 +17,6 @@ Interval rounded(double x, double size) {
     return Interval(x) + Interval(-radius, radius);
 }
 
-Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
-
-// A radius that holds what was needed, with room: a fifth, and something where nothing was needed. That something is
-// far from the denormal numbers, also where some of them are multiplied: these cost a hundred times as much as others.
-double inflated(double need) { return 1.2 * need + 0x1p-200; }
-
 // max |x| times a nonnegative factor, rounded up; infinity where there is no bound.
 double times(const Interval& x, const Interval& factor) {
     const double product = (Interval(mag(x)) * factor).hi();
