@@ -125,16 +125,15 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
     return best;
 }
 
-PairConditions::PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second,
-                               ContactSet held, ContactSet unpressed, const Ground&)
+PairConditions::PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
+                               std::size_t second, ContactSet held, ContactSet unpressed, const Ground&)
     : dof_(static_cast<std::size_t>(model.dof())),
       held_(held),
       unpressed_(unpressed),
       autonomous_(model.equations().autonomous),
       layout_(model.layout()),
       truncation_(run.options.truncation),
-      e_{model.evaluator<Interval>(model.restitution(first), run.parameters).output(0),
-         model.evaluator<Interval>(model.restitution(second), run.parameters).output(0)},
+      e_(e),
       programs_(&model.pair(first, second, held)),
       terms_(model.evaluator<Interval>(programs_->terms, run.parameters)),
       point_(model.evaluator(programs_->terms, run.parameters)),

@@ -27,14 +27,14 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 ContactSet unpressed, const Ground& ground)
+PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
+                                 ContactSet held, ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      e_(e),
       point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
       trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),

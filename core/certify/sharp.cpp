@@ -35,14 +35,14 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 ContactSet unpressed, const Ground& ground)
+SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
+                                 ContactSet held, ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      e_(e),
       hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
                    model.evaluator<Interval>(model.bouncing(contact, held).shadow, run.parameters),
                    model.bouncing(contact, held).variables),

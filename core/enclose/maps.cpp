@@ -75,10 +75,6 @@ class Programs {
         look(release_, z);
         return release_;
     }
-    Interval restitution() {
-        restitution_.run();
-        return restitution_.output(0).value;
-    }
 
  private:
     template <class Terms>
@@ -157,10 +153,6 @@ class MapsOver : public Maps {
         Normal result{terms.hddot().value, terms.jerk().value, Intervals(z_.size())};
         for (std::size_t j = 0; j < variables_.size(); ++j) result.slope[variables_[j]] = terms.hddot().slope[j];
         return result;
-    }
-    Interval restitution(const Intervals& box) override {
-        values_.numbers(box);
-        return values_.restitution();
     }
     Surface surface(const Intervals& box) override {
         const std::vector<Value> z = values_.numbers(box);
