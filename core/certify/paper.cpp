@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contacts/impact_law.hpp"
+
 namespace achilles {
 
 namespace {
@@ -151,13 +153,12 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
     rates_.input(sigma_) = speeds;
     if (!autonomous_) rates_.clock() = b.box.back();
     rates_.run();
-    std::vector<Interval> distance;
-    for (std::size_t i = 0; i < dof_; ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        const Interval s = Interval(collision.before.v[k]) - contact_.impulse_direction(i) * contact_.hdot();
-        distance.push_back(abs(s - Interval(collision.restart[k])) +
+    std::vector<Interval> s(collision.before.v.begin(), collision.before.v.end()), distance;
+    newton::move_along(
+        s.data(), dof_, [&](std::size_t i) { return contact_.impulse_direction(i); }, contact_.hdot());
+    for (std::size_t i = 0; i < dof_; ++i)
+        distance.push_back(abs(s[i] - Interval(collision.restart[static_cast<Eigen::Index>(i)])) +
                            Interval(mag(rates_.s_rate(i))) * Interval(wait.hi()));
-    }
     return norm(distance);
 }
 

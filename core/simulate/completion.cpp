@@ -112,7 +112,7 @@ std::optional<Certificate> Execution::prove(
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
     record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
-    const double hdot = -e * contact.hdot;
+    const double hdot = newton::rate_after(e, contact.hdot);
     next_.starts[which_] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
     const Vector v_before = next_.state.v;
     next_.state.v = v_after;
@@ -133,7 +133,7 @@ bool Execution::is_well_resolved(double speed) const {
 // line looks at the last step alone: with a very small e it may let one such flight through, which then ends here.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
-    const double u = e * collision.speed;
+    const double u = newton::rate_after(e, -collision.speed);
     const double a = -kinematics().normal_acceleration(collision.with(collision.tangential));
     if (!(a > 0.0)) return false;
     return u * u / (2.0 * a) < 4.0 * kinematics().gap_error(collision.before) ||

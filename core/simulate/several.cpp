@@ -122,10 +122,10 @@ Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange o
     if (!block) return own;
     const auto place = std::find(closed.which.begin(), closed.which.end(), which_) - closed.which.begin();
     const ContactVector<double> kappa = block->transmission(closed.W, place).kappa;
-    const double impulse = -(1.0 + e) * contact.hdot / contact.W;
+    const double impulse = newton::impulse(e, contact.hdot, contact.W);
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (next_.held.contains(closed.which[i]))
-            own.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
+            own.work += newton::work(kappa[static_cast<Eigen::Index>(i)] * impulse, closed.contacts[i].gap_t);
     return own;
 }
 
@@ -138,7 +138,7 @@ double Execution::plastic_work(const State& before, ContactSet contacts) {
     const ContactVector<double> p = block->solve(-closed.rates());
     double work = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        work -= p[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
+        work += newton::work(p[static_cast<Eigen::Index>(i)], closed.contacts[i].gap_t);
     return work;
 }
 
@@ -209,7 +209,7 @@ void Execution::collide(ContactSet landing) {
     }
     Exchange exchange{0.0, impact->loss};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        exchange.work -= impact->impulses[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
+        exchange.work += newton::work(impact->impulses[static_cast<Eigen::Index>(i)], closed.contacts[i].gap_t);
     double speed = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
