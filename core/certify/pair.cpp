@@ -4,14 +4,14 @@
 #include <cmath>
 #include <limits>
 
+#include "certify/range.hpp"
 #include "certify/truncation.hpp"
 
 namespace achilles {
 
 namespace {
 
-Interval ball(const Interval& x, double radius) { return x + Interval(-radius, radius); }
-double with_margin(double need) { return 1.5 * need + 0x1p-200; }
+constexpr double room = 1.5;  // in radii
 
 // x' W^-1 y of 2-vectors.
 Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
@@ -124,16 +124,15 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
     return best;
 }
 
-PairConditions::PairConditions(const Model& model, const Run& run, std::size_t first, std::size_t second,
-                               ContactSet held, ContactSet unpressed, const Ground&)
+PairConditions::PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
+                               std::size_t second, ContactSet held, ContactSet unpressed, const Ground&)
     : dof_(static_cast<std::size_t>(model.dof())),
       held_(held),
       unpressed_(unpressed),
       autonomous_(model.equations().autonomous),
       layout_(model.layout()),
       truncation_(run.options.truncation),
-      e_{model.evaluator<Interval>(model.restitution(first), run.parameters).output(0),
-         model.evaluator<Interval>(model.restitution(second), run.parameters).output(0)},
+      e_(e),
       programs_(&model.pair(first, second, held)),
       terms_(model.evaluator<Interval>(programs_->terms, run.parameters)),
       point_(model.evaluator(programs_->terms, run.parameters)),
@@ -188,7 +187,7 @@ std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision&
 // for. terms_ are those over the box.
 bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtCollision& pair) {
     bool inside = bound.T.hi() < box.duration && bound.m.hi() <= box.growth;
-    if (!(bound.T.hi() < box.duration)) box.duration = with_margin(bound.T.hi());
+    if (!(bound.T.hi() < box.duration)) box.duration = inflated(bound.T.hi(), room);
     if (!(bound.m.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bound.m.hi() - 1.0);
     const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -203,8 +202,8 @@ bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtColli
         const Interval &u = box.all[2 * dof_], &w = box.all[2 * dof_ + 1];
         F = F + terms_.D(0, i) * square(u) + terms_.D(1, i) * u * w + terms_.D(2, i) * square(w);
         const double q = (abs(rate) * bound.T + shift_q).hi(), v = (abs(F) * bound.T + shift_s).hi();
-        if (!(q < box.q_radius[i])) inside = false, box.q_radius[i] = with_margin(q);
-        if (!(v < box.s_radius[i])) inside = false, box.s_radius[i] = with_margin(v);
+        if (!(q < box.q_radius[i])) inside = false, box.q_radius[i] = inflated(q, room);
+        if (!(v < box.s_radius[i])) inside = false, box.s_radius[i] = inflated(v, room);
     }
     return inside;
 }
@@ -295,17 +294,17 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
     point_.run();
 
     Box box;
-    box.duration = with_margin(first->T.hi());
+    box.duration = inflated(first->T.hi(), room);
     box.growth = 1.0 + 2.0 * (first->m.hi() - 1.0) + 1e-6;
     const double ulp = 0x1p-52 * std::abs(tangential.t);
     box.t0 = Interval(tangential.t) + Interval(-4.0 * ulp, 4.0 * ulp);
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double q = tangential.q[i], v = std::abs(collision.before.v[i]) + std::abs(tangential.v[i]);
-        box.q0.push_back(ball(Interval(q), 0x1p-50 * std::abs(q)));
-        box.s0.push_back(ball(Interval(tangential.v[i]), 0x1p-50 * v));
-        box.q_radius.push_back(with_margin(std::abs(tangential.v[i]) * first->T.hi()));
-        box.s_radius.push_back(with_margin(std::abs(point_.A(k)) * first->T.hi()));
+        box.q0.push_back(widened(Interval(q), 0x1p-50 * std::abs(q)));
+        box.s0.push_back(widened(Interval(tangential.v[i]), 0x1p-50 * v));
+        box.q_radius.push_back(inflated(std::abs(tangential.v[i]) * first->T.hi(), room));
+        box.s_radius.push_back(inflated(std::abs(point_.A(k)) * first->T.hi(), room));
     }
     for (int round = 0; round < 40; ++round) {
         box.all.clear();

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "contacts/impact_law.hpp"
+
 namespace achilles {
 
 namespace {
@@ -27,14 +29,14 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 ContactSet unpressed, const Ground& ground)
+PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
+                                 ContactSet held, ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      e_(e),
       point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
       trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
@@ -151,13 +153,12 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
     rates_.input(sigma_) = speeds;
     if (!autonomous_) rates_.clock() = b.box.back();
     rates_.run();
-    std::vector<Interval> distance;
-    for (std::size_t i = 0; i < dof_; ++i) {
-        const auto k = static_cast<Eigen::Index>(i);
-        const Interval s = Interval(collision.before.v[k]) - contact_.impulse_direction(i) * contact_.hdot();
-        distance.push_back(abs(s - Interval(collision.restart[k])) +
+    std::vector<Interval> s(collision.before.v.begin(), collision.before.v.end()), distance;
+    newton::move_along(
+        s.data(), dof_, [&](std::size_t i) { return contact_.impulse_direction(i); }, contact_.hdot());
+    for (std::size_t i = 0; i < dof_; ++i)
+        distance.push_back(abs(s[i] - Interval(collision.restart[static_cast<Eigen::Index>(i)])) +
                            Interval(mag(rates_.s_rate(i))) * Interval(wait.hi()));
-    }
     return norm(distance);
 }
 

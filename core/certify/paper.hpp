@@ -31,8 +31,8 @@ namespace achilles {
 
 class PaperConditions : public TruncationConditions {
  public:
-    PaperConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed,
-                    const Ground& ground);
+    PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+                    ContactSet unpressed, const Ground& ground);
 
     bool fails_at_point(const Collision& collision) override;
     void restart(const Interval& e) override { e_ = e; }

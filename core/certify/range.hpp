@@ -39,4 +39,11 @@ class Range {
     Interval at_centre_;                                     // the value there
 };
 
+// x and what lies within this radius of it.
+inline Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
+
+// A radius that holds what was needed, with room, and something where nothing was needed. That something is far from the
+// denormal numbers, also where some of them are multiplied: these cost a hundred times as much as others.
+inline double inflated(double need, double room = 1.2) { return room * need + 0x1p-200; }
+
 }  // namespace achilles

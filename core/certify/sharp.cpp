@@ -17,12 +17,6 @@ Interval rounded(double x, double size) {
     return Interval(x) + Interval(-radius, radius);
 }
 
-Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
-
-// A radius that holds what was needed, with room: a fifth, and something where nothing was needed. That something is
-// far from the denormal numbers, also where some of them are multiplied: these cost a hundred times as much as others.
-double inflated(double need) { return 1.2 * need + 0x1p-200; }
-
 // max |x| times a nonnegative factor, rounded up; infinity where there is no bound.
 double times(const Interval& x, const Interval& factor) {
     const double product = (Interval(mag(x)) * factor).hi();
@@ -41,14 +35,14 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held,
-                                 ContactSet unpressed, const Ground& ground)
+SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
+                                 ContactSet held, ContactSet unpressed, const Ground& ground)
     : TruncationConditions(ground),
       dof_(static_cast<std::size_t>(model.dof())),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       truncation_(run.options.truncation),
-      e_(model.evaluator<Interval>(model.restitution(contact), run.parameters).output(0)),
+      e_(e),
       hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
                    model.evaluator<Interval>(model.bouncing(contact, held).shadow, run.parameters),
                    model.bouncing(contact, held).variables),

@@ -41,8 +41,8 @@ namespace achilles {
 
 class SharpConditions : public TruncationConditions {
  public:
-    SharpConditions(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed,
-                    const Ground& ground);
+    SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+                    ContactSet unpressed, const Ground& ground);
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;
     void restart(const Interval& e) override {

@@ -64,12 +64,19 @@ Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval
     return centre + Interval(-off.hi(), off.hi());
 }
 
-std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
-                                                            ContactSet held, ContactSet unpressed) {
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
+                                                            std::size_t contact, ContactSet held,
+                                                            ContactSet unpressed) {
     const Ground ground;
     if (run.options.truncation.conditions == Conditions::paper)
-        return std::make_unique<PaperConditions>(model, run, contact, held, unpressed, ground);
-    return std::make_unique<SharpConditions>(model, run, contact, held, unpressed, ground);
+        return std::make_unique<PaperConditions>(model, run, e, contact, held, unpressed, ground);
+    return std::make_unique<SharpConditions>(model, run, e, contact, held, unpressed, ground);
+}
+
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
+                                                            ContactSet held, ContactSet unpressed) {
+    return truncation_conditions(model, run, model.restitutions(run.parameters)[contact].enclosure, contact, held,
+                                 unpressed);
 }
 
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "contacts/complementarity.hpp"
+#include "contacts/impact_law.hpp"
 
 namespace achilles {
 
@@ -25,12 +26,12 @@ Index lonely_landing(const Vector& hdot, ContactSet colliding) {
 }
 
 // The impulses where contact i lands and all others stay, if they do.
-std::optional<Vector> passed_on(const Matrix& W, double impact, Index i, ContactSet others) {
+std::optional<Vector> passed_on(const Matrix& W, double e, double hdot, Index i, ContactSet others) {
     const auto block = HeldBlock<double>::of(W, others);
     if (!block) return std::nullopt;
     const auto [kappa, W_i] = block->transmission(W, i);
     if (!(W_i > HeldBlock<double>::clear * W(i, i)) || !(kappa.minCoeff() >= 0.0)) return std::nullopt;
-    const double p = impact / W_i;
+    const double p = newton::impulse(e, hdot, W_i);
     if (!std::isfinite(p)) return std::nullopt;
     Vector impulses = p * kappa;
     impulses[i] = p;
@@ -65,7 +66,7 @@ std::optional<Complementarity> solve_among(const Matrix& W, const Vector& b, Con
 std::optional<Complementarity> solve_impact(const Matrix& W, const Vector& hdot, const Vector& e,
                                             ContactSet colliding) {
     if (const Index i = lonely_landing(hdot, colliding); i >= 0)
-        if (const auto p = passed_on(W, -(1.0 + e[i]) * hdot[i], i, without(colliding, i)))
+        if (const auto p = passed_on(W, e[i], hdot[i], i, without(colliding, i)))
             return Complementarity{*p, Vector::Zero(hdot.size()), {}, true};
     return solve_among(W, hdot + e.cwiseProduct(hdot), colliding);
 }
@@ -89,7 +90,7 @@ std::optional<MoreauImpact> moreau_impact(const Matrix& W, const Vector& hdot_be
         impact.hdot_after[j] = hdot[j] == 0.0 ? y : y - e[j] * hdot[j];
         if (solution->p[j] > 0.0) impact.active = with(impact.active, j);
         if (contains(held, j) && y > 0.0) impact.opened = with(impact.opened, j);
-        impact.loss -= 0.5 * solution->p[j] * (1.0 - e[j]) * hdot[j];
+        impact.loss += newton::loss(solution->p[j], e[j], hdot[j]);
     }
     return impact;
 }

@@ -106,7 +106,6 @@ class Chain {
     Link& cross(std::size_t event, Eigen::RowVectorXd G, double residual);
     void meet_surface(std::size_t contact, ContactSet others, Link& crossing);
     double residual_before(std::size_t contact);
-    void take_out_rate(RowMatrix& J, ContactGradient& surface, double times, double u, const Eigen::RowVectorXd& du);
     void retract(RowMatrix& J, ContactSet onto);
     Eigen::RowVectorXd wait_row(const RowMatrix& J, std::size_t contact, ContactSet others, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;

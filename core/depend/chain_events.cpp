@@ -11,6 +11,30 @@ namespace achilles {
 
 using Eigen::RowVectorXd, Eigen::VectorXd;
 
+namespace {
+
+// A number with its derivatives by the components of a change, for the impact law over it.
+struct Changing {
+    double value;
+    RowVectorXd row;
+};
+Changing operator+(double a, const Changing& b) { return {a + b.value, b.row}; }
+Changing operator-(const Changing& a) { return {-a.value, -a.row}; }
+Changing operator*(const Changing& a, const Changing& b) {
+    return {a.value * b.value, b.value * a.row + a.value * b.row};
+}
+
+// v -= n rate over changes: J is what the components are of those before. n does not depend on v.
+void take_out(const Changing& rate, const ContactGradient& surface, const Tangent& tangent, RowMatrix& J) {
+    for (std::size_t k = 0; k < tangent.dof; ++k) {
+        RowVectorXd change = (rate.value * surface.n_row(k)).lazyProduct(J);
+        change += surface.n(k) * rate.row;
+        J.row(tangent.v(k)) -= change;
+    }
+}
+
+}  // namespace
+
 void Chain::happen(std::size_t event) {
     const Event& now = trajectory_->events[event];
     state_ = {now.q, now.v_before, now.t};
@@ -30,16 +54,6 @@ Link& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
     link.G = std::move(G);
     link.residual = residual;
     return link;
-}
-
-// v -= times u n over changes: J is what the components are of those before; du the row of u, de that of `times`. n does not
-// depend on v.
-void Chain::take_out_rate(RowMatrix& J, ContactGradient& surface, double times, double u, const RowVectorXd& du) {
-    for (std::size_t k = 0; k < tangent_.dof; ++k) {
-        RowVectorXd change = (times * u * surface.n_row(k)).lazyProduct(J);
-        change += surface.n(k) * du;
-        J.row(tangent_.v(k)) -= change;
-    }
 }
 
 void Chain::land(std::size_t event) {
@@ -89,12 +103,13 @@ void Chain::land(std::size_t event) {
             std::make_unique<Gradient>(*model_, model_->restitution(i), tangent_, trajectory_->run.parameters);
         restitution->at(state_);
     }
-    const double e = restitution->value(0), u = u_[i];
+    const double u = u_[i];
     const auto hddot_at = [&](const Vector& v) {
         return surfaces_.of(i, others).normal_acceleration({state_.q, v, state_.t});
     };
     Vector s = state_.v;
-    for (std::size_t k = 0; k < tangent_.dof; ++k) s[static_cast<Eigen::Index>(k)] -= u * contact.n(k);
+    newton::move_along(
+        s.data(), tangent_.dof, [&](std::size_t k) { return contact.n(k); }, u);
     if (hddot_at(s) > 0.0) take_least(margins_.grazing_speed, -u);
 
     Link& link = add(Link::Kind::jump, event);
@@ -102,22 +117,22 @@ void Chain::land(std::size_t event) {
     // Back onto the surface, which the components of q and v leave by what steps leave out.
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * contact.h_row();
     J.row(tangent_.h(i)).setZero();
-    const RowVectorXd du = J.row(tangent_.u(i)), de = restitution->row(0);  // e is of parameters alone
+    const Changing before{u, J.row(tangent_.u(i))}, e{surfaces_.restitution(i).value, restitution->row(0)};
     const bool completes = joins.contains(i);
     const bool rests = completes || now.held.contains(i);
     if (completes) {
-        RowMatrix newton = J;
-        take_out_rate(newton, contact, 1.0 + e, u, (1.0 + e) * du + u * de);
-        link.completion = Link::Completion{i, others, -u, std::move(newton)};
-        take_out_rate(J, contact, 1.0, u, du);
+        RowMatrix drawn = J;
+        take_out(newton::removed_rate(e, before), contact, tangent_, drawn);
+        link.completion = Link::Completion{i, others, -u, std::move(drawn)};
+        take_out(before, contact, tangent_, J);
         state_.v = s;
         J.row(tangent_.wait()) = wait_row(J, i, others, -u);
         retract(J, others.with(i));
         waiting_ = true;
     } else {
-        take_out_rate(J, contact, 1.0 + e, u, (1.0 + e) * du + u * de);
+        take_out(newton::removed_rate(e, before), contact, tangent_, J);
         state_.v = now.v_after;
-        J.row(tangent_.u(i)) = -e * du - u * de;
+        J.row(tangent_.u(i)) = newton::rate_after(e, before).row;
         retract(J, rests ? others.with(i) : others);
     }
     held_ = completes ? others.with(i) : now.held;
@@ -133,7 +148,7 @@ void Chain::land(std::size_t event) {
     set_gaps();
     if (!rests) {
         h_[i] = 0.0;
-        u_[i] = -e * u;
+        u_[i] = newton::rate_after(e, before).value;
     }
 }
 
@@ -162,15 +177,16 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet 
         trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,
                                            trajectory_->run.parameters);
     trend->at(state_);
-    const Gradient& e = *restitutions_[contact];
-    if (e.value(0) == 0.0 && e.row(0).isZero(0.0)) return RowVectorXd::Zero(J.cols());  // it ends at the impact
-    if (e.value(0) == 0.0 && model_->is_carried(contact, others))
+    const double e = surfaces_.restitution(contact).value;
+    const auto e_row = restitutions_[contact]->row(0);
+    if (e == 0.0 && e_row.isZero(0.0)) return RowVectorXd::Zero(J.cols());  // it ends at the impact
+    if (e == 0.0 && model_->is_carried(contact, others))
         break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
     using Number = Jet<double, 5>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
-    const Number wait = estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e.value(0), 3),
-                                       Number::variable(speed, 4));
-    RowVectorXd row = wait.slope[3] * (e.row(0) * J);
+    const Number wait =
+        estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e, 3), Number::variable(speed, 4));
+    RowVectorXd row = wait.slope[3] * (e_row * J);
     for (std::size_t k = 0; k < 3; ++k) row -= wait.slope[k] * (trend->row(k) * J);
     return row - wait.slope[4] * J.row(tangent_.u(contact));
 }

@@ -30,7 +30,8 @@ Trend CompletionError::trend(const Cut& cut) {
 }
 
 State CompletionError::shift(const Cut& cut) {
-    if (model_->restitution(run_.parameters, cut.contact) == 0.0)  // no flight follows
+    const double e = surfaces_.restitution(cut.contact).value, u = newton::rate_after(e, -cut.speed);
+    if (e == 0.0)  // no flight follows
         return {Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
     const Bouncing& bouncing = model_->bouncing(cut.contact, cut.others);
     auto known = shadows_.find({cut.others, cut.contact});
@@ -44,8 +45,7 @@ State CompletionError::shift(const Cut& cut) {
     const auto n = static_cast<std::size_t>(model_->dof());
     const ShadowTerms<Behind> terms({&evaluator, bouncing.variables.size()}, n);
 
-    const double a = trend(cut).a, e = model_->restitution(run_.parameters, cut.contact);
-    const double u = e * cut.speed, I = 2.0 * u * u * u / (3.0 * a * a * (1.0 - e * e * e)), J = a * I;
+    const double a = trend(cut).a, I = 2.0 * u * u * u / (3.0 * a * a * (1.0 - e * e * e)), J = a * I;
     State shift{Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
     for (std::size_t i = 0; i < n; ++i) {
         double drift = -terms.Bdot(i);
@@ -58,7 +58,7 @@ State CompletionError::shift(const Cut& cut) {
 }
 
 CompletionError::Wait CompletionError::wait(const Cut& cut) {
-    const double e = model_->restitution(run_.parameters, cut.contact), u = e * cut.speed;
+    const double e = surfaces_.restitution(cut.contact).value, u = newton::rate_after(e, -cut.speed);
     if (u == 0.0) return {0.0, 0.0};
     const Trend at_cut = trend(cut);
     Wait wait{estimated_wait(at_cut, e, cut.speed), 0.0};
@@ -89,7 +89,7 @@ CompletionError::Wait CompletionError::wait(const Cut& cut) {
     }
     state.t += span;
     const Contact landed = surfaces_.of(cut.contact, cut.others).at(state);
-    state.v -= landed.hdot * landed.impulse_direction;
+    state.v = impact(landed, state.v, 0.0);
     const double speed = -landed.hdot, kept = speed / cut.speed;
     const Trend next = trend({cut.contact, cut.others, state, speed});
     const double error = (span + estimated_wait(next, e, speed) - wait.formula) / (1.0 - kept * kept * kept);

@@ -121,14 +121,6 @@ Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, P
         }
     Enclosure result;
     try {
-        for (std::size_t i = 0; i < z.contacts; ++i) {
-            const auto e = make_maps(*model, z, i)->restitution(start);
-            if (!(e.lo() >= -0x1p-50 && e.hi() <= 1.0 + 0x1p-50))
-                throw InputError(
-                    model->description().file, model->description().constraints[i].restitution.at,
-                    fmt::format("the restitution must lie in [0, 1], but it may be in [{}, {}]", e.lo(), e.hi()),
-                    "0 is plastic, 1 is elastic");
-        }
         result = Prover(*model, claim, z, start, watch, ground).run();
     } catch (const Undecided& doubt) {
         throw refusal(*model, doubt.reason);

@@ -166,25 +166,28 @@ Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim&
     return result;
 }
 
+Interval restitution_over(const Model& model, const Claim& claim, std::size_t contact) {
+    const Interval e = model.restitution(claim.parameters, contact);
+    const SystemDescription& description = model.description();
+    if (const auto mistake = mistake_in(description.constraints[contact].restitution, e))
+        throw description.error(mistake->at, mistake->message, mistake->hint);
+    return e;
+}
+
 void check(const Model& model, const Claim& claim) {
     const Ground ground;
     const SystemDescription& description = model.description();
     std::vector<InputError> told;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];
-        Evaluator<Interval> e(model.restitution(contact)), gap(model.gap(contact));
+        try {
+            restitution_over(model, claim, contact);
+        } catch (const InputError& mistake) {
+            told.push_back(mistake);
+        }
+        Evaluator<Interval> gap(model.gap(contact));
         for (std::size_t i = 0; i < claim.parameters.size(); ++i)
-            e.input(model.layout().parameter(i)) = gap.input(model.layout().parameter(i)) = claim.parameters[i];
-        e.fix();
-        e.run();
-        const Interval bound = e.output(0);
-        if (bound.hi() > 1.0 + 0x1p-40 || bound.lo() < -0x1p-40)
-            told.push_back(
-                description.error(constraint.restitution.at,
-                                  fmt::format("the restitution must lie in [0, 1], but with these intervals it lies in "
-                                              "[{}, {}]: the part {} is impossible",
-                                              bound.lo(), bound.hi(), bound.hi() > 1.0 ? "above 1" : "below 0"),
-                                  "0 is plastic, 1 is elastic"));
+            gap.input(model.layout().parameter(i)) = claim.parameters[i];
         // At the corners: one that is below the surface by all parameters is no start.
         gap.fix();
         gap.clock() = Interval(claim.run.options.start_time);

@@ -10,10 +10,6 @@ namespace achilles {
 
 namespace {
 
-double inflated(double need) { return 1.2 * need + 0x1p-200; }
-
-Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
-
 // A program with the parameters' intervals, or their middles.
 template <class Scalar>
 Evaluator<Scalar> with_parameters(const Program& program, const Layout& layout, const Intervals& parameters) {

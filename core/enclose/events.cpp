@@ -70,7 +70,7 @@ void Prover::land(std::size_t contact, const Interval& time) {
         throw Undecided{"graze: the impact speed is not bounded away from zero over the set"};
     project(contact);
     const Intervals v_before = velocities(set_.hull());
-    const Interval e = maps(contact).restitution(set_.hull());
+    const Interval& e = restitutions_[contact];
     const ContactSet opened = opened_by(contact);
     if (!opened.empty()) {
         hold(held_.without(opened));

@@ -1,5 +1,6 @@
 #include "enclose/maps.hpp"
 
+#include "contacts/impact_law.hpp"
 #include "number/jet.hpp"
 
 namespace achilles {
@@ -53,8 +54,8 @@ class Programs {
         look(terms_, z);
         restitution_.run();
         const Number e = restitution_.output(0);
-        strike(z, (Number(1.0) + e) * z[u_]);
-        z[u_] = -(e * z[u_]);
+        strike(z, newton::removed_rate(e, z[u_]));
+        z[u_] = newton::rate_after(e, z[u_]);
     }
     void retract(std::vector<Number>& z) {
         look(terms_, z);
@@ -75,10 +76,6 @@ class Programs {
         look(release_, z);
         return release_;
     }
-    Interval restitution() {
-        restitution_.run();
-        return restitution_.output(0).value;
-    }
 
  private:
     template <class Terms>
@@ -89,12 +86,14 @@ class Programs {
     }
     // q -= n times that much, and the terms are those there.
     void shift(std::vector<Number>& z, const Number& h) {
-        for (std::size_t i = 0; i < z_.dof; ++i) z[z_.q(i)] = z[z_.q(i)] - terms_.impulse_direction(i) * h;
+        move_along(z[z_.q(0)], h);
         look(terms_, z);
     }
     // v -= n times that much.
-    void push(std::vector<Number>& z, const Number& rate) {
-        for (std::size_t i = 0; i < z_.dof; ++i) z[z_.v(i)] = z[z_.v(i)] - terms_.impulse_direction(i) * rate;
+    void push(std::vector<Number>& z, const Number& rate) { move_along(z[z_.v(0)], rate); }
+    void move_along(Number& first, const Number& amount) {
+        newton::move_along(
+            &first, z_.dof, [&](std::size_t i) -> const Number& { return terms_.impulse_direction(i); }, amount);
     }
 
     // v -= n times that much, and what that does to the rates of the other open gaps.
@@ -157,10 +156,6 @@ class MapsOver : public Maps {
         Normal result{terms.hddot().value, terms.jerk().value, Intervals(z_.size())};
         for (std::size_t j = 0; j < variables_.size(); ++j) result.slope[variables_[j]] = terms.hddot().slope[j];
         return result;
-    }
-    Interval restitution(const Intervals& box) override {
-        values_.numbers(box);
-        return values_.restitution();
     }
     Surface surface(const Intervals& box) override {
         const std::vector<Value> z = values_.numbers(box);

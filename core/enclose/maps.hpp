@@ -24,13 +24,12 @@ class Maps {
     // The same for members with h = hdot = 0, whatever u is: q -= n h(q), v -= n hdot(q, v).
     virtual void retract(Doubleton& set) = 0;
 
-    // Over a box of all coordinates: hddot and its derivatives by them; h''' along the constrained motion; e.
+    // Over a box of all coordinates: hddot and its derivatives by them; h''' along the constrained motion.
     struct Normal {
         Interval hddot, jerk;
         Intervals slope;
     };
     virtual Normal normal(const Intervals& box) = 0;
-    virtual Interval restitution(const Intervals& box) = 0;
     struct Surface {
         Interval h, hdot;
         Intervals n, gradient;

@@ -17,6 +17,7 @@ Prover::Prover(const Model& model, const Claim& claim, const Coordinates& coordi
       openings_(coordinates.contacts),
       bounces_(coordinates.contacts),
       proved_until_(claim.run.options.start_time) {
+    for (std::size_t i = 0; i < z_.contacts; ++i) restitutions_.push_back(restitution_over(model, claim, i));
     for (const double time : claim.times) asked_.push_back({time, {}, false});
     asked_.push_back({claim.run.options.end_time, {}, false});
 }

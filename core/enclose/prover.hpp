@@ -78,6 +78,7 @@ class Prover {
     Coordinates z_;
     ProofWatch* watch_;
     using OfContact = std::pair<ContactSet, std::size_t>;
+    Intervals restitutions_;  // of each contact, over the claim
     std::map<ContactSet, std::unique_ptr<Stepper>> motions_;
     std::map<OfContact, std::unique_ptr<Maps>> maps_;
     std::map<std::pair<ContactSet, OfContact>, std::unique_ptr<Completion>> completions_;  // by the unpressed ones

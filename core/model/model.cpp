@@ -8,6 +8,7 @@
 #include "model/scopes.hpp"
 #include "model/unpressed.hpp"
 #include "number/ground.hpp"
+#include "number/jet.hpp"
 #include "system/mistakes.hpp"
 
 namespace achilles {
@@ -45,6 +46,32 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
         // It stands in no file: it is shown itself.
         throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), error.hint, text.text);
     }
+}
+
+namespace {
+
+// Over jets without directions, for their products by an exact 0: e = 0 may be one.
+template <class Number>
+Interval enclosed(const Program& restitution, const Layout& layout, std::span<const Number> parameters) {
+    Evaluator<Jet<Interval, 0>> e(restitution);
+    for (std::size_t i = 0; i < parameters.size(); ++i) e.input(layout.parameter(i)) = parameters[i];
+    e.fix();
+    return e.output(0).value;
+}
+
+}  // namespace
+
+Interval Model::restitution(std::span<const Interval> parameters, std::size_t contact) const {
+    const Ground ground;
+    return enclosed(restitutions_[contact], layout_, parameters);
+}
+
+std::vector<Restitution> Model::restitutions(std::span<const double> parameters) const {
+    const Ground ground;
+    std::vector<Restitution> result(contacts());
+    for (std::size_t i = 0; i < contacts(); ++i)
+        result[i] = {restitution(parameters, i), enclosed(restitutions_[i], layout_, parameters)};
+    return result;
 }
 
 void Model::compile() {

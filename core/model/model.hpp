@@ -23,6 +23,7 @@
 #include "model/edges.hpp"
 #include "model/motion.hpp"
 #include "model/pair.hpp"
+#include "model/restitution.hpp"
 #include "model/scopes.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
@@ -70,10 +71,13 @@ class Model {
     const Program& normal_acceleration() const { return programs_of(0).normal_acceleration; }
     const Program& force() const { return programs_of(0).force; }
     const Program& restitution(std::size_t contact = 0) const { return restitutions_[contact]; }
-    // Its value at these parameters.
+    // Its value at these parameters, without what rounding has taken out of [0, 1]; its enclosure over these.
     double restitution(std::span<const double> parameters, std::size_t contact) const {
-        return evaluator(restitutions_[contact], parameters).output(0);
+        return without_rounding(evaluator(restitutions_[contact], parameters).output(0));
     }
+    Interval restitution(std::span<const Interval> parameters, std::size_t contact) const;
+    // Both, of every contact of a run: whoever asks for one after the other keeps these.
+    std::vector<Restitution> restitutions(std::span<const double> parameters) const;
     const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
@@ -151,7 +155,6 @@ class Model {
     template <class Map, class Make>
     const auto& derived(Map& map, const typename Map::key_type& key, const Make& make) const;
     // Throw Mistake.
-    void check_restitution(const Run& run, std::size_t contact) const;
     void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
     void check_gap(const Run& run, std::size_t contact) const;
     void check_mass(const StartTerms<Evaluator<double>>& start) const;

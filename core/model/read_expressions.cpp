@@ -8,6 +8,7 @@
 #include "expression/graph.hpp"
 #include "expression/read_number.hpp"
 #include "model/rate_polynomial.hpp"
+#include "model/restitution.hpp"
 #include "model/scopes.hpp"
 #include "program/program.hpp"
 #include "system/input_error.hpp"
@@ -201,15 +202,6 @@ void read_forces(const SystemDescription& system, const Layout& layout, Reader& 
     });
 }
 
-// A restitution that no parameter changes. One that parameters change is looked at when a run starts.
-void check_restitution(const Text& text, Expression restitution) {
-    if (!is_constant(restitution)) return;
-    const double e = value_of_constant(restitution);
-    if (!(e >= 0.0 && e <= 1.0))
-        throw Mistake{text.at, fmt::format("the restitution must lie in [0, 1], but it is {}", e),
-                      "0 is plastic, 1 is elastic"};
-}
-
 }  // namespace
 
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
@@ -240,7 +232,10 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         const ConstraintDescription& constraint = system.constraints[i];
         if (gaps[i] && names.complete)
             attempt_within_limits(mistakes, constraint.gap, [&] { check_gap(constraint.gap, *gaps[i], layout); });
-        if (restitutions[i]) mistakes.attempt([&] { check_restitution(constraint.restitution, *restitutions[i]); });
+        // One that parameters change is looked at when a run starts.
+        if (restitutions[i] && is_constant(*restitutions[i]))
+            if (auto mistake = mistake_in(constraint.restitution, value_of_constant(*restitutions[i])))
+                mistakes.add(std::move(*mistake));
     }
     read_forces(system, layout, reader, equations, mistakes);
 }

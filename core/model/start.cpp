@@ -54,7 +54,9 @@ void Model::check(const Run& run) const {
         auto start = evaluator(start_, run.parameters);
         set_state(start, run.start());
         start.run();
-        for (std::size_t i = 0; i < contacts(); ++i) mistakes.attempt([&] { check_restitution(run, i); });
+        for (std::size_t i = 0; i < contacts(); ++i)
+            if (auto mistake = mistake_in(description_.constraints[i].restitution, restitution(run.parameters, i)))
+                mistakes.add(std::move(*mistake));
         // What follows from an energy or a gap without a value has none either: it is told once.
         const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
         bool has_gap = true;
@@ -63,13 +65,6 @@ void Model::check(const Run& run) const {
         if (has_mass && has_gap) mistakes.attempt([&] { check_acceleration(run, start); });
     }
     mistakes.raise(description_);
-}
-
-void Model::check_restitution(const Run& run, std::size_t contact) const {
-    const double e = evaluator(restitution(contact), run.parameters).output(0);
-    if (!(e >= 0.0 && e <= 1.0))
-        throw Mistake{description_.constraints[contact].restitution.at,
-                      fmt::format("the restitution must lie in [0, 1], but it is {}", e), "0 is plastic, 1 is elastic"};
 }
 
 namespace {

@@ -25,7 +25,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (record_.impacts() >= run_.options.max_impacts) {
-        const bool elastic = restitutions_[which] >= 1.0;
+        const bool elastic = restitution(which) >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
              fmt::format(
                  "{} impacts by t = {:.9g}, and the truncation conditions were never met{}", record_.impacts(),
@@ -38,7 +38,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
         constexpr double resolved = 16.0;
         if (record_.impacts() > 1 &&
             (last_step_ < resolved * ulp(next_.state.t) || moves_within_rounding(which, -contact.hdot))) {
-            const Vector v_after = impact(contact, next_.state.v, restitutions_[which]);
+            const Vector v_after = impact(contact, next_.state.v, restitution(which));
             if (!complete_pair(ContactSet::of(which), v_after, true)) end_chatter(ContactSet::of(which));
             return;
         }
@@ -52,7 +52,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
 
 // On an open place; what is held stays held.
 void Execution::land_alone(const Contact& contact) {
-    const double e = restitutions_[which_];
+    const double e = restitution(which_);
     conditions_ = nullptr;
     const ContactSet unpressed = always_unpressed(next_.held);
     for (const OfContact& known : all_conditions_)
@@ -93,10 +93,10 @@ void Execution::land_alone(const Contact& contact) {
 bool Execution::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
         const ContactSet unpressed = always_unpressed(next_.held);
-        all_conditions_.push_back(
-            {which_, next_.held, unpressed,
-             timed([&] { return truncation_conditions(*model_, run_, which_, next_.held, unpressed); }),
-             model_->evaluator<Interval>(model_->restitution(which_), run_.parameters).output(0)});
+        const Interval& e = surfaces_->restitution(which_).enclosure;
+        all_conditions_.push_back({which_, next_.held, unpressed, timed([&] {
+                                       return truncation_conditions(*model_, run_, e, which_, next_.held, unpressed);
+                                   })});
         conditions_ = all_conditions_.back().conditions.get();
     }
     return !conditions_->fails_at_point(collision);
@@ -112,7 +112,7 @@ std::optional<Certificate> Execution::prove(
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
     record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
-    const double hdot = -e * contact.hdot;
+    const double hdot = newton::rate_after(e, contact.hdot);
     next_.starts[which_] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
     const Vector v_before = next_.state.v;
     next_.state.v = v_after;
@@ -133,7 +133,7 @@ bool Execution::is_well_resolved(double speed) const {
 // line looks at the last step alone: with a very small e it may let one such flight through, which then ends here.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
-    const double u = e * collision.speed;
+    const double u = newton::rate_after(e, -collision.speed);
     const double a = -kinematics().normal_acceleration(collision.with(collision.tangential));
     if (!(a > 0.0)) return false;
     return u * u / (2.0 * a) < 4.0 * kinematics().gap_error(collision.before) ||
@@ -179,7 +179,7 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     Exchange plastic = exchange_of(contact, 0.0);
     if (collision.restart != collision.tangential)
         plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
-    record_.impact(next_.state, impact(contact, next_.state.v, restitutions_[which_]), collision.speed, plastic,
+    record_.impact(next_.state, impact(contact, next_.state.v, restitution(which_)), collision.speed, plastic,
                    ContactSet::of(which_));
     next_.state = collision.with(collision.restart);
     const ContactSet held = next_.held.with(which_);

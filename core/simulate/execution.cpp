@@ -32,17 +32,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Surface
       model_(std::move(model)),
       record_(model_, run_, keep),
       surfaces_(&surfaces) {
-    bounce_as(run_);
     begin();
-}
-
-// The restitutions of a run.
-void Execution::bounce_as(const Run& run) {
-    restitutions_.clear();
-    for (std::size_t i = 0; i < model_->contacts(); ++i)
-        restitutions_.push_back(model_->restitution(run.parameters, i));
-    for (OfContact& known : all_conditions_)
-        known.e = model_->evaluator<Interval>(model_->restitution(known.contact), run.parameters).output(0);
 }
 
 bool Execution::restart(const Run& run) {
@@ -50,10 +40,10 @@ bool Execution::restart(const Run& run) {
     if (next.tolerance != now.tolerance || next.method != now.method || next.truncation != now.truncation) return false;
     if (run.parameters != run_.parameters) {
         if (surfaces_->count() > 1) return false;  // pairs keep what they know of their restitutions
-        bounce_as(run);
+        surfaces_->bounce_as(run);
     }
     run_ = run;
-    for (OfContact& known : all_conditions_) known.conditions->restart(known.e);
+    for (OfContact& known : all_conditions_) known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = changes_of_carriers_ = 0;

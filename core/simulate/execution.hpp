@@ -72,7 +72,6 @@ class Execution {
     };
 
     void begin();
-    void bounce_as(const Run& run);
     void start_at_rest(ContactSet resting);
     bool is_time_left() const;
     bool is_cancelled();
@@ -101,6 +100,7 @@ class Execution {
         return next_.held.empty() ? own : exchange_beside(contact, e, own);
     }
     Exchange exchange_beside(const Contact& contact, double e, Exchange own);
+    double restitution(std::size_t contact) const { return surfaces_->restitution(contact).value; }
     ContactKinematics& kinematics() { return surfaces_->of(which_, next_.held); }
     // What some work gives; its time counts as that of proofs.
     template <class Work>
@@ -195,7 +195,6 @@ class Execution {
         std::size_t contact;
         ContactSet held, unpressed;
         std::unique_ptr<TruncationConditions> conditions;
-        Interval e;  // the restitution that they know
     };
     std::vector<OfContact> all_conditions_;
     struct PairOf {
@@ -206,9 +205,8 @@ class Execution {
     std::vector<PairOf> all_pairs_;               // the same of two contacts
     TruncationConditions* conditions_ = nullptr;  // of them, those of which_; null: not met yet
     std::size_t which_ = 0;                       // the contact whose event this is
-    std::vector<double> restitutions_;
-    bool not_unique_ = false;      // the forces that hold what is held could be shared otherwise
-    double carriers_since_ = 0.0;  // s; who carries was last changed then, and so often at that time
+    bool not_unique_ = false;                     // the forces that hold what is held could be shared otherwise
+    double carriers_since_ = 0.0;                 // s; who carries was last changed then, and so often at that time
     int changes_of_carriers_ = 0;
     double cut_error_ = 0.0;  // of the state, by the cuts so far: what is certified at their Zeno times
     double proving_ = 0.0;    // s, the clock's

@@ -18,7 +18,8 @@ double rounding_of_q(const Contact& contact, const State& state) {
 
 // x -= a n
 void move_along(Vector& x, double a, const Vector& n) {
-    for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] -= a * n.data()[i];
+    newton::move_along(
+        x.data(), static_cast<std::size_t>(x.size()), [n = n.data()](std::size_t i) { return n[i]; }, a);
 }
 
 // A computed number stands for every number within this relative distance.
@@ -28,7 +29,7 @@ Interval rounded(double x, double relative) { return {x - relative * std::abs(x)
 
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
     Vector v = v_before;
-    move_along(v, (1.0 + e) * contact.hdot, contact.impulse_direction);
+    move_along(v, newton::removed_rate(e, contact.hdot), contact.impulse_direction);
     return v;
 }
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "contacts/impact_law.hpp"
 #include "model/model.hpp"
 #include "number/interval.hpp"
 #include "run/trajectory.hpp"
@@ -17,18 +18,16 @@ struct Contact {
     Vector g;                  // dh, as a column
 };
 
-// Newton's impact law: the normal velocity is reversed and scaled, the rest is kept.
-//     v+ = v- - (1 + e) hdot n     (paper (4)).    Law: kinetic energy never rises for 0 <= e <= 1.
+// v+ by Newton's impact law (contacts/impact_law.hpp).
 Vector impact(const Contact& contact, const Vector& v_before, double e);
 
-// What an impact does to the energy: dE = work - loss. With the impulse p = (1 + e) |hdot|/W the moving surface does the
-// work -p dh/dt, and p (1 - e) |hdot|/2 is lost.
+// What an impact does to the energy: dE = work - loss, the work of the moving surface.
 struct Exchange {
     double work = 0.0, loss = 0.0;
 };
 inline Exchange exchange(const Contact& contact, double e) {
-    const double speed = -contact.hdot, impulse = (1.0 + e) * speed / contact.W;
-    return {-impulse * contact.gap_t, 0.5 * impulse * (1.0 - e) * speed};
+    const double impulse = newton::impulse(e, contact.hdot, contact.W);
+    return {newton::work(impulse, contact.gap_t), newton::loss(impulse, e, contact.hdot)};
 }
 
 // Where the constrained execution restarts.  kinetic: s = v - n hdot;  euclidean: v* = v - (g v/|g|^2) g' (Def. 7).

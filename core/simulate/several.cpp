@@ -43,7 +43,7 @@ bool Execution::is_order_independent(ContactSet landing) {
     const Closed closed = surfaces_->at(next_.state, next_.held.with(landing));
     ContactVector<double> e(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        e[static_cast<Eigen::Index>(i)] = restitutions_[closed.which[i]];
+        e[static_cast<Eigen::Index>(i)] = restitution(closed.which[i]);
     return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, closed.places_of(next_.held),
                              closed.places_of(landing))
                 .matters();
@@ -85,16 +85,14 @@ bool Execution::stays_held(std::size_t which, const Contact& contact) {
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
     const auto W = enclosure(closed.W, radius_of(closed.W));
     if (order_dependence(W, e, held, lands).by_transmission) return false;
-    const double restitution = restitutions_[which];
-    const State after{next_.state.q, impact(contact, next_.state.v, restitution), next_.state.t};
-    const bool rests = restitution == 0.0 && surfaces_->of(which, next_.held).normal_acceleration(after) < 0.0;
+    const State after{next_.state.q, impact(contact, next_.state.v, restitution(which)), next_.state.t};
+    const bool rests = restitution(which) == 0.0 && surfaces_->of(which, next_.held).normal_acceleration(after) < 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t other = closed.which[i];
         if (!next_.unpressed.contains(other)) continue;
         if (!surfaces_->needs_no_force(other, next_.held.without(other), after, scale_)) return false;
-        e[static_cast<Eigen::Index>(i)] = restitutions_[other];
-        if (restitutions_[other] > 0.0 && order_dependence(W, e, held.without(i), lands.with(i)).matters())
-            return false;
+        e[static_cast<Eigen::Index>(i)] = restitution(other);
+        if (restitution(other) > 0.0 && order_dependence(W, e, held.without(i), lands.with(i)).matters()) return false;
     }
     const ContactSet pressed = held.without(closed.places_of(next_.unpressed));
     return is_pressed(closed, rests ? pressed.with(lands) : pressed, after);
@@ -124,10 +122,10 @@ Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange o
     if (!block) return own;
     const auto place = std::find(closed.which.begin(), closed.which.end(), which_) - closed.which.begin();
     const ContactVector<double> kappa = block->transmission(closed.W, place).kappa;
-    const double impulse = -(1.0 + e) * contact.hdot / contact.W;
+    const double impulse = newton::impulse(e, contact.hdot, contact.W);
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (next_.held.contains(closed.which[i]))
-            own.work -= kappa[static_cast<Eigen::Index>(i)] * impulse * closed.contacts[i].gap_t;
+            own.work += newton::work(kappa[static_cast<Eigen::Index>(i)] * impulse, closed.contacts[i].gap_t);
     return own;
 }
 
@@ -140,7 +138,7 @@ double Execution::plastic_work(const State& before, ContactSet contacts) {
     const ContactVector<double> p = block->solve(-closed.rates());
     double work = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        work -= p[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
+        work += newton::work(p[static_cast<Eigen::Index>(i)], closed.contacts[i].gap_t);
     return work;
 }
 
@@ -161,7 +159,7 @@ void Execution::collide(ContactSet landing) {
     ContactVector<double> before = closed.rates(), e(before.size());
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        e[k] = restitutions_[closed.which[i]];
+        e[k] = restitution(closed.which[i]);
         if (still.contains(closed.which[i])) before[k] = 0.0;
     }
     const auto impact = moreau_impact(closed.W, before, e, places);
@@ -177,7 +175,7 @@ void Execution::collide(ContactSet landing) {
     // What nothing presses would let go of what comes a moment earlier, unless it is plastic.
     ContactSet loose;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (next_.unpressed.contains(i) && restitutions_[i] > 0.0) loose = loose.with(i);
+        if (next_.unpressed.contains(i) && restitution(i) > 0.0) loose = loose.with(i);
     const ContactSet open = closed.places_of(all.without(resting.without(loose)));
     const ContactSet fast = closed.places_of(held.without(loose));
     if (open.count() > 1) {
@@ -211,7 +209,7 @@ void Execution::collide(ContactSet landing) {
     }
     Exchange exchange{0.0, impact->loss};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        exchange.work -= impact->impulses[static_cast<Eigen::Index>(i)] * closed.contacts[i].gap_t;
+        exchange.work += newton::work(impact->impulses[static_cast<Eigen::Index>(i)], closed.contacts[i].gap_t);
     double speed = 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
@@ -238,7 +236,7 @@ void Execution::collide(ContactSet landing) {
 bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding) {
     if (completing()) return false;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (!landing.contains(i) || !(restitutions_[i] < 1.0)) continue;
+        if (!landing.contains(i) || !(restitution(i) < 1.0)) continue;
         for (std::size_t j = 0; j < surfaces_->count(); ++j) {
             const ContactSet two = ContactSet::of(i).with(j);
             // All that is closed but these two has to be held.
@@ -281,8 +279,10 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
         for (std::size_t i = 0; i < both.which.size(); ++i) places = places.with(i);
         if (!HeldBlock<double>::of(both.W, places)) return false;  // they cannot both be held with the others
         const Ground ground;
-        all_pairs_.push_back({first, second, held, unpressed,
-                              std::make_unique<PairConditions>(*model_, run_, first, second, held, unpressed, ground)});
+        const std::array e{surfaces_->restitution(first).enclosure, surfaces_->restitution(second).enclosure};
+        all_pairs_.push_back(
+            {first, second, held, unpressed,
+             std::make_unique<PairConditions>(*model_, run_, e, first, second, held, unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
     auto completion = timed([&] { return known->conditions->certify(collision, below_rounding); });

@@ -51,7 +51,8 @@ Vector Closed::after(const Vector& v, const ContactVector<double>& impulses) con
     return result;
 }
 
-Surfaces::Surfaces(const Model& model, const Run& run) : model_(&model), run_(run) {
+Surfaces::Surfaces(const Model& model, const Run& run)
+    : model_(&model), run_(run), restitutions_(model.restitutions(run.parameters)) {
     free_.reserve(model.contacts());
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
 }

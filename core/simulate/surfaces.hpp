@@ -32,6 +32,9 @@ class Surfaces {
     Surfaces(const Model& model, const Run& run);
 
     std::size_t count() const { return free_.size(); }
+    const Restitution& restitution(std::size_t contact) const { return restitutions_[contact]; }
+    // For another run, whose parameters differ at most in what restitutions alone depend on.
+    void bounce_as(const Run& run) { restitutions_ = model_->restitutions(run.parameters); }
     // A contact while none is held, and while these are.
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }
     ContactKinematics& of(std::size_t contact, ContactSet held);
@@ -66,6 +69,7 @@ class Surfaces {
 
     const Model* model_;
     Run run_;
+    std::vector<Restitution> restitutions_;
     std::vector<ContactKinematics> free_;
     std::map<std::pair<ContactSet, std::size_t>, ContactKinematics> while_held_;
     std::unique_ptr<UnpressedContacts> unpressed_;  // made where it is first asked for
