@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "run/trajectory.hpp"
+#include "../run/trajectory.hpp"
 
 namespace achilles {
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "depend/error_course.hpp"
-#include "run/trajectory.hpp"
+#include "../run/trajectory.hpp"
+#include "error_course.hpp"
 
 namespace achilles {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "system/description.hpp"
+#include "../system/description.hpp"
 
 namespace achilles {
 

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "study/sweep.hpp"
+#include "../study/sweep.hpp"
 
 namespace achilles {
 

@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "run/state.hpp"
+#include "state.hpp"
 
 namespace achilles {
 

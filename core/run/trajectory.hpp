@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
-#include "run/contact_set.hpp"
-#include "run/options.hpp"
-#include "run/state.hpp"
+#include "contact_set.hpp"
+#include "options.hpp"
+#include "state.hpp"
 
 namespace achilles {
 

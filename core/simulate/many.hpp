@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include "simulate/simulate.hpp"
-#include "system/description.hpp"
+#include "../system/description.hpp"
+#include "simulate.hpp"
 
 namespace achilles {
 

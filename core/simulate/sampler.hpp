@@ -5,7 +5,7 @@
 #include <memory>
 #include <vector>
 
-#include "run/trajectory.hpp"
+#include "../run/trajectory.hpp"
 
 namespace achilles {
 

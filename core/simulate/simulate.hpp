@@ -5,7 +5,7 @@
 #include <memory>
 #include <stop_token>
 
-#include "run/trajectory.hpp"
+#include "../run/trajectory.hpp"
 
 namespace achilles {
 

@@ -17,9 +17,9 @@
 #include <string_view>
 #include <vector>
 
-#include "depend/margins.hpp"
-#include "run/trajectory.hpp"
-#include "system/description.hpp"
+#include "../depend/margins.hpp"
+#include "../run/trajectory.hpp"
+#include "../system/description.hpp"
 
 namespace achilles {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "system/description.hpp"
+#include "../system/description.hpp"
 
 namespace achilles {
 

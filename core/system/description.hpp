@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "run/options.hpp"
+#include "../run/options.hpp"
 
 namespace achilles {
 

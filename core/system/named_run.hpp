@@ -4,7 +4,7 @@
 #include <memory>
 #include <string_view>
 
-#include "system/description.hpp"
+#include "description.hpp"
 
 namespace achilles {
 
