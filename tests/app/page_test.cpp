@@ -106,8 +106,7 @@ TEST(Export, of_a_page_is_made_again_and_leads_back) {
             EXPECT_EQ(again.plotted().list().size(), line.find("plot 2") == std::string::npos ? 2U : 1U);
     }
     session.apply(parse_command("export " + (folder.path() / "run.json").string() + " mechanism"));
-    EXPECT_NE(session.error().find("end it in .png, .svg or .pdf"), std::string::npos)
-        << session.error();
+    EXPECT_NE(session.error().find("end it in .svg, .png or .pdf"), std::string::npos) << session.error();
 }
 
 TEST(Export, of_a_system_without_drawing_has_no_mechanism) {

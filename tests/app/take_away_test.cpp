@@ -192,8 +192,7 @@ TEST(Export, takes_one_plot_alone) {
         session.apply(command::Export{(folder.path() / "two.svg").string(), false, count + 1});
         EXPECT_NE(session.error().find(fmt::format("there is no plot {}", count + 1)), std::string::npos);
         session.apply(command::Export{(folder.path() / "run.json").string(), false, 1});
-        EXPECT_NE(session.error().find("end it in .png, .svg or .pdf"), std::string::npos)
-            << session.error();
+        EXPECT_NE(session.error().find("end it in .svg, .png or .pdf"), std::string::npos) << session.error();
         EXPECT_EQ(folder.files().size(), 2U);
     }
 }
