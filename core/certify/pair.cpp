@@ -308,8 +308,8 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
     }
     for (int round = 0; round < 40; ++round) {
         box.all.clear();
-        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(ball(box.q0[i], box.q_radius[i]));
-        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(ball(box.s0[i], box.s_radius[i]));
+        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.q0[i], box.q_radius[i]));
+        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.s0[i], box.s_radius[i]));
         for (std::size_t k = 0; k < 2; ++k) {
             const double most = (sqrt(pair->W[k][k]) * Interval(box.growth) * pair->r0).hi();
             box.all.emplace_back(-most, most);
