@@ -1,6 +1,7 @@
 #include "number/dense.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <Eigen/QR>
 
 namespace achilles {
@@ -21,6 +22,8 @@ MatrixXd least_solution(const MatrixXd& A, const MatrixXd& B) {
     for (Eigen::Index k = 0; k < B.cols(); ++k) result.col(k) = decomposition.solve(VectorXd(B.col(k)));
     return result;
 }
+
+VectorXd solution(const MatrixXd& A, const VectorXd& b) { return A.partialPivLu().solve(b); }
 
 MatrixXd range_of(const MatrixXd& A, Eigen::Index dimensions) {
     MatrixXd basis = MatrixXd::Zero(A.rows(), dimensions);

@@ -220,7 +220,7 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
             closed = {lap, shot, round, size, {}};
             VectorXd along = VectorXd::Zero(m + 2);
             along[m + 1] = 1.0;
-            closed.tangent = least_solution(matrix(shot, lap, F_ref, before.size() > 0 ? before : VectorXd{}), along);
+            closed.tangent = solution(matrix(shot, lap, F_ref, before.size() > 0 ? before : VectorXd{}), along);
             closed.tangent.normalize();
             return closed;
         }
