@@ -146,6 +146,90 @@ class Report : EquationsOnPage {
 
 }  // namespace
 
+namespace {
+
+class Answer : EquationsOnPage {
+ public:
+    Answer(const Model& model, const Run& run, const Simplified& simplified)
+        : EquationsOnPage(model, run, simplified, Page(Notation::text)) {}
+
+    std::string write(const Disagreement& disagreement) {
+        for (std::size_t i = 0; i < model_.contacts(); ++i) condition(i, {}, simplified_.contacts[i].zeno);
+        for (const HeldCondition& held : simplified_.while_held) condition(held.contact, held.held, held.zeno);
+        page_.sentence({verified(disagreement), {}});
+        const bool forces = has_forces(model_.equations());
+        page_.heading(fmt::format("M q'' + bias = {}", forces ? "Q" : "0"));
+        matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);
+        matrix({"bias", "b"}, simplified_.bias, model_.equations().bias, 1);
+        if (forces) matrix({"Q", "Q"}, simplified_.Q, model_.equations().Q, 1);
+        return first_line(disagreement) + "\n\n" + page_.finish() +
+               "\nParameters, energies, gap, hdot, hddot, lambda, each check: --verbose. LaTeX: --latex\n";
+    }
+
+ private:
+    static std::string counted(std::size_t count, const char* noun) {
+        return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
+    }
+
+    std::string first_line(const Disagreement& disagreement) const {
+        const SystemDescription& system = model_.description();
+        if (disagreement.largest() > most_disagreement)
+            return fmt::format("{}: FAILED, the derived equations differ from finite differences by {:.1e}",
+                               system.title, disagreement.largest());
+        return fmt::format("{}: OK    {}, {}, {}", system.title, counted(system.coordinates.size(), "coordinate"),
+                           counted(system.parameters.size(), "parameter"), counted(model_.contacts(), "contact"));
+    }
+
+    static std::string verified(const Disagreement& disagreement) {
+        if (disagreement.states == 0)
+            return "Equations not verified: at none of the random states were all terms defined and M positive "
+                   "definite";
+        return fmt::format("Equations {}: finite differences at {} random states agree to {:.1e}",
+                           disagreement.largest() > most_disagreement ? "wrong" : "verified", disagreement.states,
+                           disagreement.largest());
+    }
+
+    // "Impacts of knee end in a Zeno point where g*sin(theta1) < 0 (at theta2 = 0, theta2' = 0; restitution 0.5)".
+    void condition(std::size_t contact, ContactSet held, const std::optional<ZenoCondition>& found) {
+        std::string impacts = "Impacts" + of(" of {}", contact);
+        if (!held.empty()) impacts += fmt::format(" while {} is held", joined_names(model_, held));
+        const double e = model_.restitution(run_.parameters, contact);
+        const auto say = [&](const std::string& rest) { page_.sentence({impacts + rest, {}}); };
+        if (e <= 0.0) return say(" are plastic: the first one ends on the surface (restitution 0)");
+        if (e >= 1.0) return say(" never end in a Zeno point: the restitution is 1");
+        if (!found) return say(": the Zeno condition could not be simplified");
+        if (found->verdict == ZenoCondition::Verdict::never)
+            return say(" never end in a Zeno point: hddot >= 0 at every contact");
+        if (found->verdict == ZenoCondition::Verdict::always)
+            return say(fmt::format(" end in a Zeno point: hddot < 0 at every contact (restitution {})", e));
+        std::string notes;
+        if (const auto there = on_surface(*found); !there.empty())
+            notes = fmt::format("at {}; ", fmt::join(there, ", "));
+        notes += fmt::format("restitution {}", e);
+        if (const auto value = decisive_here(*found))
+            notes += *value < 0.0 ? "; it holds with these parameters" : "; it does not hold with these parameters";
+        const std::string decisive = writer_of(*found).write(found->decisive).text + " < 0";
+        const std::string line = fmt::format(" end in a Zeno point where {} ({})", decisive, notes);
+        if (impacts.size() + line.size() <= page_.width()) return say(line);
+        say(fmt::format(" end in a Zeno point ({}) where", notes));
+        page_.formula({}, decisive, 2);
+    }
+};
+
+}  // namespace
+
+std::string check_answer(const Model& model, const Run& run, double& disagreement) {
+    const Simplified simplified(model, run);
+    const Disagreement found = compare_with_differences(model, run, simplified);
+    disagreement = found.largest();
+    return check_answer(model, run, simplified, found);
+}
+
+std::string check_answer(const Model& model, const Run& run, const Simplified& simplified,
+                         const Disagreement& disagreement) {
+    return Answer(model, run, simplified).write(disagreement);
+}
+
 std::string check_report(const Model& model, const Run& run, double deriving, Notation notation, double& disagreement) {
     const Simplified simplified(model, run);
     const Disagreement found = compare_with_differences(model, run, simplified);

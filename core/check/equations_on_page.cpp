@@ -261,27 +261,11 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
         return;
     }
     const ZenoCondition& zeno = *found;
-    const auto plain = [&](Expression e) { return achilles::write(e, model_.slot_names(), page_.notation()).text; };
-    std::vector<Fraction> values;
-    for (const auto& [symbol, value] : zeno.solved) {
-        zeno.algebra->work() = Work{1000000};
-        try {
-            values.push_back(zeno.algebra->simplify(value));
-        } catch (const TooLong&) {
-            values.clear();
-            break;  // what was solved for is not written out
-        }
-    }
-    // It knows what the algebra has met so far.
-    const Writer writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
-    std::vector<std::string> there;
-    for (std::size_t i = 0; i < values.size(); ++i)
-        there.push_back(
-            in_line(fmt::format("{} = {}", plain(zeno.solved[i].first), written(values[i], writer, *zeno.algebra))));
-    if (!there.empty()) {
+    if (const auto there = on_surface(zeno); !there.empty()) {
         const std::string line = fmt::format("there {}", fmt::join(there, ", "));
         page_.sentence({line, line});
     }
+    const Writer writer = writer_of(zeno);
     const Factored whole = zeno.positive * zeno.decisive;
     const std::string hddot = writer.write(whole).text;
     const bool divided = !zeno.positive.factors.empty() || zeno.positive.number != 1;
@@ -291,7 +275,13 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
             reason(zeno, writer);
         }
         page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
-        if (is_text()) zeno_here(zeno);  // a sheet has sliders beside it
+        const auto value = is_text() ? decisive_here(zeno) : std::nullopt;  // a sheet has sliders beside it
+        if (!value) return;
+        const std::string line =
+            *value < 0.0
+                ? fmt::format("it holds with these parameters: {:.6g} < 0", *value)
+                : fmt::format("it does not hold with these parameters, so impacts do not pile up: {:.6g} >= 0", *value);
+        page_.sentence({line, line});
         return;
     }
     long_formula(page_, {"hddot", "\\ddot{h}"}, split(whole, hddot, writer));
@@ -302,22 +292,41 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
     page_.sentence({verdict + because, Page::escaped(verdict) + because});
 }
 
-void EquationsOnPage::zeno_here(const ZenoCondition& zeno) {
+std::optional<double> EquationsOnPage::decisive_here(const ZenoCondition& zeno) const {
     const Layout& layout = model_.layout();
     std::vector<std::uint32_t> varying(2 * layout.dof);  // the state
     std::iota(varying.begin(), varying.end(), 0U);
     varying.push_back(layout.t());
     const Expression decisive = expression_of(zeno.decisive, *zeno.algebra);
-    if (depends_on(decisive, varying)) return;
+    if (depends_on(decisive, varying)) return std::nullopt;
     const Program program(std::span(&decisive, 1), layout.slots());
     auto evaluator = model_.evaluator(program, run_.parameters);
     evaluator.run();
-    const double value = evaluator.output(0);
-    const std::string line =
-        value < 0.0
-            ? fmt::format("it holds with these parameters: {:.6g} < 0", value)
-            : fmt::format("it does not hold with these parameters, so impacts do not pile up: {:.6g} >= 0", value);
-    page_.sentence({line, Page::escaped(line)});
+    return evaluator.output(0);
+}
+
+// It knows what the algebra has met so far.
+Writer EquationsOnPage::writer_of(const ZenoCondition& zeno) const {
+    return Writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
+}
+
+std::vector<std::string> EquationsOnPage::on_surface(const ZenoCondition& zeno) const {
+    std::vector<Fraction> values;
+    for (const auto& [symbol, value] : zeno.solved) {
+        zeno.algebra->work() = Work{1000000};
+        try {
+            values.push_back(zeno.algebra->simplify(value));
+        } catch (const TooLong&) {
+            return {};
+        }
+    }
+    const Writer writer = writer_of(zeno);
+    std::vector<std::string> there;
+    for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::string symbol = achilles::write(zeno.solved[i].first, model_.slot_names(), page_.notation()).text;
+        there.push_back(in_line(fmt::format("{} = {}", symbol, written(values[i], writer, *zeno.algebra))));
+    }
+    return there;
 }
 
 void EquationsOnPage::zeno_restitution(std::size_t contact) {

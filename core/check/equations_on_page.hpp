@@ -43,8 +43,11 @@ class EquationsOnPage {
                 std::span<const Expression> derived, std::size_t columns);
     // What was found about hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
-    // Whether the inequality holds with the parameters of this run, where it has nothing else in it.
-    void zeno_here(const ZenoCondition& zeno);
+    // "theta2 = 0", "theta2' = 0": what h = 0 and hdot = 0 were solved for. Nothing where that takes too long.
+    std::vector<std::string> on_surface(const ZenoCondition& zeno) const;
+    // What must be negative, with the parameters of this run; nothing where it depends on more than parameters.
+    std::optional<double> decisive_here(const ZenoCondition& zeno) const;
+    Writer writer_of(const ZenoCondition& zeno) const;
     // The other half of it: bounces pile up only if each impact leaves less of its speed, and some.
     void zeno_restitution(std::size_t contact);
     // Of more contacts than are looked at.

@@ -402,6 +402,57 @@ TEST(CheckReport, SeesWrongForces) {
     EXPECT_GT(compare_with_differences(*model, run, held).largest(), 1e-3);
 }
 
+// The answer first: verdict, Zeno condition, equations of motion; the rest is for --verbose.
+TEST(CheckAnswer, BeginsWithTheVerdict) {
+    const auto model = test::load("double_pendulum");
+    auto run = model->default_run();
+    double disagreement = 1.0;
+    const std::string answer = check_answer(*model, run, disagreement);
+    EXPECT_LT(disagreement, 1e-15);
+    EXPECT_EQ(answer.rfind("Double pendulum with a mechanical stop: OK    2 coordinates, 6 parameters, 1 contact\n", 0),
+              0U)
+        << answer;
+    for (const char* line :
+         {"\n  Impacts end in a Zeno point where g*sin(theta1) < 0 (at theta2 = 0, theta2' = 0; restitution 0.5)\n",
+          "\n  Equations verified: finite differences at 20 random states agree to ", "\nM q'' + bias = 0\n  M = [ ",
+          "--verbose. LaTeX: --latex\n"})
+        EXPECT_NE(answer.find(line), std::string::npos) << line << answer;
+    EXPECT_EQ(answer.find("lambda ="), std::string::npos) << answer;
+    EXPECT_LE(std::count(answer.begin(), answer.end(), '\n'), 20) << answer;
+    for (const auto& [e, words] :
+         {std::pair{1.0, "  Impacts never end in a Zeno point: the restitution is 1\n"},
+          {0.0, "  Impacts are plastic: the first one ends on the surface (restitution 0)\n"}}) {
+        run.parameters.back() = e;
+        EXPECT_NE(check_answer(*model, run, disagreement).find(words), std::string::npos) << words;
+    }
+}
+
+TEST(CheckAnswer, NamesSeveralContactsAndSignsThatNeverChange) {
+    double disagreement = 1.0;
+    const auto ball = test::load("ball_on_floor");
+    EXPECT_NE(check_answer(*ball, ball->default_run(), disagreement)
+                  .find("\n  Impacts end in a Zeno point: hddot < 0 at every contact (restitution 0.7)\n"),
+              std::string::npos);
+    const auto stops = test::load_gaps("pendulum_two_stops");
+    const std::string answer = check_answer(*stops, stops->default_run(), disagreement);
+    for (const char* words : {"\n  Impacts of knee end in a Zeno point ", "\n  Impacts of wall while knee is held ",
+                              ", 2 contacts\n", " = Q\n"})
+        EXPECT_NE(answer.find(words), std::string::npos) << words << answer;
+}
+
+TEST(CheckAnswer, SaysThatTheCheckFailed) {
+    const auto model = test::load("ball_on_sine");
+    const auto run = model->default_run();
+    Simplified wrong(*model, run);
+    auto& hddot = wrong.contacts[0].hddot;
+    hddot->numerator = hddot->numerator + Multinomial(1);
+    const std::string answer = check_answer(*model, run, wrong, compare_with_differences(*model, run, wrong));
+    EXPECT_EQ(
+        answer.rfind("Ball bouncing on a sinusoidal surface: FAILED, the derived equations differ from finite ", 0), 0U)
+        << answer;
+    EXPECT_NE(answer.find("\n  Equations wrong: "), std::string::npos) << answer;
+}
+
 // A lie: a mass matrix that is not that of L must show.
 TEST(CheckReport, SeesWrongEquations) {
     const auto model = test::load("ball_on_sine");
