@@ -63,8 +63,8 @@ std::optional<Inequality> failed(const Certificate& certificate) {
 std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, bool several, bool all_at_once,
                         const ShownUnit& acceleration) {
     if (reason.cut)
-        return "Cut here: the error of the motion that follows is certified to be within the tolerances. The next "
-               "event, the Zeno point, shows the bounds.";
+        return "The impact sequence is cut here: the error of the motion that follows is certified to be within the "
+               "tolerances. For the bounds see the next event, the Zeno point.";
     if (!reason.contact || all_at_once)
         return "Not cut: several contacts take part in this impact, which Moreau's law resolves together.";
     if (reason.normal_acceleration == 0.0) return "Not cut: nothing presses the body onto the surface here.";
@@ -333,8 +333,8 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
         if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
         ImGui::TextUnformatted(proved.c_str());
         tooltip(
-            "covers the whole run from its start, with integration and all cuts; the bounds below cover this cut "
-            "alone");
+            "bounds for the whole run from its start, including integration errors and all cuts of impact sequences; "
+            "the bounds below are for this cut alone");
     }
     if (const auto horizon = session.horizon(); horizon && event.t > *horizon)
         return paragraph(fmt::format("The run is not trusted after t = {:.6g} s: this certificate is about the "

@@ -453,8 +453,8 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     if (ImGui::Checkbox(text, &linked)) commands.emplace_back(command::Link{linked});
     remember(state, "link");
     tooltip(
-        "show the same times in all plots over time. Wheel: zoom; drag: move; right button: zoom to a box; double "
-        "click: fit");
+        "use the same time range in all plots over t. Wheel: zoom; drag: move; drag with the right button: zoom to a "
+        "box; double click: fit all");
 }
 
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state) {

@@ -123,7 +123,7 @@ class Parser {
         for (;;) {
             const std::size_t where = at_;
             if (const Expression* unit = take_unit()) {
-                if (std::exchange(has_unit, true)) throw ParseError(where, "a value may have only one unit");
+                if (std::exchange(has_unit, true)) throw ParseError(where, "write one unit only, as in 30 deg");
                 left = left * *unit;
                 continue;
             }

@@ -211,7 +211,7 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::step_too_small:
             return "Try a larger --tolerance, or --method dopri5.";
         case Outcome::Kind::undecided:
-            return "Try a smaller --tolerance, or another start or parameter.";
+            return "Try a smaller --tolerance, another initial state, or another parameter value.";
         case Outcome::Kind::simultaneous_impacts:
             return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:

@@ -217,7 +217,9 @@ std::vector<SweepAxis> read_axes(const std::vector<std::string>& over, const Sys
 
 std::optional<RandomPoints> read_random(const AskedSweep& asked, const std::vector<SweepAxis>& axes) {
     if (!asked.random) {
-        if (asked.seed) throw refusal("--seed", *asked.seed, "this needs --random N");
+        if (asked.seed)
+            throw refusal("--seed", *asked.seed,
+                          "this has an effect only with --random N, which draws N points from the ranges of --over");
         for (std::size_t i = 0; i < axes.size(); ++i)
             if (axes[i].count == 0)
                 throw refusal("--over", asked.over[i], "the number of values is missing",

@@ -91,7 +91,7 @@ std::string why_not_settable(const SystemDescription& description, std::string_v
         if (std::find(settable.begin(), settable.end(), e) != settable.end())
             hint = fmt::format("; did you mean '{}'?", e);
         else if (!has_names(e))
-            hint += "; to vary the restitution, write restitution = \"e\" and a parameter e in the file";
+            hint += "; to vary the restitution, add a parameter e to the file and write restitution = \"e\"";
     }
     return fmt::format("'{}' is not a parameter, coordinate or rate of this system{}", shown(name), hint);
 }

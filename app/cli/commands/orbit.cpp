@@ -105,7 +105,7 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     add("--continue", arguments->asked.along, "NAME=LOW:HIGH",
-        "follow the branch in a parameter, in both directions and through folds, until a Zeno point is lost");
+        "follow the orbit as a parameter varies, in both directions and around folds, until a Zeno point disappears");
     add("--json", arguments->json, "F", "write the results as JSON instead of text; - is standard output");
     add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
     add_view_option(*command, arguments->views, "with --out: view of the system; repeatable (default: all)");

@@ -98,7 +98,7 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
         told("30\u00b0"),
         "2 '30\u00b0' is not a finite number: '\u00b0' is allowed only where the unit is rad, and here it is not");
     EXPECT_EQ(told("deg", "m").find("0 'deg' is not a finite number: "), 0u);
-    EXPECT_EQ(told("30 deg deg", "rad"), "7 '30 deg deg' is not a finite number: a value may have only one unit");
+    EXPECT_EQ(told("30 deg deg", "rad"), "7 '30 deg deg' is not a finite number: write one unit only, as in 30 deg");
     EXPECT_EQ(told("deg", "rad"), "0 'deg' is not a finite number: pi is the only name allowed here");
     EXPECT_EQ(told(std::string(1000, '(')).substr(0, 80).find("\n"), std::string::npos);
     EXPECT_NE(told("9^9^9^9^9").find("is not a finite number"), std::string::npos);

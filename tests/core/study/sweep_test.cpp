@@ -165,7 +165,7 @@ TEST(Sweep, SaysWhatCannotBe) {
         {{.over = over, .prints = t, .random = "10"}, "so the number of values is not allowed\nwrite --over e=0:1"},
         {{.over = {"e=0:1"}, .prints = t, .random = "0"}, "a whole number of at least 1, not 0"},
         {{.over = {"e=0:1"}, .prints = t, .random = "10", .seed = "-1"}, "a whole number of at least 0 is expected"},
-        {{.over = over, .prints = t, .seed = "1"}, "--seed 1: this needs --random N"},
+        {{.over = over, .prints = t, .seed = "1"}, "--seed 1: this has an effect only with --random N"},
     };
     for (const auto& [sweep, wrong] : cases) {
         const std::string told = refused(sweep);
