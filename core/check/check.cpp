@@ -154,8 +154,9 @@ class Answer : EquationsOnPage {
         : EquationsOnPage(model, run, simplified, Page(Notation::text)) {}
 
     std::string write(const Disagreement& disagreement) {
-        for (std::size_t i = 0; i < model_.contacts(); ++i) condition(i, {}, simplified_.contacts[i].zeno);
-        for (const HeldCondition& held : simplified_.while_held) condition(held.contact, held.held, held.zeno);
+        for (std::size_t i = 0; i < model_.contacts(); ++i) condition(i, simplified_.contacts[i].zeno);
+        if (const std::size_t count = simplified_.while_held.size(); count > 0)
+            page_.sentence({counted(count, "more Zeno condition") + " while other contacts are held: --verbose", {}});
         page_.sentence({verified(disagreement), {}});
         const bool forces = has_forces(model_.equations());
         page_.heading(fmt::format("M q'' + bias = {}", forces ? "Q" : "0"));
@@ -190,9 +191,9 @@ class Answer : EquationsOnPage {
     }
 
     // "Impacts of knee end in a Zeno point where g*sin(theta1) < 0 (at theta2 = 0, theta2' = 0; restitution 0.5)".
-    void condition(std::size_t contact, ContactSet held, const std::optional<ZenoCondition>& found) {
-        std::string impacts = "Impacts" + of(" of {}", contact);
-        if (!held.empty()) impacts += fmt::format(" while {} is held", joined_names(model_, held));
+    void condition(std::size_t contact, const std::optional<ZenoCondition>& found) {
+        constexpr std::size_t longest = 200;  // characters of an inequality: a longer one is not read here
+        const std::string impacts = "Impacts" + of(" of {}", contact);
         const double e = model_.restitution(run_.parameters, contact);
         const auto say = [&](const std::string& rest) { page_.sentence({impacts + rest, {}}); };
         if (e <= 0.0) return say(" are plastic: the first one ends on the surface (restitution 0)");
@@ -206,9 +207,11 @@ class Answer : EquationsOnPage {
         if (const auto there = on_surface(*found); !there.empty())
             notes = fmt::format("at {}; ", fmt::join(there, ", "));
         notes += fmt::format("restitution {}", e);
-        if (const auto value = decisive_here(*found))
-            notes += *value < 0.0 ? "; it holds with these parameters" : "; it does not hold with these parameters";
+        if (const auto value = decisive_here(*found)) notes += *value < 0.0 ? "; true here" : "; false here";
         const std::string decisive = writer_of(*found).write(found->decisive).text + " < 0";
+        if (decisive.size() > longest)
+            return say(
+                fmt::format(" end in a Zeno point where a long inequality holds: --verbose (restitution {})", e));
         const std::string line = fmt::format(" end in a Zeno point where {} ({})", decisive, notes);
         if (impacts.size() + line.size() <= page_.width()) return say(line);
         say(fmt::format(" end in a Zeno point ({}) where", notes));
