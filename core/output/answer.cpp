@@ -25,7 +25,7 @@ bool is_zeno_point(const Event& event) { return event.kind == Event::Kind::zeno 
 // Half the certified interval of the Zeno time at its larger side, s; 0 where there is none.
 double half_width(const Event& event) { return proved_time(event).value_or(0.0); }
 
-std::string with_unit(std::string text, const std::string& unit) { return unit.empty() ? text : text + " " + unit; }
+std::string with_unit(const std::string& text, const std::string& unit) { return unit.empty() ? text : text + " " + unit; }
 
 // Six decimals of numbers about 1, and as many digits of others.
 int decimals_of(double scale) {
