@@ -83,7 +83,7 @@ Panel threshold_panel(const Trajectory& ball) {
     set_ticks(panel.y, 10.8, 12.8, 0.0);
     const Event* certified = nth(ball, Event::Kind::zeno, 1);
     Curve cut;
-    cut.label = "if bouncing ends when the impact speed falls below a threshold";
+    cut.label = "if bouncing stops below a threshold speed";
     cut.stroke = {phase_color(theme, Phase::Kind::hybrid), 1.8, {}};
     if (certified != nullptr) cut.points.push_back({0.0, certified->t});
     for (int i = 1; i <= parts; ++i) {

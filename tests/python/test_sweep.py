@@ -126,7 +126,7 @@ def test_control_c_ends_it_within_a_chunk():
     ({"e": (0, 1, 5)}, [], {}, "name at least one quantity to print"),
     ({}, "t", {}, "nothing is varied"),
     ({"e": (0, 1, 5)}, "t", {"threads": 0}, "threads=0: a whole number from 1 to 1024"),
-    ({"e": (0, 1, 5)}, "t", {"seed": 4}, "this needs random N"),
+    ({"e": (0, 1, 5)}, "t", {"seed": 4}, "this has an effect only with random N"),
     ({"e": (0, 1, 5)}, "t", {"tolerance": -1}, "tolerance: the value must be positive"),
 ])
 def test_what_is_wrong(over, asked, words, told):
