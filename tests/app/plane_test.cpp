@@ -181,7 +181,12 @@ TEST(PlaneLines, cost_little) {
     }
     std::nth_element(spent.begin(), spent.begin() + 10, spent.end());
     std::cout << "the lists of a frame: " << spent[10] << " ms\n";
-    EXPECT_LT(spent[10], 50.0) << "ten times what it takes";
+#ifdef __SANITIZE_ADDRESS__
+    constexpr double most = 500.0;
+#else
+    constexpr double most = 50.0;
+#endif
+    EXPECT_LT(spent[10], most) << "ten times what it takes";
 }
 
 }  // namespace
