@@ -180,7 +180,8 @@ std::string picture_format(std::string_view file) {
 
 Notes notes_of(std::string_view file) {
     const std::string format = picture_format(file);
-    if (format.empty()) throw std::runtime_error("this is not a PNG, SVG or PDF file");
+    if (format.empty())
+        throw std::runtime_error("this is not a PNG, SVG or PDF file; a picture that achilles wrote is expected");
     return format == "png" ? png_notes(file) : format == "svg" ? svg_notes(file) : pdf_notes(file);
 }
 

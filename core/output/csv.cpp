@@ -167,7 +167,8 @@ std::vector<double> read_instants(std::string_view text, const std::string& name
         } catch (const ParseError& problem) {
             throw refuse(problem.what());
         }
-        if (!(t >= start && t <= end)) throw refuse(fmt::format("{} is outside the run, {} to {}", t, start, end));
+        if (!(t >= start && t <= end))
+            throw refuse(fmt::format("{} is outside the run, {} to {}; leave it out, or change --end", t, start, end));
         times.push_back(t);
     }
     if (times.empty()) throw InputError(name, {}, "the file contains no time", "write one time per line");

@@ -209,7 +209,8 @@ TEST(Data, InstantsThatCannotBeAreBadInput) {
     const Folder folder;
     folder.put("t.txt", "3\n21\n");
     const std::pair<const char*, const char*> mistakes[] = {
-        {"--times t.txt --csv a.csv", "t.txt:2:1: 21 is outside the run, 0 to 20\n    21\n    ^\n"},
+        {"--times t.txt --csv a.csv",
+         "t.txt:2:1: 21 is outside the run, 0 to 20; leave it out, or change --end\n    21\n    ^\n"},
         {"--times none.txt --csv a.csv", "none.txt: there is no such file\n"},
         {"--samples 1 --csv a.csv", "--samples 1: a whole number from 2 to 1000000 is expected\n"},
         {"--samples 2.5 --csv a.csv", "--samples 2.5: a whole number from 2 to 1000000 is expected\n"},

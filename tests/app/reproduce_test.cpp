@@ -193,8 +193,8 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     const auto with = [&](const Notes& notes) { return with_notes(bare, notes); };
     const Note command{"Achilles Command", "achilles figure ./drop.toml"};
     const std::pair<std::string, std::string> cases[] = {
-        {"", "x: this is not a PNG, SVG or PDF file\n"},
-        {"GIF89a", "x: this is not a PNG, SVG or PDF file\n"},
+        {"", "x: this is not a PNG, SVG or PDF file; a picture that achilles wrote is expected\n"},
+        {"GIF89a", "x: this is not a PNG, SVG or PDF file; a picture that achilles wrote is expected\n"},
         {png.substr(0, 9000), "x: the PNG file is incomplete\n"},
         {png.substr(0, 5), "x: this is not a PNG file\n"},
         {flipped, "x: the PNG file is damaged: a checksum is wrong\n"},

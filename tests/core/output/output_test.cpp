@@ -225,8 +225,10 @@ std::string instants_told(const std::string& text) {
 TEST(Sampling, InstantsAreReadFromAFile) {
     EXPECT_EQ(read_instants("# seconds\n0\r\n\n 1/4 # a quarter\n20\n3", "t.txt", 0.0, 20.0),
               (std::vector{0.0, 0.25, 20.0, 3.0}));
-    EXPECT_EQ(instants_told("0\n  20.5\n"), "t.txt:2:3: 20.5 is outside the run, 0 to 20\n      20.5\n      ^");
-    EXPECT_EQ(instants_told("-1"), "t.txt:1:1: -1 is outside the run, 0 to 20\n    -1\n    ^");
+    EXPECT_EQ(instants_told("0\n  20.5\n"),
+              "t.txt:2:3: 20.5 is outside the run, 0 to 20; leave it out, or change --end\n      20.5\n      ^");
+    EXPECT_EQ(instants_told("-1"),
+              "t.txt:1:1: -1 is outside the run, 0 to 20; leave it out, or change --end\n    -1\n    ^");
     EXPECT_EQ(instants_told("0,4"),
               "t.txt:1:1: '0,4' is not a finite number: write a decimal point, 0.4\n    0,4\n    ^");
     EXPECT_EQ(instants_told("# none\n\n"), "t.txt: the file contains no time\nwrite one time per line");
