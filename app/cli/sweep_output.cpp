@@ -195,7 +195,7 @@ bool SweepOutput::finish() {
     return is_drawn;
 }
 
-std::string SweepOutput::how_to_go_on() {
+std::string SweepOutput::how_to_continue() {
     if (!log_) return "";
     if (log_->done() == table_.sweep().count())
         return fmt::format("; the runs are kept in {}: the same command writes the files", log_path_);

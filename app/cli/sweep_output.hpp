@@ -44,9 +44,9 @@ class SweepOutput {
     bool finish();
     // Those that finish() has made.
     const std::vector<std::string>& files() const { return made_; }
-    // The end of a message that says where the runs are kept: ": --resume goes on with F.part", or
-    // "; they are kept in F.part ..." once all runs are done. Empty if none are kept.
-    std::string how_to_go_on();
+    // The end of a message, if runs are kept: ": the same command with --resume continues from F.part", or once all runs are
+    // done "; the runs are kept in F.part: ...". Empty otherwise.
+    std::string how_to_continue();
 
  private:
     SweepKey key() const;

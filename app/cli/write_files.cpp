@@ -187,7 +187,7 @@ void OutputFiles::commit(Care care) {
     refuse_inputs();
     for (File& file : files_)
         if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Care::on_disk);
-    // A device can be full: it comes before the names, which cannot cannot_write for lack of room.
+    // A device can be full, so it is written before files are renamed: renaming needs no room.
     for (const File& file : files_) {
         if (!file.in_place) continue;
         const bool standard = file.path == "-";

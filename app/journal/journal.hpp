@@ -39,12 +39,6 @@ Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named, const
 // The commands of all journals that one session replays are counted: one that replays itself ends.
 constexpr std::size_t most_replayed = 10000;
 
-// A journal wants what it may not. No command of it has been done. Unlike a command that is refused, it ends what makes
-// a picture.
-struct Forbidden : InputError {
-    using InputError::InputError;
-    std::vector<std::string> wants;  // want(), each once, where it is about files that somebody may allow
-};
 // What is asked about a file: "read /home/me/a.toml".
 std::string want(const std::string& file, bool writes);
 // Whether what comes from anybody may read this file; nothing: the user is to be asked.

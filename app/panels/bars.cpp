@@ -217,7 +217,7 @@ namespace {
 
 constexpr float edge = 10.0F;  // left and right, as beside the panels
 
-// A coloured sign and what it stands for, on the current line.
+// Shows a colored marker and its meaning on the current line.
 void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy({units(16.0F), ImGui::GetTextLineHeight()});
@@ -339,8 +339,8 @@ void show_proof(const Session& session) {
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
-// What is estimated of the run's error, once that is known, behind what stands there. Nothing where there is none, and why is in the
-// summary; nor where it would take the legend its place.
+// Shows the estimated error of the run at the end of the line, once it is known. It is left out if the legend needs the room. If
+// there is no estimate, the summary says why.
 void show_estimate(const Session& session) {
     const ErrorEstimate* estimate = session.error_estimate();
     if (estimate == nullptr || !estimate->end || session.horizon()) return;  // a remark tells of the horizon

@@ -191,7 +191,7 @@ class Setter {
     std::size_t block_ = 0;
 };
 
-// The units in so many columns of about the same height; a group rather begins a column than is torn.
+// Distributes the units over columns of about the same height. A group starts a new column rather than being split.
 SetSheet in_columns(const std::vector<Unit>& units, int columns, float column, float size) {
     float total = 0.0F;
     for (const Unit& unit : units) total += unit.height;

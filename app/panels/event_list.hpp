@@ -130,15 +130,15 @@ std::vector<StateColumn> state_columns(const Session& session);
 // A number, or a word over numbers, that ends at x; a long word is cut.
 void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
 
-// The numbers at the right end of the list: the energy that is lost, where there are several contacts what is held, and as much
-// of the state as has room. Beside a card the list has no numbers but the time.
+// The columns at the right end of the list: the energy loss, the held contacts if there are several contacts, and as many
+// coordinates and rates as fit. Beside a card the list has no such columns, only the time.
 class EventColumns {
  public:
     EventColumns(const Session& session, float width, bool is_alone);
     float words() const;  // how wide the words are, pixels
     void put_words(ImVec2 at, const std::string& text, const Color& color) const;
     void titles(const Session& session, ImVec2 at) const;
-    // Of an event, or of impacts in a row what they have lost.
+    // Writes the numbers of an event. For consecutive impacts `event` is null, and only their energy loss is written.
     void row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const;
 
  private:

@@ -27,7 +27,7 @@ constexpr double longest_arrow = 0.16;
 float switches_height();
 // What can be seen of the world in this part of the surface, all of it: what the run needs ends above the line at the bottom.
 Drawing seen_world(const Session& session, const Rectangle& area);
-// The menu of cameras, its right end there. What is seen now is what a camera that is fixed goes on with. Returns its left end.
+// Shows the menu of cameras with its right end at `right` and returns its left end. A fixed camera keeps the present view, `seen`.
 float show_camera_menu(const Session& session, const Drawing& seen, float right, float y, PanelState& state,
                        Commands& commands);
 // In the lower left corner, as long as the line left of `right` has room for; above that where it has none.

@@ -1,7 +1,6 @@
 // In place of the mechanism, of any system: the plane of two quantities, shaded where the gap is open, the run in it,
 // and where they are coordinates or rates the start to drag.
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -37,23 +36,6 @@ constexpr const char* plane_popup = "plane menu";
 
 std::string name_of(const PlaneTexts& texts) { return typeset(texts.first) + ", " + typeset(texts.second); }
 
-bool fields(PlaneView& plane, PanelState& state, bool focuses) {
-    bool typed = false;
-    for (const auto& [name, text] : {std::pair{"y", &plane.y}, std::pair{"x", &plane.x}}) {
-        label(name, units(20.0F));
-        ImGui::SameLine();
-        ImGui::SetNextItemWidth(units(240.0F));
-        if (focuses && text == &plane.y) ImGui::SetKeyboardFocusHere();
-        typed =
-            ImGui::InputText((std::string("##") + name).c_str(), text, ImGuiInputTextFlags_EnterReturnsTrue) || typed;
-        remember(state, std::string("plane ") + name);
-        tooltip(
-            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy. Press Enter to "
-            "show it. If both are coordinates or rates, you can drag the start, and contours are drawn");
-    }
-    return typed;
-}
-
 void show_menu(const Session& session, PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup(plane_popup)) return;
     PlaneView& plane = state.plane;
@@ -74,7 +56,10 @@ void show_menu(const Session& session, PanelState& state, Commands& commands) {
     ImGui::Separator();
     const bool was_entered = std::exchange(plane.was_entered, false);
     if (was_entered) plane.is_wrong = !session.error().empty();
-    const bool typed = fields(plane, state, was_entered && plane.is_wrong);
+    const bool typed = expression_fields(
+        plane.x, plane.y, was_entered && plane.is_wrong, "plane ",
+        ". Press Enter to show it. If both are coordinates or rates, you can drag the start, and contours are drawn",
+        state);
     if (plane.is_wrong && !session.error().empty()) show_message(session.error(), units(264.0F));
     if (typed) commands.emplace_back(command::ShowPlane{plane.x, plane.y});
     plane.was_entered = typed;

@@ -3,7 +3,6 @@
 // a plot over time goes there.
 #include <fmt/format.h>
 #include <imgui.h>
-#include <imgui_stdlib.h>
 
 #include <algorithm>
 #include <array>
@@ -472,19 +471,8 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     ImGui::Separator();
     const bool was_entered = std::exchange(menu.was_entered, false);
     if (was_entered) menu.is_wrong = !session.error().empty();
-    bool typed = false;
-    for (const auto& [name, text] : {std::pair{"y", &menu.y}, std::pair{"x", &menu.x}}) {
-        label(name, units(20.0F));
-        ImGui::SameLine();
-        ImGui::SetNextItemWidth(units(240.0F));
-        if (was_entered && menu.is_wrong && text == &menu.y) ImGui::SetKeyboardFocusHere();
-        typed =
-            ImGui::InputText((std::string("##") + name).c_str(), text, ImGuiInputTextFlags_EnterReturnsTrue) || typed;
-        remember(state, std::string("expression ") + name);
-        tooltip(
-            "an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy; separate several "
-            "curves by commas. Press Enter to plot");
-    }
+    const bool typed = expression_fields(menu.x, menu.y, was_entered && menu.is_wrong, "expression ",
+                                         "; separate several curves by commas. Press Enter to plot", state);
     if (menu.is_wrong && !session.error().empty()) show_message(session.error(), units(264.0F));
     if (typed) commands.emplace_back(command::PlotView{number, menu.x, split(menu.y)});
     menu.was_entered = typed;

@@ -305,12 +305,24 @@ float menu_button(const char* popup, const std::string& text, float x, const Rec
     return x + width + units(10.0F);
 }
 
-bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state) {
-    label(name, units(64.0F));
+bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state,
+              float name_width) {
+    label(name, units(name_width));
     ImGui::SameLine();
     ImGui::SetNextItemWidth(units(width));
     const bool entered = ImGui::InputText(("##" + id).c_str(), &text, ImGuiInputTextFlags_EnterReturnsTrue);
     remember(state, id);
+    return entered;
+}
+
+bool expression_fields(std::string& x, std::string& y, bool focuses_y, const std::string& id, const std::string& more,
+                       PanelState& state) {
+    bool entered = false;
+    for (const auto& [name, text] : {std::pair{"y", &y}, std::pair{"x", &x}}) {
+        if (focuses_y && text == &y) ImGui::SetKeyboardFocusHere();
+        entered = text_row(name, id + name, *text, 240.0F, state, 20.0F) || entered;
+        tooltip("an expression in t, coordinates, rates x', parameters, gap, gap', gap'', lambda, energy" + more);
+    }
     return entered;
 }
 

@@ -89,8 +89,13 @@ void paint_menu_arrow(float x, float y, bool lit);
 // A quiet button with such a sign: what it says now opens a menu of that name. Returns where it ends.
 float menu_button(const char* popup, const std::string& text, float x, const Rectangle& row, float right,
                   PanelState& state);
-// A line to type in, with its name before it, so wide at scale 1; true when Enter was pressed there.
-bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state);
+// A text field of this width at scale 1, with its name before it; true when Enter was pressed in it.
+bool text_row(const char* name, const std::string& id, std::string& text, float width, PanelState& state,
+              float name_width = 64.0F);
+// Two such fields for the expressions of a plot, y above x, with ids that begin with `id`. `more` ends the tooltip that says what
+// an expression is.
+bool expression_fields(std::string& x, std::string& y, bool focuses_y, const std::string& id, const std::string& more,
+                       PanelState& state);
 // Covers with the colour behind it, nearly, what is drawn over time from start to end after the horizon of the run.
 void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind);
 // How far from a marker, in pixels at scale 1, a click is meant for it.

@@ -24,10 +24,10 @@ struct Origin {
 std::string shell_word(const std::string& word);
 // "achilles" and the words, as a shell reads them.
 std::string shell_line(const std::vector<std::string>& words);
-// The command line that proves the run of a system with these settings. Of the overrides a proof needs the run's times only.
+// The command line that proves the run of a system with these settings. It takes only the start and end time from the overrides.
 std::string prove_line(const std::string& system, const std::vector<std::string>& settings,
                        const OptionOverrides& overrides);
-// The words of a command without --out, --csv and what else says where files go or how the work is done.
+// The words of a command without --out, --csv and other options that say where files go or how the work is done.
 std::string command_line(const std::vector<std::string>& words);
 // The words again. Throws std::runtime_error if the text is no such command line.
 std::vector<std::string> words_of(std::string_view command_line);

@@ -423,8 +423,38 @@ command::Change change_of(const Command& command);
 // Whether a command goes on with the change that the last one made: the same slider, the same plot.
 bool goes_on(const Command& last, const Command& next);
 
-// What a command is refused with: a mistake that stands in no file, because the user's hand made it. The hint says what would
-// be right; it may be empty.
+// The error of a command that is refused. It names no file, because the user gave the command. The hint says what would be
+// right; it may be empty.
 inline InputError refusal(const std::string& message, const std::string& hint = {}) { return {{}, {}, message, hint}; }
+
+// A journal asks for what it may not do. None of its commands has been performed. A refused command is reported and the
+// session goes on; this error also ends the making of a picture.
+struct Forbidden : InputError {
+    using InputError::InputError;
+    std::vector<std::string> wants;  // the results of want(), each once, if the user may allow the access to files
+};
+
+// Calls `perform`. An InputError of it becomes the refusal of a Command, with its usage as the hint; Forbidden stays what it is.
+template <class Command, class Perform>
+auto or_refuse(Perform perform) {
+    try {
+        return perform();
+    } catch (const Forbidden&) {
+        throw;
+    } catch (const InputError& problem) {
+        throw refusal(problem.what(), std::string(Command::said.usage));
+    }
+}
+
+// True if `check` throws no InputError.
+template <class Check>
+bool passes(Check check) {
+    try {
+        check();
+        return true;
+    } catch (const InputError&) {
+        return false;
+    }
+}
 
 }  // namespace achilles

@@ -160,11 +160,7 @@ void Plots::perform(const command::PlotView& command) {
     view.name = choice != choices_.end() ? choice->name : name_of(view);
     const Framing::Limits time = plot.framing.x;
     const bool was_over_time = plot.over_time();
-    try {
-        plot = prepared(view);
-    } catch (const InputError& problem) {
-        throw refusal(problem.what(), std::string(command::PlotView::said.usage));
-    }
+    plot = or_refuse<command::PlotView>([&] { return prepared(view); });
     if (was_over_time && plot.over_time() && linked_) plot.framing.x = time;
     ++revision_;
 }

@@ -196,24 +196,15 @@ void Session::read_document() {
     }
 }
 
-// The plane must be one of the system.
 void Session::perform(const command::ShowPlane& command) {
-    try {
-        const Plane plane(*system_->model, {command.x, command.y});
-    } catch (const InputError& problem) {
-        throw refusal(problem.what(), std::string(command::ShowPlane::said.usage));
-    }
+    or_refuse<command::ShowPlane>([&] { check_plane(command); });
     scene_.perform(command);
 }
 
-// Unless another system has not what it names.
+void Session::check_plane(const command::ShowPlane& plane) const { Plane(*system_->model, {plane.x, plane.y}); }
+
 void Session::keep_plane() {
-    if (!scene_.plane()) return;
-    try {
-        const Plane plane(*system_->model, {scene_.plane()->x, scene_.plane()->y});
-    } catch (const InputError&) {
-        scene_.forget_plane();
-    }
+    if (scene_.plane() && !passes([&] { check_plane(*scene_.plane()); })) scene_.forget_plane();
 }
 
 // Shows the start of the system until its run is there. The run must be one that can start.

@@ -292,11 +292,15 @@ class Session {
     void let_go();
     void begin_document(Document document);
     void read_document();
-    void keep_plane();
+    // Each of these throws InputError if this system lacks what is named.
+    void check_plane(const command::ShowPlane& plane) const;
     void check_sweep(const std::string& text) const;
+    void check_quantity(const std::string& quantity) const;
+    // After a change of the system: what it lacks is no longer shown.
+    void keep_plane();
     void keep_sweep();
-    void follow_sweep();
     void keep_dependence();
+    void follow_sweep();
     void follow_dependence(Patience patience);
     void follow_proof(Patience patience);
     void receive_proof(Patience patience);

@@ -75,24 +75,12 @@ void Session::check_sweep(const std::string& text) const {
 }
 
 void Session::perform(const command::ShowSweep& command) {
-    try {
-        check_sweep(command.text);
-    } catch (const Forbidden&) {
-        throw;
-    } catch (const InputError& problem) {
-        throw refusal(problem.what(), std::string(command::ShowSweep::said.usage));
-    }
+    or_refuse<command::ShowSweep>([&] { check_sweep(command.text); });
     scene_.perform(command);
 }
 
-// Unless another system has not what it names.
 void Session::keep_sweep() {
-    if (!scene_.sweep()) return;
-    try {
-        check_sweep(*scene_.sweep());
-    } catch (const InputError&) {
-        scene_.forget_sweep();
-    }
+    if (scene_.sweep() && !passes([&] { check_sweep(*scene_.sweep()); })) scene_.forget_sweep();
 }
 
 void Session::follow_sweep() {
@@ -196,24 +184,17 @@ bool Session::influences_are_current() const {
 }
 
 void Session::perform(const command::ShowDependence& command) {
-    try {
-        const Text text{command.quantity, {}};
-        system_->model->compile_measures({&text, 1});
-    } catch (const InputError& problem) {
-        throw refusal(problem.what(), std::string(command::ShowDependence::said.usage));
-    }
+    or_refuse<command::ShowDependence>([&] { check_quantity(command.quantity); });
     scene_.perform(command);
 }
 
-// Unless another system has not what it names.
+void Session::check_quantity(const std::string& quantity) const {
+    const Text text{quantity, {}};
+    system_->model->compile_measures({&text, 1});
+}
+
 void Session::keep_dependence() {
-    if (!scene_.depends()) return;
-    try {
-        const Text text{*scene_.depends(), {}};
-        system_->model->compile_measures({&text, 1});
-    } catch (const InputError&) {
-        scene_.forget_dependence();
-    }
+    if (scene_.depends() && !passes([&] { check_quantity(*scene_.depends()); })) scene_.forget_dependence();
 }
 
 // Of the run that is shown. What takes less than half a frame is there in the same one.
@@ -252,12 +233,10 @@ const OrbitWatch* Session::orbit_under_way() const { return orbit_job_->under_wa
 void Session::receive_orbit(Patience patience) { orbit_job_->update(patience); }
 
 void Session::perform(const command::FindOrbit& command) {
-    try {
+    or_refuse<command::FindOrbit>([&] {
         orbit_job_->begin(system_->model, command.text, asked_,
                           make_orbit_question(read_orbit(command.text), asked_, system_->model));
-    } catch (const InputError& problem) {
-        throw refusal(problem.what(), std::string(command::FindOrbit::said.usage));
-    }
+    });
     scene_.perform(command::Show{"orbit", true});
     receive_orbit(patience_);
 }

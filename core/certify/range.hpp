@@ -39,11 +39,11 @@ class Range {
     Interval at_centre_;                                     // the value there
 };
 
-// x and what lies within this radius of it.
+// The interval of all numbers within `radius` of x.
 inline Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
 
-// A radius that holds what was needed, with room, and something where nothing was needed. That something is far from the
-// denormal numbers, also where some of them are multiplied: these cost a hundred times as much as others.
+// A radius larger than `need` by the factor `room`, and positive even if nothing was needed. Its minimum is so large that
+// products of a few such radii are still normal numbers: arithmetic with denormal ones takes a hundred times as long.
 inline double inflated(double need, double room = 1.2) { return room * need + 0x1p-200; }
 
 }  // namespace achilles

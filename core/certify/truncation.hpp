@@ -103,11 +103,11 @@ class TruncationConditions {
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
 };
 
-// The conditions that the run asks for, of a contact with restitution e while others are held, of which `unpressed` need no
-// force.
+// The conditions that the options of the run select, for a contact with restitution e while the contacts `held` are held. Those of
+// them in `unpressed` need no contact force.
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
                                                             std::size_t contact, ContactSet held, ContactSet unpressed);
-// The same for one question: e is evaluated.
+// The same; evaluates e.
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact = 0,
                                                             ContactSet held = {}, ContactSet unpressed = {});
 

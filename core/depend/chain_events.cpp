@@ -13,7 +13,7 @@ using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-// A number with its derivatives by the components of a change, for the impact law over it.
+// A number and its derivatives with respect to the components of a change, for the impact law.
 struct Changing {
     double value;
     RowVectorXd row;
@@ -24,7 +24,7 @@ Changing operator*(const Changing& a, const Changing& b) {
     return {a.value * b.value, b.value * a.row + a.value * b.row};
 }
 
-// v -= n rate over changes: J is what the components are of those before. n does not depend on v.
+// Applies v -= n rate to changes: J maps the components before the impact to those after it. n does not depend on v.
 void take_out(const Changing& rate, const ContactGradient& surface, const Tangent& tangent, RowMatrix& J) {
     for (std::size_t k = 0; k < tangent.dof; ++k) {
         RowVectorXd change = (rate.value * surface.n_row(k)).lazyProduct(J);

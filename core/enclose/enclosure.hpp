@@ -85,7 +85,7 @@ Claim claim_as_written(const Run& run);
 Interval as_written(double x);
 // All coordinates and rates of the start by so much either way.
 void widen(Claim& claim, double half);
-// e of a contact over a claim. Throws InputError where it may lie outside of [0, 1].
+// The enclosure of the restitution of a contact over a claim. Throws InputError if it may lie outside of [0, 1].
 Interval restitution_over(const Model& model, const Claim& claim, std::size_t contact);
 // What is impossible about a part of a claim's starts and parameters, where that is proved: a gap below zero, a restitution
 // outside [0, 1]. Throws InputErrors.

@@ -50,7 +50,7 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
 
 namespace {
 
-// Over jets without directions, for their products by an exact 0: e = 0 may be one.
+// Evaluates over jets without directions, because their product with an exact 0 is 0, also if e is the factor 0.
 template <class Number>
 Interval enclosed(const Program& restitution, const Layout& layout, std::span<const Number> parameters) {
     Evaluator<Jet<Interval, 0>> e(restitution);

@@ -71,12 +71,12 @@ class Model {
     const Program& normal_acceleration() const { return programs_of(0).normal_acceleration; }
     const Program& force() const { return programs_of(0).force; }
     const Program& restitution(std::size_t contact = 0) const { return restitutions_[contact]; }
-    // Its value at these parameters, without what rounding has taken out of [0, 1]; its enclosure over these.
+    // The restitution of a contact at these parameters, moved into [0, 1] if rounding took it out; its enclosure over intervals.
     double restitution(std::span<const double> parameters, std::size_t contact) const {
         return without_rounding(evaluator(restitutions_[contact], parameters).output(0));
     }
     Interval restitution(std::span<const Interval> parameters, std::size_t contact) const;
-    // Both, of every contact of a run: whoever asks for one after the other keeps these.
+    // Value and enclosure for every contact, to be evaluated once per run.
     std::vector<Restitution> restitutions(std::span<const double> parameters) const;
     const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }

@@ -1,4 +1,4 @@
-// The restitution of a contact, a function of the parameters: evaluated once for a run, with values in [0, 1].
+// The restitution of a contact: a function of the parameters with values in [0, 1], evaluated once per run.
 #pragma once
 
 #include <optional>
@@ -13,16 +13,16 @@ struct Restitution {
     Interval enclosure;
 };
 
-// Outside of [0, 1] by no more than this is rounding. A parameter as it was written is known to 4 ulp, 2^-50, and an expression of
-// several may double that a few times: where it is 1, its enclosure reaches so far above. What a person types is farther off,
-// and an impact with it would change less of the energy, 2^-39, than steps do. It is the same for doubles: what can be proved
-// can be simulated.
+// A restitution that is outside of [0, 1] by at most this counts as rounding. A parameter is enclosed to 4 ulp (2^-50) of its
+// decimal, and an expression of several parameters may double that a few times, so the enclosure of an exact 1 ends above 1. A
+// person's mistake is larger. An impact with such a restitution changes the energy by at most 2^-39, less than a step does. Doubles
+// and intervals have the same bound, so that whatever can be proved can be simulated.
 inline constexpr double restitution_rounding = 0x1p-40;
 
-// The value without what rounding has added: the end of [0, 1] where it lies so little outside.
+// Moves a value that is outside of [0, 1] by rounding to the end of the interval; returns any other value as it is.
 double without_rounding(double e);
 
-// What is wrong with a restitution that does not lie in [0, 1].
+// The mistake, if a restitution does not lie in [0, 1].
 std::optional<Mistake> mistake_in(const Text& restitution, double e);
 std::optional<Mistake> mistake_in(const Text& restitution, const Interval& e);
 

@@ -33,7 +33,7 @@ class Surfaces {
 
     std::size_t count() const { return free_.size(); }
     const Restitution& restitution(std::size_t contact) const { return restitutions_[contact]; }
-    // For another run, whose parameters differ at most in what restitutions alone depend on.
+    // Takes the restitutions of another run. Its other parameters must be those of the present run.
     void bounce_as(const Run& run) { restitutions_ = model_->restitutions(run.parameters); }
     // A contact while none is held, and while these are.
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }

@@ -18,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-// The file beside it whose name is nearest, or the folder that is no_file.
+// The error of a missing file: it names the file with the nearest name beside it, or the folder that is missing.
 InputError no_file(const std::filesystem::path& file) {
     std::error_code problem;
     const std::filesystem::path folder = file.parent_path();

@@ -172,7 +172,7 @@ std::string name_of(const std::string& keyword) {
     return name;
 }
 
-// UTF-16, the larger byte first, behind the utf16_mark that says so.
+// UTF-16 with the larger byte first, after the byte order mark.
 std::string utf16(std::string_view text) {
     std::string bytes(utf16_mark);
     const auto add = [&](char32_t unit) {

@@ -132,7 +132,7 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     }
     if (ranks != nullptr && asked_to_stop) ranks->leave();
     progress.end();
-    const std::string how = output.how_to_go_on();
+    const std::string how = output.how_to_continue();
     if (output.done() == points)
         print_clean(stderr, "achilles: all {} runs are done, but not all files are written{}\n", points, how);
     else
