@@ -25,4 +25,4 @@
 #include "simulate/simulate.hpp"
 #include "study/orbit.hpp"
 #include "study/sweep.hpp"
-#include "system/named_run.hpp"
+#include "system/description.hpp"

@@ -2,10 +2,10 @@
 #include "cli/explore.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
 #include <chrono>
 #include <deque>
+#include <filesystem>
 #include <future>
 #include <optional>
 #include <utility>
@@ -13,16 +13,16 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/dropped.hpp"
-#include "cli/explorer_setup.hpp"
-#include "cli/film_in_hand.hpp"
+#include "cli/manual.hpp"
 #include "journal/journal.hpp"
 #include "journal/preferences.hpp"
 #include "journal/recovery.hpp"
-#include "journal/tour.hpp"
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
+#include "panels/widgets.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/thumbnails.hpp"
+#include "session/glossary.hpp"
 #include "session/recipe.hpp"
 #include "surface/window.hpp"
 
@@ -343,6 +343,103 @@ int explore(const ExploreOptions& options) {
     window.run([&] { explorer.frame(); });
     explorer.finish();
     return reached_end;
+}
+
+void FilmInHand::begin(std::unique_ptr<FilmJob> begun) {
+    if (film_) throw InputError(begun->film(), {}, "another film is still being drawn", "wait for it, or stop it");
+    film_ = std::move(begun);
+}
+
+bool FilmInHand::follow(Session& session, std::optional<FilmProgress>& progress) {
+    if (!film_) {
+        progress.reset();
+        return false;
+    }
+    const bool is_given_up = progress && progress->is_given_up;
+    if (is_given_up) film_->cancel();
+    const bool has_ended = film_->update();
+    progress = FilmProgress{film_->film(), film_->progress(), film_->share(), false};
+    if (!has_ended) return false;
+    const std::unique_ptr<FilmJob> film = std::move(film_);
+    progress.reset();
+    if (is_given_up)
+        session.tell("stopped the film " + film->film());
+    else if (film->is_made())
+        session.tell("wrote " + std::filesystem::absolute(film->film()).lexically_normal().string());
+    else if (film->has_frames())
+        session.tell(film->said());
+    else
+        session.refuse(InputError(film->film(), {}, film->said()));
+    return true;
+}
+
+std::vector<SystemEntry> known_systems() {
+    std::vector<SystemEntry> entries;
+    for (const std::filesystem::path& file : system_files()) {
+        const std::string name = file.stem().string();
+        try {
+            entries.push_back({name, read_system(file).title, std::string(group_of(name))});
+        } catch (const InputError&) {
+            // It stays in the list: choosing it shows what is wrong with it.
+            entries.push_back({name, name, std::string(group_of(name))});
+        }
+    }
+    std::stable_sort(entries.begin(), entries.end(), [](const SystemEntry& a, const SystemEntry& b) {
+        return place_in_gallery(a.name) < place_in_gallery(b.name);
+    });
+    return entries;
+}
+
+std::vector<SystemEntry> known_tours() {
+    std::vector<SystemEntry> entries;
+    for (const std::filesystem::path& file : journal_files()) {
+        const std::string name = file.stem().string();
+        try {
+            const std::string text = journal_file(file);
+            const std::string line = text.substr(0, text.find('\n'));
+            entries.push_back({name, line.rfind("# ", 0) == 0 ? line.substr(2) : name});
+        } catch (const InputError&) {
+            entries.push_back({name, name});  // choosing it tells what is wrong with it
+        }
+    }
+    return entries;
+}
+
+std::vector<Command> opening(const Session& session, const ExploreOptions& options) {
+    std::vector<Command> commands{command::Open{session.system()}};
+    for (const auto group : options_by_command(session.description().options, session.run().options)) {
+        const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
+            return options.overrides.given(option) != nullptr;
+        });
+        if (is_given) commands.emplace_back(command::UseOption(group[0], session.run().options));
+    }
+    for (const std::string& setting : options.settings) {
+        std::string name = setting.substr(0, setting.find('='));
+        name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
+        if (const auto value = session.value(name)) commands.emplace_back(command::Set{name, *value});
+    }
+    return commands;
+}
+
+SurfaceOptions surface_options(const ExploreOptions& options) {
+    SurfaceOptions surface;
+    surface.width = options.width;
+    surface.height = options.height;
+    surface.scale = options.scale;
+    surface.figure_text_size = screen_text_size;
+    surface.fonts = assets() / "fonts";
+    return surface;
+}
+
+PanelState panel_state(bool in_window) {
+    PanelState state;
+    state.systems = known_systems();
+    state.tours = known_tours();
+    for (const ManualTopic& topic : manual_topics()) state.manual.push_back({topic.name, topic.title});
+    state.manual_page = [](const std::string& topic) { return manual_page(topic); };
+    state.in_window = state.reads_folders = in_window;
+    state.thumbnails = std::make_shared<Thumbnails>(find_system, !in_window);
+    return state;
 }
 
 }  // namespace achilles

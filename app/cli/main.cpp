@@ -1,3 +1,3 @@
-#include "cli/commands/program.hpp"
+#include "cli/commands/commands.hpp"
 
 int main(int argc, char** argv) { return achilles::run_program({argv + 1, argv + argc}); }

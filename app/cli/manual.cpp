@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "cli/assets.hpp"
-#include "expression/functions.hpp"
+#include "expression/expression.hpp"
 #include "expression/nearest.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"

@@ -11,7 +11,6 @@
 #include "cli/terminal.hpp"
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "system/input_error.hpp"
 #include "system/units.hpp"

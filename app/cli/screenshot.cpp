@@ -5,7 +5,6 @@
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/explore.hpp"
-#include "cli/explorer_setup.hpp"
 #include "image/notes.hpp"
 #include "journal/journal.hpp"
 #include "pictures/picture_format.hpp"

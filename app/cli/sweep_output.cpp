@@ -3,14 +3,21 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
-
+#include <algorithm>
+#include <atomic>
 #include <cerrno>
+#include <cmath>
 #include <cstring>
+#include <stdexcept>
 #include <system_error>
 
 #include "cli/assets.hpp"
+#include "cli/terminal.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
+#include "pictures/picture_format.hpp"
+#include "pictures/take_away.hpp"
+#include "study/chunks.hpp"
 
 namespace achilles {
 
@@ -202,6 +209,239 @@ std::string SweepOutput::how_to_continue() {
     if (log_->done() > 0) return fmt::format(": the same command with --resume continues from {}", log_path_);
     log_->remove();  // there is nothing in it
     return "";
+}
+
+void SweepSummary::note(const Rows& rows) {
+    const std::size_t width = columns_.size();
+    for (std::size_t row = 0; row < rows.count(); ++row) {
+        const std::uint64_t point = rows.points[row];
+        const bool has_moment = !table_->is_section() || std::isfinite(rows.times[row]);
+        if (has_moment) ++totals_.rows;
+        if (totals_.last_point != point) {
+            ++totals_.runs;
+            if (rows.ends[row] == RunEnd(Outcome::Kind::end_time)) ++totals_.whole;
+            totals_.last_point = point;
+        }
+        for (std::size_t i = 0; i < width; ++i) {
+            const double x = rows.numbers[row * width + i];
+            Column one;
+            if (std::isfinite(x))
+                one.count = 1, one.first = one.last = point, one.low = one.high = x;
+            else
+                one.missing = 1, one.first_missing = one.last_missing = point;
+            add(columns_[i], one);
+        }
+    }
+}
+
+void SweepSummary::add(Column& column, const Column& more) {
+    if (more.count > 0) {
+        column.low = column.count > 0 ? std::min(column.low, more.low) : more.low;
+        column.high = column.count > 0 ? std::max(column.high, more.high) : more.high;
+        column.first = std::min(column.first, more.first);
+        column.last = std::max(column.last, more.last);
+    }
+    column.first_missing = std::min(column.first_missing, more.first_missing);
+    column.last_missing = std::max(column.last_missing, more.last_missing);
+    column.count += more.count;
+    column.missing += more.missing;
+}
+
+std::string SweepSummary::behind(std::string bytes) const {
+    bytes.append(reinterpret_cast<const char*>(&totals_), sizeof totals_);
+    if (!columns_.empty())
+        bytes.append(reinterpret_cast<const char*>(columns_.data()), columns_.size() * sizeof(Column));
+    return bytes;
+}
+
+std::string SweepSummary::take(std::string bytes) {
+    std::vector<Column> columns(columns_.size());
+    const std::size_t size = columns.size() * sizeof(Column);
+    Totals totals;
+    const char* const begin = bytes.data() + bytes.size() - size - sizeof totals;
+    std::memcpy(&totals, begin, sizeof totals);
+    if (size > 0) std::memcpy(columns.data(), begin + sizeof totals, size);
+    totals_.runs += totals.runs;
+    totals_.whole += totals.whole;
+    totals_.rows += totals.rows;
+    for (std::size_t i = 0; i < columns.size(); ++i) add(columns_[i], columns[i]);
+    bytes.resize(bytes.size() - size - sizeof totals);
+    return bytes;
+}
+
+const RunMeasures::Column& SweepSummary::column_of(std::size_t number) const {
+    const auto& columns = table_->measures().columns();
+    const auto is_number = [&](const RunMeasures::Column& column) {
+        return column.kind == RunMeasures::Column::Kind::number && number-- == 0;
+    };
+    return *std::find_if(columns.begin(), columns.end(), is_number);
+}
+
+std::string SweepSummary::name_of(std::size_t number) const { return column_of(number).name; }
+
+std::string SweepSummary::unit_of(std::size_t number) const {
+    const std::string& unit = column_of(number).unit;
+    return unit.empty() ? "" : " " + unit;
+}
+
+// "e >= 0.7125" where one axis has it at one end, else the first point; "" over no axis.
+std::string SweepSummary::where_missing(const Column& column) const {
+    const Sweep& sweep = table_->sweep();
+    if (sweep.axes.empty()) return "";
+    const auto at = [&](std::size_t axis, std::uint64_t point) {
+        return fmt::format("{:.6g}", sweep.value(axis, point));
+    };
+    const SweepAxis& axis = sweep.axes.front();
+    if (sweep.axes.size() == 1 && !sweep.random) {
+        const bool is_up = axis.low < axis.high;
+        if (column.last < column.first_missing)
+            return fmt::format("{} {} {}", axis.name, is_up ? ">=" : "<=", at(0, column.first_missing));
+        if (column.last_missing < column.first)
+            return fmt::format("{} {} {}", axis.name, is_up ? "<=" : ">=", at(0, column.last_missing));
+    }
+    std::string where;
+    for (std::size_t i = 0; i < sweep.axes.size(); ++i)
+        where += fmt::format("{}{} = {}", i == 0 ? "first at " : ", ", sweep.axes[i].name, at(i, column.first_missing));
+    return where;
+}
+
+std::string SweepSummary::text() const {
+    const std::string& title = table_->model().description().title;
+    const bool is_section = table_->is_section();
+    std::string text =
+        fmt::format("{}: {} run{}, {}{}\n", title, totals_.runs, totals_.runs == 1 ? "" : "s",
+                    totals_.whole == totals_.runs ? "all reached the end time"
+                                                  : fmt::format("{} reached the end time", totals_.whole),
+                    is_section ? fmt::format("; {} rows", totals_.rows) : "");
+    std::size_t width = 0;
+    for (std::size_t i = 0; i < columns_.size(); ++i) width = std::max(width, name_of(i).size());
+    const char* const things = is_section ? "rows" : "runs";
+    for (std::size_t i = 0; i < columns_.size(); ++i) {
+        const Column& column = columns_[i];
+        text += fmt::format("  {:<{}}   ", name_of(i), width);
+        if (column.count == 0) {
+            text += fmt::format("exists in none of the {} runs\n", totals_.runs);
+            continue;
+        }
+        const std::string low = fmt::format("{:.6g}", column.low), high = fmt::format("{:.6g}", column.high);
+        text += low == high ? low : low + " to " + high;
+        text += fmt::format("{} in {} {}", unit_of(i), column.count, things);
+        if (column.missing > 0 && !is_section)
+            text += fmt::format("; does not exist in {} ({})", column.missing, where_missing(column));
+        text += '\n';
+    }
+    return text;
+}
+
+std::vector<std::string> SweepSummary::nowhere() const {
+    std::vector<std::string> sentences;
+    for (std::size_t i = 0; i < columns_.size(); ++i)
+        if (columns_[i].count == 0 && totals_.runs > 0)
+            sentences.push_back(fmt::format("{} exists in none of the {} runs", name_of(i), totals_.runs));
+    return sentences;
+}
+
+SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job)
+    : table_(table), asked_(asked), job_(job) {
+    if (asked_.files.empty()) {
+        for (const auto& [is_given, option] :
+             {std::pair{asked_.look.dark, "--dark"}, std::pair{asked_.look.transparent, "--transparent"},
+              std::pair{asked_.page.width > 0.0, "--width-mm"}})
+            if (is_given) throw InputError(option, {}, "this needs --out F");
+        return;
+    }
+    for (const std::string& file : asked_.files) {
+        if (file == "-") throw InputError("--out -", {}, "the picture of a sweep needs a file", "write --out F.png");
+        const std::string format = format_for(file, "");
+        if (format == "pdf") need_pdf_writer("--out " + file);
+        if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
+    }
+    check(asked_.page, "--width-mm");
+    if (!job.reproduces()) try_to_draw();
+    const PictureSize size = size_of(page_for(asked_.page, "svg"), asked_.size, Figure(), "svg");
+    asked_.look.width = size.width / size.scale;
+    if (has_height()) asked_.look.height = size.height / size.scale;
+    const SweepData data(table);
+    check_drawn(data, asked_.look);
+    for (const std::string& word : left_out(data, asked_.look))
+        print_clean(stderr, "achilles: warning: --print {}: text values are not drawn in a section\n", word);
+}
+
+// Without its fonts, or what draws without a window, a picture fails: before the runs, not after them.
+void SweepPictures::try_to_draw() const {
+    for (const std::string& file : asked_.files) {
+        const std::string format = format_for(file, "");
+        try {
+            picture_of(Figure(), {64, 64}, {}, format == "png" ? format : "svg");
+        } catch (const InputError&) {
+            throw;
+        } catch (const std::runtime_error& problem) {
+            throw InputError("--out " + file, {}, problem.what());
+        }
+    }
+}
+
+std::optional<Figure> SweepPictures::figure(const EachRows& each_rows) const {
+    std::uint64_t count = 0;
+    each_rows([&](const Rows& rows) { count += rows.count(); });
+    const std::uint64_t every = (count + most_drawn_rows - 1) / most_drawn_rows;
+    SweepData data(table_);
+    std::uint64_t next = 0;
+    each_rows([&](const Rows& rows) {
+        if (every <= 1) return data.add(rows);
+        for (std::size_t row = 0; row < rows.count(); ++row)
+            if (next++ % every == 0) data.add(rows, row);
+    });
+    if (every > 1)
+        print_clean(
+            stderr,
+            "achilles: warning: the table has {} rows; every {}th is drawn, because a figure holds at most {}\n", count,
+            every, most_drawn_rows);
+    SweepLook look = asked_.look;
+    look.columns = columns_with_values(data, asked_.look);
+    const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one over the other
+    if (look.columns.empty() || (needs_both && look.columns.size() < 2)) {
+        print_clean(stderr, "achilles: no picture is drawn: no run has a value to draw\n");
+        return std::nullopt;
+    }
+    return compose_sweep(data, look);
+}
+
+PictureSize SweepPictures::size_for(const Figure& figure, const std::string& format) const {
+    PictureSize size = size_of(page_for(asked_.page, format), asked_.size, figure, format);
+    if (!has_height()) size.height = readable_height(figure, size.width, size.height, size.scale);
+    return size;
+}
+
+std::string SweepPictures::bytes(const Figure& figure, const std::string& file) const {
+    const std::string format = format_for(file, "");
+    const PictureSize size = size_for(figure, format);
+    job_.check_size(size.width, size.height);
+    const SystemDescription& description = table_.model().description();
+    Notes notes = job_.notes_of("", {});
+    for (Note& note : notes)
+        if (note.keyword == "Title") note.text = description.title + ": " + to_text(table_.sweep(), description);
+    return picture_of(figure, size, notes, format);
+}
+
+void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads) {
+    const SweepPictures pictures(table, asked, job);
+    const std::uint64_t points = table.sweep().count();
+    const std::atomic<bool> stop{false};
+    std::vector<Rows> all;
+    std::uint64_t row_count = 0;
+    do_chunks(
+        0, points, threads, [&](Chunk chunk) { return to_bytes(table.rows(chunk.first, chunk.count)); },
+        [&](Chunk, const std::string& bytes) {
+            all.push_back(rows_from(bytes, table));
+            row_count += all.back().count();
+            job.check_rows(row_count);
+        },
+        stop);
+    const std::optional<Figure> figure = pictures.figure([&](const auto& take) {
+        for (const Rows& rows : all) take(rows);
+    });
+    if (figure) job.keep(pictures.bytes(*figure, pictures.files().front()));
 }
 
 }  // namespace achilles

@@ -1,15 +1,55 @@
 // Where the table of a sweep goes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
-#include "cli/sweep_pictures.hpp"
 #include "cli/write_files.hpp"
+#include "figure/sweep_figure.hpp"
 #include "output/sweep_files.hpp"
+#include "pictures/picture_format.hpp"
+#include "study/table.hpp"
 
 namespace achilles {
+
+// The pictures of a sweep.
+struct SweepPicturesAsked {
+    std::vector<std::string> files;  // .png, .svg or .pdf
+    SweepLook look;
+    PictureSize size;
+    bool has_size = false;  // that of pixels is given
+    PaperSize page;
+};
+
+class SweepPictures {
+ public:
+    // Whether they can be drawn: throws InputError before anything is computed. Refers to the table and the job.
+    SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job);
+
+    const std::vector<std::string>& files() const { return asked_.files; }
+    // Drawn from all rows at the end, of which it holds most_drawn_rows at most: of more, every second, third, ... one. Columns
+    // without a value are left out; nothing where no column has one, which is said on standard error. Throws
+    // std::runtime_error where it cannot be drawn.
+    std::optional<Figure> figure(const EachRows& each_rows) const;
+    // As the name of such a file says. A height that is not asked for is no less than what its panels need.
+    std::string bytes(const Figure& figure, const std::string& file) const;
+
+ private:
+    void try_to_draw() const;
+    bool has_height() const { return asked_.page.width > 0.0 ? asked_.page.height > 0.0 : asked_.has_size; }
+    PictureSize size_for(const Figure& figure, const std::string& format) const;
+    const SweepTable& table_;
+    SweepPicturesAsked asked_;
+    const PictureJob& job_;
+};
+
+// Makes the one picture that a job is asked for again, keeping no file.
+void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads);
 
 struct SweepOutputAsked {
     std::string csv, hdf5;  // files; csv: or -, standard output
@@ -66,6 +106,43 @@ class SweepOutput {
     std::unique_ptr<SweepLog> log_;
     int stream_ = -1;  // where there is no log
     std::uint64_t printed_ = 0;
+};
+
+// What a sweep came to, in a few lines: how many runs reached their end, and the range of each quantity.
+
+// Counts and ranges over rows, chunk by chunk, in whichever process: they travel as bytes behind those of a chunk.
+class SweepSummary {
+ public:
+    explicit SweepSummary(const SweepTable& table) : table_(&table), columns_(table.measures().numbers()) {}
+
+    void note(const Rows& rows);
+    // As bytes behind others, and taken away from there again: added to these.
+    std::string behind(std::string bytes) const;
+    std::string take(std::string bytes);
+
+    // "Ball on a sine: 9 runs, all reached the end time", and a line for each quantity: its range, and where it does not exist.
+    std::string text() const;
+    // A sentence for each quantity that exists in no run.
+    std::vector<std::string> nowhere() const;
+
+ private:
+    struct Column {
+        std::uint64_t count = 0, missing = 0;
+        std::uint64_t first = most_points, last = 0, first_missing = most_points, last_missing = 0;  // points
+        double low = 0.0, high = 0.0;
+    };
+    struct Totals {
+        std::uint64_t runs = 0, whole = 0, rows = 0, last_point = most_points;
+    };
+    static void add(Column& column, const Column& more);
+    std::string where_missing(const Column& column) const;
+    std::string name_of(std::size_t number) const;
+    std::string unit_of(std::size_t number) const;
+    const RunMeasures::Column& column_of(std::size_t number) const;
+
+    const SweepTable* table_;
+    Totals totals_;
+    std::vector<Column> columns_;
 };
 
 }  // namespace achilles

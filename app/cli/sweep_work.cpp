@@ -7,7 +7,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include "cli/sweep_summary.hpp"
+#include "cli/sweep_output.hpp"
 #include "cli/terminal.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"

@@ -1,14 +1,16 @@
 #include "journal/journal.hpp"
 
 #include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "cli/assets.hpp"
-#include "journal/words.hpp"
+#include "expression/parse.hpp"
 
 namespace achilles {
 
@@ -186,6 +188,187 @@ void JournalFile::take_back() {
     if (before_ < 0 || fs::is_character_file(path_)) return;
     fs::resize_file(path_, static_cast<std::uintmax_t>(before_));
     stream_.seekp(before_);
+}
+
+namespace {
+
+bool says(const Command& command) {
+    const auto* say = std::get_if<command::Say>(&command);
+    return say != nullptr && !say->text.empty();
+}
+
+template <class Commands>
+std::size_t sentences_in(const Commands& commands) {
+    return static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), says));
+}
+
+bool may_be_done_again(const Command& command) {
+    return !std::holds_alternative<command::Save>(command) && !std::holds_alternative<command::Export>(command) &&
+           !std::holds_alternative<command::Copy>(command) && !std::holds_alternative<command::Replay>(command);
+}
+
+}  // namespace
+
+void Tour::keep(const Command& command) {
+    const auto* wait = std::get_if<command::Wait>(&command);
+    auto* const last = done_.empty() ? nullptr : std::get_if<command::Wait>(&done_.back());
+    if (wait != nullptr && last != nullptr)
+        last->seconds += wait->seconds;
+    else
+        done_.push_back(command);
+}
+
+std::vector<Command> Tour::advance(double seconds) {
+    std::vector<Command> due;
+    while (!left_.empty()) {
+        auto* const wait = std::get_if<command::Wait>(&left_.front());
+        if (wait == nullptr) {
+            due.push_back(left_.front());
+            keep(left_.front());
+            left_.pop_front();
+            if (std::holds_alternative<command::Replay>(due.back())) break;  // what it holds comes first
+            continue;
+        }
+        const double passed = std::min(wait->seconds, seconds);
+        if (passed > 0.0) keep(due.emplace_back(command::Wait{passed}));
+        seconds -= passed;
+        wait->seconds -= passed;
+        if (wait->seconds > 0.0) break;
+        left_.pop_front();
+    }
+    return due;
+}
+
+std::vector<Command> Tour::next() {
+    if (left_.empty() || !std::holds_alternative<command::Wait>(left_.front())) return {};
+    const Command rest = left_.front();
+    keep(rest);
+    left_.pop_front();
+    return {rest};
+}
+
+std::size_t Tour::said() const { return sentences_in(done_); }
+std::size_t Tour::sentences() const { return said() + sentences_in(left_); }
+
+void Tour::begin(const std::vector<Command>& journal) {
+    const bool is_named = !done_.empty() && std::holds_alternative<command::Replay>(done_.back());
+    if (is_named)
+        done_.pop_back();
+    else if (left_.empty())
+        done_.clear();  // of another tour, which has come to its end
+    left_.insert(left_.begin(), journal.begin(), journal.end());
+}
+
+std::vector<Command> Tour::back() {
+    const std::size_t now = said();
+    if (now < 2) return {};
+    auto from = done_.begin();
+    for (std::size_t count = 0; from != done_.end(); ++from)
+        if (says(*from) && ++count == now - 1) break;
+    // A wait of which a part has passed is whole again.
+    auto* const rest = left_.empty() ? nullptr : std::get_if<command::Wait>(&left_.front());
+    auto* const passed = std::get_if<command::Wait>(&done_.back());
+    if (rest != nullptr && passed != nullptr) {
+        passed->seconds += rest->seconds;
+        left_.pop_front();
+    }
+    left_.insert(left_.begin(), from, done_.end());
+    done_.erase(from, done_.end());
+    std::vector<Command> again;
+    std::copy_if(done_.begin(), done_.end(), std::back_inserter(again), may_be_done_again);
+    return again;
+}
+
+namespace {
+
+constexpr std::string_view spaces = " \t\r";
+
+// What would end the line or the word, and how it is written: \n.
+constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
+
+char meant_by(char letter) {
+    for (const auto& [written, meant] : escapes)
+        if (written == letter) return meant;
+    return letter;
+}
+
+std::size_t skip_space(std::string_view text, std::size_t at) {
+    return std::min(text.find_first_not_of(spaces, at), text.size());
+}
+
+}  // namespace
+
+Line::Line(std::string_view text, const std::string& file, int number) : text_(text), file_(file), number_(number) {
+    for (std::size_t at = skip_space(text, 0); at < text.size() && text[at] != '#'; at = skip_space(text, at)) {
+        const int column = static_cast<int>(at) + 1;
+        words_.push_back({text[at] == '"' ? quoted(at) : plain(at), column});
+    }
+}
+
+InputError Line::error(int column, const std::string& message, const std::string& hint) const {
+    return {file_, {number_, column}, message, hint, std::string(text_)};
+}
+
+void Line::expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
+    const int end = static_cast<int>(text_.find_last_not_of(spaces)) + 2;
+    if (count() < least + 1) throw error(end, fmt::format("'{}' needs more arguments", words_[0].text), usage);
+    if (count() > most + 1)
+        throw error(words_[most + 1].column, fmt::format("unexpected argument '{}'", words_[most + 1].text), usage);
+}
+
+double Line::number(std::size_t i) const {
+    try {
+        return read_number(words_[i].text).value;
+    } catch (const ParseError& problem) {
+        throw error(words_[i].column, problem.what());
+    }
+}
+
+int Line::whole_number(std::size_t i) const {
+    const double value = number(i);
+    if (value != std::floor(value) || std::abs(value) > 1e9)
+        throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
+    return static_cast<int>(value);
+}
+
+std::string Line::plain(std::size_t& at) const {
+    const std::size_t begin = at;
+    at = std::min(text_.find_first_of(spaces, at), text_.size());
+    return std::string(text_.substr(begin, at - begin));
+}
+
+std::string Line::quoted(std::size_t& at) const {
+    const int column = static_cast<int>(at) + 1;
+    std::string result;
+    for (++at; at < text_.size() && text_[at] != '"'; ++at) {
+        const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
+        if (escaped) ++at;
+        result += escaped ? meant_by(text_[at]) : text_[at];
+    }
+    if (at == text_.size()) throw error(column, "the quotes are not closed");
+    ++at;
+    return result;
+}
+
+std::string quoted(const std::string& word) {
+    std::string text = "\"";
+    for (const char c : word) {
+        const auto* special =
+            std::find_if(escapes.begin(), escapes.end(), [c](const auto& e) { return e.second == c; });
+        if (special != escapes.end() || c == '"' || c == '\\') text += '\\';
+        text += special != escapes.end() ? special->first : c;
+    }
+    return text + '"';
+}
+
+std::string quoted_where_needed(const std::string& word) {
+    const bool is_plain = !word.empty() && word[0] != '#' && word.find_first_of(" \t\r\n\"\\") == std::string::npos;
+    return is_plain ? word : quoted(word);
+}
+
+bool is_blank(std::string_view line) {
+    const std::size_t first = skip_space(line, 0);
+    return first == line.size() || line[first] == '#';
 }
 
 }  // namespace achilles

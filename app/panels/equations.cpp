@@ -10,7 +10,7 @@
 #include "model/derived_values.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

@@ -12,7 +12,7 @@
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "simulate/explain.hpp"
 #include "surface/imgui_version.hpp"

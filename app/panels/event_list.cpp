@@ -8,7 +8,7 @@
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

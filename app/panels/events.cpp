@@ -11,7 +11,6 @@
 #include "output/energy.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
 #include "paint/paint.hpp"
 #include "panels/event_list.hpp"
 #include "panels/widgets.hpp"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "pictures/thumbnails.hpp"
 #include "surface/imgui_version.hpp"

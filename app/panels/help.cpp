@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "figure/label.hpp"
-#include "paint/label.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "session/glossary.hpp"

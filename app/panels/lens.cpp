@@ -9,7 +9,7 @@
 
 #include "output/output.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

@@ -12,8 +12,7 @@
 
 #include "figure/label.hpp"
 #include "figure/stage.hpp"
-#include "paint/label.hpp"
-#include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "figure/plane.hpp"
-#include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "panels/browser.hpp"
 #include "panels/focus.hpp"
 #include "session/session.hpp"

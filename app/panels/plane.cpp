@@ -12,7 +12,7 @@
 #include "figure/label.hpp"
 #include "figure/palette.hpp"
 #include "figure/plane.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/panels.hpp"
 #include "panels/widgets.hpp"
 #include "system/units.hpp"

@@ -14,7 +14,7 @@
 #include "figure/difference.hpp"
 #include "figure/label.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "simulate/sampler.hpp"
 #include "surface/imgui_version.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "figure/palette.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

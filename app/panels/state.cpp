@@ -11,7 +11,7 @@
 #include "number/angle.hpp"
 #include "output/energy.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 
 namespace achilles {

@@ -15,7 +15,6 @@
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
 #include "figure/sweep_figure.hpp"
-#include "paint/label.hpp"
 #include "paint/paint.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"

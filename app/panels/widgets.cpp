@@ -12,7 +12,7 @@
 
 #include "figure/label.hpp"
 #include "output/precision.hpp"
-#include "paint/label.hpp"
+#include "paint/paint.hpp"
 #include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"

@@ -9,7 +9,6 @@
 #include "expression/nearest.hpp"
 #include "image/notes.hpp"
 #include "output/output.hpp"
-#include "paint/mechanism.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
 #include "pictures/picture_format.hpp"

@@ -7,7 +7,7 @@
 
 #include "figure/publication.hpp"
 #include "pictures/film.hpp"
-#include "pictures/paper_size.hpp"
+#include "pictures/picture_format.hpp"
 #include "session/session.hpp"
 
 namespace achilles {

@@ -16,7 +16,7 @@
 #include "figure/publication.hpp"
 #include "model/model.hpp"
 #include "pictures/origin.hpp"
-#include "pictures/paper_size.hpp"
+#include "pictures/picture_format.hpp"
 #include "run/trajectory.hpp"
 
 namespace achilles::python {

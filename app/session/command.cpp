@@ -11,8 +11,7 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
-#include "journal/words.hpp"
+#include "journal/journal.hpp"
 
 namespace achilles {
 

@@ -3,7 +3,7 @@
 //
 //     open ball_on_sine        set x' 1.5         eps 1e-6 1e-6 1e-7        seek 3.2        # a comment
 //
-// Values are in the file's units, angles in radians or as 30 deg; words.hpp tells how words with spaces are written.
+// Values are in the file's units, angles in radians or as 30 deg; journal.hpp tells how words with spaces are written.
 #pragma once
 
 #include <string>

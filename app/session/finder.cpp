@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "journal/words.hpp"
+#include "journal/journal.hpp"
 #include "session/command.hpp"
 
 namespace achilles {

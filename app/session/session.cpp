@@ -10,7 +10,6 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "figure/plane.hpp"
 #include "figure/stage.hpp"
 #include "journal/journal.hpp"

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {

@@ -4,7 +4,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "expression/functions.hpp"
+#include "expression/expression.hpp"
 #include "expression/graph.hpp"
 #include "expression/scalar.hpp"
 

@@ -6,6 +6,8 @@
 // stack.
 #pragma once
 
+#include <array>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -138,5 +140,27 @@ double value_of_constant(Expression expression);
 
 // The expression as text that parse() reads back; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);
+
+// The functions of the language: names, for reading and printing, and values. One table.
+struct Function {
+    std::string_view name;
+    Operation operation;
+    double (*value)(double);
+};
+
+inline constexpr std::array<Function, 12> functions{{
+    {"sqrt", Operation::sqrt, std::sqrt},
+    {"sin", Operation::sin, std::sin},
+    {"cos", Operation::cos, std::cos},
+    {"tan", Operation::tan, std::tan},
+    {"asin", Operation::asin, std::asin},
+    {"acos", Operation::acos, std::acos},
+    {"atan", Operation::atan, std::atan},
+    {"sinh", Operation::sinh, std::sinh},
+    {"cosh", Operation::cosh, std::cosh},
+    {"tanh", Operation::tanh, std::tanh},
+    {"exp", Operation::exp, std::exp},
+    {"log", Operation::log, std::log},
+}};
 
 }  // namespace achilles

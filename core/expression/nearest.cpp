@@ -4,7 +4,6 @@
 #include <iterator>
 #include <vector>
 
-#include "expression/greek.hpp"
 
 namespace achilles {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "expression/functions.hpp"
+#include "expression/expression.hpp"
 #include "expression/graph.hpp"
 #include "expression/notation.hpp"
 

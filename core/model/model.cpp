@@ -9,7 +9,7 @@
 #include "model/unpressed.hpp"
 #include "number/ground.hpp"
 #include "number/jet.hpp"
-#include "system/mistakes.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 

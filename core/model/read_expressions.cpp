@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "expression/graph.hpp"
-#include "expression/read_number.hpp"
+#include "expression/parse.hpp"
 #include "model/rate_polynomial.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"

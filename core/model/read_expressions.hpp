@@ -4,7 +4,7 @@
 #include "expression/parse.hpp"
 #include "model/derive.hpp"
 #include "system/description.hpp"
-#include "system/mistakes.hpp"
+#include "system/input_error.hpp"
 #include "system/read_tables.hpp"
 
 namespace achilles {

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "number/interval.hpp"
-#include "system/mistakes.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 

@@ -6,7 +6,7 @@
 #include <array>
 
 #include "expression/nearest.hpp"
-#include "expression/read_number.hpp"
+#include "expression/parse.hpp"
 
 namespace achilles {
 

@@ -9,7 +9,6 @@
 #include "model/undefined.hpp"
 #include "number/ground.hpp"
 #include "system/input_error.hpp"
-#include "system/mistakes.hpp"
 
 namespace achilles {
 

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"

@@ -8,7 +8,6 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "model/behind.hpp"
 #include "simulate/simulate.hpp"
 #include "study/return_map.hpp"

@@ -8,7 +8,6 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "study/sweep.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"

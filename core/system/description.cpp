@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -10,7 +9,6 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "number/angle.hpp"
 #include "number/ground.hpp"
 #include "system/input_error.hpp"
@@ -30,16 +28,6 @@ std::string_view trimmed(std::string_view text) {
 
 InputError SystemDescription::error(Location at, const std::string& message, const std::string& hint) const {
     return {file, at, message, hint, line_of(source_text, at.line)};
-}
-
-Location place_in(const Text& text, std::size_t offset) {
-    Location at = text.at;
-    for (std::size_t i = 0; i < offset && i < text.text.size(); ++i) {
-        if ((static_cast<unsigned char>(text.text[i]) & 0xC0) == 0x80) continue;  // inside a UTF-8 character
-        ++at.column;
-        if (text.text[i] == '\n') at = {at.line + 1, 1};
-    }
-    return at;
 }
 
 Run default_run(const SystemDescription& description) {
@@ -257,6 +245,29 @@ std::vector<Text> texts_of(const DrawingDescription& drawing) {
         texts.insert(texts.end(), drawing.over_limits.begin(), drawing.over_limits.end());
     if (!drawing.width.text.empty()) texts.push_back(drawing.width);
     return texts;
+}
+
+namespace {
+
+double& value_of(const SystemDescription& description, Run& run, std::string_view name) {
+    double* const place = find_value(description, run, name);
+    if (place == nullptr) throw InputError({}, {}, why_not_settable(description, name));
+    return *place;
+}
+
+}  // namespace
+
+NamedRun::NamedRun(const SystemDescription& description)
+    : Run(default_run(description)), description_(std::make_shared<const SystemDescription>(description)) {}
+
+NamedRun& NamedRun::set(std::string_view name, double value) {
+    value_of(*description_, *this, name) = value;
+    return *this;
+}
+
+double NamedRun::get(std::string_view name) const {
+    Run copy = *this;
+    return value_of(*description_, copy, name);
 }
 
 }  // namespace achilles

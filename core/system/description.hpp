@@ -4,54 +4,17 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "../run/options.hpp"
+#include "input_error.hpp"
 
 namespace achilles {
-
-// Where something stands in a file, from 1; 0: nowhere.
-struct Location {
-    int line = 0;
-    int column = 0;
-};
-
-// Bad input, told to a person: "FILE:LINE:COLUMN: message", the offending line with a caret where there is one, a hint.
-struct InputError : std::runtime_error {
-    InputError(std::string file, Location at, std::string message, std::string hint = {}, const std::string& line = {});
-    std::string file, message, hint;  // hint: what would be right; may be empty
-    Location at;
-
- protected:
-    // One that stands for several: the first of them, but for what() a text of its own.
-    InputError(const InputError& first, const std::string& told);
-};
-
-// The mistakes of one file, in order of position. Caught as an InputError it is the first of them; what() tells all,
-// each as it would be told alone, with an empty line between them and a last line "and N more" where there are more.
-struct InputErrors : InputError {
-    // `all`: at least one, in order; `more`: how many others there are.
-    explicit InputErrors(std::vector<InputError> all, std::size_t more = 0);
-    std::vector<InputError> all;  // at most ten, each with its line and column
-    std::size_t more;
-};
-
-// What an error consists of: the mistakes of an InputErrors, or itself.
-std::vector<InputError> each_of(const InputError& error);
-
-// An expression (or a number) as written. `at` is the place of its first character.
-struct Text {
-    std::string text;
-    Location at;
-};
-
-// The place of a byte inside a text that starts at `text.at`.
-Location place_in(const Text& text, std::size_t offset);
 
 struct CoordinateDescription {
     std::string name, unit;
@@ -186,5 +149,22 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
 std::vector<std::string> unseen_lines(const SystemDescription& description);
 // Assigns "NAME=VALUE" as --set does. Throws InputError without a location, and leaves the run as it is.
 void assign(Run& run, const SystemDescription& description, std::string_view name_value);
+
+// A run whose values are set by their names, as --set does.
+
+class NamedRun : public Run {
+ public:
+    // The run that the description asks for.
+    explicit NamedRun(const SystemDescription& description);
+
+    // Sets a parameter, a coordinate x or its rate x' at the start; angles in rad. Throws InputError where there is no such name,
+    // with what was probably meant. May be chained.
+    NamedRun& set(std::string_view name, double value);
+    // Its value. Throws as set() does.
+    double get(std::string_view name) const;
+
+ private:
+    std::shared_ptr<const SystemDescription> description_;
+};
 
 }  // namespace achilles

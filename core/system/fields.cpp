@@ -8,7 +8,6 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
 #include "system/units.hpp"

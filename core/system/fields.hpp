@@ -1,5 +1,5 @@
 // One table of a system file, read key by key; every complaint names the key, the table and the place. What is wrong is
-// thrown as a Mistake: who reads several independent keys attempts each (system/mistakes.hpp).
+// thrown as a Mistake: who reads several independent keys attempts each (system/input_error.hpp).
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "system/description.hpp"
-#include "system/mistakes.hpp"
+#include "system/input_error.hpp"
 #include "system/toml_tree.hpp"
 #include "system/units.hpp"
 

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <tuple>
 #include <vector>
 
 #include "system/description.hpp"
@@ -179,6 +180,43 @@ std::string shown(std::string_view text) {
 std::string subnormal_parameter(std::string_view name, double value) {
     return fmt::format("the parameter '{}' is {}: such a small number is not represented with full precision", name,
                        value);
+}
+
+Location place_in(const Text& text, std::size_t offset) {
+    Location at = text.at;
+    if (!text.is_written) return at;
+    for (std::size_t i = 0; i < offset && i < text.text.size(); ++i) {
+        if ((static_cast<unsigned char>(text.text[i]) & 0xC0) == 0x80) continue;  // inside a UTF-8 character
+        ++at.column;
+        if (text.text[i] == '\n') at = {at.line + 1, 1};
+    }
+    return at;
+}
+
+namespace {
+
+constexpr std::size_t most_kept = 1000;  // in the order of reading; nobody corrects more at once
+constexpr std::size_t most_told = 10;
+
+}  // namespace
+
+void Mistakes::add(Mistake mistake) {
+    ++count_;
+    if (kept_.size() < most_kept) kept_.push_back(std::move(mistake));
+}
+
+void Mistakes::raise(const SystemDescription& system) const {
+    if (count_ == 0) return;
+    std::vector<Mistake> sorted = kept_;
+    const auto place = [](const Mistake& mistake) { return std::tuple(mistake.at.line, mistake.at.column); };
+    std::stable_sort(sorted.begin(), sorted.end(),
+                     [&](const Mistake& a, const Mistake& b) { return place(a) < place(b); });
+    std::vector<InputError> told;
+    for (std::size_t i = 0; i < std::min(sorted.size(), most_told); ++i)
+        told.emplace_back(system.file, sorted[i].at, sorted[i].message, sorted[i].hint,
+                          sorted[i].has_line ? line_of(system.source_text, sorted[i].at.line) : "");
+    const std::size_t more = count_ - told.size();
+    throw InputErrors(std::move(told), more);
 }
 
 }  // namespace achilles

@@ -1,8 +1,10 @@
 // Reading from disk.
+
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
-
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <memory>
@@ -13,6 +15,7 @@
 #include "expression/nearest.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"
+#include "system/read_tables.hpp"
 
 namespace achilles {
 
@@ -64,6 +67,81 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     }
     if (std::ferror(open.get()) != 0) throw refuse(reason());
     return text;
+}
+
+namespace {
+
+struct Kind {
+    std::string_view begins, what, advice;
+};
+
+constexpr std::string_view reproduce = "achilles reproduce FILE prints the command that made it",
+                           start_from_new = "achilles new NAME writes a system file to start from";
+
+// The first bytes of files that are no text.
+constexpr Kind of_bytes[] = {
+    {"\x89PNG", "a PNG picture", reproduce},
+    {"%PDF", "a PDF document", reproduce},
+    {"\xff\xd8\xff", "a JPEG picture", start_from_new},
+    {"GIF8", "a GIF picture", start_from_new},
+    {"\x89HDF", "an HDF5 file", start_from_new},
+    {"PK\x03\x04", "a ZIP archive (a Simulink .slx is one), not a system file", start_from_new},
+    {"\x1f\x8b", "a compressed file", "unpack it first: gunzip FILE"},
+    {"\x7f"
+     "ELF",
+     "a program", start_from_new},
+    {"MATLAB 5.0", "a MAT file", start_from_new},
+};
+
+// The first letters of texts, behind blanks.
+constexpr Kind of_texts[] = {
+    {"<svg", "an SVG picture", reproduce},
+    {"<?xml", "an SVG picture or other XML", reproduce},
+    {"<", "HTML or XML", start_from_new},
+    {"{", "JSON, but a system file is TOML", start_from_new},
+    {"[{", "JSON, but a system file is TOML", start_from_new},
+    {"%", "Matlab or LaTeX, but a system file is TOML", start_from_new},
+    {"\\documentclass", "LaTeX, but a system file is TOML", start_from_new},
+    {"function ", "Matlab, but a system file is TOML", start_from_new},
+    {"import ", "Python, but a system file is TOML", start_from_new},
+    {"from ", "Python, but a system file is TOML", start_from_new},
+    {"def ", "Python, but a system file is TOML", start_from_new},
+    {"model ", "Modelica, but a system file is TOML", start_from_new},
+    {"package ", "Modelica, but a system file is TOML", start_from_new},
+    {"---", "YAML, but a system file is TOML", start_from_new},
+    {"```", "Markdown", "remove the lines with ```"},
+};
+
+[[noreturn]] void refuse(const std::string& name, std::string_view what, std::string_view advice) {
+    throw InputError(name, {}, fmt::format("this is {}", what), std::string(advice));
+}
+
+// t,phase,x,... as CSV begins; numbers with commas between, too.
+bool is_table(std::string_view text) {
+    const std::string_view line = text.substr(0, text.find('\n'));
+    return std::count(line.begin(), line.end(), ',') >= 2 && line.find_first_of("=[#\"'") == line.npos;
+}
+
+}  // namespace
+
+void refuse_other_files(std::string_view text, const std::string& name) {
+    const std::string_view head = text.substr(0, 256);
+    for (const Kind& kind : of_bytes)
+        if (head.starts_with(kind.begins)) refuse(name, kind.what, kind.advice);
+    if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff") ||
+        (head.size() > 3 && (head[1] == '\0' || head[0] == '\0') && head.find_first_not_of('\0') != head.npos))
+        refuse(name, "text in UTF-16", "save it as UTF-8");
+    if (head.find('\0') != head.npos) refuse(name, "not text: it contains zero bytes", start_from_new);
+    if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    if (first == text.npos) throw InputError(name, {}, "the file is empty", std::string(start_from_new));
+    text.remove_prefix(first);
+    for (const Kind& kind : of_texts) {
+        if (!text.starts_with(kind.begins)) continue;
+        const bool is_key = kind.begins.ends_with(' ') && text.substr(kind.begins.size()).starts_with("=");
+        if (!is_key) refuse(name, kind.what, kind.advice);
+    }
+    if (is_table(text)) refuse(name, "a table, but a system file is TOML", start_from_new);
 }
 
 }  // namespace achilles

@@ -8,14 +8,12 @@
 
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
-#include "expression/read_number.hpp"
 #include "number/ground.hpp"
 #include "run/contact_set.hpp"
-#include "system/derived.hpp"
 #include "system/fields.hpp"
-#include "system/file_kind.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
+#include "system/rewrite.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -182,7 +180,6 @@ void read_parameters(Reading& reading) {
         mistakes.attempt([&] { parameter.range = fields.range_or("range", usual, parameter.unit); });
         if (is_named) reading.system.parameters.push_back(parameter);
     }
-    order_derived(reading.system.derived, reading.names, reading.mistakes);
 }
 
 void read_lagrangian(Reading& reading, const Fields& root) {
@@ -377,6 +374,7 @@ FileReading read_tables(std::string text, std::string name) {
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
     if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
+    rewrite(read);
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);
     return read;

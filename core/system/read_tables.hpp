@@ -5,9 +5,10 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "system/description.hpp"
-#include "system/mistakes.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -30,5 +31,11 @@ struct FileReading {
 // Reads the tables of a system file from its text; `name` stands for the file in messages. Throws InputError where
 // there is nothing to read (it is no TOML, or too large).
 FileReading read_tables(std::string text, std::string name);
+
+// What a file holds that is no system file: a picture, a result, another encoding.
+
+// Throws InputError, about `name`, where the first bytes show that a text is no TOML: a picture, an archive, JSON, a table,
+// UTF-16, a program in another language, nothing at all.
+void refuse_other_files(std::string_view text, const std::string& name);
 
 }  // namespace achilles

@@ -106,10 +106,10 @@ std::string written(const Unit& unit) {
 }
 
 // What the names of a file stand for, as symbols of a graph of their own, and the unit of each.
-class Names {
+class SymbolUnits {
  public:
     // Of what is derived only what the expression may name: kinetic energies are long.
-    Names(const SystemDescription& description, std::string_view expression) {
+    SymbolUnits(const SystemDescription& description, std::string_view expression) {
         const auto names = [&](std::string_view name) { return expression.find(name) != std::string_view::npos; };
         const MaybeUnit second = read("s");
         bool has_units = false;
@@ -200,7 +200,7 @@ class Names {
 }  // namespace
 
 std::string unit_of_expression(const SystemDescription& description, std::string_view expression) {
-    const MaybeUnit unit = Names(description, expression).of(expression);
+    const MaybeUnit unit = SymbolUnits(description, expression).of(expression);
     if (!unit) return "";
     const std::string text = written(*unit);
     const std::size_t begin = std::min(expression.find_first_not_of(' '), expression.size());

@@ -226,7 +226,7 @@ std::array<double, 2> Field::range() const {
     return all[1] - all[0] > far * (most[1] - most[0]) && most[1] > most[0] ? most : all;
 }
 
-std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> functions) {
+std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> values) {
     constexpr double rounding = 1e-3;  // of a line made of chords: where functions touch, or are the same, both count
     std::vector<double> below;
     for (const Field& field : fields) below.push_back(-rounding * field.largest());
@@ -236,8 +236,7 @@ std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span
         for (std::size_t k = 0; k + 2 < line.size(); k += 3) {
             const Point middle{0.5 * (line[k].x + line[k + 1].x), 0.5 * (line[k].y + line[k + 1].y)};
             bool seen = true;
-            for (std::size_t j = 0; j < functions.size() && seen; ++j)
-                seen = j == i || !(functions[j](middle) < below[j]);
+            for (std::size_t j = 0; j < values.size() && seen; ++j) seen = j == i || !(values[j](middle) < below[j]);
             if (seen)
                 all[i].insert(all[i].end(), line.begin() + static_cast<std::ptrdiff_t>(k),
                               line.begin() + static_cast<std::ptrdiff_t>(k + 3));
@@ -294,11 +293,11 @@ class Chains {
 
 std::vector<Point> joined(const std::vector<Point>& segments) { return Chains(segments).lines(); }
 
-std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions, int columns, int rows) {
+std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> values, int columns, int rows) {
     std::vector<Field> fields;
-    for (const PlaneFunction& function : functions) fields.emplace_back(limits, function, columns, rows);
+    for (const PlaneFunction& function : values) fields.emplace_back(limits, function, columns, rows);
     std::vector<Point> all;
-    for (const std::vector<Point>& line : borders(fields, functions)) all.insert(all.end(), line.begin(), line.end());
+    for (const std::vector<Point>& line : borders(fields, values)) all.insert(all.end(), line.begin(), line.end());
     return all;
 }
 

@@ -1,5 +1,5 @@
 // Formulas as boxes: read from the LaTeX that the library itself writes (expression/notation.hpp), measured and set
-// with fractions, roots, powers and indices, in lines that fit a width. Numbers only: paint/label.hpp draws them.
+// with fractions, roots, powers and indices, in lines that fit a width. Numbers only: paint/paint.hpp draws them.
 //
 // Letters are labels (label.hpp), so a name looks the same here as at an axis.
 #pragma once

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <utility>
 
-#include "expression/greek.hpp"
+#include "expression/nearest.hpp"
 #include "number/angle.hpp"
 #include "system/units.hpp"
 

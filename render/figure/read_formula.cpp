@@ -4,7 +4,7 @@
 #include <cctype>
 #include <utility>
 
-#include "expression/greek.hpp"
+#include "expression/nearest.hpp"
 #include "figure/formula.hpp"
 #include "figure/label.hpp"
 

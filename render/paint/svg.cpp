@@ -18,10 +18,9 @@
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
 #include "image/image.hpp"
-#include "image/xml.hpp"
-#include "paint/mechanism.hpp"
+#include "image/notes.hpp"
 #include "paint/paint.hpp"
-#include "surface/polyline.hpp"
+#include "surface/curves.hpp"
 
 namespace achilles {
 

@@ -7,10 +7,25 @@
 
 #include "surface/gl.hpp"
 
+// What of OSMesa's interface we use, declared here: Mesa no longer has the header, and its library is loaded by hand.
+namespace achilles::osmesa {
+
+using Context = struct OpaqueContext*;
+using Address = void (*)();
+
+Context OSMesaCreateContextAttribs(const int* attributes, Context sharing);
+void OSMesaDestroyContext(Context context);
+unsigned char OSMesaMakeCurrent(Context context, void* buffer, unsigned type, int width, int height);
+Address OSMesaGetProcAddress(const char* name);
+
+inline constexpr int rgba = 0x1908, format = 0x22, profile = 0x33, core_profile = 0x34, major_version = 0x36,
+                     minor_version = 0x37;
+
+}  // namespace achilles::osmesa
+
 namespace achilles {
 
 // A library that is loaded by hand: a machine without it gets a sentence, and its names take nobody else's place.
-
 class LoadedLibrary {
  public:
     // Loads it for good: what draws keeps threads and exit handlers. Throws std::runtime_error that names it if it is
@@ -37,7 +52,7 @@ struct MemoryContext {
 };
 
 // All throw std::runtime_error that names the library if it is missing, or what else is.
-MemoryContext os_mesa_context();  // by libOSMesa (osmesa.cpp)
+MemoryContext os_mesa_context();  // by libOSMesa
 MemoryContext egl_context();      // by libEGL without a surface (egl.cpp)
 
 // Mesa's renderer compiles what it draws with, and crashes where the system makes no memory executable: then another is

@@ -1,5 +1,5 @@
 // Frames without a display: Mesa's software renderer in memory, by OSMesa or, where that is missing, by EGL. Only
-// osmesa.cpp knows OSMesa, only egl.cpp EGL.
+// memory_context.cpp knows OSMesa, only egl.cpp EGL.
 #pragma once
 
 #include <cstddef>

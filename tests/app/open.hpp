@@ -31,7 +31,7 @@ inline void ask_for_a_long_run(Session& session) {
     session.apply(command::End{1e6});
 }
 
-// A surface as explore.cpp sets it up.
+// A surface as the explorer sets it up.
 inline SurfaceOptions surface(int width = 1280, int height = 800, double scale = 1.0) {
     SurfaceOptions result;
     result.width = width;

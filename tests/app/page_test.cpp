@@ -1,5 +1,4 @@
 // Pictures measured in millimetres and points.
-#include "pictures/paper_size.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,7 +9,7 @@
 #include "app/hands.hpp"
 #include "app/program.hpp"
 #include "cli/assets.hpp"
-#include "cli/entries.hpp"
+#include "cli/explore.hpp"
 #include "image/image.hpp"
 #include "journal/preferences.hpp"
 #include "session/glossary.hpp"

@@ -1,4 +1,5 @@
 // The answer first: the strip of results, the list of events, the section Accuracy, and the configuration plane.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -13,7 +13,6 @@
 #include "cli/dropped.hpp"
 #include "image/notes.hpp"
 #include "journal/journal.hpp"
-#include "journal/words.hpp"
 #include "model/read_system.hpp"
 #include "system/input_error.hpp"
 

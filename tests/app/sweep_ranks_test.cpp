@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "app/program.hpp"
-#include "cli/sweep_summary.hpp"
+#include "cli/sweep_output.hpp"
 #include "cli/sweep_work.hpp"
 #include "model/read_system.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "cli/entries.hpp"
+#include "cli/explore.hpp"
 #include "figure/camera.hpp"
 #include "figure/stage.hpp"
 #include "model/model.hpp"

@@ -1,5 +1,4 @@
 // Tours: journals of the assets, which end in the same state at any pace, and in the same pixels.
-#include "journal/tour.hpp"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "app/program.hpp"
-#include "cli/commands/program.hpp"
+#include "cli/commands/commands.hpp"
 
 namespace achilles::test {
 namespace {

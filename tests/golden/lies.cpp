@@ -9,7 +9,6 @@
 #include "cli/assets.hpp"
 #include "figure/layout.hpp"
 #include "golden/pictures.hpp"
-#include "paint/label.hpp"
 #include "paint/paint.hpp"
 
 namespace achilles::golden {

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "render/support.hpp"
-#include "surface/polyline.hpp"
 
 namespace achilles {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <type_traits>
 
-#include "surface/osmesa.hpp"
+#include "surface/memory_context.hpp"
 
 #if __has_include(<GL/osmesa.h>)
 #include <GL/osmesa.h>

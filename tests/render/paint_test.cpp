@@ -3,8 +3,6 @@
 #include <gtest/gtest.h>
 
 #include "figure/axes.hpp"
-#include "paint/label.hpp"
-#include "paint/mechanism.hpp"
 #include "render/samples.hpp"
 #include "render/support.hpp"
 

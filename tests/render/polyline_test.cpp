@@ -1,4 +1,4 @@
-#include "surface/polyline.hpp"
+#include "surface/curves.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "render/samples.hpp"
 #include "render/support.hpp"
 #include "surface/curves.hpp"

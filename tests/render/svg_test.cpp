@@ -10,7 +10,7 @@
 #include <sstream>
 
 #include "figure/publication.hpp"
-#include "image/xml.hpp"
+#include "image/notes.hpp"
 #include "model/read_system.hpp"
 #include "paint/paint.hpp"
 #include "render/samples.hpp"

@@ -1,7 +1,7 @@
 // Cells as they are painted, and as a picture inside an SVG.
 #include <gtest/gtest.h>
 
-#include "image/xml.hpp"
+#include "image/notes.hpp"
 #include "paint/paint.hpp"
 #include "paint/svg.hpp"
 #include "render/support.hpp"

@@ -1,4 +1,4 @@
-#include "cli/commands/advice.hpp"
+#include "cli/commands/commands.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,9 +2,15 @@
 // callback does the work and leaves the exit status.
 #pragma once
 
+#include <string>
+#include <vector>
+
+#include "system/description.hpp"
+
 namespace CLI {
 class App;
-}
+class ParseError;
+}  // namespace CLI
 
 namespace achilles {
 
@@ -31,5 +37,24 @@ void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new
 void add_check(CLI::App& program, int& status);
+
+// The program as a function.
+
+// Runs one command line, without the program's name. Returns the exit status. What is wrong with the command
+// line or with a file is one message on standard error, and status 2.
+int run_program(const std::vector<std::string>& words);
+
+// What to type in place of a command line that cannot be read: the words of other programs, misspellings, and values that
+// stand in the wrong place.
+
+// In the order in which --help lists them.
+std::vector<std::string> command_names(const CLI::App& program);
+
+// The first word is neither a command nor a system: "there is no command or system 'plot'; write achilles figure ...".
+InputError unknown_command(const CLI::App& program, const std::vector<std::string>& words);
+
+// What CLI11 could not read of the words of a command line: what is wrong, and what to type.
+InputError unreadable_command_line(const CLI::ParseError& error, const CLI::App& program,
+                                   const std::vector<std::string>& words);
 
 }  // namespace achilles

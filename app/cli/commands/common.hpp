@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/overrides.hpp"
-#include "pictures/paper_size.hpp"
+#include "pictures/picture_format.hpp"
 
 namespace CLI {
 class App;

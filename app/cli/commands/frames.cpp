@@ -11,7 +11,7 @@
 #include "cli/terminal.hpp"
 #include "figure/animation.hpp"
 #include "model/model.hpp"
-#include "paint/mechanism.hpp"
+#include "paint/paint.hpp"
 #include "pictures/film.hpp"
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_job.hpp"

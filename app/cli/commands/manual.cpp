@@ -1,15 +1,16 @@
 // help, show and new: the manual, a gallery file, and a system to start from.
-#include "cli/manual.hpp"
 
 #include <fmt/format.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/manual.hpp"
+#include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
+#include "model/read_system.hpp"
 #include "pictures/origin.hpp"
 #include "system/description.hpp"
 
@@ -78,6 +79,33 @@ void add_manual(CLI::App& program, int& status) {
         ->type_name("SYSTEM");
     create->callback([name, from, &status] {
         write_new(*name, from->empty() ? skeleton_system() : read_text(find_system(*from)));
+        status = reached_end;
+    });
+}
+
+namespace {
+
+// The titles; a file that cannot be read is listed with what is wrong, and the others still are.
+void list() {
+    std::size_t width = 0;
+    for (const std::string& name : system_names()) width = std::max(width, name.size());
+    for (const auto& file : system_files()) {
+        std::string title;
+        try {
+            title = read_system(file).title;
+        } catch (const InputError& error) {
+            title = fmt::format("(cannot be read: {})", error.message);
+        }
+        std::replace(title.begin(), title.end(), '\n', ' ');
+        print_clean(stdout, "{:<{}}  {}\n", file.stem().string(), width, title);
+    }
+}
+
+}  // namespace
+
+void add_list(CLI::App& program, int& status) {
+    program.add_subcommand("list", "Lists the systems of the gallery and their titles")->callback([&status] {
+        list();
         status = reached_end;
     });
 }

@@ -13,7 +13,6 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/sweep_output.hpp"
-#include "cli/sweep_summary.hpp"
 #include "cli/sweep_work.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"

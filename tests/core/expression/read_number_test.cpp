@@ -1,5 +1,4 @@
 // A number as a person gives it: all of the text is read, or it is told why not.
-#include "expression/read_number.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
-// Parameters that follow from others: an expression for a value.
+// What the reader rewrites before expressions are read: parameters that follow from others, and texts of its own.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
 #include "core/systems.hpp"
 #include "model/derived_values.hpp"
+#include "model/read_expressions.hpp"
 #include "output/output.hpp"
 #include "simulate/simulate.hpp"
 #include "system/units.hpp"
@@ -202,6 +203,25 @@ TEST(Degrees, may_stand_wherever_the_unit_is_rad) {
     EXPECT_EQ(told(changed(good, {{"value = 2", "value = 2\nrange = [0, \"90 deg\"]\nunit = \"rad/s^2\""}})),
               "f.toml:11:17: 'range' in [[parameter]]: '90 deg' is not a finite number: 'deg' is allowed only where "
               "the unit is rad, and here it is rad/s^2\n    range = [0, \"90 deg\"]\n                    ^");
+}
+
+// A text that the reader makes has no place of its own: what is wrong in it is told at the place of what it was made from.
+TEST(Rewriting, tells_mistakes_of_a_made_text_where_its_origin_stands) {
+    for (const bool is_written : {true, false}) {
+        FileReading reading = read_tables(good, "<text>");
+        Text& gap = reading.system.constraints[0].gap;
+        gap = {"x - sin(theta)*nothing", gap.at, is_written};
+        EXPECT_FALSE(check_expressions(reading.system, reading.names, reading.mistakes));
+        try {
+            reading.mistakes.raise(reading.system);
+            FAIL();
+        } catch (const InputErrors& errors) {
+            ASSERT_EQ(errors.all.size(), 1u);
+            EXPECT_EQ(errors.at.line, gap.at.line);
+            EXPECT_EQ(errors.at.column, gap.at.column + (is_written ? 15 : 0));
+            EXPECT_NE(errors.message.find("'nothing'"), std::string::npos) << errors.message;
+        }
+    }
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-#include "system/derived.hpp"
+#include "system/rewrite.hpp"
 
 #include <fmt/format.h>
 
@@ -63,10 +63,20 @@ class Walk {
     std::vector<std::size_t> way_;
 };
 
+// Brings each derived parameter after those that its definition names. Adds a mistake for every circle of them, and leaves out
+// those that are part of one.
+void order_derived(FileReading& reading) {
+    std::vector<DerivedDescription>& derived = reading.system.derived;
+    derived = std::move(Walk(derived, reading.names, reading.mistakes).ordered);
+}
+
+using Rewriting = void (*)(FileReading& reading);
+constexpr Rewriting rewritings[] = {order_derived};
+
 }  // namespace
 
-void order_derived(std::vector<DerivedDescription>& derived, Names& names, Mistakes& mistakes) {
-    derived = std::move(Walk(derived, names, mistakes).ordered);
+void rewrite(FileReading& reading) {
+    for (const Rewriting apply : rewritings) apply(reading);
 }
 
 }  // namespace achilles
