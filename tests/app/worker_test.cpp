@@ -69,7 +69,7 @@ TEST(Worker, tells_when_a_result_is_ready_and_ends_in_the_middle_of_a_job) {
 
 TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patient_one) {
     Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
-    for (Session* session : {&patient, &live}) session->apply(command::End{200000.0});
+    for (Session* session : {&patient, &live}) session->apply(command::End{20000.0});
     live.set_patience(0.0);
     const std::string before = to_text(live.trajectory());
     for (Session* session : {&patient, &live}) {
@@ -177,7 +177,7 @@ TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
     for (const char* shown : {"equations", "energy", "events"}) {
         test::Hands hands("ball_on_sine");
         hands.session.apply(command::Show{shown, true});
-        hands.session.apply(command::End{200000.0});
+        hands.session.apply(command::End{20000.0});
         hands.session.apply(command::Pin{});
         hands.session.set_patience(0.0);
         hands.session.apply(command::Set{"e", 1.0});
