@@ -221,6 +221,7 @@ TEST(Budget, CountsAllRuns) {
     budget->limit();
     EXPECT_THROW(session.apply(command::Redo{}), Forbidden);
     EXPECT_EQ(session.trajectory().run.options.max_steps, 100);
+    EXPECT_TRUE(session.apply(command::Set{"y", 1.5})) << "what ran before the limits were lifted does not count";
 }
 
 TEST(TimeLimitDeathTest, EndsTheProcess) {

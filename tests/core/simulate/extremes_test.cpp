@@ -57,6 +57,7 @@ TEST(LongTimes, AreReachedByWhatGoesStraightOn) {
             EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
             EXPECT_EQ(trajectory.end_time, end);
             EXPECT_NEAR(trajectory.end.q[0] / (0.5 * end), 1.0, 1e-12);
+            EXPECT_NEAR(trajectory.end.v[0], 0.5, 1e-12);
         }
 }
 

@@ -119,6 +119,20 @@ TEST(Orbit, IsFoundFromTheStartOfARun) {
     EXPECT_NEAR(std::remainder(orbit.state.q[0] - 0.8593599338715186, 2 * pi), 0.0, of_orbit);
 }
 
+// A shorter wave, a shorter shift. The mass, on which nothing else depends, is its number here.
+TEST(Orbit, MovesWithAShiftThatDependsOnAParameter) {
+    SystemDescription system = load("ball_down_a_wave")->description();
+    system.constraints[0].gap.text = "y - A*sin(m*x)";
+    system.orbit->shift[0].text = "2*pi/m";
+    const auto model = std::make_shared<const Model>(std::move(system));
+    const auto at = [&](double m) { return found(model, asked(*model, {fmt::format("m={}", m)})); };
+    constexpr double h = 1e-4;
+    const Orbit orbit = at(1.0), before = at(1.0 - h), after = at(1.0 + h);
+    EXPECT_NEAR(orbit.period, 3.544294646668781307, of_orbit);
+    EXPECT_NEAR(slope(orbit, 0, "m"), (after.state.q[0] - before.state.q[0]) / (2 * h), 1e-5);
+    EXPECT_NEAR(slope(orbit, 4, "m"), (after.period - before.period) / (2 * h), 1e-5);
+}
+
 TEST(Branch, OfTheBallDownAWaveFlipsWhereItIsPinned) {
     const auto model = load("ball_down_a_wave");
     const Branch branch = followed(model, asked(*model, {"e=0.3"}), "b", 0.04, 0.08);
@@ -275,6 +289,9 @@ TEST(Orbit, IsRefusedWhereTheQuestionIsNone) {
     EXPECT_NE(told("1.3*pi/om").find("do not repeat"), std::string::npos) << told("1.3*pi/om");
     EXPECT_NE(told("-2*pi/om").find("must be positive"), std::string::npos) << told("-2*pi/om");
     EXPECT_NE(told("2*pi/on").find("did you mean 'om'"), std::string::npos) << told("2*pi/on");
+    // The force on this ball is constant: the gap alone has a period.
+    const auto table = load("ball_on_vibrating_table");
+    EXPECT_THROW(find_orbit(table, asked(*table, {}, "1.3*pi/om")), InputError);
 }
 
 TEST(Orbit, IsNotFoundWhereARunComesToRest) {
