@@ -166,21 +166,25 @@ void name_drawn(Panel& panel) {
             std::swap(panel.curves[i].label, panel.curves[i + 1].label);
 }
 
-// How far the quantities that are drawn upwards are off where coordinates and rates are off by the rounding of their
-// ranges' size: what varies by less is at rest.
-double noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {
+// How far quantities are off where coordinates and rates are off by the rounding of their ranges' size: what varies by
+// less is at rest.
+struct Noise {
+    double x = 0.0, y = 0.0;  // the largest of all that are drawn upwards
+};
+
+Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {
     constexpr double rounding = 1e-14;
     constexpr std::size_t looked_at = 8;
     const auto& coordinates = trajectory.model->description().coordinates;
     const auto size = [](const std::array<double, 2>& range) {
         return std::max(std::abs(range[0]), std::abs(range[1]));
     };
-    double most = 0.0;
+    Noise noise;
     for (std::size_t k = 0; k < std::min(samples.size(), looked_at); ++k) {
         Sample sample = samples[k * (samples.size() - 1) / std::max<std::size_t>(1, looked_at - 1)];
         std::vector<double> here(count + 1), off(count + 1);
         values.set(sample);
-        for (std::size_t i = 1; i <= count; ++i) here[i] = values[i];
+        for (std::size_t i = 0; i <= count; ++i) here[i] = values[i];
         for (std::size_t c = 0; c < 2 * coordinates.size(); ++c) {
             const auto at = static_cast<Eigen::Index>(c / 2);
             double& moved = c % 2 == 0 ? sample.state.q[at] : sample.state.v[at];
@@ -188,12 +192,14 @@ double noise_of(const Trajectory& trajectory, std::span<const Sample> samples, V
             moved += rounding * size(c % 2 == 0 ? coordinates[c / 2].range : coordinates[c / 2].rate_range);
             values.set(sample);
             moved = before;
-            for (std::size_t i = 1; i <= count; ++i) off[i] += std::abs(values[i] - here[i]);
+            for (std::size_t i = 0; i <= count; ++i) off[i] += std::abs(values[i] - here[i]);
         }
-        for (std::size_t i = 1; i <= count; ++i)
+        for (std::size_t i = 0; i <= count; ++i) {
+            double& most = i == 0 ? noise.x : noise.y;
             if (std::isfinite(off[i])) most = std::max(most, off[i]);
+        }
     }
-    return most;
+    return noise;
 }
 
 // Of markers of which there are very many, one in each place that can be told apart.
@@ -252,12 +258,18 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
         set_ticks(axis, range.low, range.high, margin);
 }
 
+// A quantity that varies by its noise alone is constant.
+Range without_noise(Range range, double noise) {
+    if (range.high - range.low > noise) return range;
+    const double middle = 0.5 * (range.low + range.high);
+    range.low = range.high = std::abs(middle) <= noise ? 0.0 : middle;
+    return range;
+}
+
 void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& view, const Framing& framing,
-              Range x_range, Range y_range, double unseen) {
-    if (y_range.high - y_range.low <= unseen) {
-        const double middle = 0.5 * (y_range.low + y_range.high);
-        y_range.low = y_range.high = std::abs(middle) <= unseen ? 0.0 : middle;
-    }
+              Range x_range, Range y_range, const Noise& noise) {
+    x_range = without_noise(x_range, noise.x);
+    y_range = without_noise(y_range, noise.y);
     const bool whole_run = view.quantities()[0].is_time && !framing.log_x;
     if (whole_run) x_range.low = trajectory.run.options.start_time, x_range.high = trajectory.end_time;
     set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
@@ -301,8 +313,8 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     x_range.positive = framing.log_x;
     y_range.positive = framing.log_y;
     include(extent.samples, values, curves, framing, x_range, y_range);
-    const double unseen = noise_of(trajectory, extent.samples, values, curves);
-    set_axes(panel, trajectory, view, framing, x_range, y_range, unseen);
+    const Noise noise = noise_of(trajectory, extent.samples, values, curves);
+    set_axes(panel, trajectory, view, framing, x_range, y_range, noise);
     TraceRequest request;
     request.from = extent.from, request.to = extent.to;
     request.quantities = curves;
@@ -310,8 +322,8 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
         if (!framing.hidden.contains(i)) request.shown.push_back(i);
     request.over_time = view.quantities()[0].is_time;
     request.with_work = values.reads(trajectory.model->layout().work());
-    request.noise.assign(curves + 1, unseen);
-    request.noise[0] = 0.0;
+    request.noise.assign(curves + 1, noise.y);
+    request.noise[0] = noise.x;
     request.size = framing.size;
     const PanelMap map(panel,
                        {0.0F, 0.0F, static_cast<float>(framing.size.width), static_cast<float>(framing.size.height)});
@@ -328,7 +340,7 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     }
     for (std::size_t i = 0; i < traced.ranges.size(); ++i)
         for (const double x : traced.ranges[i]) (i == 0 ? x_range : y_range).include(x);
-    set_axes(panel, trajectory, view, framing, x_range, y_range, unseen);
+    set_axes(panel, trajectory, view, framing, x_range, y_range, noise);
     return times;
 }
 
@@ -420,7 +432,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
             panel.beyond = beyond_of(std::move(pale), *horizon);
         }
     } else {
-        set_axes(panel, trajectory, view, framing, Range{}, Range{}, 0.0);
+        set_axes(panel, trajectory, view, framing, Range{}, Range{}, {});
         if (!single) name_drawn(panel);
     }
     if (several && over_time) panel.time_bars = contact_bars(trajectory, samples.back().t, panel.x, theme);

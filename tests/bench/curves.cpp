@@ -1,10 +1,13 @@
 // Whether figures show the whole motion, of very many random runs of the gallery, and what their curves cost.
-//     bench_curves [N [SEED]]   N runs (1000) with ends from 1 to 2000 s: how far each figure is off, in pixels (bar 0.7)
-//     bench_curves cost         a phase plane and a gap over time of one system, by the end of the run
+//     bench_curves [N [SEED]]        N runs (1000), ends from 1 to 2000 s: how far each figure is off, pixels (bar 0.7)
+//     bench_curves draws SEED K...   only the runs of these draws, which the report numbers
+//     bench_curves cost              a phase plane and a gap over time of one system, by the end of the run
 #include <fmt/format.h>
 
 #include <chrono>
+#include <cstdio>
 #include <cstdlib>
+#include <span>
 #include <string_view>
 
 #include "bench/measure.hpp"
@@ -14,25 +17,42 @@
 namespace achilles {
 namespace {
 
-int figures(int count, unsigned seed) {
-    drawn::RandomRuns runs(seed, 2000.0);
-    int bad = 0;
-    double most = 0.0, drawing = 0.0;
-    for (int i = 0; i < count; ++i) {
-        const drawn::RandomRun run = runs.next();
+struct Tally {
+    int count = 0, bad = 0;
+    double worst = 0.0, composing = 0.0;  // pixels; s
+    void add(const drawn::RandomRun& run) {
         const double begin = bench::thread_seconds();
         const drawn::Picture picture(run.trajectory, run.view);
-        drawing += bench::thread_seconds() - begin;
+        composing += bench::thread_seconds() - begin;
         const double off = drawn::worst(run.trajectory, picture);
-        most = std::max(most, off);
-        if (off <= 0.7 && !drawn::is_empty(picture)) continue;
+        worst = std::max(worst, off);
+        ++count;
+        if (off <= 0.7 && !drawn::is_empty(picture)) return;
         ++bad;
-        fmt::print("{:6.2f} px {}{}\n", off, run.about, drawn::is_empty(picture) ? " EMPTY" : "");
+        fmt::print("{:6.2f} px, draw {}: {}{}\n", off, run.draw, run.about, drawn::is_empty(picture) ? " EMPTY" : "");
+        std::fflush(stdout);
     }
-    fmt::print(
-        "{} figures, {} of them off by more than 0.7 px or empty; the worst {:.2f} px; {:.2f} ms each to compose\n",
-        count, bad, most, 1e3 * drawing / count);
-    return bad == 0 ? 0 : 1;
+    int report() const {
+        fmt::print(
+            "{} figures, {} of them off by more than 0.7 px or empty; the worst {:.2f} px; {:.2f} ms each to compose\n",
+            count, bad, worst, 1e3 * composing / count);
+        return bad == 0 ? 0 : 1;
+    }
+};
+
+constexpr double longest = 2000.0;  // s
+
+int figures(int count, unsigned seed) {
+    drawn::RandomRuns runs(seed, longest);
+    Tally tally;
+    while (tally.count < count) tally.add(runs.next());
+    return tally.report();
+}
+
+int figures_of(unsigned seed, std::span<char*> draws) {
+    Tally tally;
+    for (const char* draw : draws) tally.add(drawn::RandomRuns(seed, longest, std::strtoull(draw, nullptr, 10)).next());
+    return tally.report();
 }
 
 void cost() {
@@ -68,6 +88,8 @@ void cost() {
 
 int main(int argc, char** argv) {
     if (argc > 1 && std::string_view(argv[1]) == "cost") return achilles::cost(), 0;
-    return achilles::figures(argc > 1 ? std::atoi(argv[1]) : 1000,
-                             argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U);
+    const auto seed = [&] { return argc > 2 ? static_cast<unsigned>(std::atoi(argv[2])) : 1U; };
+    if (argc > 3 && std::string_view(argv[1]) == "draws")
+        return achilles::figures_of(seed(), std::span(argv, static_cast<std::size_t>(argc)).subspan(3));
+    return achilles::figures(argc > 1 ? std::atoi(argv[1]) : 1000, seed());
 }

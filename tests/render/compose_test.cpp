@@ -244,10 +244,10 @@ TEST(Composing, ALegendHidesNoCurve) {
 
 // What is at rest is drawn so: an axis does not grow until rounding errors fill it, whatever the scale of the system is.
 TEST(Composing, RoundingErrorsAreNoMotion) {
-    const auto drawn = [](const std::string& name, const std::string& y) {
+    const auto drawn = [](const std::string& name, const std::string& y, const std::string& x = "t") {
         const auto system = test::load(name);
         ViewDescription view;
-        view.x.text = "t";
+        view.x.text = x;
         view.y.emplace_back().text = y;
         const Trajectory run = simulate(system, system->default_run());
         return compose(run, plot_samples(run), PreparedView(*system, view), light_theme());
@@ -260,6 +260,11 @@ TEST(Composing, RoundingErrorsAreNoMotion) {
     EXPECT_EQ(drawn("box_dropped_flat", "phi").y.high, 1.0);
     EXPECT_LT(drawn("ball_on_sine", "1e-9*y").y.high, 3e-9) << "small is not nothing";
     EXPECT_LT(drawn("ball_on_sine", "1e-30*energy + 1e-30*y").y.high, 3e-30 * 2);
+    const Panel plane = drawn("table_on_legs", "psi'", "z");
+    EXPECT_EQ(plane.x.low, -1.0);
+    EXPECT_EQ(plane.x.high, 1.0);
+    EXPECT_LT(plane.curves[1].points.size(), 10U);
+    EXPECT_LT(drawn("ball_on_sine", "y'", "1e-9*y").x.high, 3e-9);
 }
 
 // The name of a curve stands beside what is drawn of it.

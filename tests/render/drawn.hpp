@@ -110,8 +110,9 @@ class Columns {
     std::vector<double> low_, high_;
 };
 
-// The largest distance, in pixels, between the lowest (highest) point drawn in a column of pixels and the lowest (highest) of 50
-// samples in it and all its events, over all quantities. A curve may cross a column's edge a quarter of a pixel off.
+// The largest distance, in pixels, between the lowest (highest) point drawn in a column of pixels and the lowest
+// (highest) of 50 samples in it, the ends of its steps and its events, over all quantities. A curve may cross the edge
+// of a column a quarter of a pixel off.
 inline double worst_over_time(const Trajectory& run, const Picture& picture) {
     constexpr double edge = 0.25;
     constexpr int samples = 50;
@@ -136,17 +137,18 @@ inline double worst_over_time(const Trajectory& run, const Picture& picture) {
             if (is_there(p)) real.add(p, p), real_wide.add(p, p);
         };
         const double step = (panel.x.high - panel.x.low) / (samples * static_cast<double>(drawn.size()));
-        auto corner = corners.begin();
         for (const Piece& piece : run.pieces) {
             for (double t = panel.x.low + step * std::ceil((piece.start - panel.x.low) / step); t <= piece.end;
                  t += step)
                 add(truth.at(piece, t, i));
+            // A quantity may jump where two steps meet: both values are of the run.
+            for (const double t : {piece.start, piece.end}) add(truth.at(piece, t, i));
             // Where the curve itself has its points the truth is known, too.
-            for (; corner != corners.end() && *corner <= piece.end; ++corner)
-                if (*corner >= piece.start) {
-                    const Point p = truth.at(piece, *corner, i);
-                    if (is_there(p)) real_wide.add(p, p);
-                }
+            auto corner = std::lower_bound(corners.begin(), corners.end(), piece.start);
+            for (; corner != corners.end() && *corner <= piece.end; ++corner) {
+                const Point p = truth.at(piece, *corner, i);
+                if (is_there(p)) real_wide.add(p, p);
+            }
         }
         for (const Event& event : run.events)
             if (event.kind == Event::Kind::impact) {
@@ -232,8 +234,8 @@ class Segments {
     std::vector<std::vector<std::array<Point, 2>>> buckets_;
 };
 
-// The Hausdorff distance, pixels, at most 3, between what is drawn in a plane and the run: of each point of the one from the other. Of
-// each step so many instants.
+// The Hausdorff distance, pixels, at most 3, between what is drawn in a plane and the run: of each point of the one
+// from the other. So many instants of each step.
 inline double worst_in_plane(const Trajectory& run, const Picture& picture, int of_step = 48) {
     const Panel& panel = picture.panel();
     const PanelMap map = picture.map();
@@ -288,15 +290,20 @@ inline bool is_empty(const Picture& picture) {
 
 // A run of a system of the gallery from other rates, to an end between 1 s and `longest`, and one of its views.
 struct RandomRun {
+    std::size_t draw = 0;  // the number of draws before it
     std::string about;
     Trajectory trajectory;
     ViewDescription view;
 };
 class RandomRuns {
  public:
-    RandomRuns(unsigned seed, double longest) : random_(seed), longest_(longest), names_(test::all_systems()) {}
+    // The first `skipped` draws are left out.
+    RandomRuns(unsigned seed, double longest, std::size_t skipped = 0)
+        : random_(seed), longest_(longest), names_(test::all_systems()), draw_(skipped) {
+        random_.discard(numbers_per_draw * skipped);
+    }
     RandomRun next() {
-        for (;;) {
+        for (;; ++draw_) {
             const std::string& name = names_[static_cast<std::size_t>(uniform() * static_cast<double>(names_.size()))];
             const auto model = test::load(name);
             Run run = model->default_run();
@@ -306,17 +313,21 @@ class RandomRuns {
             const std::vector<ViewDescription> views = views_of(*model);
             const ViewDescription view = views[static_cast<std::size_t>(uniform() * static_cast<double>(views.size()))];
             try {
-                RandomRun made{fmt::format("{} to {:.6g} s, rates {:+.6g}, {} | ", name, run.options.end_time, change,
+                RandomRun made{draw_,
+                               fmt::format("{} to {:.6g} s, rates {:+.6g}, {} | ", name, run.options.end_time, change,
                                            view.x.text),
                                simulate(model, run), view};
                 for (const Text& y : view.y) made.about += y.text + " ";
-                if (!made.trajectory.pieces.empty()) return made;
+                if (made.trajectory.pieces.empty()) continue;
+                ++draw_;
+                return made;
             } catch (const InputError&) {  // no start of the system
             }
         }
     }
 
  private:
+    static constexpr std::size_t numbers_per_draw = 4;  // system, rates, end, view
     double uniform() { return static_cast<double>(random_()) / 4294967296.0; }
     static std::vector<ViewDescription> views_of(const Model& model) {
         std::vector<ViewDescription> views = model.description().views;
@@ -333,6 +344,7 @@ class RandomRuns {
     std::mt19937 random_;
     double longest_;
     std::vector<std::string> names_;
+    std::size_t draw_;
 };
 
 // The larger of both, by what the view is of.

@@ -33,6 +33,27 @@ TEST(Trace, FiguresOfRandomRunsShowTheirMotion) {
     }
 }
 
+// The contact force jumps where the motion in contact begins, and is highest there: 0.84 pixels above the next sample.
+// The measure accepts the true curve and finds the fault of one without that point.
+TEST(Trace, ShowsAForceToItsHighestWhereItJumps) {
+    const auto model = test::load("ball_in_bowl");
+    auto start = model->default_run();
+    start.v *= 0.573364;
+    start.options.end_time = 30.0961;
+    const Trajectory run = simulate(model, start);
+    drawn::Picture picture(run, view("t", "lambda"));
+    EXPECT_LE(drawn::worst_over_time(run, picture), 0.7);
+    const auto jump =
+        std::find_if(run.pieces.begin(), run.pieces.end(), [](auto& piece) { return !piece.held.empty(); });
+    ASSERT_NE(jump, run.pieces.end());
+    int changed = 0;
+    for (Curve& curve : picture.figure.panels[0].curves)
+        for (Point& point : curve.points)
+            if (point.x == jump->start && point.y > 0.0) point.y = 0.0, ++changed;
+    EXPECT_GT(changed, 0);
+    EXPECT_GT(drawn::worst_over_time(run, picture), 0.7);
+}
+
 TEST(Trace, PhasePlaneOfALongRunIsNoPolygon) {
     for (const double end : {1.0, 100.0, 500.0}) {
         const Trajectory run = run_until("ball_on_vibrating_table", end);
