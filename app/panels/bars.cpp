@@ -232,8 +232,7 @@ constexpr Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained}
 
 std::vector<Markers> legend_markers(const Session& session) {
     std::vector<Markers> events;
-    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
-        events.push_back(event_markers(session.theme(), kind));
+    for (const EventNames& names : event_names) events.push_back(event_markers(session.theme(), names.kind));
     if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
     return events;
 }

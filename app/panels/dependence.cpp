@@ -6,6 +6,7 @@
 #include <imgui.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "figure/label.hpp"
@@ -52,11 +53,10 @@ std::string explanation(const Session& session, const Influences& known, const I
 std::vector<std::string> usual_quantities(const Session& session) {
     constexpr int most = 6;
     std::vector<std::string> all;
-    int zeno = 0, releases = 0;
+    std::array<int, event_names.size()> counts{};
     for (const Event& event : session.trajectory().events) {
-        if (event.kind == Event::Kind::zeno && ++zeno <= most) all.push_back(fmt::format("zeno_time({})", zeno));
-        if (event.kind == Event::Kind::release && ++releases <= most)
-            all.push_back(fmt::format("release_time({})", releases));
+        const int k = ++counts[static_cast<std::size_t>(event.kind)];
+        if (!event.is_impact() && k <= most) all.push_back(fmt::format("{}_time({})", names_of(event.kind).word, k));
     }
     for (const CoordinateDescription& coordinate : session.description().coordinates)
         all.insert(all.end(), {coordinate.name, coordinate.name + "'"});

@@ -26,7 +26,7 @@ inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_op
                                       [](const Event& e, double t) { return e.t < t; });
         for (; event != events.end() && event->t == phase.start; ++event) {
             const auto index = static_cast<std::size_t>(event - events.begin());
-            const bool turns_here = event->kind != Event::Kind::impact || (with_openings && !event->opened.empty());
+            const bool turns_here = with_openings ? event->changes_held() : !event->is_impact();
             if (turns_here && (result.empty() || result.back() < index)) result.push_back(index);
         }
     }

@@ -56,9 +56,8 @@ int reached(const Session& session) {
 std::string event_name(const Session& session, const Event& event) {
     const std::string contacts = contacts_told(session.trajectory(), event);
     if (!event.opened.empty()) return contacts + " opens " + joined_names(*session.model(), event.opened);
-    if (is_plastic_landing(event)) return contacts.empty() ? "landing" : "landing " + contacts;
-    if (contacts.empty()) return event_name(event);
-    return fmt::format("{} {}", event.kind == Event::Kind::zeno ? "Zeno" : to_text(event.kind), contacts);
+    const EventNames& names = names_of(event);
+    return contacts.empty() ? std::string(names.name) : fmt::format("{} {}", names.label, contacts);
 }
 
 // Gap speeds of angles are in degrees a second, as the rates beside them.
@@ -82,12 +81,12 @@ std::string table(const Session& session) {
     for (std::size_t i = 0; i < events.size(); ++i) {
         if (chosen(session).value_or(i) != i) continue;
         const Event& event = events[i];
-        const bool is_impact = event.kind == Event::Kind::impact;
-        text += fmt::format("\n{}\t{}", i + 1, event_name(event));
+        text += fmt::format("\n{}\t{}", i + 1, names_of(event).name);
         for (const ContactSet& set : {event.contacts, event.opened, event.held})
             if (several) text += "\t" + joined_names(*session.model(), set, "+");
-        text += fmt::format("\t{}\t{}", event.t,
-                            is_impact ? fmt::format("{}", event.impact_speed * speed_factor(session, event)) : "");
+        text +=
+            fmt::format("\t{}\t{}", event.t,
+                        event.is_impact() ? fmt::format("{}", event.impact_speed * speed_factor(session, event)) : "");
         for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
         text += fmt::format("\t{}\t{}", energy_lost(session.trajectory(), i), session.sentences().of(i));
         const EnclosedEvent* const enclosed = session.enclosed(i);
@@ -224,9 +223,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
     columns.put_words(at, proved + name, text_color());
     // At a Zeno point all its impacts, as the sentence has it.
-    const double lost = event.kind == Event::Kind::zeno && !is_plastic_landing(event)
-                            ? pile_of(session.trajectory(), index).loss
-                            : energy_lost(session.trajectory(), index);
+    const double lost =
+        is_zeno_point(event) ? pile_of(session.trajectory(), index).loss : energy_lost(session.trajectory(), index);
     columns.row(session, &event, lost, at, text_color());
 }
 
@@ -244,7 +242,7 @@ void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at,
                                 packed(faint_color()));
     const auto end = events.begin() + static_cast<std::ptrdiff_t>(row.event + row.count);
     const bool any_turn = std::any_of(events.begin() + static_cast<std::ptrdiff_t>(row.event), end,
-                                      [](const Event& event) { return event.kind != Event::Kind::impact; });
+                                      [](const Event& event) { return !event.is_impact(); });
     const double lost = events[row.event + row.count - 1].loss - (row.event > 0 ? events[row.event - 1].loss : 0.0);
     columns.put_words(at, fmt::format("{} {}", row.count, any_turn ? "events" : "impacts"), text_color());
     time_cell(at, events[row.event].t, session.precision().of_event(row.event), faint_color());

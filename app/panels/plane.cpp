@@ -409,15 +409,15 @@ std::optional<int> event_at(const Session& session, const PanelMap& map, PlaneVi
         Values values(plane.plane->view(), session.trajectory());
         plane.event_places.resize(events.size());
         for (std::size_t i = 0; i < events.size(); ++i) {
-            if (!is_asked_of_all && events[i].kind == Event::Kind::impact) continue;
+            if (!is_asked_of_all && events[i].is_impact()) continue;
             values.set(sample_at(session.trajectory(), events[i]));
             plane.event_places[i] = {values[0], values[1]};
         }
     }
     NearestEvent nearest(ImGui::GetIO().MousePos, units(marker_reach));
     for (std::size_t i = 0; i < events.size(); ++i)
-        if (is_asked_of_all || events[i].kind != Event::Kind::impact)
-            nearest.ask(static_cast<int>(i) + 1, events[i].kind, map.x(plane.event_places[i].x),
+        if (is_asked_of_all || !events[i].is_impact())
+            nearest.ask(static_cast<int>(i) + 1, events[i], map.x(plane.event_places[i].x),
                         map.y(plane.event_places[i].y));
     return nearest.found();
 }

@@ -197,11 +197,11 @@ std::optional<int> event_at(const Session& session, const Place& place) {
     if (session.plotted().list()[place.plot].framing.difference) return std::nullopt;  // it has no markers
     NearestEvent nearest(mouse, reach);
     for (auto event = first; event < last; ++event) {
-        if (too_many && event->kind == Event::Kind::impact) continue;
+        if (too_many && event->is_impact()) continue;
         const std::vector<double> values = session.values(place.plot, sample_at(session.trajectory(), *event));
         for (std::size_t i = 1; i < values.size(); ++i)
             if (!hidden.contains(i - 1))
-                nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, place.map.x(values[0]),
+                nearest.ask(static_cast<int>(event - events.begin()) + 1, *event, place.map.x(values[0]),
                             place.map.y(values[i]));
     }
     return nearest.found();

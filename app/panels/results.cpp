@@ -30,10 +30,10 @@ struct Result {
 std::string explanation(const Session& session, std::size_t index) {
     const Event& event = session.trajectory().events[index];
     const std::string said = typeset_sentence(
-        fmt::format("{} at t = {} s: {}", event_name(event),
+        fmt::format("{} at t = {} s: {}", names_of(event).name,
                     known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
     if (session.precision().is_beyond(event.t)) return said;  // a certificate is of the computed motion
-    if (event.kind != Event::Kind::zeno) return said + proved_text(session, index, "\n") + "\nClick: why";
+    if (!event.is_zeno()) return said + proved_text(session, index, "\n") + "\nClick: why";
     if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
     std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
     for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
@@ -45,10 +45,9 @@ std::string explanation(const Session& session, std::size_t index) {
 std::string name_of(const Trajectory& trajectory, const Result& result) {
     const Event& event = trajectory.events[result.event];
     const std::string contacts = contacts_told(trajectory, event), space = contacts.empty() ? "" : " ";
-    if (is_plastic_landing(event)) return "landing" + space + contacts;
-    if (event.kind == Event::Kind::zeno) return fmt::format("Zeno {}{}{}", result.zeno, space, contacts);
-    if (event.kind == Event::Kind::release) return "release" + space + contacts;
-    return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
+    if (event.is_impact()) return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
+    const std::string number = is_zeno_point(event) ? fmt::format(" {}", result.zeno) : "";
+    return fmt::format("{}{}{}{}", names_of(event).label, number, space, contacts);
 }
 
 // All of a run. Of contacts that come to rest and are opened again and again only how it ends.
@@ -59,7 +58,7 @@ std::vector<Result> results_of(const Trajectory& trajectory) {
     auto chatter = chatters.begin();
     for (const std::size_t turn : turns(trajectory, true)) {
         const Event& event = trajectory.events[turn];
-        zeno += event.kind == Event::Kind::zeno && !is_plastic_landing(event) ? 1 : 0;
+        zeno += is_zeno_point(event) ? 1 : 0;
         while (chatter != chatters.end() && turn >= chatter->last_event) ++chatter;
         if (chatter != chatters.end() && turn >= chatter->first_event && turn + 1 < chatter->last_event) continue;
         results.push_back({turn, zeno});

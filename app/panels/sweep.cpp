@@ -43,7 +43,7 @@ std::vector<std::string> usual_prints(const SystemDescription& description, cons
     if (!is_section) prints.insert(prints.end(), {"held", "outcome"});
     Run run = default_run(description);
     const bool has_slope = !sweep.axes.empty() && find_value(description, run, sweep.axes.front().name) != nullptr &&
-                           (!is_section || sweep.at->kind != Section::Kind::zero);
+                           (!is_section || sweep.at->event);
     if (has_slope) prints.push_back(fmt::format("d({}, {})", prints.front(), sweep.axes.front().name));
     return prints;
 }
@@ -131,7 +131,6 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
 }
 
 void show_moments(const Sweep& sweep, const Session& session, PanelState& state, Commands& commands) {
-    constexpr std::array<const char*, 3> names{"at every impact", "at every Zeno point", "at every release"};
     const auto ask = [&](std::optional<Section> at) {
         Sweep changed = sweep;
         changed.at = std::move(at);
@@ -145,15 +144,14 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
     };
     if (ImGui::RadioButton("at the end of the run", !sweep.at)) ask({});
     remember(state, "sweep at end");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        const auto kind = static_cast<Section::Kind>(i);
-        if (ImGui::RadioButton(names[i], sweep.at && sweep.at->kind == kind))
-            ask(Section{kind, {}, sweep.at ? sweep.at->after : std::nullopt});
-        remember(state, std::string("sweep ") + names[i]);
+    for (const EventNames& names : event_names) {
+        const std::string name = fmt::format("at every {}", names.name);
+        if (ImGui::RadioButton(name.c_str(), sweep.at && sweep.at->event == names.kind))
+            ask(Section{names.kind, {}, sweep.at ? sweep.at->after : std::nullopt});
+        remember(state, "sweep " + name);
     }
     std::string& zero = state.sweep.zero;
-    if (text_row("where", "sweep zero", zero, 150.0F, state) && !zero.empty())
-        ask(Section{Section::Kind::zero, zero, {}});
+    if (text_row("where", "sweep zero", zero, 150.0F, state) && !zero.empty()) ask(Section{{}, zero, {}});
     tooltip("where this expression crosses zero upward, such as gap' or x - 1. Press Enter to apply");
 }
 
@@ -369,17 +367,12 @@ std::string events_of(const Session& session, const Run& run) {
     try {
         const Trajectory trajectory = simulate(session.model(), shorter);
         for (const Event& event : trajectory.events) {
-            if (event.kind == Event::Kind::impact) {
+            if (event.is_impact()) {
                 ++impacts;
                 continue;
             }
-            const bool is_landing = is_plastic_landing(event), is_cut = event.truncation && !is_landing;
-            tell_impacts(is_cut ? " before the cut" : "");
-            const char* const name = is_landing                           ? "landing"
-                                     : event.kind == Event::Kind::zeno    ? "Zeno point"
-                                     : event.kind == Event::Kind::release ? "release"
-                                                                          : "event";
-            told.push_back(fmt::format("{} at {} s", name, number(event.t, "{:.5g}")));
+            tell_impacts(event.truncation && !is_plastic_landing(event) ? " before the cut" : "");
+            told.push_back(fmt::format("{} at {} s", names_of(event).name, number(event.t, "{:.5g}")));
         }
         tell_impacts("");
         if (trajectory.outcome.kind != Outcome::Kind::end_time) told.emplace_back("\u2026");

@@ -43,7 +43,7 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
     // Impacts closer than a pixel are one tick, however many they are: from one pixel on to the next.
     const auto& events = session.trajectory().events;
     for (auto event = events.begin(); event != events.end();) {
-        if (event->kind != Event::Kind::impact) {
+        if (!event->is_impact()) {
             ++event;
             continue;
         }
@@ -189,17 +189,17 @@ std::optional<int> event_at(const Session& session, const Track& track) {
     const float tick = std::clamp(mouse.y, top - units(7.0F), top - units(1.0F));
     const auto here = at(mouse.x);
     for (auto event = here, end = at(mouse.x + reach); event < end; ++event)
-        if (event->kind == Event::Kind::impact) {
-            nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, track.x(event->t), tick);
+        if (event->is_impact()) {
+            nearest.ask(static_cast<int>(event - events.begin()) + 1, *event, track.x(event->t), tick);
             break;
         }
     for (auto event = here, end = at(mouse.x - reach); event > end;)
-        if ((--event)->kind == Event::Kind::impact) {
-            nearest.ask(static_cast<int>(event - events.begin()) + 1, event->kind, track.x(event->t), tick);
+        if ((--event)->is_impact()) {
+            nearest.ask(static_cast<int>(event - events.begin()) + 1, *event, track.x(event->t), tick);
             break;
         }
     for (const std::size_t turn : turns(session.trajectory()))
-        nearest.ask(static_cast<int>(turn) + 1, events[turn].kind, track.x(events[turn].t), top - units(8.0F));
+        nearest.ask(static_cast<int>(turn) + 1, events[turn], track.x(events[turn].t), top - units(8.0F));
     return nearest.found();
 }
 

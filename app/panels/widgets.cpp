@@ -189,10 +189,10 @@ bool dragged_to(double low, double high, float left, float width, double& value)
     return true;
 }
 
-void NearestEvent::ask(int number, Event::Kind kind, double x, double y) {
+void NearestEvent::ask(int number, const Event& event, double x, double y) {
     const double distance = std::hypot(x - double{mouse_.x}, y - double{mouse_.y});
     if (!(distance <= reach_)) return;
-    const bool is_under = kind != Event::Kind::impact && distance <= 0.75 * reach_;
+    const bool is_under = !event.is_impact() && distance <= 0.75 * reach_;
     const double cost = is_under ? distance - reach_ : distance;
     if (found_ && cost >= least_) return;
     found_ = number;

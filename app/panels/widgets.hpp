@@ -105,7 +105,7 @@ constexpr float marker_reach = 8.0F;
 class NearestEvent {
  public:
     NearestEvent(const ImVec2& mouse, double reach) : mouse_(mouse), reach_(reach) {}
-    void ask(int number, Event::Kind kind, double x, double y);
+    void ask(int number, const Event& event, double x, double y);
     std::optional<int> found() const { return found_; }
 
  private:

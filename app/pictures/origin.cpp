@@ -82,7 +82,7 @@ std::string certificates_text(const Trajectory& trajectory) {
     for (const Remark& remark : remarks(trajectory)) text += remark.sentence + "\n";
     for (const Event& event : trajectory.events)
         if (event.certificate)
-            text += fmt::format("{} at t = {}: {}\n", event_name(event), event.t,
+            text += fmt::format("{} at t = {}: {}\n", names_of(event).name, event.t,
                                 sentence(*event.certificate, trajectory.model->description()));
     return text + fmt::format("outcome: {} ({})", to_text(trajectory.outcome.kind), trajectory.outcome.message);
 }

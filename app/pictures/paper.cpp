@@ -173,7 +173,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
 std::vector<std::vector<CertifiedWidth>> certified_widths(const Trajectory& trajectory) {
     std::vector<double> times;
     for (const Event& event : trajectory.events)
-        if (event.kind == Event::Kind::zeno) times.push_back(event.t);
+        if (event.is_zeno()) times.push_back(event.t);
     std::vector<std::vector<CertifiedWidth>> widths(times.size());
     Run run = trajectory.run;
     run.options.truncation.conditions = Conditions::sharp;
@@ -183,7 +183,7 @@ std::vector<std::vector<CertifiedWidth>> certified_widths(const Trajectory& traj
         truncation.eps_q = truncation.eps_v = truncation.eps_t = std::pow(10.0, -0.5 * half_decade);
         std::size_t n = 0;
         for (const Event& event : simulate(trajectory.model, run).events) {
-            if (event.kind != Event::Kind::zeno || n == times.size()) continue;
+            if (!event.is_zeno() || n == times.size()) continue;
             std::vector<CertifiedWidth>& of = widths[n++];
             if (!event.certificate || !event.certificate->certified || !event.truncation) continue;
             const CertifiedWidth cut{event.truncation->impact_speed, event.certificate->zeno_low,
@@ -206,7 +206,7 @@ double rest_time_with_threshold(const Trajectory& ball, double speed) {
         ContactKinematics surface(*ball.model, run);
         const Event* cut = nullptr;
         for (const Event& event : motion.events) {
-            if (event.kind != Event::Kind::impact || event.impact_speed >= speed) continue;
+            if (!event.is_impact() || event.impact_speed >= speed) continue;
             const State landed{event.q, reinitialize(surface.at({event.q, event.v_before}), event.v_before,
                                                      Reinitialization::kinetic)};
             if (surface.normal_acceleration(landed) >= 0.0) continue;
@@ -261,7 +261,7 @@ std::string intervals_text(const std::string& name, const Trajectory& trajectory
     std::string text;
     int n = 0;
     for (const Event& event : simulate(trajectory.model, run).events) {
-        if (event.kind != Event::Kind::zeno || !event.certificate) continue;
+        if (!event.is_zeno() || !event.certificate) continue;
         const Certificate& c = *event.certificate;
         text += fmt::format("  {:<34} {}  width {:.1e}  {} impacts before the cut\n",
                             fmt::format("{}, Zeno time {}", name, ++n), interval_text(c.zeno_low, c.zeno_high),

@@ -18,7 +18,7 @@ constexpr double thumbnail_shape = 2.3;  // width over height, as wide as a card
 // Where the first bouncing has come to rest; else a third of the run.
 double telling_time(const Trajectory& trajectory) {
     const auto zeno = std::find_if(trajectory.events.begin(), trajectory.events.end(),
-                                   [](const Event& event) { return event.kind == Event::Kind::zeno; });
+                                   [](const Event& event) { return event.is_zeno(); });
     const double start = trajectory.run.options.start_time;
     return zeno != trajectory.events.end() ? zeno->t : start + (trajectory.end_time - start) / 3.0;
 }

@@ -54,6 +54,12 @@ def stripped(node: ast.FunctionDef, live: object) -> ast.FunctionDef:
     return result
 
 
+def of_entry(part: ast.AnnAssign, text: str) -> ast.FunctionDef:
+    """A property that is an entry of a record."""
+    name, kind = part.target.id, ast.unparse(part.annotation)
+    return ast.parse(f"@property\ndef {name}(self) -> {kind}:\n {inspect.cleandoc(text)!r}\n ...").body[0]
+
+
 def of_class(node: ast.ClassDef, live: type) -> ast.ClassDef:
     body = []
     for part in node.body:
@@ -64,9 +70,10 @@ def of_class(node: ast.ClassDef, live: type) -> ast.ClassDef:
                 body.append(stripped(part, getattr(function, "__func__", function)))
         elif isinstance(part, ast.AnnAssign):
             if is_public(part.target.id):
-                body.append(part)
+                body.append(part if part.value is None else of_entry(part, getattr(live, part.target.id).__doc__))
         elif isinstance(part, ast.Expr):
             body.append(part)
+    node.bases = [base for base in node.bases if is_public(ast.unparse(base))]
     node.body = body or [ast.Expr(ast.Constant(...))]
     return node
 

@@ -24,35 +24,16 @@ Run run_on(const OrbitPoint& point, Run run) {
 
 void OrbitJob::begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
                      OrbitQuestion question) {
-    found_.reset();
-    const auto watch = std::make_shared<OrbitWatch>();
-    watch_ = watch;
-    worker_.start([model, text, base, question = std::move(question), watch](const std::stop_token& stop) {
-        watch->stop = stop;
+    drop();
+    start([model, text, base, question = std::move(question)](OrbitWatch& watch) {
         FoundOrbit found{text, base, {}};
         try {
-            found.answer = answer_to(question, model, watch.get());
+            found.answer = answer_to(question, model, &watch);
         } catch (const InputError& problem) {  // of a start that was tried
             found.answer.why = problem.message;
         }
-        return std::make_shared<const FoundOrbit>(std::move(found));
+        return found;
     });
-}
-
-void OrbitJob::forget() {
-    found_.reset();
-    if (watch_ == nullptr) return;
-    watch_.reset();
-    worker_.start([](const std::stop_token&) { return std::shared_ptr<const FoundOrbit>(); });
-}
-
-bool OrbitJob::update(Patience patience) {
-    if (watch_ == nullptr) return false;
-    const auto made = worker_.take(patience);
-    if (!made) return false;
-    found_ = *made;
-    watch_.reset();
-    return true;
 }
 
 }  // namespace achilles

@@ -1,9 +1,7 @@
 // The search for a periodic run, and its branch, on a thread of their own.
 #pragma once
 
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "session/worker.hpp"
@@ -27,26 +25,11 @@ struct FoundOrbit {
 // `run` on this periodic run: its start and parameters; no shorter than a period.
 Run run_on(const OrbitPoint& point, Run run);
 
-class OrbitJob {
+class OrbitJob : public Job<FoundOrbit, OrbitWatch> {
  public:
-    // What is under way is given up.
+    // The last orbit is forgotten, and a search under way stopped.
     void begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
                OrbitQuestion question);
-    void forget();
-    // Takes in what is ready: true where something was.
-    bool update(Patience patience);
-    // Called on another thread when update() would take something in.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
-
-    // How many runs the search has tried; null: nothing is under way.
-    const OrbitWatch* under_way() const { return watch_.get(); }
-    // The last that was searched for; null: nothing.
-    const std::shared_ptr<const FoundOrbit>& found() const { return found_; }
-
- private:
-    std::shared_ptr<OrbitWatch> watch_;
-    std::shared_ptr<const FoundOrbit> found_;
-    Worker<std::shared_ptr<const FoundOrbit>> worker_;
 };
 
 }  // namespace achilles

@@ -88,16 +88,12 @@ std::vector<Step> steps_of(const Trajectory& run, const Precision& precision) {
     for (std::size_t i = 0; i < run.events.size(); ++i) {
         const Event& event = run.events[i];
         const double error = precision.of_event(i);
-        if (event.kind == Event::Kind::impact && event.opened.empty()) continue;
+        if (!event.changes_held()) continue;
         const std::string contacts = contacts_told(run, event);
-        if (!event.opened.empty())
-            steps.push_back({contacts + " opens " + joined_names(*run.model, event.opened), event.t, error});
-        else if (event.kind == Event::Kind::zeno)
-            steps.push_back(
-                {(is_plastic_landing(event) ? "landing" : "Zeno") + (contacts.empty() ? "" : " " + contacts), event.t,
-                 error});
-        else
-            steps.push_back({"release" + (contacts.empty() ? "" : " " + contacts), event.t, error});
+        steps.push_back({event.opened.empty()
+                             ? fmt::format("{}{}{}", names_of(event).label, contacts.empty() ? "" : " ", contacts)
+                             : contacts + " opens " + joined_names(*run.model, event.opened),
+                         event.t, error});
     }
     return steps;
 }

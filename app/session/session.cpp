@@ -442,15 +442,15 @@ void Session::perform(const command::Select& command) {
 const Event* Session::selected_zeno() const {
     if (selected_ == 0) return nullptr;
     const Event& event = trajectory().events[static_cast<std::size_t>(selected_ - 1)];
-    return event.kind == Event::Kind::zeno ? &event : nullptr;
+    return event.is_zeno() ? &event : nullptr;
 }
 
 // The lens looks at a Zeno point: without one nothing would be seen of it.
 void Session::perform(const command::Lens& command) {
     if (selected_zeno() == nullptr) {
         const auto& events = trajectory().events;
-        const auto first = std::find_if(events.begin(), events.end(),
-                                        [](const Event& event) { return event.kind == Event::Kind::zeno; });
+        const auto first =
+            std::find_if(events.begin(), events.end(), [](const Event& event) { return event.is_zeno(); });
         throw refusal("the lens needs a Zeno point, but none is selected",
                       first == events.end() ? "this run has no Zeno point"
                                             : fmt::format("select it first: select {}", first - events.begin() + 1));

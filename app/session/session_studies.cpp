@@ -104,7 +104,7 @@ void Session::settle() {
 // ---- a proof of the present run ----
 
 const Proof* Session::proof() const {
-    const Proof* const proof = proof_job_->proof().get();
+    const Proof* const proof = proof_job_->result().get();
     const bool is_its = proof != nullptr && proof_job_->model() == trajectory().model && !shows_start() &&
                         same_to_a_proof(proof->claim.run, trajectory().run);
     return is_its ? proof : nullptr;
@@ -226,7 +226,7 @@ bool begin_alike(const Run& a, const Run& b) {
 
 }  // namespace
 
-std::shared_ptr<const FoundOrbit> Session::orbit() const { return orbit_job_->found(); }
+std::shared_ptr<const FoundOrbit> Session::orbit() const { return orbit_job_->result(); }
 
 const OrbitWatch* Session::orbit_under_way() const { return orbit_job_->under_way(); }
 

@@ -80,8 +80,8 @@ Influences influences_on(const std::string& quantity, const std::shared_ptr<cons
 }
 
 std::string default_quantity(const Trajectory& run) {
-    const auto count = std::count_if(run.events.begin(), run.events.end(),
-                                     [](const Event& event) { return event.kind == Event::Kind::zeno; });
+    const auto count =
+        std::count_if(run.events.begin(), run.events.end(), [](const Event& event) { return event.is_zeno(); });
     if (count > 0) return "zeno_time(" + std::to_string(count) + ")";
     return run.model->description().coordinates.front().name;
 }
@@ -94,22 +94,21 @@ bool InfluencesJob::ask(const std::shared_ptr<const Trajectory>& run, const std:
     if (asked_ && asked_->run == run && asked_->quantity == quantity) return false;
     asked_ = Asked{run, quantity};
     problem_.clear();
-    if (made_ != nullptr && (made_->quantity.expression != quantity || made_->run->model != run->model)) made_.reset();
+    const Influences* const known = influences();
+    if (known != nullptr && (known->quantity.expression != quantity || known->run->model != run->model)) job_.drop();
     if (!begun_) begin();
     return true;
 }
 
 void InfluencesJob::forget() {
-    if (begun_) worker_.start([](const std::stop_token&) { return std::shared_ptr<const Influences>(); });
-    asked_.reset(), begun_.reset(), made_.reset();
+    job_.forget();
+    asked_.reset(), begun_.reset();
     problem_.clear();
 }
 
 void InfluencesJob::begin() {
     begun_ = asked_;
-    worker_.start([asked = *asked_](const std::stop_token&) -> std::shared_ptr<const Influences> {
-        return std::make_shared<const Influences>(influences_on(asked.quantity, asked.run));
-    });
+    job_.start([asked = *asked_](const StopMonitor&) { return influences_on(asked.quantity, asked.run); });
 }
 
 void InfluencesJob::update(Patience patience) {
@@ -120,22 +119,18 @@ void InfluencesJob::update(Patience patience) {
         return std::max(0.0, *patience - std::chrono::duration<double>(Clock::now() - began).count());
     };
     while (begun_) {
-        std::shared_ptr<const Influences> made;
         std::string problem;
         try {
-            const auto taken = worker_.take(left());
-            if (!taken) return;
-            made = *taken;
+            if (!job_.update(left())) return;
         } catch (const InputError& error) {
             problem = error.message + (error.hint.empty() ? "" : ": " + error.hint);
         } catch (const std::bad_alloc&) {
             problem = "there is not enough memory for the derivatives of this run";
         }
         const Asked of = *std::exchange(begun_, std::nullopt);
-        if (of.quantity == asked_->quantity && of.run->model == asked_->run->model) {
-            made_ = made;
-            problem_ = problem;
-        }
+        const bool is_wanted = of.quantity == asked_->quantity && of.run->model == asked_->run->model;
+        if (is_wanted) problem_ = problem;
+        if (!is_wanted || !problem.empty()) job_.drop();
         if (of == *asked_) return;
         begin();
         if (left() == 0.0) return;  // each is seen, however soon the next is made
@@ -146,39 +141,14 @@ void InfluencesJob::update(Patience patience) {
 
 void ProofJob::begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim) {
     model_ = model;
-    proof_.reset();
+    drop();
     const auto watch = std::make_shared<ProofWatch>();
     watch->time = claim.run.options.start_time;
-    watch_ = watch;
-    worker_.start([model, spread, claim, watch](const std::stop_token& stop) {
-        watch->stop = stop;
-        return std::make_shared<const Proof>(Proof{spread, claim, prove(model, claim, watch.get())});
-    });
-}
-
-void ProofJob::stop() {
-    if (watch_ == nullptr) return;
-    watch_.reset();
-    worker_.start([](const std::stop_token&) { return std::shared_ptr<const Proof>(); });
-}
-
-void ProofJob::forget() {
-    stop();
-    proof_.reset();
-}
-
-bool ProofJob::update(Patience patience) {
-    if (watch_ == nullptr) return false;
-    try {
-        const auto made = worker_.take(patience);
-        if (!made) return false;
-        proof_ = *made;
-    } catch (...) {
-        watch_.reset();
-        throw;
-    }
-    watch_.reset();
-    return true;
+    start(
+        [model, spread, claim](ProofWatch& monitor) {
+            return Proof{spread, claim, prove(model, claim, &monitor)};
+        },
+        watch);
 }
 
 command::Prove prove_command(const Spread& spread) {
@@ -202,12 +172,11 @@ namespace {
 constexpr std::uint64_t map_steps[] = {16, 64, 160}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
 constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // of one run
 
-struct Stopped {};
+struct Stopped {};  // thrown to the Job, which drops it
 
-std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep,
-                                          const std::stop_token& stop) {
+SweepData table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep, const std::stop_token& stop) {
     const SweepTable table(model, sweep);
-    auto data = std::make_shared<SweepData>(table);
+    SweepData data(table);
     std::mutex mutex;
     std::map<std::uint64_t, SweepData> waiting;  // chunks that are made, by their first points
     const std::atomic<bool> never{false};
@@ -223,8 +192,8 @@ std::shared_ptr<const SweepData> table_of(const std::shared_ptr<const Model>& mo
     };
     const auto write = [&](Chunk chunk, const std::string&) {
         const std::scoped_lock lock(mutex);
-        data->add(waiting.extract(chunk.first).mapped().rows);
-        if (data->count() > most_drawn_rows)
+        data.add(waiting.extract(chunk.first).mapped().rows);
+        if (data.count() > most_drawn_rows)
             throw InputError("sweep", {},
                              fmt::format("there are more than {} rows, the most that can be drawn", most_drawn_rows),
                              "use shorter runs, or fewer; achilles sweep --csv F writes the whole table");
@@ -266,7 +235,7 @@ void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Swee
     const bool alike = model == model_ && sweep && sweep_ && sweep->prints == sweep_->prints && sweep->at == sweep_->at;
     model_ = model;
     sweep_ = std::move(sweep);
-    if (!alike) data_.reset();
+    if (!alike) job_.drop();
     is_current_ = false;
     problem_.clear();
     levels_ = sweep_ ? coarse_to_fine(*sweep_) : std::vector<Sweep>();
@@ -275,25 +244,16 @@ void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Swee
 }
 
 void SweepJob::begin() {
-    if (next_ == levels_.size()) {
-        if (levels_.empty()) worker_.start([](const std::stop_token&) { return std::shared_ptr<const SweepData>(); });
-        return;
-    }
-    worker_.start([model = model_, level = levels_[next_]](const std::stop_token& stop) {
-        try {
-            return table_of(model, level, stop);
-        } catch (const Stopped&) {
-            return std::shared_ptr<const SweepData>();
-        }
+    if (!is_busy()) return job_.stop();
+    job_.start([model = model_, level = levels_[next_]](const StopMonitor& monitor) {
+        return table_of(model, level, monitor.stop);
     });
 }
 
 void SweepJob::update(Patience patience) {
     while (is_busy()) {
         try {
-            const auto made = worker_.take(patience);
-            if (!made) return;
-            data_ = *made;
+            if (!job_.update(patience)) return;
             is_current_ = true;
             ++next_;
         } catch (const InputError& problem) {

@@ -62,10 +62,10 @@ class InfluencesJob {
     // Takes in what is ready and begins what was asked for meanwhile. Without patience: until that is there.
     void update(Patience patience);
     // Called on another thread when update() would take something in.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
     // The last that are known: of the quantity that was asked for last, but maybe of a run before. Null: there are none yet.
-    const Influences* influences() const { return made_.get(); }
+    const Influences* influences() const { return job_.result().get(); }
     bool is_busy() const { return begun_.has_value(); }
     const std::string& problem() const { return problem_; }  // why there are none; else empty
 
@@ -77,36 +77,22 @@ class InfluencesJob {
     };
     void begin();
     std::optional<Asked> asked_, begun_;  // last; and what is under way
-    std::shared_ptr<const Influences> made_;
     std::string problem_;
-    Worker<std::shared_ptr<const Influences>> worker_;
+    Job<Influences> job_;
 };
 
 // A proof of a whole run.
 
-class ProofJob {
+class ProofJob : public Job<Proof, ProofWatch> {
  public:
-    // Of a run of this model. What is under way is given up.
+    // A proof of a run of this model. The last proof is forgotten. update() throws InputError for a system that no
+    // proof covers.
     void begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim);
-    // Gives up what is under way; what is there stays.
-    void stop();
-    void forget();
-    // Takes in what is ready: true where that is a proof. Throws InputError for a system that no proof covers.
-    bool update(Patience patience);
-    // Called on another thread when update() would take something in.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
-
-    // How far what is under way has come; null: nothing is.
-    const ProofWatch* under_way() const { return watch_.get(); }
-    // The last that was made, and of which model; null: none.
-    const std::shared_ptr<const Proof>& proof() const { return proof_; }
+    // Of the last proof; null before the first.
     const std::shared_ptr<const Model>& model() const { return model_; }
 
  private:
     std::shared_ptr<const Model> model_;
-    std::shared_ptr<ProofWatch> watch_;
-    std::shared_ptr<const Proof> proof_;
-    Worker<std::shared_ptr<const Proof>> worker_;
 };
 
 // What a person writes for it.
@@ -129,10 +115,10 @@ class SweepJob {
     // Takes in what is ready and begins what is finer. Without patience: until the finest is there.
     void update(Patience patience);
     // Called on another thread when update() would take something in.
-    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+    void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
     // Null: there is nothing to see yet. While it is made anew that of the sweep before it, if its columns are the same.
-    const std::shared_ptr<const SweepData>& data() const { return data_; }
+    const std::shared_ptr<const SweepData>& data() const { return job_.result(); }
     bool is_busy() const { return next_ < levels_.size(); }
     // Whether the data are those of what was asked last, be they coarse.
     bool is_current() const { return is_current_; }
@@ -145,10 +131,9 @@ class SweepJob {
     std::optional<Sweep> sweep_;
     std::vector<Sweep> levels_;
     std::size_t next_ = 0;  // the level under way
-    std::shared_ptr<const SweepData> data_;
     bool is_current_ = false;
     std::string problem_;
-    Worker<std::shared_ptr<const SweepData>> worker_;
+    Job<SweepData> job_;
 };
 
 }  // namespace achilles

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -109,6 +110,66 @@ class Worker {
     std::optional<Answer> answer_;  // of the newest job
     bool busy_ = false;             // the newest job has no answer yet
     std::jthread thread_;           // the last: it uses all the others
+};
+
+// The monitor of work that reports no progress.
+struct StopMonitor {
+    std::stop_token stop;
+};
+
+// One study at a time, on a thread of its own, and the last result. A Monitor has a stop token, and what the work
+// reports while it goes on.
+template <class Result, class Monitor = StopMonitor>
+class Job {
+ public:
+    using Work = std::function<Result(Monitor&)>;
+
+    // Begins this. Work under way is stopped, and what it returns or throws is dropped.
+    void start(Work work, std::shared_ptr<Monitor> monitor = std::make_shared<Monitor>()) {
+        monitor_ = monitor;
+        worker_.start([work = std::move(work), monitor = std::move(monitor)](std::stop_token stop) {
+            monitor->stop = std::move(stop);
+            return std::make_shared<const Result>(work(*monitor));
+        });
+    }
+    // Stops work under way. The last result stays.
+    void stop() {
+        if (monitor_ == nullptr) return;
+        monitor_.reset();
+        worker_.start([](const std::stop_token&) { return std::shared_ptr<const Result>(); });
+    }
+    // Forgets the last result. Work under way goes on.
+    void drop() { result_.reset(); }
+    void forget() {
+        stop();
+        drop();
+    }
+    // Takes a result that is ready: true if there was one. Rethrows what the work threw; the last result stays then.
+    bool update(Patience patience) {
+        if (monitor_ == nullptr) return false;
+        try {
+            const auto made = worker_.take(patience);
+            if (!made) return false;
+            result_ = *made;
+        } catch (...) {
+            monitor_.reset();
+            throw;
+        }
+        monitor_.reset();
+        return true;
+    }
+    // Called on another thread when update() would take a result.
+    void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
+
+    // Of the work under way; null without any.
+    const Monitor* under_way() const { return monitor_.get(); }
+    // The last result; null before the first.
+    const std::shared_ptr<const Result>& result() const { return result_; }
+
+ private:
+    std::shared_ptr<Monitor> monitor_;
+    std::shared_ptr<const Result> result_;
+    Worker<std::shared_ptr<const Result>> worker_;
 };
 
 }  // namespace achilles

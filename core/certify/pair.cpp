@@ -5,13 +5,20 @@
 #include <limits>
 
 #include "certify/range.hpp"
-#include "certify/truncation.hpp"
 
 namespace achilles {
 
 namespace {
 
 constexpr double room = 1.5;  // in radii
+
+// q, s, the two sigma and t.
+std::vector<std::uint32_t> variables_of_pair(const Layout& layout) {
+    std::vector<std::uint32_t> variables;
+    for (std::uint32_t i = 0; i < 2 * layout.dof; ++i) variables.push_back(i);
+    variables.insert(variables.end(), {layout.sigma(), layout.second_sigma(), layout.t()});
+    return variables;
+}
 
 // x' W^-1 y of 2-vectors.
 Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
@@ -125,36 +132,22 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
 }
 
 PairConditions::PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
-                               std::size_t second, ContactSet held, ContactSet unpressed, const Ground&)
-    : dof_(static_cast<std::size_t>(model.dof())),
-      held_(held),
-      unpressed_(unpressed),
-      autonomous_(model.equations().autonomous),
+                               std::size_t second, ContactSet held, ContactSet unpressed, const Ground& ground)
+    : ConditionsBase(model, run, &model.pair(first, second, held).others, variables_of_pair(model.layout()), unpressed,
+                     ground),
       layout_(model.layout()),
-      truncation_(run.options.truncation),
       e_(e),
-      programs_(&model.pair(first, second, held)),
-      terms_(model.evaluator<Interval>(programs_->terms, run.parameters)),
-      point_(model.evaluator(programs_->terms, run.parameters)),
-      others_(model.evaluator<Interval>(programs_->others.program, run.parameters)) {}
+      terms_(model.evaluator<Interval>(model.pair(first, second, held).terms, run.parameters)),
+      point_(model.evaluator(model.pair(first, second, held).terms, run.parameters)) {
+    truncation_.conditions = Conditions::sharp;  // there are no others for a pair
+    truncation_.reinitialization = Reinitialization::kinetic;
+}
 
 // The terms over a box of q, s, the two sigma and t.
 bool PairConditions::look(const std::vector<Interval>& box) {
-    for (std::size_t i = 0; i < 2 * dof_; ++i) terms_.input(i) = box[i];
-    terms_.input(layout_.sigma()) = box[2 * dof_];
-    terms_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
-    terms_.clock() = box[2 * dof_ + 2];
+    set_box(terms_, box);
     terms_.run();
     return certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
-}
-
-std::optional<Certificate::Others> PairConditions::others_stay(const std::vector<Interval>& box) {
-    for (std::size_t i = 0; i < 2 * dof_; ++i) others_.input(i) = box[i];
-    others_.input(layout_.sigma()) = box[2 * dof_];
-    others_.input(layout_.second_sigma()) = box[2 * dof_ + 1];
-    others_.clock() = box[2 * dof_ + 2];
-    others_.run();
-    return others_proved(programs_->others, others_, unpressed_);
 }
 
 // What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.
@@ -186,8 +179,7 @@ std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision&
 // Is the motion until tau_inf proved to stay inside the box, with the shifted variables? If not it grows to what was asked
 // for. terms_ are those over the box.
 bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtCollision& pair) {
-    bool inside = bound.T.hi() < box.duration && bound.m.hi() <= box.growth;
-    if (!(bound.T.hi() < box.duration)) box.duration = inflated(bound.T.hi(), room);
+    bool inside = fits(bound.T.hi(), box.duration, room) && bound.m.hi() <= box.growth;
     if (!(bound.m.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bound.m.hi() - 1.0);
     const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -202,8 +194,8 @@ bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtColli
         const Interval &u = box.all[2 * dof_], &w = box.all[2 * dof_ + 1];
         F = F + terms_.D(0, i) * square(u) + terms_.D(1, i) * u * w + terms_.D(2, i) * square(w);
         const double q = (abs(rate) * bound.T + shift_q).hi(), v = (abs(F) * bound.T + shift_s).hi();
-        if (!(q < box.q_radius[i])) inside = false, box.q_radius[i] = inflated(q, room);
-        if (!(v < box.s_radius[i])) inside = false, box.s_radius[i] = inflated(v, room);
+        inside = fits(q, box.q_radius[i], room) && inside;
+        inside = fits(v, box.s_radius[i], room) && inside;
     }
     return inside;
 }
@@ -246,10 +238,6 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
         position = position + square(Interval(box.q_radius[i]));
         velocity = velocity + square(Interval(box.s_radius[i]));
     }
-    Certificate c;
-    c.certified = true;
-    c.conditions = Conditions::sharp;
-    c.reinitialization = Reinitialization::kinetic;
     double wait = 0.0;  // as if each bounced alone with what it has now, drawn by what holds both
     for (std::size_t k = 0; k < 2; ++k) {
         const double e = mid(e_[k]), h = std::max(0.0, collision.h[k]);
@@ -258,7 +246,7 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
         const double landing = h > 0.0 ? (collision.sigma[k] + falling) / a : 0.0;
         wait = std::max(wait, landing + 2.0 * e * falling / (a * (1.0 - e)));
     }
-    set_zeno_time(c, collision.before.t, {Interval(0.0), bound.T}, wait);
+    Certificate c = certificate_at(collision.before.t, {Interval(0.0), bound.T}, wait);
     c.zeno_low = collision.before.t;
     c.position_bound = sqrt(position).hi();
     c.velocity_bound = sqrt(velocity).hi();
@@ -267,12 +255,9 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
     c.uniform_position = norm(uniform).hi();
     c.a_min = std::min(pair.a[0].lo(), pair.a[1].lo());
     c.a_max = std::max(pair.a[0].hi(), pair.a[1].hi());
-    c.decision = {{"time bound", 0.5 * bound.T.hi(), truncation_.eps_t},
-                  {"uniform position", *c.uniform_position, truncation_.eps_q},
-                  {"shadowing velocity", *c.shadowing_velocity, truncation_.eps_v}};
+    decide(c, 0.5 * bound.T.hi());
     c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0},
                      {"force at the cut", -std::min(pair.lambda[0].lo(), pair.lambda[1].lo()), 0.0}};
-    c.decisive = c.decision->closest().name;
     return c;
 }
 
@@ -293,7 +278,7 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
     set_state(point_, tangential);
     point_.run();
 
-    Box box;
+    Box box(dof_);
     box.duration = inflated(first->T.hi(), room);
     box.growth = 1.0 + 2.0 * (first->m.hi() - 1.0) + 1e-6;
     const double ulp = 0x1p-52 * std::abs(tangential.t);
@@ -301,20 +286,18 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto k = static_cast<std::size_t>(i);
         const double q = tangential.q[i], v = std::abs(collision.before.v[i]) + std::abs(tangential.v[i]);
-        box.q0.push_back(widened(Interval(q), 0x1p-50 * std::abs(q)));
-        box.s0.push_back(widened(Interval(tangential.v[i]), 0x1p-50 * v));
-        box.q_radius.push_back(inflated(std::abs(tangential.v[i]) * first->T.hi(), room));
-        box.s_radius.push_back(inflated(std::abs(point_.A(k)) * first->T.hi(), room));
+        box.q0[k] = rounding_interval(q, std::abs(q));
+        box.s0[k] = rounding_interval(tangential.v[i], v);
+        box.q_radius[k] = inflated(std::abs(tangential.v[i]) * first->T.hi(), room);
+        box.s_radius[k] = inflated(std::abs(point_.A(k)) * first->T.hi(), room);
     }
     for (int round = 0; round < 40; ++round) {
-        box.all.clear();
-        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.q0[i], box.q_radius[i]));
-        for (std::size_t i = 0; i < dof_; ++i) box.all.push_back(widened(box.s0[i], box.s_radius[i]));
+        box.put_into(box.all);
         for (std::size_t k = 0; k < 2; ++k) {
             const double most = (sqrt(pair->W[k][k]) * Interval(box.growth) * pair->r0).hi();
-            box.all.emplace_back(-most, most);
+            box.all[2 * dof_ + k] = {-most, most};
         }
-        box.all.emplace_back(box.t0.lo(), (Interval(box.t0.hi()) + Interval(box.duration)).hi());
+        box.all.back() = box.time();
         if (!look(box.all)) return std::nullopt;
         const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
         pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
@@ -330,8 +313,8 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
         const auto bound = pair_bound(*pair);
         if (!bound) return std::nullopt;
         if (!contain(box, *bound, *pair)) continue;
-        auto others = others_stay(box.all);
-        if (!others) return std::nullopt;
+        std::optional<Certificate::Others> others;
+        if (!prove_others(box.all, others)) return std::nullopt;
         look(box.all);
         Completion result{certificate_of(box, *bound, *pair, collision), tangential};
         result.certificate.others = std::move(others);

@@ -6,10 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "contacts/delassus.hpp"
+#include "certify/truncation.hpp"
 #include "model/model.hpp"
-#include "number/ground.hpp"
-#include "run/trajectory.hpp"
 
 namespace achilles {
 
@@ -35,7 +33,7 @@ struct PairCollision {
     std::array<double, 2> h, sigma;
 };
 
-class PairConditions {
+class PairConditions : protected ConditionsBase {
  public:
     // While others are held, of which `unpressed` need no force.
     PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
@@ -49,31 +47,22 @@ class PairConditions {
     std::optional<Completion> certify(const PairCollision& collision, bool below_rounding);
 
  private:
-    // A box around the collision in q, s, the two sigma and t, and what it is made of.
-    struct Box {
-        std::vector<Interval> q0, s0;
-        std::vector<double> q_radius, s_radius;
-        Interval t0;
-        double duration, growth;  // T and m as they are assumed
-        std::vector<Interval> all;
+    // T and m as they are assumed: duration, growth.
+    struct Box : CollisionBox {
+        double growth = 1.0;
+        std::vector<Interval> all;  // q, s, the two sigma, t
+        explicit Box(std::size_t dof) : CollisionBox(dof), all(2 * dof + 3) {}
     };
     bool look(const std::vector<Interval>& box);
     std::optional<PairAtCollision> at_collision(const PairCollision& collision, const State& shifted);
     bool contain(Box& box, const PairBound& bound, const PairAtCollision& pair);
     Certificate certificate_of(const Box& box, const PairBound& bound, const PairAtCollision& pair,
                                const PairCollision& collision) const;
-    std::optional<Certificate::Others> others_stay(const std::vector<Interval>& box);
 
-    std::size_t dof_;
-    ContactSet held_, unpressed_;
-    bool autonomous_;
     Layout layout_;
-    Truncation truncation_;
     std::array<Interval, 2> e_;
-    const PairPrograms* programs_;
     PairTerms<Evaluator<Interval>> terms_;
     PairTerms<Evaluator<double>> point_;
-    Evaluator<Interval> others_;
 };
 
 }  // namespace achilles

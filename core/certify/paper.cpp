@@ -31,21 +31,13 @@ struct PaperConditions::Bounds {
 
 PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
                                  ContactSet held, ContactSet unpressed, const Ground& ground)
-    : TruncationConditions(ground),
-      dof_(static_cast<std::size_t>(model.dof())),
-      sigma_(model.layout().sigma()),
-      autonomous_(model.equations().autonomous),
-      truncation_(run.options.truncation),
-      e_(e),
+    : TruncationConditions(model, run, e, contact, held, unpressed, ground),
       point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
              model.evaluator<Interval>(model.bouncing(contact, held).gradient, run.parameters),
              model.bouncing(contact, held).variables),
       box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
-      rates_(model.evaluator<Interval>(model.bouncing(contact, held).rates, run.parameters)),
-      others_(model, run, contact, held, unpressed) {}
+      rates_(model.evaluator<Interval>(model.bouncing(contact, held).rates, run.parameters)) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.
@@ -127,7 +119,7 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
             return std::nullopt;
         if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) {
             std::optional<Certificate::Others> others;
-            if (!others_.is_alone() && !(others = others_.prove(bounds->box))) return std::nullopt;
+            if (!prove_others(bounds->box, others)) return std::nullopt;
             Certificate certificate = certificate_of(collision, *bounds);
             certificate.others = std::move(others);
             return certificate;
@@ -163,10 +155,10 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
 }
 
 Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) {
-    Certificate certificate;
-    certificate.certified = true;
-    certificate.conditions = Conditions::paper;
-    certificate.reinitialization = truncation_.reinitialization;
+    // The sharper interval for tau_inf (theory.md 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
+    const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
+    Certificate certificate =
+        certificate_at(collision.before.t, wait, estimated_wait(trend_at(collision), mid(e_), collision.speed));
     // The c_i are those of the run's tolerances: the bounds over V are below V's own radii, and those below the
     // tolerances.
     const auto condition = [&](const char* name, const Interval& factor, double eps) -> Inequality {
@@ -183,10 +175,6 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.position_bound = (b.position * b.w).hi();
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
-    // The sharper interval for tau_inf (theory.md 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
-    const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
-    set_zeno_time(certificate, collision.before.t, wait,
-                  estimated_wait(trend_at(trend_, collision), mid(e_), collision.speed));
     const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
     certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();
     certificate.paper = Certificate::Paper{b.e1.hi(),
@@ -206,9 +194,7 @@ std::optional<Certificate> PaperConditions::do_certify(const Collision& collisio
 
 std::optional<Certificate> PaperConditions::do_prove_any(const Collision& collision) {
     constexpr double any = 1e6;
-    auto certificate = prove(collision, {any, any, any, Conditions::paper, truncation_.reinitialization});
-    if (certificate) certificate->below_rounding = true;
-    return certificate;
+    return prove(collision, {any, any, any, Conditions::paper, truncation_.reinitialization});
 }
 
 }  // namespace achilles

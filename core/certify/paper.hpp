@@ -35,7 +35,6 @@ class PaperConditions : public TruncationConditions {
                     ContactSet unpressed, const Ground& ground);
 
     bool fails_at_point(const Collision& collision) override;
-    void restart(const Interval& e) override { e_ = e; }
 
  protected:
     std::optional<Certificate> do_certify(const Collision& collision) override;
@@ -49,18 +48,10 @@ class PaperConditions : public TruncationConditions {
     Certificate certificate_of(const Collision& collision, const Bounds& bounds);
     Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& wait);
 
-    std::size_t dof_;
-    std::uint32_t sigma_;
-    bool autonomous_;
-    Truncation truncation_;
-    Interval e_;
     Definition7Terms<Evaluator<double>> point_;
-    TrendTerms<Evaluator<double>> trend_;
     Range hddot_;
     Definition7Terms<Evaluator<Interval>> box_;
-    ContactTerms<Evaluator<Interval>> contact_;
     BouncingRates<Evaluator<Interval>> rates_;
-    OthersStay others_;
 };
 
 }  // namespace achilles

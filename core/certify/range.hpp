@@ -42,8 +42,19 @@ class Range {
 // The interval of all numbers within `radius` of x.
 inline Interval widened(const Interval& x, double radius) { return x + Interval(-radius, radius); }
 
+// A number computed from terms of this size stands for every number that rounding could have made it from; a
+// certificate holds for all of them. The size is that of the terms: s = v - n hdot may cancel.
+inline Interval rounding_interval(double x, double size) { return widened(Interval(x), 0x1p-50 * size); }
+
 // A radius larger than `need` by the factor `room`, and positive even if nothing was needed. Its minimum is so large that
 // products of a few such radii are still normal numbers: arithmetic with denormal ones takes a hundred times as long.
 inline double inflated(double need, double room = 1.2) { return room * need + 0x1p-200; }
+
+// Whether `need` is inside a radius. Where it is not, the radius grows to it, with some room.
+inline bool fits(double need, double& radius, double room = 1.2) {
+    if (need < radius) return true;
+    radius = inflated(need, room);
+    return false;
+}
 
 }  // namespace achilles

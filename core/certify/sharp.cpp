@@ -10,13 +10,6 @@ namespace {
 
 constexpr double doubt = 1.5;  // what a guess may be wrong by, where it says nothing of this collision itself
 
-// A number computed from terms of this size stands for every number that rounding could have made it from; the
-// certificate holds for all of them. The size is that of the terms: s = v - n hdot may cancel.
-Interval rounded(double x, double size) {
-    const double radius = 0x1p-50 * size;
-    return Interval(x) + Interval(-radius, radius);
-}
-
 // max |x| times a nonnegative factor, rounded up; infinity where there is no bound.
 double times(const Interval& x, const Interval& factor) {
     const double product = (Interval(mag(x)) * factor).hi();
@@ -37,29 +30,13 @@ struct SharpConditions::Time {
 
 SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
                                  ContactSet held, ContactSet unpressed, const Ground& ground)
-    : TruncationConditions(ground),
-      dof_(static_cast<std::size_t>(model.dof())),
-      sigma_(model.layout().sigma()),
-      autonomous_(model.equations().autonomous),
-      truncation_(run.options.truncation),
-      e_(e),
+    : TruncationConditions(model, run, e, contact, held, unpressed, ground),
       hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
                    model.evaluator<Interval>(model.bouncing(contact, held).shadow, run.parameters),
                    model.bouncing(contact, held).variables),
              dof_),
-      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
-      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)),
       guess_(model.evaluator(model.bouncing(contact, held).rates, run.parameters)),
-      others_(model, run, contact, held, unpressed),
-      box_{std::vector<Interval>(dof_),
-           std::vector<Interval>(dof_),
-           std::vector<double>(dof_),
-           std::vector<double>(dof_),
-           std::vector<Interval>(dof_),
-           {},
-           {},
-           {},
-           0.0},
+      box_(dof_),
       shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
       variables_(model.bouncing(contact, held).variables.size()),
       need_q_(dof_),
@@ -78,7 +55,7 @@ bool SharpConditions::fails_by_speed(double speed) {
 // Else, to leading order, how far the first flight that would not be drawn goes from the surface.
 bool SharpConditions::fails_at_point(const Collision& collision) {
     if (fails_by_speed(collision.speed)) return true;
-    const Trend trend = trend_at(trend_, collision);
+    const Trend trend = trend_at(collision);
     const double e = mid(e_), w = collision.speed;
     if (!(trend.a > 0.0) || !(e < 1.0)) return true;
     if ((collision.restart - collision.tangential).norm() > truncation_.eps_v) return true;
@@ -98,12 +75,9 @@ void SharpConditions::remember(double speed, double too_wide, int power) {
 
 // The attained bound of theory.md 4, if X allows it.
 std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
-    for (std::size_t i = 0; i < dof_; ++i) {
-        variables_[i] = widened(box_.q0[i], box_.q_radius[i]);
-        variables_[dof_ + i] = widened(box_.s0[i], box_.s_radius[i]);
-    }
+    box_.put_into(variables_);
     variables_[2 * dof_] = box_.sigma;
-    if (!autonomous_) variables_.back() = {box_.t0.lo(), (Interval(box_.t0.hi()) + Interval(box_.duration)).hi()};
+    if (!autonomous_) variables_.back() = box_.time();
     const Interval a = -hddot_.over(variables_);
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
@@ -141,9 +115,8 @@ bool SharpConditions::contain(const Time& time) {
         need_s_[i] = times(A + B * box_.sigma + D * square(box_.sigma), T);
         const double q = need_q_[i] + times(n, h);
         const double s = std::max(need_s_[i] + times(B, h), mag(box_.d[i]) + times(A, T));
-        inside = inside && q < box_.q_radius[i] && s < box_.s_radius[i];
-        box_.q_radius[i] = std::max(box_.q_radius[i], q < box_.q_radius[i] ? 0.0 : inflated(q));
-        box_.s_radius[i] = std::max(box_.s_radius[i], s < box_.s_radius[i] ? 0.0 : inflated(s));
+        inside = fits(q, box_.q_radius[i]) && inside;
+        inside = fits(s, box_.s_radius[i]) && inside;
     }
     return inside;
 }
@@ -189,8 +162,8 @@ void SharpConditions::begin_box(const Collision& collision) {
         const auto k = static_cast<Eigen::Index>(i);
         const double v = std::abs(collision.before.v[k]);
         const Interval &n = contact_.impulse_direction(i), &g = contact_.gradient(i);
-        box_.q0[i] = rounded(collision.before.q[k], std::abs(collision.before.q[k]));
-        box_.s0[i] = rounded(collision.tangential[k], v + (abs(n) * box_.w).hi());
+        box_.q0[i] = rounding_interval(collision.before.q[k], std::abs(collision.before.q[k]));
+        box_.s0[i] = rounding_interval(collision.tangential[k], v + (abs(n) * box_.w).hi());
         box_.d[i] = euclidean ? box_.w * abs(n - g / g2) : Interval(0.0);
     }
 }
@@ -218,7 +191,7 @@ void SharpConditions::predict_radii(const Collision& collision, const Trend& tre
 
 // What can be proved of the collision.
 std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
-    const Trend trend = trend_at(trend_, collision);
+    const Trend trend = trend_at(collision);
     if (!(trend.a > 0.0) || !(mid(e_) < 1.0)) return std::nullopt;
     begin_box(collision);
     predict_radii(collision, trend);
@@ -227,7 +200,7 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
         if (!time) return std::nullopt;
         if (!contain(*time)) continue;
         std::optional<Certificate::Others> others;
-        if (!others_.is_alone() && !(others = others_.prove(variables_))) return std::nullopt;
+        if (!prove_others(variables_, others)) return std::nullopt;
         sharpen(*time, trend);
         find_shadow(*time);
         Certificate certificate = certificate_of(collision, *time, trend);
@@ -238,11 +211,7 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
 }
 
 Certificate SharpConditions::certificate_of(const Collision& collision, const Time& time, const Trend& trend) const {
-    Certificate c;
-    c.certified = true;
-    c.conditions = Conditions::sharp;
-    c.reinitialization = truncation_.reinitialization;
-    set_zeno_time(c, collision.before.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
+    Certificate c = certificate_at(collision.before.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
     Interval q(0.0), v(0.0);
     for (std::size_t i = 0; i < dof_; ++i) {
         q = q + square(Interval(need_q_[i]));
@@ -259,14 +228,10 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
         c.shadowing_velocity = velocity.hi();
         c.uniform_position = uniform.hi();
     }
-    constexpr double none = std::numeric_limits<double>::infinity();
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
-    c.decision = {{"time bound", time.half_width(), truncation_.eps_t},
-                  {"uniform position", c.uniform_position.value_or(none), truncation_.eps_q},
-                  {"shadowing velocity", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
+    decide(c, time.half_width());
     c.assumptions = {{"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
-    c.decisive = c.decision->closest().name;
     return c;
 }
 
@@ -283,12 +248,6 @@ std::optional<Certificate> SharpConditions::do_certify(const Collision& collisio
         remember(collision.speed, cubic, 3);
     }
     return std::nullopt;
-}
-
-std::optional<Certificate> SharpConditions::do_prove_any(const Collision& collision) {
-    auto certificate = prove(collision);
-    if (certificate) certificate->below_rounding = true;
-    return certificate;
 }
 
 }  // namespace achilles

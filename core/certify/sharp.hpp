@@ -46,24 +46,21 @@ class SharpConditions : public TruncationConditions {
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;
     void restart(const Interval& e) override {
-        e_ = e;
+        TruncationConditions::restart(e);
         wide_speed_ = too_wide_ = last_speed_ = 0.0;
     }
 
  protected:
     std::optional<Certificate> do_certify(const Collision& collision) override;
-    std::optional<Certificate> do_prove_any(const Collision& collision) override;
+    std::optional<Certificate> do_prove_any(const Collision& collision) override { return prove(collision); }
 
  private:
     struct Time;
-    // X: a box in (q, s), sigma and t. The radii are those beyond the rounding box of the collision.
-    struct Box {
-        std::vector<Interval> q0, s0;  // what the computed state stands for
-        std::vector<double> q_radius, s_radius;
+    // X: a box in (q, s), sigma and t.
+    struct Box : CollisionBox {
         std::vector<Interval> d;  // v* - s where the restart is v*
         Interval w, sigma;
-        Interval t0;            // tau_k
-        double duration = 0.0;  // s
+        explicit Box(std::size_t dof) : CollisionBox(dof), d(dof) {}
     };
     struct Shadow {
         std::vector<Interval> E_q, E_s;  // at tau_inf
@@ -79,16 +76,8 @@ class SharpConditions : public TruncationConditions {
     Certificate certificate_of(const Collision& collision, const Time& time, const Trend& trend) const;
     void remember(double speed, double too_wide, int power);
 
-    std::size_t dof_;
-    std::uint32_t sigma_;
-    bool autonomous_;
-    Truncation truncation_;
-    Interval e_;
     ShadowTerms<Range> hddot_;
-    ContactTerms<Evaluator<Interval>> contact_;
-    TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> guess_;
-    OthersStay others_;
     // The last proof or guess that was too wide: at this impact speed, by this factor, which falls with this power of
     // it.
     double wide_speed_ = 0.0, too_wide_ = 0.0;

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "certify/paper.hpp"
+#include "certify/range.hpp"
 #include "certify/sharp.hpp"
 #include "contacts/delassus.hpp"
 
@@ -97,18 +99,66 @@ Interval norm(const std::vector<Interval>& x) {
     return sqrt(sum);
 }
 
-Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision) {
-    set_state(terms, collision.with(collision.tangential));
-    terms.run();
-    return {-terms.hddot(), -terms.rate(), -terms.by_sigma()};
+void CollisionBox::put_into(std::vector<Interval>& variables) const {
+    for (std::size_t i = 0; i < q0.size(); ++i) {
+        variables[i] = widened(q0[i], q_radius[i]);
+        variables[q0.size() + i] = widened(s0[i], s_radius[i]);
+    }
 }
 
-void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated) {
+ConditionsBase::ConditionsBase(const Model& model, const Run& run, const Neighbours* others,
+                               std::vector<std::uint32_t> variables, ContactSet unpressed, const Ground&)
+    : dof_(static_cast<std::size_t>(model.dof())),
+      truncation_(run.options.truncation),
+      variables_(std::move(variables)),
+      unpressed_(unpressed),
+      neighbours_(others) {
+    if (neighbours_ != nullptr) others_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
+}
+
+bool ConditionsBase::prove_others(const std::vector<Interval>& box, std::optional<Certificate::Others>& proved) {
+    if (neighbours_ == nullptr) return true;
+    set_box(others_, box);
+    others_.run();
+    proved = others_proved(*neighbours_, others_, unpressed_);
+    return proved.has_value();
+}
+
+Certificate ConditionsBase::certificate_at(double tau_k, const Wait& wait, double estimated) const {
+    Certificate certificate;
+    certificate.certified = true;
+    certificate.conditions = truncation_.conditions;
+    certificate.reinitialization = truncation_.reinitialization;
     certificate.zeno_low = (Interval(tau_k) + Interval(wait.earliest.lo())).lo();
     certificate.zeno_high = (Interval(tau_k) + Interval(wait.latest.hi())).hi();
     const double low = std::max(tau_k, certificate.zeno_low), time = tau_k + estimated;
     certificate.zeno_time = std::isfinite(time) ? std::clamp(time, low, std::max(low, certificate.zeno_high))
                                                 : 0.5 * (low + certificate.zeno_high);
+    return certificate;
+}
+
+void ConditionsBase::decide(Certificate& c, double half_width) const {
+    constexpr double none = std::numeric_limits<double>::infinity();
+    c.decision = {{"time bound", half_width, truncation_.eps_t},
+                  {"uniform position", c.uniform_position.value_or(none), truncation_.eps_q},
+                  {"shadowing velocity", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
+    c.decisive = c.decision->closest().name;
+}
+
+TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
+                                           ContactSet held, ContactSet unpressed, const Ground& ground)
+    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.neighbours(contact, held),
+                     model.bouncing(contact, held).variables, unpressed, ground),
+      sigma_(model.layout().sigma()),
+      autonomous_(model.equations().autonomous),
+      e_(e),
+      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
+      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)) {}
+
+Trend TruncationConditions::trend_at(const Collision& collision) {
+    set_state(trend_, collision.with(collision.tangential));
+    trend_.run();
+    return {-trend_.hddot(), -trend_.rate(), -trend_.by_sigma()};
 }
 
 std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
@@ -144,20 +194,6 @@ std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, c
 Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i) {
     const std::size_t bouncing = neighbours.bouncing.size();
     return program.output(bouncing + i * (2 + bouncing) + 2);
-}
-
-OthersStay::OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed)
-    : unpressed_(unpressed) {
-    if (model.contacts() == 1) return;
-    neighbours_ = &model.neighbours(contact, held);
-    variables_ = model.bouncing(contact, held).variables;
-    program_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
-}
-
-std::optional<Certificate::Others> OthersStay::prove(const std::vector<Interval>& box) {
-    for (std::size_t i = 0; i < variables_.size(); ++i) program_.input(variables_[i]) = box[i];
-    program_.run();
-    return others_proved(*neighbours_, program_, unpressed_);
 }
 
 }  // namespace achilles

@@ -73,11 +73,55 @@ struct Collision {
     State with(const Vector& v) const { return {before.q, v, before.t}; }
 };
 
-// No certificate is made but on a Ground: whoever constructs the conditions shows one, and the questions stand on one
-// of their own.
-class TruncationConditions {
+// A box around a collision in q, s and t: what the computed state stands for, and radii beyond that.
+struct CollisionBox {
+    std::vector<Interval> q0, s0;
+    std::vector<double> q_radius, s_radius;
+    Interval t0;            // tau_k
+    double duration = 0.0;  // s
+
+    explicit CollisionBox(std::size_t dof) : q0(dof), s0(dof), q_radius(dof), s_radius(dof) {}
+    // q and s, as the first of these variables.
+    void put_into(std::vector<Interval>& variables) const;
+    Interval time() const { return {t0.lo(), (Interval(t0.hi()) + Interval(duration)).hi()}; }
+};
+
+// Base of the conditions for cutting the bouncing of one contact or the chatter of a pair: the run's tolerances, what
+// is proved of the other contacts, and what all certificates have. No certificate is made but on a Ground: a
+// constructor shows one, and the questions stand on one of their own.
+class ConditionsBase {
+ protected:
+    // A box has an interval for each of the variables. Without others `others` is null; those of them in `unpressed`
+    // need no contact force.
+    ConditionsBase(const Model& model, const Run& run, const Neighbours* others, std::vector<std::uint32_t> variables,
+                   ContactSet unpressed, const Ground&);
+
+    void set_box(auto& program, const std::vector<Interval>& box) const {
+        for (std::size_t i = 0; i < variables_.size(); ++i) program.input(variables_[i]) = box[i];
+    }
+    // Whether the other contacts stay as they are (theory-gaps.md 2.3): over the box every held contact is pressed,
+    // impulses press it more, and every other gap is open. Where there are others, `proved` is what is proved of them.
+    bool prove_others(const std::vector<Interval>& box, std::optional<Certificate::Others>& proved);
+    // A certificate whose tau_inf lies between tau_k + earliest and tau_k + latest, and where it is estimated: inside,
+    // and not before tau_k.
+    Certificate certificate_at(double tau_k, const Wait& wait, double estimated) const;
+    // Adds the decision by the time and what is proved of the shadowing.
+    void decide(Certificate& certificate, double half_width) const;
+
+    std::size_t dof_;
+    Truncation truncation_;
+
+ private:
+    std::vector<std::uint32_t> variables_;
+    ContactSet unpressed_;
+    const Neighbours* neighbours_;
+    Evaluator<Interval> others_;
+};
+
+class TruncationConditions : protected ConditionsBase {
  public:
-    explicit TruncationConditions(const Ground&) {}
+    TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+                         ContactSet unpressed, const Ground& ground);
     virtual ~TruncationConditions() = default;
     // Quick: true where they can be seen not to hold.
     virtual bool fails_at_point(const Collision& collision) = 0;
@@ -85,7 +129,7 @@ class TruncationConditions {
     virtual bool fails_by_speed(double /*speed*/) { return false; }
     // Another run begins, of this restitution and the same motion: what the collisions before have shown is none of its
     // business.
-    virtual void restart(const Interval& e) = 0;
+    virtual void restart(const Interval& e) { e_ = e; }
     // The certificate if the conditions hold for the run's tolerances; nothing if they do not, or cannot be proved.
     // Takes long: ask fails_at_point() first.
     std::optional<Certificate> certify(const Collision& collision) {
@@ -95,12 +139,22 @@ class TruncationConditions {
     // What can be proved here whatever the tolerances, for a collision after which no further flight can be resolved.
     std::optional<Certificate> prove_any(const Collision& collision) {
         const Ground ground;
-        return do_prove_any(collision);
+        auto certificate = do_prove_any(collision);
+        if (certificate) certificate->below_rounding = true;
+        return certificate;
     }
 
  protected:
     virtual std::optional<Certificate> do_certify(const Collision& collision) = 0;
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
+    // How -hddot changes at a collision.
+    Trend trend_at(const Collision& collision);
+
+    std::uint32_t sigma_;
+    bool autonomous_;
+    Interval e_;
+    ContactTerms<Evaluator<Interval>> contact_;
+    TrendTerms<Evaluator<double>> trend_;
 };
 
 // The conditions that the options of the run select, for a contact with restitution e while the contacts `held` are held. Those of
@@ -118,15 +172,6 @@ Interval norm(const std::vector<Interval>& x);
 //     d = (4 err(h) + |hdot| ulp(t))/|hdot|     (theory-gaps.md 1)
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact);
 
-// How -hddot changes at a collision.
-Trend trend_at(TrendTerms<Evaluator<double>>& terms, const Collision& collision);
-
-// Writes into the certificate that tau_inf lies between tau_k + earliest and tau_k + latest, and where it is estimated:
-// inside, and not before tau_k.
-void set_zeno_time(Certificate& certificate, double tau_k, const Wait& wait, double estimated);
-
-// Whether the other contacts stay as they are while one bounces (theory-gaps.md 2.3).
-
 // What the program of these neighbours proves, which has run. Nothing where one is not proved pressed, or open. Those that are
 // known to need no force (theory-gaps.md 2.7), `unpressed`, need not be pressed.
 std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
@@ -134,22 +179,5 @@ std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, c
 
 // kappa of held contact i of these for the one that bounces, of a program that has run.
 Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i);
-
-class OthersStay {
- public:
-    OthersStay(const Model& model, const Run& run, std::size_t contact, ContactSet held, ContactSet unpressed);
-
-    // Over a box of the variables of Bouncing: proved where every held contact is pressed and impulses press it more, and every
-    // other gap is open. Nothing where that is not proved.
-    std::optional<Certificate::Others> prove(const std::vector<Interval>& box);
-    // There is no other contact.
-    bool is_alone() const { return !neighbours_; }
-
- private:
-    ContactSet unpressed_;
-    const Neighbours* neighbours_ = nullptr;
-    std::vector<std::uint32_t> variables_;
-    Evaluator<Interval> program_;
-};
 
 }  // namespace achilles

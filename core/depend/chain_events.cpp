@@ -156,8 +156,8 @@ void Chain::land(std::size_t event) {
 std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet& joins) const {
     const auto& events = trajectory_->events;
     const Event& now = events[event];
-    const bool is_zeno = event + 1 < events.size() && events[event + 1].kind == Event::Kind::zeno &&
-                         events[event + 1].truncation && events[event + 1].truncation->t == now.t;
+    const bool is_zeno = event + 1 < events.size() && events[event + 1].is_zeno() && events[event + 1].truncation &&
+                         events[event + 1].truncation->t == now.t;
     if (is_zeno) {
         joins = events[event + 1].contacts;
     } else if (next_piece_ < trajectory_->pieces.size()) {

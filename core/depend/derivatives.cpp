@@ -79,7 +79,7 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
         if (link->event && link->kind == Link::Kind::jump) {
             const Event& event = trajectory.events[*link->event];
             // Before the jump, where a crossing has led.
-            if (event.kind == Event::Kind::impact) {
+            if (event.is_impact()) {
                 take(*link->event);
                 result.events.back().impact_speed = -Z.row(tangent.u(event.contacts.only())).transpose();
             }
@@ -89,7 +89,7 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
             link->apply(Z);
             take(*link->event);
             Derivatives::AtEvent& at = result.events.back();
-            if (event.kind != Event::Kind::impact) at.v_before = at.v_after;
+            if (!event.is_impact()) at.v_before = at.v_after;
             if (drawn) at.v_after = std::move(*drawn);
             continue;
         }

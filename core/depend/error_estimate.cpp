@@ -148,7 +148,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         if (link->completion) {
             cut = {link->completion->contact, link->completion->held, chain.state(), link->completion->speed};
             carried.move(of_cuts.shift(*cut), tangent);
-        } else if (event.kind == Event::Kind::zeno && cut) {
+        } else if (event.is_zeno() && cut) {
             // The time that the run has for it, and the true one.
             const CompletionError::Wait wait = of_cuts.wait(*cut);
             const double error = wait.formula + wait.error - (event.t - cut->restart.t);

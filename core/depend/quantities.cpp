@@ -119,21 +119,15 @@ class Quantities::Inputs {
     void set_quantity(std::size_t slot, const RunQuantity& quantity) {
         using Kind = RunQuantity::Kind;
         const auto& events = trajectory_.events;
-        const auto kind_of = [&] {
-            if (quantity.kind == Kind::zeno_time || quantity.kind == Kind::zeno_points) return Event::Kind::zeno;
-            if (quantity.kind == Kind::release_time || quantity.kind == Kind::releases) return Event::Kind::release;
-            return Event::Kind::impact;
-        }();
         const RowVectorXd none = RowVectorXd::Constant(K_, nothing);
         if (quantity.kind == Kind::least_gap) return set(slot, least_gap(trajectory_), none);
         int count = 0;
         std::optional<std::size_t> found;
         for (std::size_t i = 0; i < place_.events; ++i)
-            if (events[i].kind == kind_of && (++count == quantity.k || quantity.k == 0)) found = i;
-        if (quantity.kind == Kind::zeno_points || quantity.kind == Kind::impacts || quantity.kind == Kind::releases)
-            return set(slot, count);
+            if (events[i].kind == quantity.event && (++count == quantity.k || quantity.k == 0)) found = i;
+        if (quantity.kind == Kind::count) return set(slot, count);
         if (!found) return set(slot, nothing, none);
-        const bool is_speed = quantity.kind == Kind::impact_speed;
+        const bool is_speed = quantity.kind == Kind::speed;
         const double value = is_speed ? events[*found].impact_speed : events[*found].t;
         if (*found >= derivatives_.events.size()) return set(slot, value, none);
         const Derivatives::AtEvent& at = derivatives_.events[*found];

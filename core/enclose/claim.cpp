@@ -98,9 +98,9 @@ void join(EnclosedEvent& a, const EnclosedEvent& b) {
 // The event of a part at `at`, or the same Zeno point as `zeno` where impacts of that bouncing alone come before it: the other
 // part has cut it earlier, and all members of both have them.
 std::size_t skip_impacts_before(const EnclosedEvent& zeno, const std::vector<EnclosedEvent>& events, std::size_t at) {
-    if (zeno.kind != Event::Kind::zeno) return at;
+    if (!zeno.is_zeno()) return at;
     std::size_t next = at;
-    while (next < events.size() && events[next].kind == Event::Kind::impact && events[next].contact == zeno.contact &&
+    while (next < events.size() && events[next].is_impact() && events[next].contact == zeno.contact &&
            events[next].opened.empty())
         ++next;
     return next < events.size() && is_same(events[next], zeno) ? next : at;

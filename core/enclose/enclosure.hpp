@@ -27,8 +27,7 @@ struct Claim {
     bool cut_early = false;
 };
 
-struct EnclosedEvent {
-    Event::Kind kind = Event::Kind::impact;
+struct EnclosedEvent : EventBase {
     std::size_t contact = 0;
     ContactSet held, opened;  // after it, and by it
     Interval t;

@@ -20,8 +20,9 @@ Interval both(const Interval& a, const Interval& b) {
 
 void Prover::note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
                         const Intervals& v_after) {
-    result_.events.push_back(
-        {kind, contact, held_, {}, t, positions(set_.hull()), v_before, v_after, bounces_[contact], bounces_[contact]});
+    const Intervals q = positions(set_.hull());
+    const int impacts = bounces_[contact];
+    result_.events.push_back({{kind}, contact, held_, {}, t, q, v_before, v_after, impacts, impacts});
 }
 
 void Prover::retract(ContactSet onto) {
@@ -207,7 +208,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     const Intervals v = velocities(*zeno);
     const int impacts = bounces_[contact];
     result_.events.push_back(
-        {Event::Kind::zeno, contact, held_, {}, proof->time, positions(*zeno), v, v, impacts, impacts});
+        {{Event::Kind::zeno}, contact, held_, {}, proof->time, positions(*zeno), v, v, impacts, impacts});
     bounces_[contact] = 0;
     motion().forget();
     return true;

@@ -225,12 +225,6 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     return scope;
 }
 
-std::string_view to_text(RunQuantity::Kind kind) {
-    constexpr std::array<std::string_view, 8> names{"zeno_time",   "impact_time", "impact_speed", "release_time",
-                                                    "zeno_points", "impacts",     "releases",     "least_gap"};
-    return names[static_cast<std::size_t>(kind)];
-}
-
 Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                     std::vector<RunQuantity>& quantities) {
     Scope scope = view_scope(system, layout, graph, equations);
@@ -240,12 +234,20 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         if (known == quantities.end()) quantities.push_back(quantity);
         return graph.symbol(layout.count() + place);
     };
-    using Kind = RunQuantity::Kind;
-    for (const Kind kind : {Kind::zeno_time, Kind::impact_time, Kind::impact_speed, Kind::release_time,
-                            Kind::zeno_points, Kind::impacts, Kind::releases, Kind::least_gap})
-        scope.allowed.emplace(to_text(kind), input({kind}));  // a name of the system's own goes before
-    for (const Kind kind : {Kind::zeno_time, Kind::impact_time, Kind::impact_speed, Kind::release_time})
-        scope.listed.emplace(to_text(kind), [input, kind](int k) { return input({kind, k}); });
+    using enum RunQuantity::Kind;
+    using enum Event::Kind;
+    for (const auto& [name, quantity] : {std::pair<const char*, RunQuantity>{"zeno_time", {time, zeno}},
+                                         {"impact_time", {time, impact}},
+                                         {"impact_speed", {speed, impact}},
+                                         {"release_time", {time, release}},
+                                         {"zeno_points", {count, zeno}},
+                                         {"impacts", {count, impact}},
+                                         {"releases", {count, release}},
+                                         {"least_gap", {least_gap, {}}}}) {
+        scope.allowed.emplace(name, input(quantity));  // a name of the system's own goes before
+        if (quantity.kind != time && quantity.kind != speed) continue;
+        scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });
+    }
     for (const char* word : {"held", "outcome"})
         scope.forbidden.emplace(word, fmt::format("'{}' is text: use it alone, not in an expression", word));
     return scope;

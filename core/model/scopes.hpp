@@ -2,11 +2,13 @@
 // its expression in the others, wherever it stands.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "expression/parse.hpp"
 #include "model/derive.hpp"
+#include "run/trajectory.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -35,21 +37,13 @@ Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph
 // What of a whole run may stand in an expression, besides what a view shows of an instant: the k-th of its events, or the
 // last; how many there were; the least gap.
 struct RunQuantity {
-    enum class Kind {
-        zeno_time,
-        impact_time,
-        impact_speed,
-        release_time,
-        zeno_points,
-        impacts,
-        releases,
-        least_gap,
-    };
+    enum class Kind { time, speed, count, least_gap };
     Kind kind;
-    int k = 0;  // of an event, from 1; 0: the last one
+    std::optional<Event::Kind> event;  // but of the least gap
+    int k = 0;                         // of an event, from 1; 0: the last one
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
-std::string_view to_text(RunQuantity::Kind kind);
+
 // t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy: with values from the equations.
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
 

@@ -20,12 +20,12 @@ namespace {
 
 constexpr std::size_t most_coordinates = 4;  // columns of the table
 
-bool is_zeno_point(const Event& event) { return event.kind == Event::Kind::zeno && !is_plastic_landing(event); }
-
 // Half the certified interval of the Zeno time at its larger side, s; 0 where there is none.
 double half_width(const Event& event) { return proved_time(event).value_or(0.0); }
 
-std::string with_unit(const std::string& text, const std::string& unit) { return unit.empty() ? text : text + " " + unit; }
+std::string with_unit(const std::string& text, const std::string& unit) {
+    return unit.empty() ? text : text + " " + unit;
+}
 
 // Six decimals of numbers about 1, and as many digits of others.
 int decimals_of(double scale) {
@@ -85,7 +85,7 @@ class Changes {
         std::vector<std::vector<std::string>> rows;
         rows.push_back(row(given_text(run.options.start_time), "start", run.q, {}, sentences_.state_at_start()));
         for (std::size_t i = 0; i < trajectory_.events.size(); ++i)
-            if (const Event& event = trajectory_.events[i]; is_change(event)) rows.push_back(row(i, event));
+            if (const Event& event = trajectory_.events[i]; event.changes_held()) rows.push_back(row(i, event));
         const State errors = precision_.of_state(trajectory_.end_time);
         const bool reached = trajectory_.outcome.kind == Outcome::Kind::end_time;
         rows.push_back(row(
@@ -95,16 +95,14 @@ class Changes {
         return rows;
     }
 
-    static bool is_change(const Event& event) { return event.kind != Event::Kind::impact || !event.opened.empty(); }
-
     std::vector<std::string> row(std::size_t index, const Event& event) const {
         const double time_error = std::max(half_width(event), precision_.of_event(index));
         const State errors = precision_.of_state(event.t);
         // The state is that at the time printed: an error of the time moves it.
         const Vector moved = errors.q + time_error * event.v_after.cwiseAbs();
-        const char* name = is_zeno_point(event) ? "Zeno" : event.kind == Event::Kind::release ? "release" : "impact";
-        return row(decimal_text(event.t, time_error, trajectory_.end_time), name, event.q, moved,
-                   sentences_.change(index));
+        const Event::Kind kind = is_plastic_landing(event) ? Event::Kind::impact : event.kind;
+        return row(decimal_text(event.t, time_error, trajectory_.end_time), std::string(names_of(kind).label), event.q,
+                   moved, sentences_.change(index));
     }
 
     // Without errors the numbers are those given.

@@ -76,7 +76,7 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     for (const Phase& phase : trajectory.phases) {
         const bool is_last = &phase == &trajectory.phases.back();
         for (bool open = true; open && next < events.size(); ++next)
-            open = is_last || (events[next].kind == Event::Kind::impact && events[next].held == phase.held);
+            open = is_last || (events[next].is_impact() && events[next].held == phase.held);
         ends.push_back(next);
     }
     return ends;
@@ -91,7 +91,7 @@ std::vector<Chatter> chatters_of(const Trajectory& trajectory) {
     const auto end_of = [&](std::size_t phase) -> int {
         if (ends[phase] == (phase == 0 ? 0 : ends[phase - 1])) return 0;
         const Event& event = trajectory.events[ends[phase] - 1];
-        return event.kind == Event::Kind::zeno ? 1 : event.opened.empty() ? 0 : -1;
+        return event.is_zeno() ? 1 : event.opened.empty() ? 0 : -1;
     };
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         const std::size_t first = i + 1;  // the phase before the first turn is like any other

@@ -92,7 +92,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
 std::string kinds_of(const Trajectory& trajectory, int first, int last) {
     std::string kinds;
     for (int i = first; i < last; ++i) {
-        const std::string_view kind = to_text(trajectory.events[static_cast<std::size_t>(i)].kind);
+        const std::string_view kind = names_of(trajectory.events[static_cast<std::size_t>(i)].kind).word;
         if (kinds.find(kind) == kinds.npos) kinds += (kinds.empty() ? "" : "+") + std::string(kind);
     }
     return kinds;
@@ -211,7 +211,7 @@ std::string to_text(const Trajectory& trajectory) {
         text += fmt::format("phase {}{} [{:.9g}, {:.9g}] impacts {}\n", to_text(phase.kind),
                             contacts(trajectory, "held", phase.held), phase.start, phase.end, phase.impacts);
     for (const Event& event : trajectory.events)
-        text += fmt::format("{}{}{}{} t {:.9g} q {} before {} after {}\n", to_text(event.kind),
+        text += fmt::format("{}{}{}{} t {:.9g} q {} before {} after {}\n", names_of(event.kind).word,
                             contacts(trajectory, "of", event.contacts), contacts(trajectory, "opens", event.opened),
                             contacts(trajectory, "held", event.held), event.t, to_text(event.q),
                             to_text(event.v_before), to_text(event.v_after));

@@ -30,7 +30,7 @@ Pile pile_of(const Trajectory& trajectory, std::size_t zeno_event) {
         const Event& event = events[i];
         if (meet(event.opened, contacts)) break;
         if (!meet(event.contacts, contacts)) continue;
-        if (event.kind != Event::Kind::impact) break;
+        if (!event.is_impact()) break;
         pile.first = i;
         ++pile.impacts;
         pile.loss += energy_lost(trajectory, i);

@@ -45,7 +45,7 @@ Json derivatives_at(const Trajectory& trajectory, const Derivatives& derivatives
     if (event >= derivatives.events.size()) return nullptr;
     const Derivatives::AtEvent& at = derivatives.events[event];
     Json result = {{"t", list(at.t)}, {"q", table(at.q)}};
-    if (trajectory.events[event].kind == Event::Kind::impact) {
+    if (trajectory.events[event].is_impact()) {
         result["v_before"] = table(at.v_before);
         result["v_after"] = table(at.v_after);
         result["impact_speed"] = list(at.impact_speed);
@@ -229,7 +229,7 @@ void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
 
 Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulses) {
     const Event& event = trajectory.events[index];
-    Json result = {{"kind", to_text(event.kind)}, {"t", number_json(event.t)}};
+    Json result = {{"kind", names_of(event.kind).word}, {"t", number_json(event.t)}};
     const Json contacts = names(trajectory, taking_part(trajectory, index));
     if (contacts.size() == 1)
         result["contact"] = contacts[0];
@@ -238,7 +238,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     result["held"] = names(trajectory, event.held);
     result["opened"] = names(trajectory, event.opened);
     result["q"] = list(event.q);
-    if (event.kind == Event::Kind::impact) {
+    if (event.is_impact()) {
         result["v_before"] = list(event.v_before);
         result["v_after"] = list(event.v_after);
         result["impact_speed"] = number_json(event.impact_speed);
@@ -247,7 +247,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     } else {
         result["v"] = list(event.v_after);
     }
-    if (event.kind == Event::Kind::zeno) result["impacts"] = event.impacts;
+    if (event.is_zeno()) result["impacts"] = event.impacts;
     if (event.truncation)
         result["truncation"] = {{"t", number_json(event.truncation->t)},
                                 {"q", list(event.truncation->q)},

@@ -146,7 +146,7 @@ std::string events_of(const Orbit& orbit) {
         impacts = 0;
     };
     for (const Event& event : orbit.run.events) {
-        if (event.kind == Event::Kind::impact) {
+        if (event.is_impact()) {
             if (++impacts <= 2)
                 text += fmt::format("  {:<9} t = {:<18.13g} gap speed {:.6g}\n", "impact", event.t, event.impact_speed);
             continue;
@@ -154,8 +154,8 @@ std::string events_of(const Orbit& orbit) {
         impacts = std::max(impacts - 2, 0);
         tell_impacts(event.truncation && !is_plastic_landing(event) ? " more before the cut" : " more");
         impacts = 0;
-        text += fmt::format("  {:<9} t = {:<18.13g} {}\n", is_plastic_landing(event) ? "landing" : to_text(event.kind),
-                            event.t, named(orbit.run.model->description(), event.q, ""));
+        text += fmt::format("  {:<9} t = {:<18.13g} {}\n", names_of(event).word, event.t,
+                            named(orbit.run.model->description(), event.q, ""));
     }
     impacts = std::max(impacts - 2, 0);
     tell_impacts(" more");
@@ -213,13 +213,12 @@ std::string period_line(const Orbit& orbit) {
     };
     if (orbit.is_at_release) add(fmt::format("release at {:.7g} s", orbit.state.t));
     for (const Event& event : orbit.run.events) {
-        if (event.kind == Event::Kind::impact) {
+        if (event.is_impact()) {
             if (impacts++ == 0) first = event.t;
             continue;
         }
-        const bool is_release = event.kind == Event::Kind::release, is_plastic = is_plastic_landing(event);
-        add_impacts(is_release || is_plastic ? "" : " before the cut");
-        add(fmt::format("{} at {:.7g} s", is_release ? "release" : is_plastic ? "contact" : "Zeno point", event.t));
+        add_impacts(is_zeno_point(event) ? " before the cut" : "");
+        add(fmt::format("{} at {:.7g} s", is_plastic_landing(event) ? "contact" : names_of(event).name, event.t));
     }
     add_impacts("");
     return text.empty() ? "no events" : text;

@@ -40,7 +40,10 @@ std::string list(const std::vector<std::string>& names, const Intervals& all, st
     return result;
 }
 
-bool is_landing(const EnclosedEvent& event) { return event.kind == Event::Kind::zeno && event.most_impacts == 0; }
+bool is_landing(const EnclosedEvent& event) { return event.is_zeno() && event.most_impacts == 0; }
+const EventNames& names_of(const EnclosedEvent& event) {
+    return is_landing(event) ? landing_names : names_of(event.kind);
+}
 
 // A time that a person wrote is the double nearest to it.
 bool is_rounded(double time) { return width(as_written(time)) > 0.0; }
@@ -85,12 +88,12 @@ class ProofText {
         std::string text;
         int impacts = 0;
         for (const EnclosedEvent& event : proof_.events) {
-            if (event.kind == Event::Kind::impact && impacts++ > 0) continue;
-            if (event.kind != Event::Kind::impact) text += more_impacts(std::exchange(impacts, 0), &event);
+            if (event.is_impact() && impacts++ > 0) continue;
+            if (!event.is_impact()) text += more_impacts(std::exchange(impacts, 0), &event);
             const std::string contact =
                 description_.constraints.size() > 1 ? ", " + description_.constraints[event.contact].name : "";
-            text += fmt::format("  {:<8} t {}{}\n           {}\n", is_landing(event) ? "landing" : to_text(event.kind),
-                                outer_text(event.t), contact, list(names_, event.q, outer_text));
+            text += fmt::format("  {:<8} t {}{}\n           {}\n", names_of(event).word, outer_text(event.t), contact,
+                                list(names_, event.q, outer_text));
         }
         text += more_impacts(impacts, nullptr);
         if (proof_.events_differ) text += "  (the parts list different events from here on)\n";
@@ -100,7 +103,7 @@ class ProofText {
     // After the first of so many; `next` is null at the end.
     static std::string more_impacts(int impacts, const EnclosedEvent* next) {
         const int after_first = std::max(impacts - 1, 0);
-        const bool is_cut = next != nullptr && next->kind == Event::Kind::zeno && !is_landing(*next);
+        const bool is_cut = next != nullptr && next->is_zeno() && !is_landing(*next);
         const int more_in_some = is_cut ? next->most_impacts - next->impacts : 0;
         if (after_first + more_in_some == 0) return "";
         std::string count = fmt::format("{}", after_first);
@@ -154,19 +157,19 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
                 if (set.contains(i)) result.push_back(description.constraints[i].name);
             return result;
         };
-        Json entry = {{"kind", to_text(event.kind)},
+        Json entry = {{"kind", names_of(event.kind).word},
                       {"t", interval(event.t)},
                       {"contact", description.constraints[event.contact].name},
                       {"held", names(event.held)},
                       {"opened", names(event.opened)},
                       {"q", box(event.q)}};
-        if (event.kind == Event::Kind::impact) {
+        if (event.is_impact()) {
             entry["v_before"] = box(event.v_before);
             entry["v_after"] = box(event.v_after);
         } else {
             entry["v"] = box(event.v_after);
         }
-        if (event.kind == Event::Kind::zeno) {
+        if (event.is_zeno()) {
             entry["impacts"] = event.impacts;
             if (event.impacts < event.most_impacts) entry["impacts_of_parts"] = {event.impacts, event.most_impacts};
         }
@@ -207,13 +210,13 @@ std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const E
         auto enclosed = proof.events.begin();
         const auto skip = [&](bool impacts) {  // to the next of this contact
             while (enclosed != proof.events.end() &&
-                   (enclosed->contact != contact || (impacts && enclosed->kind == Event::Kind::impact)))
+                   (enclosed->contact != contact || (impacts && enclosed->is_impact())))
                 ++enclosed;
             return enclosed != proof.events.end();
         };
         for (std::size_t i = 0; i < run.events.size(); ++i) {
             if (!run.events[i].contacts.contains(contact)) continue;
-            const bool is_impact = run.events[i].kind == Event::Kind::impact;
+            const bool is_impact = run.events[i].is_impact();
             if (!skip(!is_impact)) break;
             if (enclosed->kind == run.events[i].kind)
                 result[i] = &*enclosed++;
@@ -270,12 +273,8 @@ class ProofAnswer {
     std::vector<Row> rows() const {
         std::vector<Row> rows;
         for (const EnclosedEvent& event : proof_.events) {
-            const bool is_impact = event.kind == Event::Kind::impact;
-            if (is_impact && event.opened.empty()) continue;
-            const bool is_plastic = event.kind == Event::Kind::zeno && event.most_impacts == 0;
-            std::string name = is_impact || is_plastic              ? "impact"
-                               : event.kind == Event::Kind::release ? "release"
-                                                                    : "Zeno";
+            if (event.is_impact() && event.opened.empty()) continue;
+            std::string name(names_of(is_landing(event) ? Event::Kind::impact : event.kind).label);
             if (description_.constraints.size() > 1) name += " of " + description_.constraints[event.contact].name;
             rows.push_back(row(std::move(name), cell(event.t), event.q));
         }

@@ -43,9 +43,7 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
     constexpr double large_share = 0.001, wanted_share = 1e-4;
     std::vector<double> largest_of(trajectory.model->contacts(), 0.0);  // runs may have very many such events
     for (const Event& event : trajectory.events) {
-        if (event.kind != Event::Kind::zeno || !event.certificate || is_plastic_landing(event) ||
-            event.contacts.count() != 1)
-            continue;
+        if (!is_zeno_point(event) || !event.certificate || event.contacts.count() != 1) continue;
         std::size_t contact = 0;
         while (!event.contacts.contains(contact)) ++contact;
         const Certificate& c = *event.certificate;
@@ -94,7 +92,7 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
 std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
-        if (event.kind != Event::Kind::zeno || !event.certificate || !event.certificate->certified) continue;
+        if (!event.is_zeno() || !event.certificate || !event.certificate->certified) continue;
         const double width = event.certificate->zeno_high - event.certificate->zeno_low;
         const double error = integration_error_of_time(trajectory, i);
         if (!(width > 0.0) || !(error > width) || !(error > trajectory.run.options.truncation.eps_t)) continue;
@@ -111,7 +109,7 @@ std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
 // Shorter flights than double precision resolves are not made, whatever was asked for.
 std::optional<Remark> missed(const Trajectory& trajectory) {
     for (const Event& event : trajectory.events) {
-        if (event.kind != Event::Kind::zeno || !event.certificate || !event.certificate->below_rounding ||
+        if (!event.is_zeno() || !event.certificate || !event.certificate->below_rounding ||
             !event.certificate->decision)
             continue;
         const Inequality& closest = event.certificate->decision->closest();

@@ -129,10 +129,10 @@ std::string Sentences::beginning(const Event& event) const {
 
 std::string Sentences::change(std::size_t index) const {
     const Event& event = trajectory_.events[index];
-    if (event.kind == Event::Kind::impact)
+    if (event.is_impact())
         return fmt::format("impact of {} opens {}", joined_names(*trajectory_.model, event.contacts, " and "),
                            joined_names(*trajectory_.model, event.opened, " and "));
-    if (event.kind == Event::Kind::release) {
+    if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
         const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";
         if (!ends.empty()) return ends + ": its contact force reached zero";

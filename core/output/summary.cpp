@@ -107,7 +107,7 @@ class Course {
         std::size_t first = phase == 0 ? 0 : ends_[phase - 1];
         std::string text;
         for (std::size_t i = first; i < ends_[phase]; ++i) {
-            if (trajectory_.events[i].kind == Event::Kind::impact) continue;
+            if (trajectory_.events[i].is_impact()) continue;
             text += impact_lines(first, i) + event_line(i);
             first = i + 1;
         }
@@ -145,7 +145,7 @@ class Course {
         const Event& event = trajectory_.events[index];
         const bool is_plastic = is_plastic_landing(event);
         const std::string contacts = is_of_several() ? " of " + names(event.contacts) + "," : "";
-        std::string text = fmt::format("  {:<9} t = {:<16}{} {}\n", is_plastic ? "landing" : to_text(event.kind),
+        std::string text = fmt::format("  {:<9} t = {:<16}{} {}\n", names_of(event).word,
                                        known_digits(event.t, precision_.of_event(index), 10), contacts,
                                        named(model_, 0, event.q, precision_.of_state(event.t).q));
         text += indented(sentences_.of(index));
@@ -305,9 +305,7 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
                   "grows along the run.\nTo check it, rerun with a smaller --tolerance.\n"
                 : "The last digits carry integration error, which grows along the run. To see how much, rerun with a "
                   "smaller --tolerance.\n";
-    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
-        return event.kind == Event::Kind::zeno && !is_plastic_landing(event);
-    });
+    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), is_zeno_point);
     if (completed)
         text +=
             "Certificates do not cover integration and rounding errors, before a truncation or after it, nor how the "
@@ -351,9 +349,8 @@ std::string summary(const Trajectory& trajectory, const Dependence& dependence) 
     int zeno = 0, releases = 0;
     for (std::size_t i = 0; i < d.events.size(); ++i) {
         const Event& event = trajectory.events[i];
-        if (event.kind == Event::Kind::impact) continue;
-        const bool is_zeno = event.kind == Event::Kind::zeno;
-        text += fmt::format("  {}({}): {}\n", is_zeno ? "zeno_time" : "release_time", is_zeno ? ++zeno : ++releases,
+        if (event.is_impact()) continue;
+        text += fmt::format("  {}_time({}): {}\n", names_of(event.kind).word, event.is_zeno() ? ++zeno : ++releases,
                             row(d, d.events[i].t));
     }
     const auto& coordinates = trajectory.model->description().coordinates;

@@ -7,7 +7,7 @@
 namespace achilles {
 
 bool is_plastic_landing(const Event& event) {
-    return event.kind == Event::Kind::zeno && event.truncation && event.truncation->t == event.t && event.certificate &&
+    return event.is_zeno() && event.truncation && event.truncation->t == event.t && event.certificate &&
            event.certificate->zeno_low == event.certificate->zeno_high;
 }
 
@@ -28,7 +28,7 @@ State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::
 double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event) {
     const Event& zeno = trajectory.events[zeno_event];
     const Event* first = nullptr;  // impact of the bouncing
-    for (std::size_t i = zeno_event; i-- > 0 && trajectory.events[i].kind == Event::Kind::impact;)
+    for (std::size_t i = zeno_event; i-- > 0 && trajectory.events[i].is_impact();)
         if (trajectory.events[i].contacts.without(zeno.contacts).empty()) first = &trajectory.events[i];
     if (first == nullptr || !(first->impact_speed > 0.0)) return 0.0;
     const auto& pieces = trajectory.pieces;
@@ -70,24 +70,13 @@ std::vector<Passage> sequence_of(const Trajectory& trajectory) {
     std::vector<Passage> sequence;
     sequence.reserve(trajectory.events.size());
     for (const Event& event : trajectory.events)
-        sequence.push_back({event.kind, event.contacts, event.t, event.impact_speed});
+        sequence.push_back({{event.kind}, event.contacts, event.t, event.impact_speed});
     return sequence;
 }
 
 double without_noise(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }
 
 std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
-
-std::string_view to_text(Event::Kind kind) {
-    switch (kind) {
-        case Event::Kind::impact:
-            return "impact";
-        case Event::Kind::zeno:
-            return "zeno";
-        default:
-            return "release";
-    }
-}
 
 const Inequality& Certificate::Decision::closest() const {
     const Inequality& earlier = position.share() > time.share() ? position : time;

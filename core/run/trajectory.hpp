@@ -6,6 +6,7 @@
 // contact. With one contact impacts happen inside hybrid phases; with several a constrained phase may have its own.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -116,9 +117,17 @@ struct Joint {
     std::vector<Alternative> alternatives;
 };
 
-struct Event {
-    enum class Kind { impact, zeno, release };
+// Base of the records of an event: its kind. A new kind stands before `last` and has a row in event_names below.
+struct EventBase {
+    enum class Kind { impact, zeno, release, last = release };
     Kind kind = Kind::impact;
+    bool is_impact() const { return kind == Kind::impact; }
+    bool is_zeno() const { return kind == Kind::zeno; }
+    bool is_release() const { return kind == Kind::release; }
+    friend bool operator==(const EventBase&, const EventBase&) = default;
+};
+
+struct Event : EventBase {
     double t = 0.0;
     Vector q, v_before, v_after;         // equal velocities where nothing jumps (release, zeno)
     double impact_speed = 0.0;           // impact: |hdot| before
@@ -135,16 +144,49 @@ struct Event {
     std::optional<Truncation> truncation;
     std::optional<Certificate> certificate;  // zeno
 
+    // Whether another set of contacts is held after it: an impact may open held contacts.
+    bool changes_held() const { return !is_impact() || !opened.empty(); }
+
     Event() {}  // the room for the two that most events have not need not be zero
 };
 
 // A Zeno event without bouncing: restitution 0 ends the fall in contact at once. Nothing is cut short, so nothing is to be
 // bounded but the integration before it.
 bool is_plastic_landing(const Event& event);
+// A Zeno event after bouncing.
+inline bool is_zeno_point(const Event& event) { return event.is_zeno() && !is_plastic_landing(event); }
+
+// The names of a kind of event. The one table for everything that prints, draws or reads them; the marker and color of
+// a kind are in render/figure/palette.cpp.
+struct EventNames {
+    Event::Kind kind;
+    std::string_view word;   // in JSON, CSV and options: "zeno"
+    std::string_view name;   // in sentences and legends: "Zeno point"
+    std::string_view label;  // before a number or the names of contacts: "Zeno 2", "Zeno knee"
+};
+inline constexpr std::array<EventNames, 3> event_names{{
+    {Event::Kind::impact, "impact", "impact", "impact"},
+    {Event::Kind::zeno, "zeno", "Zeno point", "Zeno"},
+    {Event::Kind::release, "release", "release", "release"},
+}};
+// A plastic landing is a Zeno event, but named for what is seen.
+inline constexpr EventNames landing_names{Event::Kind::zeno, "landing", "landing", "landing"};
+
+constexpr const EventNames& names_of(Event::Kind kind) { return event_names[static_cast<std::size_t>(kind)]; }
+inline const EventNames& names_of(const Event& event) {
+    return is_plastic_landing(event) ? landing_names : names_of(event.kind);
+}
+// Whether a table has a row for each kind of event, in the order of the kinds.
+template <class Table>
+consteval bool has_all_event_kinds(const Table& table) {
+    for (std::size_t i = 0; i < table.size(); ++i)
+        if (table[i].kind != static_cast<Event::Kind>(i)) return false;
+    return table.size() == static_cast<std::size_t>(Event::Kind::last) + 1;
+}
+static_assert(has_all_event_kinds(event_names));
 
 // What is kept of an event where of a run the end alone is: no states, no certificate.
-struct Passage {
-    Event::Kind kind = Event::Kind::impact;
+struct Passage : EventBase {
     ContactSet contacts;
     double t = 0.0;
     double impact_speed = 0.0;  // impact: |hdot| before
@@ -225,7 +267,6 @@ inline constexpr double noise = 1e-14;
 double without_noise(double value, double scale);
 
 std::string_view to_text(Phase::Kind);
-std::string_view to_text(Event::Kind);
 std::string_view to_text(Outcome::Kind);
 
 }  // namespace achilles

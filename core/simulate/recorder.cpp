@@ -145,7 +145,7 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
     if (keep_ == Keep::end) {
-        trajectory_.passages.push_back({Event::Kind::impact, contacts, before.t, speed});
+        trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed});
         return;
     }
     make_room(trajectory_.events, 1, trajectory_.run.options.memory);
@@ -177,7 +177,7 @@ void Recorder::event(Event event) {
     }
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
-    if (event.kind == Event::Kind::zeno) event.impacts = trajectory_.phases.back().impacts;
+    if (event.is_zeno()) event.impacts = trajectory_.phases.back().impacts;
     trajectory_.events.push_back(std::move(event));
 }
 

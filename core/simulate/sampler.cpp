@@ -191,7 +191,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
             const Event& event = events[j];
             const bool shown = last && last->first == event.t && last->second == j;
             const bool is_left_out = stride > 1 && event.t < until;
-            if (event.kind == Event::Kind::impact && !shown && !is_left_out) {
+            if (event.is_impact() && !shown && !is_left_out) {
                 const ContactSet held = held_before(trajectory_, j);
                 take({event.t, static_cast<int>(j), held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained,
                       !held.empty(), held, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,

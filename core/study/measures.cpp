@@ -113,7 +113,7 @@ std::size_t direction_of(const SystemDescription& description, const std::string
 
 // Throws InputError where no run of the sweep has derivatives.
 void check_slopes(const Sweep& sweep, const std::string& print) {
-    if (sweep.at && sweep.at->kind == Section::Kind::zero)
+    if (sweep.at && !sweep.at->event)
         throw refused_slope(print, fmt::format("there are no derivatives at the zeros of '{}'", sweep.at->expression),
                             "there are derivatives with --at impact, --at zeno, --at release, and without --at");
     Chain::check(sweep.base);
@@ -133,7 +133,8 @@ Program section_program(const Model& model, const std::string& zero) {
     try {
         return behind("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
     } catch (const InputError&) {
-        const std::vector<std::string> events{"impact", "zeno", "release"};
+        std::vector<std::string> events;
+        for (const EventNames& names : event_names) events.emplace_back(names.word);
         const std::string best = nearest(zero, events);
         if (best.empty() && zero.find("event") == zero.npos) throw;
         throw InputError("--at " + shown(zero), {}, "unknown event",
@@ -168,7 +169,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
         behind("--print", text.text, [&](std::span<const Text> one) { return model_->compile_measures(one); });
     measures_ = model_->compile_measures(texts);
     if (!quantities.empty()) quantities_.emplace(model_, quantities, "--print");
-    if (sweep.at && sweep.at->kind == Section::Kind::zero) {
+    if (sweep.at && !sweep.at->event) {
         const std::string& zero = sweep.at->expression;
         zero_ = section_program(*model_, zero);
         zero_along_ = model_->compile_section({zero, {}});
@@ -226,30 +227,21 @@ void Measuring::begin(const Trajectory& trajectory) {
 void Measuring::measure(const Sample& sample, std::span<const Passage> passed, std::span<const Quantity> differentiated,
                         std::vector<double>& numbers) {
     using Kind = RunQuantity::Kind;
-    using Of = Event::Kind;
     const std::size_t first = measures_->model_->layout().count();
     const std::vector<RunQuantity>& quantities = measures_->measures_.quantities;
-    std::array<int, 3> counts{};
-    for (std::size_t i = 0; i < quantities.size(); ++i) numbers_.input(first + i) = nothing;
+    std::array<int, event_names.size()> counts{};
+    for (std::size_t i = 0; i < quantities.size(); ++i)
+        numbers_.input(first + i) = quantities[i].kind == Kind::least_gap ? least_gap_
+                                    : quantities[i].kind == Kind::count   ? 0.0
+                                                                          : nothing;
     for (const Passage& one : passed) {
         const int k = ++counts[static_cast<std::size_t>(one.kind)];
         for (std::size_t i = 0; i < quantities.size(); ++i) {
             const RunQuantity& quantity = quantities[i];
-            const bool is_it =
-                (quantity.kind == Kind::zeno_time && one.kind == Of::zeno) ||
-                (quantity.kind == Kind::release_time && one.kind == Of::release) ||
-                (quantity.kind <= Kind::impact_speed && quantity.kind >= Kind::impact_time && one.kind == Of::impact);
-            if (!is_it || (quantity.k != 0 && quantity.k != k)) continue;
-            numbers_.input(first + i) = quantity.kind == Kind::impact_speed ? one.impact_speed : one.t;
+            if (quantity.event != one.kind || (quantity.k != 0 && quantity.k != k)) continue;
+            double& input = numbers_.input(first + i);
+            input = quantity.kind == Kind::count ? k : quantity.kind == Kind::speed ? one.impact_speed : one.t;
         }
-    }
-    for (std::size_t i = 0; i < quantities.size(); ++i) {
-        const auto count = [&](Of kind) { return static_cast<double>(counts[static_cast<std::size_t>(kind)]); };
-        double& input = numbers_.input(first + i);
-        if (quantities[i].kind == Kind::impacts) input = count(Of::impact);
-        if (quantities[i].kind == Kind::zeno_points) input = count(Of::zeno);
-        if (quantities[i].kind == Kind::releases) input = count(Of::release);
-        if (quantities[i].kind == Kind::least_gap) input = least_gap_;
     }
     forces_->run_view(numbers_, sample);
     std::size_t next = 0;  // output

@@ -42,7 +42,7 @@ namespace {
 void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
     for (std::size_t i = 0; i < run.events.size(); ++i) {
         const Event& event = run.events[i];
-        if (event.kind != Event::Kind::zeno || !event.contacts.has_one()) continue;
+        if (!event.is_zeno() || !event.contacts.has_one()) continue;
         const std::size_t contact = event.contacts.only();
         const double e = model.restitution(run.run.parameters, contact);
         if (!(e > 0.0 && e < 1.0)) continue;
@@ -122,7 +122,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
             if (P > 0) orbit.by_parameters.row(i) -= shift.slope;
         }
     };
-    if (!map.is_driven() && last != nullptr && last->kind == Event::Kind::release) {
+    if (!map.is_driven() && last != nullptr && last->is_release()) {
         orbit.is_at_release = true;
         const Derivatives::AtEvent& at = shot.derivatives.events.back();
         MatrixXd there(2 * n, 2 * n + P);
@@ -177,7 +177,7 @@ namespace {
 double shifts_from_start(const ReturnMap& map, const ClosedLap& closed) {
     double along = 0.0, square = 0.0;
     const auto& events = closed.shot.run.events;
-    const bool at_release = !map.is_driven() && !events.empty() && events.back().kind == Event::Kind::release;
+    const bool at_release = !map.is_driven() && !events.empty() && events.back().is_release();
     for (Index i = 0; i < map.dof(); ++i) {
         const double shift = map.shift(static_cast<std::size_t>(i), closed.lap.parameters).value;
         const double begins = at_release ? events.back().q[i] - shift : closed.lap.x[i];
@@ -192,12 +192,11 @@ double shifts_from_start(const ReturnMap& map, const ClosedLap& closed) {
 ClosedLap put_in_place(const ReturnMap& map, const Newton& newton, ClosedLap closed) {
     const auto last_is_release = [&] {
         const auto& events = closed.shot.run.events;
-        return !events.empty() && events.back().kind == Event::Kind::release;
+        return !events.empty() && events.back().is_release();
     };
     const auto& events = closed.shot.run.events;
-    const bool any = std::any_of(events.begin(), events.end(), [](const Event& event) {
-        return event.kind == Event::Kind::release && event.held.empty();
-    });
+    const bool any = std::any_of(events.begin(), events.end(),
+                                 [](const Event& event) { return event.is_release() && event.held.empty(); });
     if (!map.is_driven() && any && !last_is_release()) closed = newton.close(rebased(map, closed.lap, true));
     Lap lap = closed.lap;
     const double shifts = shifts_from_start(map, closed);

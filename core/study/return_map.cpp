@@ -274,10 +274,10 @@ std::vector<Flight> flights_of(const Trajectory& run) {
     };
     for (const Event& event : run.events) {
         // What follows the collision at which a bouncing is cut is its Zeno point.
-        add(event.kind == Event::Kind::zeno ? from : event.t);
+        add(event.is_zeno() ? from : event.t);
         from = event.t;
         held = event.held;
-        released = event.kind == Event::Kind::release;
+        released = event.is_release();
     }
     add(run.end_time);
     return flights;
@@ -335,7 +335,7 @@ double missed(const ReturnMap& map, const State& scale, const State& a, const St
 std::optional<Lap> from_releases(const ReturnMap& map, const Trajectory& run) {
     std::vector<std::size_t> releases;
     for (std::size_t i = 0; i < run.events.size(); ++i)
-        if (run.events[i].kind == Event::Kind::release && run.events[i].held.empty()) releases.push_back(i);
+        if (run.events[i].is_release() && run.events[i].held.empty()) releases.push_back(i);
     if (releases.size() < 2) return std::nullopt;
     const State scale = scale_of(run);
     const auto state = [&](std::size_t i) {

@@ -54,12 +54,6 @@ Interval BoundsAlong::rate() {
 
 namespace {
 
-Event::Kind kind_of(Section::Kind kind) {
-    return kind == Section::Kind::impact ? Event::Kind::impact
-           : kind == Section::Kind::zeno ? Event::Kind::zeno
-                                         : Event::Kind::release;
-}
-
 bool is_asked(const Section& section, double t) { return !section.after || t >= *section.after; }
 
 // The function along a run, looked at often enough.
@@ -194,7 +188,7 @@ std::vector<Moment> events_of(const Trajectory& trajectory, const Section& secti
     std::vector<Moment> moments;
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
-        if (event.kind != kind_of(section.kind) || !is_asked(section, event.t)) continue;
+        if (section.event != event.kind || !is_asked(section, event.t)) continue;
         Moment moment;
         moment.events = i + 1;
         moment.contacts = event.contacts;

@@ -20,9 +20,9 @@ std::uint64_t signature_of(std::span<const Passage> sequence, RunEnd end) {
     ContactSet settling;  // that come to rest before anything else happens
     for (std::size_t i = sequence.size(); i-- > 0;) {
         const Passage& passage = sequence[i];
-        if (passage.kind == Event::Kind::zeno)
+        if (passage.is_zeno())
             settling = settling.with(passage.contacts);
-        else if (passage.kind == Event::Kind::impact && passage.contacts.without(settling).empty())
+        else if (passage.is_impact() && passage.contacts.without(settling).empty())
             continue;
         else
             settling = {};

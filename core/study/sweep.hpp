@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "../run/trajectory.hpp"
 #include "../system/description.hpp"
 
 namespace achilles {
@@ -51,9 +52,8 @@ struct RandomPoints {
 
 // Where along a run it is asked, in place of its end: at every such event, or where an expression passes zero upwards.
 struct Section {
-    enum class Kind { impact, zeno, release, zero };
-    Kind kind = Kind::impact;
-    std::string expression;       // of a zero
+    std::optional<Event::Kind> event = Event::Kind::impact;  // nothing: at the zeros of the expression
+    std::string expression;
     std::optional<double> after;  // s: not before this time
     friend bool operator==(const Section&, const Section&) = default;
 };

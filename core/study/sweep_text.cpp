@@ -279,12 +279,11 @@ std::optional<Section> read_section(const AskedSweep& asked) {
     }
     Section section;
     const std::string at = trimmed(*asked.at);
-    section.kind = at == "impact"    ? Section::Kind::impact
-                   : at == "zeno"    ? Section::Kind::zeno
-                   : at == "release" ? Section::Kind::release
-                                     : Section::Kind::zero;
-    if (section.kind == Section::Kind::zero) section.expression = at;
-    if (!at.empty() && section.kind == Section::Kind::zero && names_in(at).empty())
+    const auto names =
+        std::find_if(event_names.begin(), event_names.end(), [&](const EventNames& one) { return one.word == at; });
+    section.event = names != event_names.end() ? std::optional(names->kind) : std::nullopt;
+    if (!section.event) section.expression = at;
+    if (!at.empty() && !section.event && names_in(at).empty())
         throw refusal("--at", at, "a constant never crosses zero",
                       fmt::format("write --at \"t - {}\" for an instant, or impact, zeno, release", at));
     if (at.empty()) throw InputError("--at", {}, "impact, zeno, release or an expression is expected");
@@ -388,10 +387,9 @@ std::string to_text(const Sweep& sweep, const SystemDescription& description) {
     }
     for (const std::string& print : sweep.prints) add("--print", print);
     if (sweep.at) {
-        constexpr std::array<const char*, 3> kinds{"impact", "zeno", "release"};
-        const bool is_zero = sweep.at->kind == Section::Kind::zero;
-        add("--at", is_zero ? sweep.at->expression : kinds[static_cast<std::size_t>(sweep.at->kind)]);
-        if (sweep.at->after) add("--after", fmt::format("{}", *sweep.at->after));
+        const auto& [event, expression, after] = *sweep.at;
+        add("--at", event ? std::string(names_of(*event).word) : expression);
+        if (after) add("--after", fmt::format("{}", *after));
     }
     Run base = sweep.base, file = default_run(description);
     for (const std::string& name : settable_names(description)) {

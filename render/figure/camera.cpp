@@ -83,7 +83,7 @@ Camera::Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory&
         integral_.push_back(sum);
     }
     for (std::size_t i = 0; i < trajectory.events.size(); ++i)
-        if (trajectory.events[i].kind == Event::Kind::zeno)
+        if (trajectory.events[i].is_zeno())
             if (auto approach = approach_to(i)) approaches_.push_back(std::move(*approach));
 }
 
@@ -129,7 +129,7 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
     approach.begin = trajectory_.run.options.start_time;
     while (i-- > 0) {
         const Event& before = trajectory_.events[i];
-        if (before.kind != Event::Kind::impact) {
+        if (!before.is_impact()) {
             approach.begin = before.t;
             break;
         }

@@ -129,7 +129,8 @@ void include(std::span<const Sample> samples, Values& values, std::size_t curves
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
-    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
+    for (const EventNames& row : event_names) {
+        const Event::Kind kind = row.kind;
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         const Trajectory* const run = &trajectory;
         markers.label = events_name({&run, 1}, kind);
@@ -581,7 +582,7 @@ std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, cons
         }
         double last = -std::numeric_limits<double>::infinity();
         for (const Event& event : trajectory.events) {
-            if (event.kind != Event::Kind::impact || !event.contacts.contains(contact) || !is_seen(event.t, event.t) ||
+            if (!event.is_impact() || !event.contacts.contains(contact) || !is_seen(event.t, event.t) ||
                 event.t - last < near)
                 continue;
             marks.push_back({event.t, event.t, impact});

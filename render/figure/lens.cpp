@@ -52,7 +52,7 @@ std::size_t first_impact(const Trajectory& trajectory, std::size_t zeno) {
     std::size_t first = zeno;
     while (first > 0) {
         const Event& before = trajectory.events[first - 1];
-        if (before.kind != Event::Kind::impact || !(before.contacts == contact) || !(before.held == held)) break;
+        if (!before.is_impact() || !(before.contacts == contact) || !(before.held == held)) break;
         --first;
     }
     return first;
@@ -63,7 +63,7 @@ std::size_t first_impact(const Trajectory& trajectory, std::size_t zeno) {
 std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     if (event >= trajectory.events.size()) return std::nullopt;
     const Event& zeno = trajectory.events[event];
-    if (zeno.kind != Event::Kind::zeno || !zeno.truncation || zeno.contacts.count() != 1) return std::nullopt;
+    if (!zeno.is_zeno() || !zeno.truncation || zeno.contacts.count() != 1) return std::nullopt;
     const std::size_t first = first_impact(trajectory, event);
     if (event - first < 2) return std::nullopt;
     const Model& model = *trajectory.model;

@@ -95,6 +95,24 @@ Color on_theme(const Color& color, const Theme& theme) {
     return mixed(0.5 * (low + high));
 }
 
+namespace {
+
+// How each kind of event is drawn; its names are in run/trajectory.hpp. An impact has the color of flight.
+struct EventSign {
+    Event::Kind kind;
+    Markers::Shape shape;
+    double size;
+    Color light, dark;
+};
+constexpr std::array<EventSign, event_names.size()> event_signs{{
+    {Event::Kind::impact, Markers::Shape::square, 6.0, blue, sky},
+    {Event::Kind::zeno, Markers::Shape::diamond, 11.0, purple, pink},
+    {Event::Kind::release, Markers::Shape::triangle, 10.0, green, mint},
+}};
+static_assert(has_all_event_kinds(event_signs));
+
+}  // namespace
+
 Color phase_color(const Theme& theme, Phase::Kind kind) {
     if (kind == Phase::Kind::hybrid) return theme.dark ? sky : blue;
     return theme.dark ? orange : vermilion;
@@ -135,28 +153,13 @@ Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::s
 }
 
 Markers event_markers(const Theme& theme, Event::Kind kind) {
+    const EventSign& sign = event_signs[static_cast<std::size_t>(kind)];
     Markers markers;
+    markers.label = names_of(kind).name;
+    markers.shape = sign.shape;
+    markers.fill = theme.dark ? sign.dark : sign.light;
     markers.edge = theme.background;
-    switch (kind) {
-        case Event::Kind::impact:
-            markers.label = "impact";
-            markers.shape = Markers::Shape::square;
-            markers.fill = phase_color(theme, Phase::Kind::hybrid);
-            markers.size = 6.0;
-            break;
-        case Event::Kind::zeno:
-            markers.label = "Zeno point";
-            markers.shape = Markers::Shape::diamond;
-            markers.fill = theme.dark ? pink : purple;
-            markers.size = 11.0;
-            break;
-        case Event::Kind::release:
-            markers.label = "release";
-            markers.shape = Markers::Shape::triangle;
-            markers.fill = theme.dark ? mint : green;
-            markers.size = 10.0;
-            break;
-    }
+    markers.size = sign.size;
     return markers;
 }
 
@@ -171,21 +174,17 @@ Markers opened_markers(const Theme& theme) {
 
 std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "in flight" : "in contact"; }
 
-std::string event_name(const Event& event) {
-    return is_plastic_landing(event) ? "landing" : event_markers({}, event.kind).label;
-}
-
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind) {
     std::string names;
     for (const Trajectory* run : runs) {
         if (kind != Event::Kind::zeno) break;  // all are called the same, and impacts may be very many
         for (const Event& event : run->events) {
             if (event.kind != kind) continue;
-            const std::string name = event_name(event);
+            const std::string name(names_of(event).name);
             if (names.find(name) == std::string::npos) names += (names.empty() ? "" : ", ") + name;
         }
     }
-    return names.empty() ? event_markers({}, kind).label : names;
+    return names.empty() ? std::string(names_of(kind).name) : names;
 }
 
 // ---- colors for numbers ----

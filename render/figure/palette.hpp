@@ -50,8 +50,6 @@ Markers event_markers(const Theme& theme, Event::Kind kind);
 Markers opened_markers(const Theme& theme);
 // What a legend calls them.
 std::string legend_text(Phase::Kind kind);
-// What a reader calls an event: "impact", "release", "Zeno point", and "landing" where restitution 0 ends the fall at once.
-std::string event_name(const Event& event);
 // What the markers of that kind mean in these runs: one name, or both of a run that lands and one that bounces.
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind);
 

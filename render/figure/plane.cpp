@@ -190,7 +190,7 @@ std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const Prepa
     std::size_t looked_at = 0;
     double last = trajectory.run.options.start_time;  // when an impact was
     for (const Event& event : trajectory.events) {
-        if (event.kind != Event::Kind::impact) continue;
+        if (!event.is_impact()) continue;
         if (++looked_at > most) break;
         constexpr double little = 0.1;  // of a flight
         const Point coming = point(sampler.at(event.t - little * (event.t - last)));

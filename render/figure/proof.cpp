@@ -48,10 +48,10 @@ class EnclosedValues {
     Contact contact_at(double t) const {
         Contact contact = starts_in_contact_ ? Contact::yes : Contact::no;
         for (const EnclosedEvent& event : events_) {
-            if (event.kind == Event::Kind::impact) continue;
+            if (event.is_impact()) continue;
             if (event.t.contains(t)) return Contact::either;
             if (event.t.lo() > t) break;
-            contact = event.kind == Event::Kind::zeno ? Contact::yes : Contact::no;
+            contact = event.is_zeno() ? Contact::yes : Contact::no;
         }
         return contact;
     }

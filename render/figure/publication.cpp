@@ -74,13 +74,13 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
     const auto bounded = [](const Panel& panel) { return !panel.boundary.points.empty(); };
     if (const auto one = std::find_if(panels.begin(), panels.end(), bounded); one != panels.end())
         keys.push_back({typeset("gap") + " = 0", one->boundary.stroke});
-    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release}) {
-        if (!any_of(runs, &Trajectory::events, kind)) continue;
-        std::string name = events_name(runs, kind);
-        const std::string zeno = event_markers(theme, Event::Kind::zeno).label;
+    const std::string_view zeno = names_of(Event::Kind::zeno).name;
+    for (const EventNames& names : event_names) {
+        if (!any_of(runs, &Trajectory::events, names.kind)) continue;
+        std::string name = events_name(runs, names.kind);
         if (const std::size_t at = name.find(zeno); at != std::string::npos)
             name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");
-        keys.push_back({name, for_print(event_markers(theme, kind))});
+        keys.push_back({name, for_print(event_markers(theme, names.kind))});
     }
     const auto opens = [](const Event& event) { return !event.opened.empty(); };
     if (std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {

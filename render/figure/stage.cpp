@@ -77,8 +77,7 @@ void Stage::find_poses() {
     const auto& events = trajectory_.events;
     const std::size_t stride = 1 + events.size() / 2000;
     for (std::size_t i = 0; i < events.size(); ++i)
-        if (i % stride == 0 || events[i].kind != Event::Kind::impact)
-            keep(events[i].t, {events[i].q, events[i].v_after, events[i].t});
+        if (i % stride == 0 || !events[i].is_impact()) keep(events[i].t, {events[i].q, events[i].v_after, events[i].t});
 }
 
 std::vector<double> Stage::poses() const {

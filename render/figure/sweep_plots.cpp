@@ -346,16 +346,7 @@ namespace {
 constexpr std::size_t most_markers = 3000;  // more points are dots
 
 std::string word_of(const Section& section) {
-    switch (section.kind) {
-        case Section::Kind::impact:
-            return "impact";
-        case Section::Kind::zeno:
-            return "Zeno point";
-        case Section::Kind::release:
-            return "release";
-        default:
-            return "upward zero of " + typeset(section.expression);
-    }
+    return section.event ? std::string(names_of(*section.event).name) : "upward zero of " + typeset(section.expression);
 }
 
 // Points of one kind: markers where they are few.

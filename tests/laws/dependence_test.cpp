@@ -258,7 +258,7 @@ TEST_P(Dependence, IsWhatManyDigitsSay) {
                         if (event.kind == kind) return event.t;
                     throw std::runtime_error("no such event");
                 });
-                expect_near(d.events[j].t[direction], slope, fmt::format("{} {}", to_text(kind), direction));
+                expect_near(d.events[j].t[direction], slope, fmt::format("{} {}", names_of(kind).word, direction));
                 break;
             }
         }

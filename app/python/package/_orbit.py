@@ -17,7 +17,7 @@ from . import _core
 from ._asked import Asked, number_in, text_of, with_options
 from ._errors import AchillesWarning, InputError, NoOrbit, as_arguments
 from ._figure import Figure, figure_of
-from ._records import Event, OrbitPoint, Record, records
+from ._records import Event, OrbitPoint, Record, _Result, entry
 from ._run import Run, _made
 from ._system import System, system_of
 
@@ -84,7 +84,7 @@ def _numbers(values: Any) -> np.ndarray:
     return np.array([math.nan if value is None else value for value in values], dtype=float)
 
 
-class Orbit:
+class Orbit(_Result):
     """A periodic run: it returns to its start after one period, possibly moved by a shift."""
 
     system: System
@@ -94,75 +94,32 @@ class Orbit:
         self._core = core
         self._asked = asked
 
-    @functools.cached_property
-    def _told(self) -> Record:
-        return records(self._core.json())
-
-    @property
-    def period(self) -> float:
-        """The period, s."""
-        return self._told["period"]
-
-    @property
-    def state(self) -> Record:
-        """The state at the start of the period: t, q, v."""
-        return self._told["state"]
-
-    @property
-    def section(self) -> str:
-        """Where the period starts: "release", after a Zeno point, "flight", or with a drive "time", the start time."""
-        return self._told["section"]
-
-    @property
-    def multipliers(self) -> np.ndarray:
-        """The factors by which small perturbations grow per period: 2 dof complex numbers, the largest first. Without a drive the
-        multiplier 1 of a shift in time comes before all others. The last `zero_multipliers` are exactly 0."""
-        return self._told["multipliers"]
-
-    @property
-    def zero_multipliers(self) -> int:
-        """The number of multipliers that are exactly 0: a Zeno point removes two directions."""
-        return self._told["zero_multipliers"]
-
-    @property
-    def stable(self) -> bool:
-        """Whether all multipliers, except that of a shift in time, are less than 1 in size."""
-        return self._told["stable"]
-
-    @property
-    def margins(self) -> Record:
-        """How close the run is to a point without derivatives: grazing_speed, gap_minimum, a_inf, release_jerk."""
-        return self._told["margins"]
-
-    @property
-    def psi(self) -> float | None:
-        """a_inf^(1/kappa(e)), linear in a parameter where a Zeno point is lost."""
-        return self._told["psi"]
-
-    @property
-    def events(self) -> list[Event]:
-        """The events of one period, in the form of Run.events."""
-        return self._told["events"]
-
-    @property
-    def derivatives(self) -> Record:
-        """Derivatives with respect to a parameter: derivatives["e"].period, and .q and .v at the start of the period."""
-        return self._told["derivatives"]
-
-    @property
-    def newton(self) -> Record:
-        """The steps of Newton's method, and error, the size of the last step relative to the state."""
-        return self._told["newton"]
+    period: float = entry("period", "The period, s.")
+    state: Record = entry("state", "The state at the start of the period: t, q, v.")
+    section: str = entry(
+        "section", 'Where the period starts: "release", after a Zeno point, "flight", or with a drive "time", the start time.')
+    multipliers: np.ndarray = entry("multipliers", """\
+        The factors by which small perturbations grow per period: 2 dof complex numbers, the largest first. Without a drive the
+        multiplier 1 of a shift in time comes before all others. The last `zero_multipliers` are exactly 0.""")
+    zero_multipliers: int = entry(
+        "zero_multipliers", "The number of multipliers that are exactly 0: a Zeno point removes two directions.")
+    stable: bool = entry("stable", "Whether all multipliers, except that of a shift in time, are less than 1 in size.")
+    margins: Record = entry(
+        "margins", "How close the run is to a point without derivatives: grazing_speed, gap_minimum, a_inf, release_jerk.")
+    psi: float | None = entry("psi", "a_inf^(1/kappa(e)), linear in a parameter where a Zeno point is lost.")
+    events: list[Event] = entry("events", "The events of one period, in the form of Run.events.")
+    derivatives: Record = entry(
+        "derivatives", 'Derivatives with respect to a parameter: derivatives["e"].period, and .q and .v at the start of the period.')
+    newton: Record = entry(
+        "newton", "The steps of Newton's method, and error, the size of the last step relative to the state.")
 
     @property
     def parameters(self) -> dict[str, float]:
         """The parameters of this run."""
-        return dict(self._told["system"]["parameters"])
+        return dict(self._record["system"]["parameters"])
 
-    @property
-    def options(self) -> Record:
-        """The options of this run. By default its tolerances are the smallest that double precision supports."""
-        return self._told["options"]
+    options: Record = entry(
+        "options", "The options of this run. By default its tolerances are the smallest that double precision supports.")
 
     @property
     def warnings(self) -> list[str]:
@@ -177,7 +134,7 @@ class Orbit:
     @functools.cached_property
     def branch(self) -> Branch | None:
         """The branch in the parameter of `continue_`; None if that was not given."""
-        told = self._told["branch"]
+        told = self._record["branch"]
         return None if told is None else Branch(told)
 
     @property

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 from typing import Any
 
@@ -149,3 +150,16 @@ def derivative_records(value: Any) -> Any:
     if not isinstance(value, list) or any(isinstance(each, (dict, str)) for each in value):
         return [derivative_records(each) for each in value] if isinstance(value, list) else value
     return np.array(value, dtype=float)
+
+
+class _Result:
+    """Base of Run and Orbit. Their JSON is read on first use."""
+
+    @functools.cached_property
+    def _record(self) -> Record:
+        return records(self.to_json())
+
+
+def entry(name: str, doc: str) -> Any:
+    """A property of a result: this entry of its JSON."""
+    return property(lambda result: result._record[name], doc=doc)

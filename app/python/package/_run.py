@@ -15,7 +15,7 @@ from . import _core
 from ._asked import Asked, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._figure import Figure, figure_of
-from ._records import Certificate, Event, Phase, Record, derivative_records, records
+from ._records import Certificate, Event, Phase, Record, _Result, derivative_records, entry
 from ._system import System, system_of
 
 
@@ -28,7 +28,7 @@ class State(NamedTuple):
     """Rates, in the same order."""
 
 
-class Run:
+class Run(_Result):
     """A completed execution. Its arrays have a row at every step end and two at every event, before it and after it.
 
     The arrays are views of the memory of the run, not copies. They are read-only and stay valid after the run is deleted.
@@ -102,14 +102,8 @@ class Run:
             raise InputError(told)
         return times
 
-    @functools.cached_property
-    def _told(self) -> Record:
-        return records(self._core.json(None))
-
-    @property
-    def events(self) -> list[Event]:
-        """Impacts, Zeno points and releases, in time. Dicts with attributes: pandas.DataFrame(run.events) is a table."""
-        return self._told["events"]
+    events: list[Event] = entry(
+        "events", "Impacts, Zeno points and releases, in time. Dicts with attributes: pandas.DataFrame(run.events) is a table.")
 
     @property
     def certificates(self) -> list[Certificate]:
@@ -131,20 +125,9 @@ class Run:
         of = json.loads(self._core.dependence([expression]))["derivatives"]["of"][0]["derivatives"]
         return np.array(of, dtype=float)
 
-    @property
-    def phases(self) -> list[Phase]:
-        """The parts of the run, in time."""
-        return self._told["phases"]
-
-    @property
-    def outcome(self) -> Record:
-        """Why the run ended: kind, "end time" if it was completed, and message."""
-        return self._told["outcome"]
-
-    @property
-    def end(self) -> Record:
-        """The end of the run: t, q, v, phase, held, work, loss, error_estimate."""
-        return self._told["end"]
+    phases: list[Phase] = entry("phases", "The parts of the run, in time.")
+    outcome: Record = entry("outcome", 'Why the run ended: kind, "end time" if it was completed, and message.')
+    end: Record = entry("end", "The end of the run: t, q, v, phase, held, work, loss, error_estimate.")
 
     @property
     def error_estimate(self) -> Record | None:
@@ -159,30 +142,16 @@ class Run:
         no_error_estimate of `end` says why. Computing it takes longer than the run, so it is computed on first use."""
         return self._core.trusted_until
 
-    @property
-    def start(self) -> Record:
-        """The start of the run: t, q, v."""
-        return self._told["start"]
+    start: Record = entry("start", "The start of the run: t, q, v.")
 
     @property
     def parameters(self) -> dict[str, float]:
         """The parameters of this run."""
-        return dict(self._told["system"]["parameters"])
+        return dict(self._record["system"]["parameters"])
 
-    @property
-    def options(self) -> Record:
-        """The options of this run."""
-        return self._told["options"]
-
-    @property
-    def statistics(self) -> Record:
-        """Steps, evaluations, impacts, energy_drift, least_gap."""
-        return self._told["statistics"]
-
-    @property
-    def warnings(self) -> list[str]:
-        """Warnings about the run."""
-        return self._told["warnings"]
+    options: Record = entry("options", "The options of this run.")
+    statistics: Record = entry("statistics", "Steps, evaluations, impacts, energy_drift, least_gap.")
+    warnings: list[str] = entry("warnings", "Warnings about the run.")
 
     def to_json(self, t: Sequence[float] | np.ndarray | None = None) -> str:
         """The same bytes that `achilles simulate --json` writes; with times t the array `samples` has the states at these times."""

@@ -106,13 +106,17 @@ std::vector<Eight> slopes_of(const Model& model, ContactSet held) {
 }
 
 TEST(SeriesSlopes, HaveTheSameBitsByMachineCode) {
+    if (best_width() != Width::eight) {
+        EXPECT_EQ(test::load("ball_on_sine")->motion({}).series.slopes().code, nullptr);
+        GTEST_SKIP() << "no AVX-512, or machine code is off: slopes of series have no machine code to compare with";
+    }
     const auto expect_same = [](const std::string& name) {
         SCOPED_TRACE(name);
         const auto model = test::load(name);
         for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) {
             const std::vector<Eight> by_code = slopes_of(*model, held);
             const bool has_rules = !model->motion(held).series.slopes().plan.rules.empty();
-            EXPECT_EQ(model->motion(held).series.slopes().code != nullptr, has_rules && best_width() == Width::eight);
+            EXPECT_EQ(model->motion(held).series.slopes().code != nullptr, has_rules);
             const test::MachineCodeSwitch off("0");
             const auto without = test::load(name);
             const std::vector<Eight> by_loops = slopes_of(*without, held);

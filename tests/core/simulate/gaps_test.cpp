@@ -58,7 +58,7 @@ TEST_P(Gaps, AreAsInTheReference) {
     ASSERT_EQ(events.size(), expected.size());
     for (std::size_t i = 0; i < events.size(); ++i) {
         SCOPED_TRACE(expected[i].dump());
-        EXPECT_EQ(to_text(events[i].kind), expected[i].at("kind").get<std::string>());
+        EXPECT_EQ(names_of(events[i].kind).word, expected[i].at("kind").get<std::string>());
         EXPECT_EQ(events[i].contacts, ContactSet::of(expected[i].at("contact").get<std::size_t>()));
         EXPECT_EQ(events[i].held, contacts_in(expected[i].at("held")));
         EXPECT_EQ(events[i].opened, contacts_in(expected[i].value("opened", Json::array())));
