@@ -19,9 +19,9 @@
 #include <optional>
 #include <string>
 
-#include "depend/flow_difference.hpp"
+#include "depend/derivatives.hpp"
+#include "depend/flow_slope.hpp"
 #include "depend/gradient.hpp"
-#include "depend/margins.hpp"
 #include "run/trajectory.hpp"
 #include "simulate/surfaces.hpp"
 

@@ -5,7 +5,7 @@
 #include <map>
 
 #include "certify/truncation.hpp"
-#include "depend/motion_series.hpp"
+#include "depend/flow_slope.hpp"
 #include "model/model.hpp"
 #include "simulate/surfaces.hpp"
 

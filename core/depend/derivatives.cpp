@@ -4,6 +4,7 @@
 
 #include <limits>
 
+#include "depend/chain.hpp"
 #include "model/model.hpp"
 
 namespace achilles {

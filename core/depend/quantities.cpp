@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "depend/gradient.hpp"
 #include "expression/parse.hpp"
 #include "model/behind.hpp"
 #include "simulate/contact_forces.hpp"

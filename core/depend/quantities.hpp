@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "depend/derivatives.hpp"
+#include "model/model.hpp"
 
 namespace achilles {
 

@@ -1,6 +1,7 @@
 #include "enclose/expansion.hpp"
 
 #include "number/fine.hpp"
+#include "number/jet.hpp"
 #include "series/series_over.hpp"
 
 namespace achilles {

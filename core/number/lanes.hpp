@@ -11,7 +11,6 @@
 #include <cstring>
 #include <numbers>
 
-#include "number/choice.hpp"
 #include "number/eight.hpp"
 
 #define IN_LANES [[gnu::always_inline]] inline

@@ -11,7 +11,6 @@
 #include "program/machine.hpp"
 #include "series/order.hpp"
 #include "series/series.hpp"
-#include "series/slope_plan.hpp"
 
 namespace achilles {
 
@@ -410,7 +409,6 @@ class SeriesCompiler {
 SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_t events) : program_(program) {
     plan_.events = static_cast<std::uint32_t>(events);
     SeriesCompiler(*this).compile(dof + events);
-    slopes_ = std::make_shared<SlopeProgram>();
     if (const auto best = best_width()) code_ = OrderCode::of(plan_, *best);
 }
 

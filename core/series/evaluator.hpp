@@ -1,4 +1,5 @@
-// A program, and a series program with its coefficients, over double or doubles side by side. One per thread.
+// A program, and a series program with its coefficients, over double, eight of them side by side, or any other number. One per
+// thread.
 #pragma once
 
 #include <algorithm>
@@ -10,25 +11,30 @@
 #include <type_traits>
 #include <vector>
 
+#include "number/lanes.hpp"
 #include "program/machine.hpp"
 #include "series/recurrence.hpp"
 #include "series/series.hpp"
 
 namespace achilles {
 
-// A program over double, or doubles side by side, with machine code where that is to be had.
+template <class Number>
+inline constexpr bool is_lanes = false;
+template <std::size_t Bytes>
+inline constexpr bool is_lanes<Lanes<Bytes>> = true;
+
+// A program over any number. Over double and lanes it has machine code where that is available; over lanes its constants are
+// those of double, over other numbers they are as exact as the number allows.
 template <class Number>
 class ProgramOver {
-    static constexpr bool is_one = std::is_same_v<Number, double>;  // whose machine code is the program's own
-
  public:
     // Lanes may have machine code by vectors of four or eight. With room for so many registers, if these are more than the
     // program's.
     explicit ProgramOver(const Program& program, std::optional<Width> machine_code = {}, std::size_t registers = 0)
         : program_(&program) {
-        if constexpr (is_one) {
-            evaluator_ = Evaluator<double>(program);
-            numbers().resize(std::max(registers, numbers().size()), 0.0);
+        if constexpr (!is_lanes<Number>) {
+            evaluator_ = Evaluator<Number>(program);
+            numbers().resize(std::max(registers, numbers().size()), Number(0.0));
         } else {
             LaneAccess::program_of(evaluator_) = &program;
             Evaluator<double> one(program);
@@ -55,12 +61,9 @@ class ProgramOver {
     std::vector<Number>& numbers() { return LaneAccess::registers_of(evaluator_); }
 
     void run() {
-        if constexpr (is_one) {
-            evaluator_.run();
-        } else {
+        if constexpr (is_lanes<Number>)
             if (run_ != nullptr) return run_(numbers().data());
-            evaluator_.run_by_loop();
-        }
+        evaluator_.run();
     }
 
  private:
@@ -74,20 +77,23 @@ class ProgramOver {
 template <class Number>
 class SeriesEvaluator {
     static constexpr bool is_one = std::is_same_v<Number, double>;
-    // What makes orders faster, to the same bits; may be none.
+    // Machine code that makes orders faster, to the same bits; may be null. Over numbers other than double and lanes it is.
     using Code = std::conditional_t<is_one, OrderCode, LaneOrderCode>;
 
  public:
     static constexpr int highest_order = OrderCode::highest_order;
 
+    // To be fixed before it is used.
+    explicit SeriesEvaluator(const SeriesProgram& program) requires(!is_lanes<Number>)
+        : SeriesEvaluator(&program, code_of(program)) {}
     SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters) requires is_one
-        : SeriesEvaluator(&program, program.code_) {
+        : SeriesEvaluator(program) {
         fix(parameters);
     }
     // With machine code by vectors of four or eight, or without. To be fixed before it is used.
-    SeriesEvaluator(const SeriesProgram& program, std::optional<Width> machine_code) requires(!is_one)
+    SeriesEvaluator(const SeriesProgram& program, std::optional<Width> machine_code) requires is_lanes<Number>
         : SeriesEvaluator(&program, nullptr, machine_code) {
-        if constexpr (!is_one)  // clang 14 instantiates this for one too
+        if constexpr (is_lanes<Number>)  // clang 14 instantiates this for one too
             if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan, *machine_code);
     }
 
@@ -120,11 +126,7 @@ class SeriesEvaluator {
             if (k == 1 && code_) return code_->make_first(tables_);
         make_order(program_->plan_, sums_, tables_, static_cast<std::size_t>(k));
     }
-    // All registers of order 0, those that the program itself has not among them.
-    const Number* registers() { return zero_.numbers().data(); }
-    // Order k of all series, after extend(k) until the next.
-    const Number* series() const { return tables_.now; }
-    // The same of an output.
+    // Order k of an output, after extend(k) until the next.
     const Number& output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
 
     // Of a motion, see make_orders(); after order 1.
@@ -134,9 +136,9 @@ class SeriesEvaluator {
     }
     // Orders 1 .. last of a motion (last >= 4), into rows of q, v and the event functions. Row 1 comes first, where q and v
     // are given; before it stands row 0.
-    void extend(Number* row, int last) requires(!is_one) {
+    void extend(Number* row, int last) requires is_lanes<Number> {
         const SeriesPlan& plan = program_->plan_;
-        if constexpr (!is_one)
+        if constexpr (is_lanes<Number>)
             if (code_) {
                 std::copy_n(row, inputs_, tables_.now + 1);
                 const auto doubles = [](auto* numbers) { return reinterpret_cast<double*>(numbers); };
@@ -146,10 +148,41 @@ class SeriesEvaluator {
         for (int k = 1; k <= last; ++k, row += plan.states())
             make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
     }
+    // Orders k .. last of a motion, after all lower ones, into such rows; `row` is that of order k.
+    void extend(Number* row, int k, int last) requires(!is_lanes<Number>) {
+        const SeriesPlan& plan = program_->plan_;
+        const std::size_t n = plan.coordinates();
+        if constexpr (is_one) {
+            if (k == 1) {
+                extend(1, row);
+                for (std::size_t i = 0; i < plan.events; ++i) row[2 * n + i] = output(n + i);
+                row += plan.states();
+                ++k;
+            }
+            // No term is so small that it would be the last: only a 0 is, and then it goes on from there.
+            constexpr double never_small = 1e300;
+            MotionOrders motion;
+            motion.row = row - plan.states();
+            while (k <= last) {
+                motion.largest = motion.row + n;
+                motion.power = never_small;
+                k = extend(motion, k, last) + 1;
+            }
+        } else {
+            for (; k <= last; ++k, row += plan.states())
+                make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
+        }
+    }
 
  private:
     static constexpr std::size_t line = SeriesPlan::aligned * sizeof(double);
 
+    static std::shared_ptr<const Code> code_of(const SeriesProgram& program) {
+        if constexpr (is_one)
+            return program.code_;
+        else
+            return nullptr;
+    }
     SeriesEvaluator(const SeriesProgram* program, std::shared_ptr<const Code> code,
                     std::optional<Width> machine_code = {})
         : program_(program),

@@ -1,7 +1,7 @@
 // The gap along a flight, its rate, and how well they are known.
 #pragma once
 
-#include "number/choice.hpp"
+#include "number/eight.hpp"
 
 namespace achilles {
 

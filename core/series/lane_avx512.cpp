@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "number/angle.hpp"
-#include "number/choice.hpp"
+#include "number/eight.hpp"
 #include "number/polynomial.hpp"
 #include "program/machine.hpp"
 #include "program/program.hpp"
@@ -32,7 +32,6 @@ using Wide = Lanes<64>;
 template Wide scalar_pi<Wide>();
 template Wide integer_power<Wide>(const Wide&, int);
 template void Evaluator<Wide>::execute(std::size_t, std::size_t);
-template void SeriesProgram::fix_coefficients(const Wide*, Wide*) const;
 template void SeriesProgram::fix(const Wide*, Wide*, std::array<Wide, 3>*) const;
 template void SeriesProgram::start(Wide*, const Wide*, std::array<Wide, 3>*) const;
 

@@ -79,7 +79,7 @@ class LaneOrderWriter {
         remember(k > 1);
         inputs(k == 1);
         for (std::size_t i = 0; i < plan_.rules.size(); ++i)
-            write_rule(code_, plan_.rules[i], factors, lane(3 * i) + code_.part(), !all_held_);
+            RuleWriter(code_, factors).write(plan_.rules[i], lane(3 * i) + code_.part(), !all_held_);
         for (std::size_t i = 0; i < plan_.events; ++i)
             code_.vmovupd(part(motion, lane(2 * plan_.coordinates() + i)), code_.held_or(vector(0), plan_.event(i)));
         keep();

@@ -4,8 +4,12 @@
 
 #include "program/machine.hpp"
 #include "series/lane_kinds.hpp"
+#include "series/lane_steps.hpp"
 
 namespace achilles {
+
+// By the vectors that every processor has.
+template struct LaneKind<16>;
 
 namespace {
 

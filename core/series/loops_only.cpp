@@ -3,7 +3,6 @@
 #include "program/machine.hpp"
 #include "program/program.hpp"
 #include "series/order.hpp"
-#include "series/slope_plan.hpp"
 
 namespace achilles {
 
@@ -13,7 +12,6 @@ std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction>, st
     return nullptr;
 }
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan&, Width) { return nullptr; }
-std::shared_ptr<const SlopeOrderCode> SlopeOrderCode::of(const SlopePlan&) { return nullptr; }
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan&, const LanePlan&, Width) { return nullptr; }
 
 }  // namespace achilles

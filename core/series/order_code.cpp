@@ -85,7 +85,7 @@ class OrderWriter {
 
     void write_order(bool first) {
         for (std::size_t i = 0; i < plan_.rules.size(); ++i)
-            write_rule(code_, plan_.rules[i], factors, static_cast<Index>(3 * i));
+            RuleWriter(code_, factors).write(plan_.rules[i], static_cast<Index>(3 * i));
         for (const Part& part : parts_) keep_and_sum(part, first);
     }
 

@@ -48,7 +48,7 @@ Scalar combined(Operation operation, const Scalar& a, const Scalar& b) {
 
 // What depends on the parameters alone.
 template <class Scalar>
-void SeriesProgram::fix_coefficients(const Scalar* registers, Scalar* coefficients) const {
+void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const {
     coefficients[0] = 1.0;
     for (std::size_t i = 1; i < coefficients_.size(); ++i) {
         const Coefficient& c = coefficients_[i];
@@ -56,10 +56,6 @@ void SeriesProgram::fix_coefficients(const Scalar* registers, Scalar* coefficien
                               ? registers[c.a]
                               : combined<Scalar>(c.operation, coefficients[c.a], coefficients[c.b]);
     }
-}
-template <class Scalar>
-void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const {
-    fix_coefficients(registers, coefficients);
     for (const Combination& c : combinations_)
         for (std::size_t i = 0; i < 3; ++i) factors[c.rule][i] = coefficients[c.coefficient[i]];
 }

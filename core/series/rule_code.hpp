@@ -8,9 +8,71 @@ namespace achilles {
 
 constexpr std::size_t most_rules_in_code = 10000;
 
-// Its three factors stand at (factors, first), one after the other. Register 0 is lost.
-// The result need not be stored where its register keeps it as long as it is needed.
-void write_rule(Assembler& code, const SeriesRule& rule, const Xbyak::Reg64& factors, std::ptrdiff_t first,
-                bool store = true);
+// The three factors of a rule stand at (factors, first), one after the other. Register 0 is lost.
+class RuleWriter {
+ public:
+    using Index = std::ptrdiff_t;  // of doubles
+
+    RuleWriter(Assembler& code, const Xbyak::Reg64& factors) : code_(code), factors_(factors) {}
+
+    // The result need not be stored where its register keeps it as long as it is needed.
+    void write(const SeriesRule& rule, Index first, bool store = true) {
+        using Kind = Sum::Kind;
+        const Xbyak::Xmm result = code_.result(rule.result);
+        const std::uint32_t operands[3] = {rule.x, rule.y, rule.w};
+        Sum sum;
+        for (int i = 2; i >= 0; --i) {
+            if (operands[i] == 0) continue;
+            const bool alone = sum.kind == Kind::none;
+            const Sum term = product(rule.known[i], operands[i], first + code_.place(static_cast<std::uint32_t>(i)),
+                                     alone ? result : code_.vector(0));
+            sum = alone ? term : total(sum, term, result);
+        }
+        if (sum.kind == Kind::none) code_.zero(result);
+        if (sum.kind == Kind::number) code_.get(result, sum.number);
+        if (sum.kind == Kind::negative) code_.negate(result, sum.number);
+        if (store) code_.store(result, rule.result);
+    }
+
+ private:
+    // A sum as far as it is known: in a register, or a number (or its negative) that is not looked up yet.
+    struct Sum {
+        enum class Kind { none, in_register, number, negative } kind = Kind::none;
+        Xbyak::Xmm reg;
+        std::uint32_t number = 0;
+    };
+
+    // A factor times its number; into this register unless it is known to be 1 or -1.
+    Sum product(std::int8_t known, std::uint32_t number, Index factor, const Xbyak::Xmm& to) {
+        if (known > 0) return {Sum::Kind::number, Xbyak::Xmm(), number};
+        if (known < 0) return {Sum::Kind::negative, Xbyak::Xmm(), number};
+        code_.apply(Assembler::vmul, to, code_.held_or(to, number), at(factors_, factor));
+        return {Sum::Kind::in_register, to, 0};
+    }
+
+    // sum + term, in the result's register
+    Sum total(const Sum& sum, const Sum& term, const Xbyak::Xmm& result) {
+        using Kind = Sum::Kind;
+        constexpr auto vadd = Assembler::vadd, vsub = Assembler::vsub;
+        if (sum.kind == Kind::in_register && term.kind == Kind::in_register) {
+            code_.apply(vadd, result, sum.reg, term.reg);
+        } else if (sum.kind == Kind::in_register) {
+            code_.apply(term.kind == Kind::negative ? vsub : vadd, result, sum.reg, term.number);
+        } else if (term.kind == Kind::in_register) {
+            code_.apply(sum.kind == Kind::negative ? vsub : vadd, result, term.reg, sum.number);
+        } else if (sum.kind == Kind::number) {
+            code_.combine(term.kind == Kind::negative ? vsub : vadd, result, sum.number, term.number);
+        } else if (term.kind == Kind::number) {
+            code_.combine(vsub, result, term.number, sum.number);
+        } else {
+            code_.negate(result, sum.number);
+            code_.apply(vsub, result, result, term.number);
+        }
+        return {Kind::in_register, result, 0};
+    }
+
+    Assembler& code_;
+    Xbyak::Reg64 factors_;
+};
 
 }  // namespace achilles

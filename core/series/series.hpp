@@ -22,8 +22,6 @@
 
 namespace achilles {
 
-struct SlopeProgram;
-
 // Compiled once, shared between threads. Inputs outside the program's fixed slots move with time.
 class SeriesProgram {
  public:
@@ -39,17 +37,11 @@ class SeriesProgram {
     bool is_partial() const { return partial_; }
     // By slot: the inputs that the series depend on.
     std::vector<bool> inputs() const { return program_.inputs_of(plan_.coordinates() + plan_.events); }
-    // How the series rise where inputs do (slope_plan.hpp), made where that is first asked.
-    const SlopeProgram& slopes() const;
 
  private:
     template <class Number>
     friend class SeriesEvaluator;
-    template <class Number>
-    friend class SeriesOver;
     friend class SeriesCompiler;
-    friend class SeriesSlopes;
-    friend class SlopePlanner;
     friend class LaneAccess;
 
     // A number that depends on the parameters alone: one of the program's registers, or made of two others.
@@ -89,8 +81,6 @@ class SeriesProgram {
 
     // See series/recurrence.hpp.
     template <class Scalar>
-    void fix_coefficients(const Scalar* registers, Scalar* coefficients) const;
-    template <class Scalar>
     void fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const;
     template <class Scalar>
     void start(Scalar* registers, const Scalar* coefficients, std::array<Scalar, 3>* factors) const;
@@ -106,7 +96,6 @@ class SeriesProgram {
     std::size_t hidden_ = 0;                 // the first of these
     std::vector<std::uint32_t> outputs_;     // registers of order 0
     std::shared_ptr<const OrderCode> code_;  // may be none
-    std::shared_ptr<SlopeProgram> slopes_;
 };
 
 // What an evaluator over any number takes from programs and series programs: their insides.
@@ -116,8 +105,6 @@ class LaneAccess {
     static std::shared_ptr<const MachineCode> machine_code_of(const Program& program, Width vectors);
     static const SeriesPlan& plan_of(const SeriesProgram& series) { return series.plan_; }
     static std::size_t moving_inputs(const Program& program) { return program.slots_.parameters_begin; }
-    static bool has_clock(const Program& program) { return program.slots_.has_clock(); }
-    static std::uint32_t clock(const Program& program) { return program.slots_.clock(); }
     template <class Number>
     static const Program*& program_of(Evaluator<Number>& evaluator) {
         return evaluator.program_;

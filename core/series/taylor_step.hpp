@@ -13,7 +13,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "number/choice.hpp"
+#include "number/eight.hpp"
 #include "number/inner_loops.hpp"
 #include "run/contact_set.hpp"
 #include "series/evaluator.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "depend/chain.hpp"
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "model/behind.hpp"

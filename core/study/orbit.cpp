@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "depend/chain.hpp"
 #include "number/dense.hpp"
 #include "simulate/surfaces.hpp"
 #include "study/return_map.hpp"

@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../depend/margins.hpp"
+#include "../depend/derivatives.hpp"
 #include "../run/trajectory.hpp"
 #include "../system/description.hpp"
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "depend/chain.hpp"
 #include "expression/nearest.hpp"
 #include "expression/parse.hpp"
 #include "model/behind.hpp"

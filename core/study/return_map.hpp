@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "depend/derivatives.hpp"
+#include "model/model.hpp"
 #include "system/description.hpp"
 
 namespace achilles {

@@ -119,7 +119,7 @@ struct Tube {
     std::vector<Slice> slices;
 };
 
-// What a run does after its horizon, from where on it is not trusted (depend/error_course.hpp): drawn pale, under the rest.
+// What a run does after its horizon, from where on it is not trusted (depend/error_estimate.hpp): drawn pale, under the rest.
 struct Beyond {
     std::string label;  // "" : there is nothing of it
     std::vector<Curve> curves;

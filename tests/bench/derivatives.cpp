@@ -3,6 +3,7 @@
 
 #include "bench/measure.hpp"
 #include "depend/derivatives.hpp"
+#include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 

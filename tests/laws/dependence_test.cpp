@@ -5,6 +5,7 @@
 #include "certify/execution.hpp"
 #include "core/systems.hpp"
 #include "depend/derivatives.hpp"
+#include "depend/gradient.hpp"
 #include "laws/laws.hpp"
 
 namespace achilles::test {

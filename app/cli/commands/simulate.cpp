@@ -12,6 +12,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
+#include "depend/chain.hpp"
 #include "depend/error_estimate.hpp"
 #include "depend/quantities.hpp"
 #include "model/model.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/systems.hpp"
+#include "depend/chain.hpp"
 
 namespace achilles::test {
 namespace {
