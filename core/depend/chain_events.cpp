@@ -144,7 +144,6 @@ void Chain::land(std::size_t event) {
         ContactGradient& other = surface(k, {});
         other.at(state_);
         J.row(tangent_.u(k)) = other.hdot_row().lazyProduct(J).eval();
-        if (now.opened.contains(k)) J.row(tangent_.h(k)).setZero();
     }
     set_gaps();
     if (!rests) {
