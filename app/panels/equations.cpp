@@ -352,12 +352,13 @@ struct Now {
 
 Now now_of(const Session& session, EquationsView& view, const SheetCondition& condition, std::size_t index) {
     const Model& model = *session.model();
-    const ContactSet held = session.now().held;
+    const Mode mode = session.now().mode;
     const std::string contact =
         model.contacts() == 1 ? "the contact" : model.description().constraints[condition.contact].name;
-    if (held.contains(condition.contact)) return {fmt::format("now {} is held", contact), false};
-    if (held != condition.held)
-        return {fmt::format("not now: {} is held", held.empty() ? "nothing" : joined_names(model, held)), false};
+    if (mode.is_held(condition.contact)) return {fmt::format("now {} is held", contact), false};
+    if (mode != condition.mode)
+        return {fmt::format("not now: {} is held", mode.is_free() ? "nothing" : joined_names(model, mode.held())),
+                false};
     const double value = view.value(index, model, session.trajectory().run, session.now().state, session.now().t);
     if (!std::isfinite(value)) return {"not defined now", true};
     const std::string shown = number(value, "{:.4g}");

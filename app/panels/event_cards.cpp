@@ -128,8 +128,8 @@ std::string time_of(const Session& session, std::size_t event) {
 // Where there are several contacts.
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
     const Model& model = *session.model();
-    std::string text =
-        reason.held.empty() ? "No contact is held. " : fmt::format("Held: {}. ", joined_names(model, reason.held));
+    std::string text = reason.mode.is_free() ? "No contact is held. "
+                                             : fmt::format("Held: {}. ", joined_names(model, reason.mode.held()));
     if (!event.opened.empty())
         text += fmt::format("It opens {}, where the impulse would have to pull. ", joined_names(model, event.opened));
     if (event.joint && event.joint->order_matters)

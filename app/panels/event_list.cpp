@@ -73,7 +73,7 @@ void EventColumns::row(const Session& session, const Event* event, double lost, 
     const State errors = precision.of_state(event->t);
     for (std::size_t i = 1; i < shown_; ++i)
         put(at, i,
-            is_held(i) ? joined_names(*session.model(), event->held)
+            is_held(i) ? joined_names(*session.model(), event->mode.held())
                        : number_of_size(state(i).of(*event), state(i).size(session.scale()), 5, state(i).error(errors)),
             color);
 }

@@ -82,7 +82,7 @@ std::string table(const Session& session) {
         if (chosen(session).value_or(i) != i) continue;
         const Event& event = events[i];
         text += fmt::format("\n{}\t{}", i + 1, names_of(event).name);
-        for (const ContactSet& set : {event.contacts, event.opened, event.held})
+        for (const ContactSet& set : {event.contacts, event.opened, event.mode.held()})
             if (several) text += "\t" + joined_names(*session.model(), set, "+");
         text +=
             fmt::format("\t{}\t{}", event.t,

@@ -239,7 +239,7 @@ void add_ghosts(const Session& session, Drawing& drawing) {
         const Sample then = session.now_of(pinned);
         Color color = run_color(session.theme(), pinned.place);
         Drawing ghost = session.mechanism().draw(then.t, then.state, pinned.trajectory->run.parameters, drawing,
-                                                 session.theme(), then.held);
+                                                 session.theme(), then.mode.held());
         pinned.touch->rest(ghost, then.t, then.state);
         for (Shape& shape : ghost.shapes) {
             const auto is_there = [&](const Shape& other) { return is_same(shape, other); };

@@ -132,13 +132,13 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
 }
 
 PairConditions::PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
-                               std::size_t second, ContactSet held, ContactSet unpressed, const Ground& ground)
-    : ConditionsBase(model, run, &model.pair(first, second, held).others, variables_of_pair(model.layout()), unpressed,
+                               std::size_t second, Mode mode, ContactSet unpressed, const Ground& ground)
+    : ConditionsBase(model, run, &model.pair(first, second, mode).others, variables_of_pair(model.layout()), unpressed,
                      ground),
       layout_(model.layout()),
       e_(e),
-      terms_(model.evaluator<Interval>(model.pair(first, second, held).terms, run.parameters)),
-      point_(model.evaluator(model.pair(first, second, held).terms, run.parameters)) {
+      terms_(model.evaluator<Interval>(model.pair(first, second, mode).terms, run.parameters)),
+      point_(model.evaluator(model.pair(first, second, mode).terms, run.parameters)) {
     truncation_.conditions = Conditions::sharp;  // there are no others for a pair
     truncation_.reinitialization = Reinitialization::kinetic;
 }

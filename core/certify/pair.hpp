@@ -37,7 +37,7 @@ class PairConditions : protected ConditionsBase {
  public:
     // While others are held, of which `unpressed` need no force.
     PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
-                   std::size_t second, ContactSet held, ContactSet unpressed, const Ground& ground);
+                   std::size_t second, Mode mode, ContactSet unpressed, const Ground& ground);
 
     struct Completion {
         Certificate certificate;

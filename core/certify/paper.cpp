@@ -29,15 +29,15 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the direction of impulses on it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
-                                 ContactSet held, ContactSet unpressed, const Ground& ground)
-    : TruncationConditions(model, run, e, contact, held, unpressed, ground),
-      point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing(contact, held).gradient, run.parameters),
-             model.bouncing(contact, held).variables),
-      box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      rates_(model.evaluator<Interval>(model.bouncing(contact, held).rates, run.parameters)) {}
+PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
+                                 ContactSet unpressed, const Ground& ground)
+    : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
+      point_(model.evaluator(model.programs_of(contact, mode).definition7_terms, run.parameters)),
+      hddot_(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing(contact, mode).gradient, run.parameters),
+             model.bouncing(contact, mode).variables),
+      box_(model.evaluator<Interval>(model.programs_of(contact, mode).definition7_terms, run.parameters)),
+      rates_(model.evaluator<Interval>(model.bouncing(contact, mode).rates, run.parameters)) {}
 
 // The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
 // collision that fails here (with a margin for rounding) needs no proof to fail.

@@ -31,7 +31,7 @@ namespace achilles {
 
 class PaperConditions : public TruncationConditions {
  public:
-    PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+    PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
                     ContactSet unpressed, const Ground& ground);
 
     bool fails_at_point(const Collision& collision) override;

@@ -28,17 +28,17 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
-                                 ContactSet held, ContactSet unpressed, const Ground& ground)
-    : TruncationConditions(model, run, e, contact, held, unpressed, ground),
-      hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
-                   model.evaluator<Interval>(model.bouncing(contact, held).shadow, run.parameters),
-                   model.bouncing(contact, held).variables),
+SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
+                                 ContactSet unpressed, const Ground& ground)
+    : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
+      hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
+                   model.evaluator<Interval>(model.bouncing(contact, mode).shadow, run.parameters),
+                   model.bouncing(contact, mode).variables),
              dof_),
-      guess_(model.evaluator(model.bouncing(contact, held).rates, run.parameters)),
+      guess_(model.evaluator(model.bouncing(contact, mode).rates, run.parameters)),
       box_(dof_),
       shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
-      variables_(model.bouncing(contact, held).variables.size()),
+      variables_(model.bouncing(contact, mode).variables.size()),
       need_q_(dof_),
       need_s_(dof_),
       rising_(2 * dof_) {}

@@ -41,7 +41,7 @@ namespace achilles {
 
 class SharpConditions : public TruncationConditions {
  public:
-    SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+    SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
                     ContactSet unpressed, const Ground& ground);
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;

@@ -67,17 +67,16 @@ Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval
 }
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
-                                                            std::size_t contact, ContactSet held,
-                                                            ContactSet unpressed) {
+                                                            std::size_t contact, Mode mode, ContactSet unpressed) {
     const Ground ground;
     if (run.options.truncation.conditions == Conditions::paper)
-        return std::make_unique<PaperConditions>(model, run, e, contact, held, unpressed, ground);
-    return std::make_unique<SharpConditions>(model, run, e, contact, held, unpressed, ground);
+        return std::make_unique<PaperConditions>(model, run, e, contact, mode, unpressed, ground);
+    return std::make_unique<SharpConditions>(model, run, e, contact, mode, unpressed, ground);
 }
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
-                                                            ContactSet held, ContactSet unpressed) {
-    return truncation_conditions(model, run, model.restitutions(run.parameters)[contact].enclosure, contact, held,
+                                                            Mode mode, ContactSet unpressed) {
+    return truncation_conditions(model, run, model.restitutions(run.parameters)[contact].enclosure, contact, mode,
                                  unpressed);
 }
 
@@ -146,14 +145,14 @@ void ConditionsBase::decide(Certificate& c, double half_width) const {
 }
 
 TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
-                                           ContactSet held, ContactSet unpressed, const Ground& ground)
-    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.neighbours(contact, held),
-                     model.bouncing(contact, held).variables, unpressed, ground),
+                                           Mode mode, ContactSet unpressed, const Ground& ground)
+    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.neighbours(contact, mode),
+                     model.bouncing(contact, mode).variables, unpressed, ground),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       e_(e),
-      contact_(model.evaluator<Interval>(model.programs_of(contact, held).contact_terms, run.parameters)),
-      trend_(model.evaluator(model.bouncing(contact, held).trend, run.parameters)) {}
+      contact_(model.evaluator<Interval>(model.programs_of(contact, mode).contact_terms, run.parameters)),
+      trend_(model.evaluator(model.bouncing(contact, mode).trend, run.parameters)) {}
 
 Trend TruncationConditions::trend_at(const Collision& collision) {
     set_state(trend_, collision.with(collision.tangential));

@@ -120,7 +120,7 @@ class ConditionsBase {
 
 class TruncationConditions : protected ConditionsBase {
  public:
-    TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, ContactSet held,
+    TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
                          ContactSet unpressed, const Ground& ground);
     virtual ~TruncationConditions() = default;
     // Quick: true where they can be seen not to hold.
@@ -157,13 +157,13 @@ class TruncationConditions : protected ConditionsBase {
     TrendTerms<Evaluator<double>> trend_;
 };
 
-// The conditions that the options of the run select, for a contact with restitution e while the contacts `held` are held. Those of
-// them in `unpressed` need no contact force.
+// The conditions that the options of the run select, for a contact with restitution e in a mode in which it is open.
+// Held contacts in `unpressed` need no contact force.
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
-                                                            std::size_t contact, ContactSet held, ContactSet unpressed);
+                                                            std::size_t contact, Mode mode, ContactSet unpressed);
 // The same; evaluates e.
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact = 0,
-                                                            ContactSet held = {}, ContactSet unpressed = {});
+                                                            Mode mode = {}, ContactSet unpressed = {});
 
 // Euclidean norm of an enclosed vector.
 Interval norm(const std::vector<Interval>& x);

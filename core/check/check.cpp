@@ -84,7 +84,7 @@ class Report : EquationsOnPage {
         for (const HeldCondition& condition : simplified_.while_held) {
             page_.heading(
                 fmt::format("Zeno condition of {} while {} is held: hddot < 0 where h = 0 and hdot = 0 for both",
-                            constraints[condition.contact].name, joined_names(model_, condition.held)));
+                            constraints[condition.contact].name, joined_names(model_, condition.mode.held())));
             zeno(condition.zeno);
             zeno_restitution(condition.contact);
         }
@@ -252,7 +252,7 @@ class SheetWriter : EquationsOnPage {
         EquationSheet result;
         const bool forces = has_forces(model_.equations());
         for (std::size_t i = 0; i < model_.contacts(); ++i) condition(result, i, {}, simplified_.contacts[i].zeno);
-        for (const HeldCondition& held : simplified_.while_held) condition(result, held.contact, held.held, held.zeno);
+        for (const HeldCondition& held : simplified_.while_held) condition(result, held.contact, held.mode, held.zeno);
         unwritten_conditions();
         page_.heading({"Motion", fmt::format("Motion: $M \\ddot{{q}} + b = {}$", forces ? "Q" : "0")});
         page_.caption("mass matrix");
@@ -272,11 +272,10 @@ class SheetWriter : EquationsOnPage {
  private:
     static constexpr std::size_t no_limit = 1000000;  // who sets them breaks lines himself
 
-    void condition(EquationSheet& sheet, std::size_t contact, ContactSet held,
-                   const std::optional<ZenoCondition>& found) {
+    void condition(EquationSheet& sheet, std::size_t contact, Mode mode, const std::optional<ZenoCondition>& found) {
         std::string plain = "Zeno condition" + of(" of {}", contact), where = "$h = \\dot{h} = 0$";
-        if (!held.empty()) {
-            plain += fmt::format(" while {} is held", joined_names(model_, held));
+        if (!mode.is_free()) {
+            plain += fmt::format(" while {} is held", joined_names(model_, mode.held()));
             where += " for both";
         }
         const std::size_t first = page_.blocks().size();
@@ -284,7 +283,7 @@ class SheetWriter : EquationsOnPage {
         zeno(found);
         if (!found) return;
         const Expression value = expression_of(found->decisive, *found->algebra);
-        sheet.conditions.push_back({contact, held, first, page_.blocks().size(),
+        sheet.conditions.push_back({contact, mode, first, page_.blocks().size(),
                                     Program(std::span(&value, 1), model_.layout().slots()),
                                     found->verdict == ZenoCondition::Verdict::depends});
     }

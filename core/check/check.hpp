@@ -36,7 +36,7 @@ constexpr double most_disagreement = 1e-9;
 // is negative.
 struct SheetCondition {
     std::size_t contact = 0;
-    ContactSet held;
+    Mode mode;
     std::size_t first = 0, last = 0;  // its blocks: first <= i < last
     Program decisive;                 // of hddot on the surface: what its sign depends on
     bool depends = true;              // the sign is not the same everywhere

@@ -335,7 +335,7 @@ Disagreement compare_with_differences(const Model& model, const Run& run, const 
         if (!condition.zeno) continue;
         std::vector<std::size_t> contacts{condition.contact};
         for (std::size_t k = 0; k < model.contacts(); ++k)
-            if (condition.held.contains(k)) contacts.push_back(k);
+            if (condition.mode.is_held(k)) contacts.push_back(k);
         in_contact.emplace_back(model, run, *condition.zeno, while_held[i], contacts);
         in_contact_names.emplace_back("hddot in contact while others are held");
     }

@@ -311,11 +311,11 @@ constexpr long work_of_a_formula = 400000;
 bool holds_some(const Model& model) { return model.contacts() > 1 && model.contacts() <= Simplified::few_contacts; }
 
 // That hold one contact, where these are looked at and are not too large; else null.
-std::unique_ptr<HeldMotions> derived_motions(const Model& model) {
+std::unique_ptr<ContactModes> derived_motions(const Model& model) {
     if (!holds_some(model)) return nullptr;
     try {
-        auto motions = std::make_unique<HeldMotions>(model.equations(), model.layout());
-        for (std::size_t j = 0; j < model.contacts(); ++j) motions->of(ContactSet::of(j));
+        auto motions = std::make_unique<ContactModes>(model.equations(), model.layout());
+        for (std::size_t j = 0; j < model.contacts(); ++j) motions->of(Mode::holding(ContactSet::of(j)));
         return motions;
     } catch (const TooLarge&) {
         return nullptr;
@@ -381,7 +381,7 @@ Simplified::Simplified(const Model& model, const Run& run, std::stop_token stop)
             if (i == j) continue;
             HeldCondition& condition = while_held.emplace_back();
             condition.contact = i;
-            condition.held = ContactSet::of(j);
+            condition.mode = Mode::holding(ContactSet::of(j));
             condition.zeno = this->condition(model, run, {&held_equations(condition), &e.free.contacts[j]});
         }
 }

@@ -40,7 +40,7 @@ struct SimplifiedContact {
 // The same of a contact while others are held: hddot is that of their motion (theory-gaps.md 2), on their surfaces.
 struct HeldCondition {
     std::size_t contact = 0;
-    ContactSet held;
+    Mode mode;
     std::optional<ZenoCondition> zeno;
 };
 
@@ -59,7 +59,7 @@ class Simplified {
 
     // The equations of such a contact, in a graph of their own.
     const ContactEquations& held_equations(const HeldCondition& condition) const {
-        return motions_->of(condition.held).contacts[condition.contact];
+        return motions_->of(condition.mode).contacts[condition.contact];
     }
 
     Algebra& algebra() const { return *algebra_; }
@@ -72,7 +72,7 @@ class Simplified {
     std::optional<ZenoCondition> condition(const Model& model, const Run& run,
                                            const std::vector<const ContactEquations*>& involved);
 
-    std::unique_ptr<HeldMotions> motions_;  // those of while_held, derived before their graph is copied
+    std::unique_ptr<ContactModes> motions_;  // those of while_held, derived before their graph is copied
     Graph graph_;
     std::unique_ptr<Algebra> algebra_;
     std::vector<int> ranks_;

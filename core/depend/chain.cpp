@@ -47,7 +47,7 @@ Chain::Chain(const Trajectory& trajectory, Options options)
       u_(model_->contacts()) {
     check(trajectory.run);
     state_ = trajectory.run.start();
-    held_ = trajectory.phases.front().held;
+    mode_ = trajectory.phases.front().mode;
     for (std::size_t i = 0; i < model_->contacts(); ++i) {
         ContactKinematics& contact = surfaces_.of(i);
         const Contact at = contact.at(state_);
@@ -84,27 +84,27 @@ void Chain::complete(RowMatrix& Z) {
 
 // ---- programs ----
 
-ContactGradient& Chain::surface(std::size_t contact, ContactSet held) {
-    auto& known = contacts_[{held, contact}];
+ContactGradient& Chain::surface(std::size_t contact, Mode mode) {
+    auto& known = contacts_[{mode, contact}];
     if (!known)
-        known = std::make_unique<ContactGradient>(*model_, model_->programs_of(contact, held).contact_terms, tangent_,
+        known = std::make_unique<ContactGradient>(*model_, model_->programs_of(contact, mode).contact_terms, tangent_,
                                                   trajectory_->run.parameters);
     return *known;
 }
 
-FlowSlope& Chain::slope(ContactSet held) {
+FlowSlope& Chain::slope(Mode mode) {
     if (options_.errors) {
-        auto& difference = differences_[held];
+        auto& difference = differences_[mode];
         if (!difference)
-            difference = std::make_unique<FlowDifference>(*model_, held, tangent_, trajectory_->run.parameters);
+            difference = std::make_unique<FlowDifference>(*model_, mode, tangent_, trajectory_->run.parameters);
         return *difference;
     }
-    auto& known = slopes_[held];
+    auto& known = slopes_[mode];
     if (!known) {
         const achilles::Options& used =
             trajectory_->made_again_by ? *trajectory_->made_again_by : trajectory_->run.options;
         const double tolerance = std::max(10.0 * used.tolerance, 0x1p-53);
-        known = make_flow_slope(*model_, held, tangent_, trajectory_->run.parameters, options_.parameters, tolerance);
+        known = make_flow_slope(*model_, mode, tangent_, trajectory_->run.parameters, options_.parameters, tolerance);
     }
     return *known;
 }
@@ -112,7 +112,7 @@ FlowSlope& Chain::slope(ContactSet held) {
 // ---- where the run stands ----
 
 VectorXd Chain::rate() {
-    auto& motion = model_->lazily(motions_, held_, trajectory_->run.parameters);
+    auto& motion = model_->lazily(motions_, mode_, trajectory_->run.parameters);
     set_state(motion, state_);
     motion.run();
     VectorXd F = VectorXd::Zero(tangent_.size());
@@ -122,7 +122,7 @@ VectorXd Chain::rate() {
         F[tangent_.v(i)] = motion.acceleration(i);
     }
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
-        if (held_.contains(i)) continue;
+        if (mode_.is_held(i)) continue;
         F[tangent_.h(i)] = u_[i];
         F[tangent_.u(i)] = motion.hddot(i);
     }
@@ -133,8 +133,8 @@ VectorXd Chain::rate() {
 void Chain::set_gaps() {
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
         const Contact contact = surfaces_.of(i).at(state_);
-        h_[i] = held_.contains(i) ? 0.0 : contact.h;
-        u_[i] = held_.contains(i) ? 0.0 : contact.hdot;
+        h_[i] = mode_.is_held(i) ? 0.0 : contact.h;
+        u_[i] = mode_.is_held(i) ? 0.0 : contact.hdot;
     }
 }
 
@@ -171,23 +171,23 @@ const Link* Chain::next() {
 
 void Chain::step() {
     const Piece& piece = trajectory_->pieces[next_piece_++];
-    if (piece.carriers != piece.held)
+    if (piece.carriers != piece.mode.held())
         return break_off(
             "the gradients of the held contacts are linearly dependent: the contact forces are not unique");
-    if (piece.held != held_) return break_off("the set of held contacts changes without an event");
+    if (piece.mode != mode_) return break_off("the set of held contacts changes without an event");
     state_ = state_in(piece, trajectory_->coefficients, model_->dof(), piece.start);
     state_.t = piece.start;
-    FlowSlope& slope = this->slope(held_);
+    FlowSlope& slope = this->slope(mode_);
     const int degree = static_cast<int>(piece.degree);
     RowMatrix left_out;
     while (state_.t < piece.end) {
         const double left = piece.end - state_.t;
         const double span = slope.expand(state_, left, options_.errors ? degree + FlowDifference::more_orders : 0);
         if (options_.errors && state_.t == piece.start)
-            differences_.at(held_)->left_out(degree, piece.end - piece.start, left_out);
+            differences_.at(mode_)->left_out(degree, piece.end - piece.start, left_out);
         Link& link = add(Link::Kind::step);
         link.length = span;
-        slope.slope_after(span, held_, link.J);
+        slope.slope_after(span, mode_, link.J);
         if (!options_.errors) watch_minima(slope, span);
         const bool is_end = span >= left;
         const double t = is_end ? piece.end : state_.t + span;
@@ -195,9 +195,9 @@ void Chain::step() {
             return break_off("the derivatives would need steps below the resolution of time");
         state_ = state_in(piece, trajectory_->coefficients, model_->dof(), t);
         state_.t = t;
-        if (!held_.empty()) {
-            retract(link.J, held_);
-            if (is_end && options_.errors) retract(left_out, held_);
+        if (!mode_.is_free()) {
+            retract(link.J, mode_);
+            if (is_end && options_.errors) retract(left_out, mode_);
         }
         if (is_end && options_.errors) link.left_out = left_out;
     }
@@ -208,7 +208,7 @@ void Chain::step() {
 void Chain::watch_minima(const FlowSlope& slope, double span) {
     const int order = slope.order();
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
-        if (held_.contains(i)) continue;
+        if (mode_.is_held(i)) continue;
         std::array<double, MotionSeries::highest_order + 1> c{};
         for (int k = 2; k <= order; ++k) c[static_cast<std::size_t>(k)] = slope.coefficient(k, 2 * tangent_.dof + i);
         const auto at = [&](double t) {
@@ -244,15 +244,13 @@ void Chain::watch_minima(const FlowSlope& slope, double span) {
     }
 }
 
-// The rows of q and v of what lies on h = 0, hdot = 0 of these contacts: dq -= n dh, then dv -= n dhdot. One after the other,
-// each while those before it are held, so that they stay there.
-void Chain::retract(RowMatrix& J, ContactSet onto) {
-    ContactSet before;
+// The rows of q and v of what lies on h = 0, hdot = 0 of all that a mode holds: dq -= n dh, then dv -= n dhdot. One
+// contact after the other, each while those before it are held, so that they stay there.
+void Chain::retract(RowMatrix& J, Mode onto) {
     const auto each = [&](const auto& act) {
-        before = {};
-        for (std::size_t i = 0; i < tangent_.contacts; ++i) {
-            if (!onto.contains(i)) continue;
-            ContactGradient& contact = surface(i, before);
+        ContactSet before;
+        for (const std::size_t i : onto.held()) {
+            ContactGradient& contact = surface(i, onto.only(before));
             contact.at(state_);
             act(contact);
             before = before.with(i);
@@ -266,11 +264,10 @@ void Chain::retract(RowMatrix& J, ContactSet onto) {
         const RowVectorXd du = contact.hdot_row().lazyProduct(J);
         for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.v(k)) -= contact.n(k) * du;
     });
-    for (std::size_t i = 0; i < tangent_.contacts; ++i)
-        if (onto.contains(i)) {
-            J.row(tangent_.h(i)).setZero();
-            J.row(tangent_.u(i)).setZero();
-        }
+    for (const std::size_t i : onto.held()) {
+        J.row(tangent_.h(i)).setZero();
+        J.row(tangent_.u(i)).setZero();
+    }
 }
 
 }  // namespace achilles

@@ -50,7 +50,7 @@ struct Link {
     // Of the jump at which a bouncing is cut.
     struct Completion {
         std::size_t contact;
-        ContactSet held;   // the others that are
+        Mode others;       // in which the contact is open
         double speed;      // w
         RowMatrix newton;  // the impact that is drawn there, in place of the J that the run goes on from
     };
@@ -91,7 +91,7 @@ class Chain {
     // Where the run stands after the last link, and F there.
     const State& state() const { return state_; }
     Eigen::VectorXd rate();
-    ContactSet held() const { return held_; }
+    Mode mode() const { return mode_; }
     const DerivativeMargins& margins() const { return margins_; }
 
  private:
@@ -104,31 +104,32 @@ class Chain {
 
     Link& add(Link::Kind kind, std::optional<std::size_t> event = {});
     Link& cross(std::size_t event, Eigen::RowVectorXd G, double residual);
-    void meet_surface(std::size_t contact, ContactSet others, Link& crossing);
+    void meet_surface(std::size_t contact, Mode others, Link& crossing);
     double residual_before(std::size_t contact);
-    void retract(RowMatrix& J, ContactSet onto);
-    Eigen::RowVectorXd wait_row(const RowMatrix& J, std::size_t contact, ContactSet others, double speed);
+    void retract(RowMatrix& J, Mode onto);
+    Eigen::RowVectorXd wait_row(const RowMatrix& J, std::size_t contact, Mode others, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
     void set_gaps();
     void watch_minima(const FlowSlope& slope, double span);
 
-    ContactGradient& surface(std::size_t contact, ContactSet held);
-    FlowSlope& slope(ContactSet held);
+    ContactGradient& surface(std::size_t contact, Mode mode);
+    FlowSlope& slope(Mode mode);
 
     const Trajectory* trajectory_;
     const Model* model_;
     Options options_;
     Tangent tangent_;
     Surfaces surfaces_;
-    std::map<std::pair<ContactSet, std::size_t>, std::unique_ptr<ContactGradient>> contacts_;
-    std::map<std::pair<ContactSet, std::size_t>, std::unique_ptr<Gradient>> trends_, normals_;
+    std::map<ContactInMode, std::unique_ptr<ContactGradient>> contacts_;
+    std::map<ContactInMode, std::unique_ptr<Gradient>> trends_, normals_;
     std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
-    std::map<ContactSet, std::unique_ptr<FlowSlope>> slopes_;
-    std::map<ContactSet, std::unique_ptr<FlowDifference>> differences_;  // in their place, for errors
+    std::map<Mode, std::unique_ptr<FlowSlope>> slopes_;
+    std::map<Mode, std::unique_ptr<FlowDifference>> differences_;  // in their place, for errors
     Model::MotionEvaluators motions_;
 
     State state_;
-    ContactSet held_, resting_;
+    Mode mode_;
+    ContactSet resting_;
     std::size_t next_piece_ = 0, next_event_ = 0;
     bool waiting_ = false;       // between a cut and its Zeno point
     std::vector<double> h_, u_;  // of every contact, at the state

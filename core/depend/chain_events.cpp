@@ -65,26 +65,27 @@ void Chain::land(std::size_t event) {
             "several contacts close at the same time: which is first depends on the direction of the perturbation");
     const std::size_t i = now.contacts.only();
     // What of the others takes part.
-    ContactSet others = held_;
+    Mode others = mode_;
     if (now.joint) {
         if (now.joint->order_matters || now.joint->not_unique)
             return break_off(
                 "the outcome of the simultaneous impact is not unique: it depends on the order, or on the impulses "
                 "chosen");
-        others = {};
+        ContactSet loaded;
         double scale = 0.0;
         for (const auto& [contact, impulse] : now.joint->impulses) scale = std::max(scale, impulse);
         for (const auto& [contact, impulse] : now.joint->impulses) {
             if (contact == i) continue;
-            if (!held_.contains(contact))
+            if (!mode_.is_held(contact))
                 return break_off("a contact that is closed without a force takes part in an impact");
             const double rate = surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot;
             constexpr double strictly = 1e-10;
             if (impulse > strictly * scale)
-                others = others.with(contact);
+                loaded = loaded.with(contact);
             else if (!(rate > strictly * now.impact_speed))
                 return break_off("an impact neither loads a held contact nor opens it");
         }
+        others = mode_.only(loaded);
     }
     set_gaps();
     h_[i] = 0.0;
@@ -120,7 +121,7 @@ void Chain::land(std::size_t event) {
     J.row(tangent_.h(i)).setZero();
     const Changing before{u, J.row(tangent_.u(i))}, e{surfaces_.restitution(i).value, restitution->row(0)};
     const bool completes = joins.contains(i);
-    const bool rests = completes || now.held.contains(i);
+    const bool rests = completes || now.mode.is_held(i);
     if (completes) {
         RowMatrix drawn = J;
         take_out(newton::removed_rate(e, before), contact, tangent_, drawn);
@@ -128,19 +129,19 @@ void Chain::land(std::size_t event) {
         take_out(before, contact, tangent_, J);
         state_.v = s;
         J.row(tangent_.wait()) = wait_row(J, i, others, -u);
-        retract(J, others.with(i));
+        retract(J, others.with(i, ContactState::held));
         waiting_ = true;
     } else {
         take_out(newton::removed_rate(e, before), contact, tangent_, J);
         state_.v = now.v_after;
         J.row(tangent_.u(i)) = newton::rate_after(e, before).row;
-        retract(J, rests ? others.with(i) : others);
+        retract(J, rests ? others.with(i, ContactState::held) : others);
     }
-    held_ = completes ? others.with(i) : now.held;
-    if (completes && others != now.held.without(i))
+    mode_ = completes ? others.with(i, ContactState::held) : now.mode;
+    if (completes && others != now.mode.without(i))
         return break_off("the impact sequence is cut at an impact that opens a contact");
     for (std::size_t k = 0; k < tangent_.contacts; ++k) {
-        if (held_.contains(k) || k == i) continue;
+        if (mode_.is_held(k) || k == i) continue;
         ContactGradient& other = surface(k, {});
         other.at(state_);
         J.row(tangent_.u(k)) = other.hdot_row().lazyProduct(J).eval();
@@ -163,7 +164,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
     } else if (next_piece_ < trajectory_->pieces.size()) {
         const Piece& piece = trajectory_->pieces[next_piece_];
         if (piece.start == now.t && (event + 1 == events.size() || events[event + 1].t > now.t))
-            joins = piece.held.without(now.held);
+            joins = piece.mode.held().without(now.mode.held());
     }
     if (joins.count() > 1) return "two contacts reach a Zeno point together: the derivative of this point is not known";
     return std::nullopt;
@@ -171,7 +172,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
 
 // The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md 4, by the components before the
 // jump; J is what q, v, t and p are of these at the restart, where the state stands.
-RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, ContactSet others, double speed) {
+RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others, double speed) {
     auto& trend = trends_[{others, contact}];
     if (!trend)
         trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,
@@ -198,24 +199,24 @@ void Chain::reach_zeno_point(std::size_t event) {
     waiting_ = false;
     set_gaps();
     const std::size_t i = now.contacts.only();
-    const double a = -surfaces_.of(i, held_.without(i)).normal_acceleration(state_);
+    const double a = -surfaces_.of(i, mode_.without(i)).normal_acceleration(state_);
     const bool may_be_unpressed = is_plastic_landing(now) && now.certificate->a_max == 0.0;
-    if (!may_be_unpressed || !model_->is_carried(i, held_.without(i))) take_least(margins_.a_inf, a);
+    if (!may_be_unpressed || !model_->is_carried(i, mode_.without(i))) take_least(margins_.a_inf, a);
     // The members that wait for longer go on for so long.
     Link& link = add(Link::Kind::jump, event);
     link.J.col(tangent_.wait()) += rate();
     link.J.row(tangent_.wait()).setZero();
-    retract(link.J, held_);
+    retract(link.J, mode_);
 }
 
 void Chain::release(std::size_t event) {
     const Event& now = trajectory_->events[event];
-    if (now.contacts.count() != 1 || now.joint || held_.without(now.contacts) != now.held)
+    if (now.contacts.count() != 1 || now.joint || mode_.without(now.contacts) != now.mode)
         return break_off(
             "several contacts are released at the same time: which is first depends on the direction of the "
             "perturbation");
     const std::size_t i = now.contacts.only();
-    const ContactSet others = held_.without(i);
+    const Mode others = mode_.without(i);
     auto& normal = normals_[{others, i}];
     if (!normal)
         normal = std::make_unique<Gradient>(*model_, model_->programs_of(i, others).normal_acceleration, tangent_,
@@ -226,8 +227,8 @@ void Chain::release(std::size_t event) {
     take_least(margins_.release_jerk, jerk);
     cross(event, normal->row(0), normal->value(0));
     Link& link = add(Link::Kind::jump, event);
-    retract(link.J, held_);
-    held_ = now.held;
+    retract(link.J, mode_);
+    mode_ = now.mode;
     set_gaps();
     h_[i] = u_[i] = 0.0;
 }
@@ -244,7 +245,7 @@ double Chain::residual_before(std::size_t contact) {
     State reached = state_in(piece, trajectory_->coefficients, model_->dof(), piece.end);
     reached.t = piece.end;
     for (std::size_t i = 0; i < n; ++i) reached.q[static_cast<Eigen::Index>(i)] -= c[2 * n + i] - c[n + i] * span;
-    if (!piece.held.empty()) surfaces_.project(reached, piece.held, {});
+    if (!piece.mode.is_free()) surfaces_.project(reached, piece.mode.held(), {});
     ContactKinematics& surface = surfaces_.of(contact);
     const Contact at = surface.at(reached);
     const double rounding = 4.0 * surface.gap_error(reached) + std::abs(at.hdot) * 0x1p-52 * std::abs(piece.end);
@@ -253,7 +254,7 @@ double Chain::residual_before(std::size_t contact) {
 
 // Errors at an impact. The run lands by the gap's own series, then moves q onto the surface and takes the rate of the gap from
 // there; so the error of q is moved, and that of the rate taken, too.
-void Chain::meet_surface(std::size_t contact, ContactSet others, Link& crossing) {
+void Chain::meet_surface(std::size_t contact, Mode others, Link& crossing) {
     crossing.residual = residual_before(contact);
     ContactGradient& surface = this->surface(contact, {});
     surface.at(state_);

@@ -17,7 +17,7 @@ struct Behind {
 }  // namespace
 
 Trend CompletionError::trend(const Cut& cut) {
-    const std::pair key(cut.others, cut.contact);
+    const ContactInMode key(cut.others, cut.contact);
     auto known = trends_.find(key);
     if (known == trends_.end()) {
         const auto& program = model_->bouncing(cut.contact, cut.others).trend;

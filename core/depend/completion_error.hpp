@@ -18,7 +18,7 @@ class CompletionError {
     // A cut: the bouncing of a contact while others are held, at the state that the run restarts from (v is s), with w.
     struct Cut {
         std::size_t contact;
-        ContactSet others;
+        Mode others;
         State restart;
         double speed;
     };
@@ -42,9 +42,9 @@ class CompletionError {
     const Model* model_;
     Run run_;
     Surfaces surfaces_;
-    std::map<std::pair<ContactSet, std::size_t>, TrendTerms<Evaluator<double>>> trends_;
-    std::map<std::pair<ContactSet, std::size_t>, Evaluator<double>> shadows_;
-    std::map<ContactSet, MotionSeries> flights_;
+    std::map<ContactInMode, TrendTerms<Evaluator<double>>> trends_;
+    std::map<ContactInMode, Evaluator<double>> shadows_;
+    std::map<Mode, MotionSeries> flights_;
 };
 
 }  // namespace achilles

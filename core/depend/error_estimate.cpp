@@ -161,7 +161,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         if (!link->event) continue;
         const Event& event = trajectory.events[*link->event];
         if (link->completion) {
-            cut = {link->completion->contact, link->completion->held, chain.state(), link->completion->speed};
+            cut = {link->completion->contact, link->completion->others, chain.state(), link->completion->speed};
             carried.move(of_cuts.shift(*cut), tangent);
         } else if (event.is_zeno() && cut) {
             // The time that the run has for it, and the true one.

@@ -33,9 +33,9 @@ std::vector<std::uint32_t> variables_of(const SeriesProgram& program, const Tang
 
 class FlowSlopeBySeries : public FlowSlope {
  public:
-    FlowSlopeBySeries(const SeriesProgram& program, ContactSet held, const Tangent& tangent,
+    FlowSlopeBySeries(const SeriesProgram& program, Mode mode, const Tangent& tangent,
                       std::span<const double> parameters, const std::vector<bool>& varied, double tolerance)
-        : held_(held),
+        : mode_(mode),
           tangent_(tangent),
           tolerance_(tolerance),
           variables_(variables_of(program, tangent, varied)),
@@ -84,7 +84,7 @@ class FlowSlopeBySeries : public FlowSlope {
     int order() const override { return order_; }
     double coefficient(int k, std::size_t i) const override { return value(k, i); }
 
-    void slope_after(double span, ContactSet held, RowMatrix& S) override {
+    void slope_after(double span, Mode mode, RowMatrix& S) override {
         if (span != powers_[1]) raise_to_powers(span);
         for (std::size_t group = 0; group < series_.size(); ++group) {
             const auto sum = [&](std::size_t i, const Powers& weights, int first, Eigen::Index row) {
@@ -95,13 +95,13 @@ class FlowSlopeBySeries : public FlowSlope {
             for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) sum(i, powers_, 0, tangent_.q(i));
             // The gap, of which order 0 and 1 are given apart, and its rate.
             for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
-                if (held.contains(contact)) continue;
+                if (mode.is_held(contact)) continue;
                 sum(2 * tangent_.dof + contact, powers_, 2, tangent_.h(contact));
                 sum(2 * tangent_.dof + contact, rates_, 2, tangent_.u(contact));
             }
         }
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
-            if (held.contains(contact)) continue;
+            if (mode.is_held(contact)) continue;
             S(tangent_.h(contact), tangent_.h(contact)) = S(tangent_.u(contact), tangent_.u(contact)) = 1.0;
             S(tangent_.h(contact), tangent_.u(contact)) = span;
         }
@@ -150,7 +150,7 @@ class FlowSlopeBySeries : public FlowSlope {
     // rounding, or comes late.
     void set_limits() {
         for (std::size_t i = 0; i < rows(); ++i) {
-            const bool is_held = i >= 2 * tangent_.dof && held_.contains(i - 2 * tangent_.dof);
+            const bool is_held = i >= 2 * tangent_.dof && mode_.is_held(i - 2 * tangent_.dof);
             const double none = is_held ? std::numeric_limits<double>::infinity() : 0.0;
             double size = none;
             for (int k = 0; k < first_few; ++k) size = std::max(size, std::abs(value(k, i)) * weight(i, k));
@@ -190,7 +190,7 @@ class FlowSlopeBySeries : public FlowSlope {
         return largest;
     }
 
-    ContactSet held_;
+    Mode mode_;
     Tangent tangent_;
     double tolerance_;
     std::vector<std::uint32_t> variables_;
@@ -204,10 +204,10 @@ class FlowSlopeBySeries : public FlowSlope {
 
 }  // namespace
 
-std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, ContactSet held, const Tangent& tangent,
+std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, Mode mode, const Tangent& tangent,
                                            std::span<const double> parameters, const std::vector<bool>& varied,
                                            double tolerance) {
-    return std::make_unique<FlowSlopeBySeries>(model.motion(held).series, held, tangent, parameters, varied, tolerance);
+    return std::make_unique<FlowSlopeBySeries>(model.motion(mode).series, mode, tangent, parameters, varied, tolerance);
 }
 
 // ---- by differences
@@ -224,8 +224,8 @@ double size_of(const State& state) {
 
 }  // namespace
 
-MotionSeries::MotionSeries(const Model& model, ContactSet held, std::span<const double> parameters)
-    : SeriesOver(model.motion(held).series), start_(static_cast<std::size_t>(2 * model.dof())) {
+MotionSeries::MotionSeries(const Model& model, Mode mode, std::span<const double> parameters)
+    : SeriesOver(model.motion(mode).series), start_(static_cast<std::size_t>(2 * model.dof())) {
     fix(parameters);
 }
 
@@ -248,13 +248,13 @@ double MotionSeries::sum(int first, int last, std::size_t i, double span) const 
     return sum * std::pow(span, first);
 }
 
-FlowDifference::FlowDifference(const Model& model, ContactSet held, const Tangent& tangent,
+FlowDifference::FlowDifference(const Model& model, Mode mode, const Tangent& tangent,
                                std::span<const double> parameters)
-    : tangent_(tangent), motion_(model, held, parameters), part_(model, held, parameters) {
-    const bool has_clock = model.motion(held).series.inputs()[model.layout().t()];
+    : tangent_(tangent), motion_(model, mode, parameters), part_(model, mode, parameters) {
+    const bool has_clock = model.motion(mode).series.inputs()[model.layout().t()];
     for (std::size_t k = 0; k < 2 * tangent.dof; ++k)
-        beside_.push_back({tangent.variable(k), 0.0, MotionSeries(model, held, parameters)});
-    if (has_clock) beside_.push_back({Tangent::t(), 0.0, MotionSeries(model, held, parameters)});
+        beside_.push_back({tangent.variable(k), 0.0, MotionSeries(model, mode, parameters)});
+    if (has_clock) beside_.push_back({Tangent::t(), 0.0, MotionSeries(model, mode, parameters)});
 }
 
 void FlowDifference::expand_beside(const State& state) {
@@ -319,7 +319,7 @@ double FlowDifference::expand(const State& state, double length, int least_order
     return length;
 }
 
-void FlowDifference::slope_after(double span, ContactSet held, RowMatrix& S) {
+void FlowDifference::slope_after(double span, Mode mode, RowMatrix& S) {
     for (const Beside& beside : beside_) {
         for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
             double sum = 0.0;
@@ -328,7 +328,7 @@ void FlowDifference::slope_after(double span, ContactSet held, RowMatrix& S) {
         }
         // The gap, of which order 0 and 1 are given apart, and its rate.
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
-            if (held.contains(contact)) continue;
+            if (mode.is_held(contact)) continue;
             double h = 0.0, u = 0.0;
             for (int k = slope_order_; k >= 2; --k) {
                 const double c = slope(beside, k, 2 * tangent_.dof + contact);
@@ -340,7 +340,7 @@ void FlowDifference::slope_after(double span, ContactSet held, RowMatrix& S) {
         }
     }
     for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
-        if (held.contains(contact)) continue;
+        if (mode.is_held(contact)) continue;
         S(tangent_.h(contact), tangent_.h(contact)) = S(tangent_.u(contact), tangent_.u(contact)) = 1.0;
         S(tangent_.h(contact), tangent_.u(contact)) = span;
     }

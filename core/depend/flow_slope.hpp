@@ -23,12 +23,12 @@ class FlowSlope {
     // Coefficient k of q and v, then of the gap of each open contact (from k = 2 on).
     virtual double coefficient(int k, std::size_t i) const = 0;
     // The rows of q, v, and of the open contacts' h and u after a time, whatever the others are.
-    virtual void slope_after(double span, ContactSet held, RowMatrix& S) = 0;
+    virtual void slope_after(double span, Mode mode, RowMatrix& S) = 0;
 };
 
 // By the Taylor series of runs over numbers with their slopes (theory-derivatives.md 2). Of the motion that holds these
 // contacts; by those parameters that may vary, or, if that is empty, by all.
-std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, ContactSet held, const Tangent& tangent,
+std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, Mode mode, const Tangent& tangent,
                                            std::span<const double> parameters, const std::vector<bool>& varied,
                                            double tolerance);
 
@@ -37,7 +37,7 @@ std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, ContactSet held, 
 class MotionSeries : public SeriesOver<double> {
  public:
     // Of the motion that holds these contacts.
-    MotionSeries(const Model& model, ContactSet held, std::span<const double> parameters);
+    MotionSeries(const Model& model, Mode mode, std::span<const double> parameters);
 
     // Expands at a state; 1 <= order <= highest_order.
     void expand(const State& state, int order);
@@ -56,13 +56,13 @@ class MotionSeries : public SeriesOver<double> {
 // numbers with their slopes. Columns of parameters are 0.
 class FlowDifference : public FlowSlope {
  public:
-    FlowDifference(const Model& model, ContactSet held, const Tangent& tangent, std::span<const double> parameters);
+    FlowDifference(const Model& model, Mode mode, const Tangent& tangent, std::span<const double> parameters);
 
     double expand(const State& state, double length, int least_order) override;
     int order() const override { return order_; }
     // Of the motion itself.
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }
-    void slope_after(double span, ContactSet held, RowMatrix& S) override;
+    void slope_after(double span, Mode mode, RowMatrix& S) override;
 
     // What polynomials of this degree leave out of q and v after a time, from the state of the last expansion on: the terms
     // that follow; where these fall too slowly, the difference to two steps of half the length; and where the series of

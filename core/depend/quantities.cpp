@@ -23,7 +23,8 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 // Where a run is asked: its end, or an event, so many events after its start.
 struct Quantities::Place {
     State state;
-    ContactSet held, carriers;
+    Mode mode;
+    ContactSet carriers;
     double work = 0.0, loss = 0.0;
     std::size_t events = 0;
     // Of the state, coordinate by direction, and of the time, by direction; nothing where there are none.
@@ -76,7 +77,7 @@ class Quantities::Inputs {
         set(layout_.t(), place_.state.t, place_.time_slope);
         set(layout_.work(), place_.work, none);
         set(layout_.loss(), place_.loss, none);
-        if (layout_.contacts == 1) return set(layout_.contact(), place_.held.empty() ? 0.0 : 1.0);
+        if (layout_.contacts == 1) return set(layout_.contact(), place_.mode.is_free() ? 0.0 : 1.0);
         set_contacts(none);
     }
 
@@ -85,7 +86,7 @@ class Quantities::Inputs {
         const auto& slopes = place_.slopes;
         const std::vector<double>& parameters = trajectory_.run.parameters;
         ContactForces forces(model_, parameters);
-        forces.set(place_.state, place_.held, place_.carriers);
+        forces.set(place_.state, place_.mode, place_.carriers);
         const Tangent tangent{layout_.dof, layout_.contacts, layout_.p};
         MatrixXd Z = MatrixXd::Zero(tangent.size(), K_);
         if (slopes) {
@@ -100,18 +101,18 @@ class Quantities::Inputs {
             return RowVectorXd(gradient.row(output) * Z);
         };
         for (std::size_t i = 0; i < layout_.contacts; ++i) {
-            const bool held = place_.held.contains(i);
+            const bool held = place_.mode.is_held(i);
             const double a = forces.acceleration(i), f = forces.force(i);
             if (!slopes) {
                 set(layout_.acceleration(i), a, none);
                 set(layout_.force(i), f, none);
             } else if (held) {
                 set(layout_.acceleration(i), a);
-                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, place_.held.without(i)).force, 0));
+                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, place_.mode.without(i)).force, 0));
             } else {
                 set(layout_.force(i), f);
                 set(layout_.acceleration(i), a,
-                    derivatives_of(model_.motion(place_.held).program, 2 * layout_.dof + i));
+                    derivatives_of(model_.motion(place_.mode).program, 2 * layout_.dof + i));
             }
         }
     }
@@ -172,7 +173,7 @@ Quantities::Quantities(std::shared_ptr<const Model> model, std::vector<std::stri
 std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivatives& derivatives) const {
     const auto K = static_cast<Index>(derivatives.refused.size());
     const Place end{{trajectory.end.q, trajectory.end.v, trajectory.end_time},
-                    trajectory.end_held,
+                    trajectory.end_mode,
                     trajectory.phases.back().carriers,
                     trajectory.work,
                     trajectory.loss,
@@ -185,7 +186,7 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
 std::vector<Quantity> Quantities::at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
                                      ContactSet carriers) const {
     const Event& now = trajectory.events[event];
-    Place place{{now.q, now.v_after, now.t}, now.held, carriers, now.work, now.loss, event + 1};
+    Place place{{now.q, now.v_after, now.t}, now.mode, carriers, now.work, now.loss, event + 1};
     place.time_slope = RowVectorXd::Constant(static_cast<Index>(derivatives.refused.size()), nothing);
     if (event < derivatives.events.size()) {
         const Derivatives::AtEvent& slopes = derivatives.events[event];

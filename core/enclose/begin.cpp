@@ -81,7 +81,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     if (!certainly_positive(hddot) && !certainly_negative(hddot) && model_->is_carried(contact, {}))
         unpressed_ = ContactSet::of(contact);
     if (certainly_negative(hddot) || unpressed_.contains(contact)) {
-        hold(ContactSet::of(contact));
+        enter(Mode::holding(ContactSet::of(contact)));
     } else if (certainly_positive(hddot)) {
         openings_[contact].known = KnownRoot::at_rest;
     } else {

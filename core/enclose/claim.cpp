@@ -83,7 +83,7 @@ void join(EnclosedState& a, const EnclosedState& b) {
 }
 
 bool is_same(const EnclosedEvent& a, const EnclosedEvent& b) {
-    return a.kind == b.kind && a.contact == b.contact && a.held == b.held && a.opened == b.opened;
+    return a.kind == b.kind && a.contact == b.contact && a.mode == b.mode && a.opened == b.opened;
 }
 
 void join(EnclosedEvent& a, const EnclosedEvent& b) {

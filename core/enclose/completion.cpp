@@ -36,17 +36,17 @@ struct Completion::Box {
     Trend trend;
 };
 
-Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held,
+Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, Mode mode,
                        ContactSet unpressed)
     : z_(coordinates), layout_(model.layout()), unpressed_(unpressed), u_(coordinates.u(contact)) {
-    const Bouncing& bouncing = model.bouncing(contact, held);
+    const Bouncing& bouncing = model.bouncing(contact, mode);
     hddot_ = {Range(with_parameters<Interval>(bouncing.hddot, layout_, z_.parameters),
                     with_parameters<Interval>(bouncing.shadow, layout_, z_.parameters), bouncing.variables),
               z_.dof};
     trend_ = {with_parameters<double>(bouncing.trend, layout_, z_.parameters), z_.dof};
     rates_ = {with_parameters<double>(bouncing.rates, layout_, z_.parameters), z_.dof};
     if (model.contacts() == 1) return;
-    neighbours_ = &model.neighbours(contact, held);
+    neighbours_ = &model.neighbours(contact, mode);
     neighbours_program_ = with_parameters<Interval>(neighbours_->program, layout_, z_.parameters);
     neighbours_variables_ = bouncing.variables;
 }

@@ -15,7 +15,7 @@ namespace achilles {
 class Completion {
  public:
     // Of a contact while others are held, of which `unpressed` need no force.
-    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, ContactSet held = {},
+    Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, Mode mode = {},
                ContactSet unpressed = {});
 
     // What is proved of the bouncing of all members from a collision on.

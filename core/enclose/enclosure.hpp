@@ -29,7 +29,8 @@ struct Claim {
 
 struct EnclosedEvent : EventBase {
     std::size_t contact = 0;
-    ContactSet held, opened;  // after it, and by it
+    Mode mode;          // after it
+    ContactSet opened;  // by it
     Interval t;
     Intervals q, v_before, v_after;  // v_after = v_before but at impacts
     // zeno: impacts of its contact before the proof's cut of the bouncing, and of parts the fewest of any part and the most.

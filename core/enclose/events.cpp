@@ -22,22 +22,21 @@ void Prover::note_event(Event::Kind kind, std::size_t contact, const Interval& t
                         const Intervals& v_after) {
     const Intervals q = positions(set_.hull());
     const int impacts = bounces_[contact];
-    result_.events.push_back({{kind}, contact, held_, {}, t, q, v_before, v_after, impacts, impacts});
+    result_.events.push_back({{kind}, contact, mode_, {}, t, q, v_before, v_after, impacts, impacts});
 }
 
-void Prover::retract(ContactSet onto) {
-    const ContactSet before = std::exchange(held_, onto);
-    for (std::size_t i = 0; i < z_.contacts; ++i)
-        if (onto.contains(i)) maps(i).retract(set_);
-    held_ = before;
+void Prover::retract(Mode onto) {
+    const Mode before = std::exchange(mode_, onto);
+    for (const std::size_t i : onto.held()) maps(i).retract(set_);
+    mode_ = before;
 }
 
 // The held contacts that an impact opens in every member: Moreau's law has one answer, which is proved to be this
 // (theory-gaps.md 2.1). Those that stay are pressed by what is passed on to them; that the others leave is seen after it.
 ContactSet Prover::opened_by(std::size_t contact) {
     ContactSet opened;
-    const ContactSet all = held_;
-    for (int round = 0; round < 2 && !held_.empty(); ++round) {
+    const Mode before = mode_;
+    for (int round = 0; round < 2 && !mode_.is_free(); ++round) {
         Doubleton tangential = set_;
         maps(contact).take_rate_out(tangential);
         ContactSet pulled;
@@ -50,9 +49,9 @@ ContactSet Prover::opened_by(std::size_t contact) {
         if (pulled.empty()) break;
         if (round > 0) throw Undecided{"cannot decide which held contacts an impact opens"};
         opened = pulled;
-        held_ = held_.without(opened);
+        mode_ = mode_.without(opened);
     }
-    held_ = all;
+    mode_ = before;
     return opened;
 }
 
@@ -74,7 +73,7 @@ void Prover::land(std::size_t contact, const Interval& time) {
     const Interval& e = restitutions_[contact];
     const ContactSet opened = opened_by(contact);
     if (!opened.empty()) {
-        hold(held_.without(opened));
+        enter(mode_.without(opened));
         for (std::size_t i = 0; i < z_.contacts; ++i)
             if (opened.contains(i)) openings_[i].known = KnownRoot::landed;
     }
@@ -118,12 +117,12 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
     maps(contact).take_rate_out(set_);
     set_.set(z_.h(contact), 0.0);
     set_.set(z_.u(contact), 0.0);
-    retract(held_.with(contact));
+    retract(mode_.with(contact, ContactState::held));
     const Interval hddot = maps(contact).normal(set_.hull()).hddot;
     const bool may_vanish = !certainly_negative(hddot) && !certainly_positive(hddot);
-    if (may_vanish && model_->is_carried(contact, held_)) unpressed_ = unpressed_.with(contact);
+    if (may_vanish && model_->is_carried(contact, mode_)) unpressed_ = unpressed_.with(contact);
     if (certainly_negative(hddot) || unpressed_.contains(contact)) {
-        hold(held_.with(contact));
+        enter(mode_.with(contact, ContactState::held));
         note_event(Event::Kind::zeno, contact, time, v_before, velocities(set_.hull()));
         return check_opened(opened);
     }
@@ -175,8 +174,8 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     if (!last && !(sharp && timely && proof->time.hi() < end)) return false;
 
     cover(Interval(time.lo(), (Interval(time.hi()) + Interval(proof->window)).hi()), proof->position, proof->velocity);
-    hold(held_.with(contact));
-    retract(held_);  // u is kept beside: the wait depends on it
+    enter(mode_.with(contact, ContactState::held));
+    retract(mode_);  // u is kept beside: the wait depends on it
     Interval passed(0.0);
     std::optional<Intervals> zeno;
     for (double left = proof->window; left > 0x1p-43 * proof->window;) {
@@ -193,7 +192,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
         step.advance(set_, step.length());
         passed += Interval(step.length());
         left = step.length() < left ? proof->window - mid(passed) : 0.0;
-        if (left > 0x1p-43 * proof->window) retract(held_);
+        if (left > 0x1p-43 * proof->window) retract(mode_);
     }
     if (!zeno) throw Undecided{"no enclosure of the Zeno point was found"};
     Intervals centre = set_.centre();
@@ -203,23 +202,23 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     }
     set_.map(centre, IntervalMatrix::identity(z_.size()));
     set_.set(u, 0.0);
-    retract(held_);
-    measure_others(held_);
+    retract(mode_);
+    measure_others(mode_.held());
     const Intervals v = velocities(*zeno);
     const int impacts = bounces_[contact];
     result_.events.push_back(
-        {{Event::Kind::zeno}, contact, held_, {}, proof->time, positions(*zeno), v, v, impacts, impacts});
+        {{Event::Kind::zeno}, contact, mode_, {}, proof->time, positions(*zeno), v, v, impacts, impacts});
     bounces_[contact] = 0;
     motion().forget();
     return true;
 }
 
 void Prover::release(std::size_t contact, const Interval& time) {
-    retract(held_);
+    retract(mode_);
     if (!certainly_positive(maps(contact).normal(set_.hull()).jerk))
         throw Undecided{"degenerate release: the rate of the contact force is not bounded away from zero over the set"};
     const Intervals v = velocities(set_.hull());
-    hold(held_.without(contact));
+    enter(mode_.without(contact));
     note_event(Event::Kind::release, contact, time, v, v);
     openings_[contact].known = KnownRoot::released;
     bounces_[contact] = 0;

@@ -11,16 +11,16 @@ namespace {
 template <class Number>
 class Programs {
  public:
-    Programs(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
+    Programs(const Model& model, const Coordinates& coordinates, std::size_t contact, Mode mode)
         : z_(coordinates),
           layout_(model.layout()),
           h_(coordinates.h(contact)),
           u_(coordinates.u(contact)),
-          terms_(Evaluator<Number>(model.programs_of(contact, held).contact_terms), coordinates.dof),
-          release_(Evaluator<Number>(model.programs_of(contact, held).release_terms), coordinates.dof),
+          terms_(Evaluator<Number>(model.programs_of(contact, mode).contact_terms), coordinates.dof),
+          release_(Evaluator<Number>(model.programs_of(contact, mode).release_terms), coordinates.dof),
           restitution_(model.restitution(contact)) {
         for (std::size_t i = 0; i < model.contacts(); ++i)
-            if (i != contact && !held.contains(i))
+            if (i != contact && !mode.is_held(i))
                 others_.push_back(
                     {coordinates.u(i), ContactTerms<Evaluator<Number>>(
                                            Evaluator<Number>(model.programs_of(i).contact_terms), coordinates.dof)});
@@ -128,11 +128,11 @@ class MapsOver : public Maps {
     using Gradient = Jet<Interval, N>;
 
  public:
-    MapsOver(const Model& model, const Coordinates& coordinates, std::size_t contact, ContactSet held)
+    MapsOver(const Model& model, const Coordinates& coordinates, std::size_t contact, Mode mode)
         : z_(coordinates),
           variables_(coordinates.of_maps()),
-          values_(model, coordinates, contact, held),
-          gradients_(model, coordinates, contact, held) {}
+          values_(model, coordinates, contact, mode),
+          gradients_(model, coordinates, contact, mode) {}
 
     void measure_gap(Doubleton& set) override {
         apply(set, [](auto& programs, auto& z) { programs.measure_gap(z); });
@@ -202,10 +202,9 @@ class MapsOver : public Maps {
 
 }  // namespace
 
-std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact,
-                                ContactSet held) {
+std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact, Mode mode) {
     return with_directions(coordinates.of_maps().size(), [&]<std::size_t N>() -> std::unique_ptr<Maps> {
-        return std::make_unique<MapsOver<N>>(model, coordinates, contact, held);
+        return std::make_unique<MapsOver<N>>(model, coordinates, contact, mode);
     });
 }
 

@@ -39,6 +39,6 @@ class Maps {
 
 // Of a contact while others are held: n leaves these held.
 std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact = 0,
-                                ContactSet held = {});
+                                Mode mode = {});
 
 }  // namespace achilles

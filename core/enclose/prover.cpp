@@ -128,31 +128,30 @@ void Prover::count_step() {
 }
 
 Stepper& Prover::motion() {
-    auto& known = motions_[held_];
-    if (!known) known = std::make_unique<Stepper>(*model_, z_, held_);
+    auto& known = motions_[mode_];
+    if (!known) known = std::make_unique<Stepper>(*model_, z_, mode_);
     return *known;
 }
 
 Maps& Prover::maps(std::size_t contact) {
-    const ContactSet others = held_.without(contact);
+    const Mode others = mode_.without(contact);
     auto& known = maps_[{others, contact}];
     if (!known) known = make_maps(*model_, z_, contact, others);
     return *known;
 }
 
 Completion& Prover::completion(std::size_t contact) {
-    auto& known = completions_[{unpressed_, {held_, contact}}];
-    if (!known) known = std::make_unique<Completion>(*model_, z_, contact, held_, unpressed_);
+    auto& known = completions_[{unpressed_, {mode_, contact}}];
+    if (!known) known = std::make_unique<Completion>(*model_, z_, contact, mode_, unpressed_);
     return *known;
 }
 
-void Prover::hold(ContactSet contacts) {
-    held_ = contacts;
+void Prover::enter(Mode mode) {
+    mode_ = mode;
     const ContactSet before = unpressed_;
     unpressed_ = {};
-    for (std::size_t i = 0; i < z_.contacts; ++i)
-        if (before.contains(i) && held_.contains(i) && model_->is_carried(i, held_.without(i)))
-            unpressed_ = unpressed_.with(i);
+    for (const std::size_t i : before)
+        if (mode_.is_held(i) && model_->is_carried(i, mode_.without(i))) unpressed_ = unpressed_.with(i);
     motion().forget();
 }
 
@@ -160,12 +159,27 @@ void Prover::hold(ContactSet contacts) {
 double Prover::longest_step() {
     double most = longest();
     for (std::size_t i = 0; i < z_.contacts; ++i) {
-        if (held_.contains(i) || openings_[i].known != KnownRoot::landed) continue;
+        if (mode_.is_held(i) || openings_[i].known != KnownRoot::landed) continue;
         const double a = -mid(maps(i).normal(set_.hull()).hddot), u = set_.hull(z_.u(i)).hi();
         if (a > 0.0) most = std::min(most, 1.5 * 2.0 * u / a);
     }
     return most;
 }
+
+namespace {
+
+const char* doubt_of(Transition transition) {
+    switch (transition) {
+        case Transition::impact:
+            return "cannot decide whether an impact occurs: the gap is not bounded away from zero over the set";
+        case Transition::release:
+            return "cannot decide whether a contact is released: the contact force is not bounded away from zero over "
+                   "the set";
+    }
+    return "";
+}
+
+}  // namespace
 
 // The one event that comes before all others in every member, if there is any.
 Prover::Next Prover::next_in(const Step& step) const {
@@ -181,12 +195,7 @@ Prover::Next Prover::next_in(const Step& step) const {
             next.contact = i;
             next.elapsed = root.at;
         }
-        if (root.kind == FirstRoot::Kind::doubt)
-            next.doubt =
-                held_.contains(i)
-                    ? "cannot decide whether a contact is released: the contact force is not bounded away from zero "
-                      "over the set"
-                    : "cannot decide whether an impact occurs: the gap is not bounded away from zero over the set";
+        if (root.kind == FirstRoot::Kind::doubt) next.doubt = doubt_of(law_of(mode_.state(i)).transition);
     }
     for (std::size_t i = 0; i < z_.contacts && next.contact; ++i) {
         if (i == *next.contact || roots[i].kind == FirstRoot::Kind::none || roots[i].at.lo() > next.elapsed.hi())
@@ -200,9 +209,32 @@ Prover::Next Prover::next_in(const Step& step) const {
 // What is known of the open gaps after a step that ends without an event of theirs.
 void Prover::pass(const Step& step, const Interval& elapsed) {
     for (std::size_t i = 0; i < z_.contacts; ++i) {
-        if (held_.contains(i)) continue;
+        if (mode_.is_held(i)) continue;
         const Interval factor = integer_power(elapsed, static_cast<int>(openings_[i].known));
         openings_[i] = {KnownRoot::none, value_over(step.watched(i), elapsed) * factor};
+    }
+}
+
+// Where what is watched of a contact vanishes.
+Section Prover::section_of(std::size_t contact, WatchedFunction watched) {
+    switch (watched) {
+        case WatchedFunction::gap:
+            break;
+        case WatchedFunction::normal_force:
+            return {[this, contact](const Intervals& box) { return maps(contact).normal(box).hddot; },
+                    [this, contact](const Intervals& box) { return maps(contact).normal(box).slope; },
+                    {},
+                    true};
+    }
+    return Section::of_gap(z_, contact);
+}
+
+void Prover::happen(Transition transition, std::size_t contact, const Interval& time) {
+    switch (transition) {
+        case Transition::impact:
+            return land(contact, time);
+        case Transition::release:
+            return release(contact, time);
     }
 }
 
@@ -214,14 +246,8 @@ void Prover::move() {
         const std::size_t contact = *next.contact;
         Doubleton there = set_;
         Interval elapsed = next.elapsed;
-        const bool is_held = held_.contains(contact);
-        Section section = Section::of_gap(z_, contact);
-        if (is_held)
-            section = {[&](const Intervals& box) { return maps(contact).normal(box).hddot; },
-                       [&](const Intervals& box) { return maps(contact).normal(box).slope; },
-                       {},
-                       true};
-        cross(there, step, section, elapsed);
+        const ContactLaw& law = law_of(mode_.state(contact));
+        cross(there, step, section_of(contact, law.watched), elapsed);
         cover(step, elapsed);
         if (is_over()) return;
         pass(step, elapsed);
@@ -230,10 +256,7 @@ void Prover::move() {
         doubts_ = 0;
         last_ = contact;
         motion().forget();
-        if (is_held)
-            release(contact, set_.hull(Coordinates::t()));
-        else
-            land(contact, set_.hull(Coordinates::t()));
+        happen(law.transition, contact, set_.hull(Coordinates::t()));
         settle();
         return;
     }
@@ -248,8 +271,8 @@ void Prover::move() {
     if (is_over()) return;
     pass(step, Interval(length));
     step.advance(set_, length);
-    retract(held_);
-    if (held_.empty()) project(last_);
+    retract(mode_);
+    if (mode_.is_free()) project(last_);
     settle();
 }
 

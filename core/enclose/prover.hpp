@@ -44,20 +44,22 @@ class Prover {
     Next next_in(const Step& step) const;
     void pass(const Step& step, const Interval& elapsed);
     void project(std::size_t contact);
-    void retract(ContactSet onto);
+    void retract(Mode onto);
     ContactSet opened_by(std::size_t contact);
     void check_opened(ContactSet opened);
+    Section section_of(std::size_t contact, WatchedFunction watched);
+    void happen(Transition transition, std::size_t contact, const Interval& time);
     void land(std::size_t contact, const Interval& time);
     void capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened);
     bool complete(std::size_t contact, const Interval& time, const Interval& e, double radius);
     Intervals zeno_box(std::size_t contact, const Step& step, const Interval& tau,
                        const Completion::Proof& proof) const;
     void release(std::size_t contact, const Interval& time);
-    void hold(ContactSet contacts);
+    void enter(Mode mode);
     void note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
                     const Intervals& v_after);
 
-    // Of the contacts that are held, and of one while the others are.
+    // Of the mode, and of a contact in the mode in which it is open.
     Stepper& motion();
     Maps& maps(std::size_t contact);
     Completion& completion(std::size_t contact);
@@ -77,13 +79,13 @@ class Prover {
     Claim claim_;
     Coordinates z_;
     ProofWatch* watch_;
-    using OfContact = std::pair<ContactSet, std::size_t>;
     Intervals restitutions_;  // of each contact, over the claim
-    std::map<ContactSet, std::unique_ptr<Stepper>> motions_;
-    std::map<OfContact, std::unique_ptr<Maps>> maps_;
-    std::map<std::pair<ContactSet, OfContact>, std::unique_ptr<Completion>> completions_;  // by the unpressed ones
+    std::map<Mode, std::unique_ptr<Stepper>> motions_;
+    std::map<ContactInMode, std::unique_ptr<Maps>> maps_;
+    std::map<std::pair<ContactSet, ContactInMode>, std::unique_ptr<Completion>> completions_;  // by the unpressed ones
     Doubleton set_;
-    ContactSet held_, unpressed_;    // of the held ones, those that need no force (theory-gaps.md 2.7)
+    Mode mode_;
+    ContactSet unpressed_;           // of the held ones, those that need no force (theory-gaps.md 2.7)
     std::vector<Opening> openings_;  // by contact
     std::size_t last_ = 0;           // contact of which there was an event
     int doubts_ = 0;                 // steps in a row that ended before what is not decided

@@ -78,13 +78,13 @@ void Step::advance(Doubleton& set, double tau) const {
     set.map(centre, slope_at(at));
 }
 
-Stepper::Stepper(const Model& model, const Coordinates& coordinates, ContactSet held)
+Stepper::Stepper(const Model& model, const Coordinates& coordinates, Mode mode)
     : coordinates_(coordinates),
-      held_(held),
+      mode_(mode),
       variables_(coordinates.of_motion()),
-      at_centre_(make_expansion(model.hddot_series(held), coordinates, Expanded::at_a_point)),
-      over_hull_(make_expansion(model.hddot_series(held), coordinates, Expanded::with_derivatives)),
-      over_box_(make_expansion(model.hddot_series(held), coordinates, Expanded::over_a_box)) {}
+      at_centre_(make_expansion(model.hddot_series(mode), coordinates, Expanded::at_a_point)),
+      over_hull_(make_expansion(model.hddot_series(mode), coordinates, Expanded::with_derivatives)),
+      over_box_(make_expansion(model.hddot_series(mode), coordinates, Expanded::over_a_box)) {}
 
 // The size of each coordinate along a step: errors are measured by it. Of h and u that of the flight, since after an impact
 // they are as exact as they are small.
@@ -169,7 +169,7 @@ bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
         step.remainder_.assign(coordinates_.size(), Interval(0.0));
         for (std::size_t i = 0; i < 2 * n; ++i) step.remainder_[coordinates_.q(i)] = over_box_->value(K + 1, i);
         for (std::size_t i = 0; i < coordinates_.contacts; ++i) {
-            if (!is_open(i)) continue;
+            if (keeps_gap(i)) continue;
             step.remainder_[coordinates_.h(i)] = over_box_->value(K - 1, event(i)) / Interval(K * (K + 1));
             step.remainder_[coordinates_.u(i)] = over_box_->value(K, event(i)) / Interval(K + 1);
         }
@@ -203,7 +203,7 @@ void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Openi
     for (int k = 1; k <= K; ++k)
         for (std::size_t i = 0; i < 2 * n; ++i) copy(k, z.q(i), k, i, Interval(1.0));
     for (std::size_t i = 0; i < z.contacts; ++i) {
-        if (!is_open(i)) continue;
+        if (keeps_gap(i)) continue;
         const std::size_t h = z.h(i), u = z.u(i);
         fill(1, h, Interval(set.centre(u)), set.hull(u));
         step.slopes_[1](h, u) = Interval(1.0);
@@ -212,6 +212,16 @@ void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Openi
             if (k + 2 <= K) copy(k + 2, h, k, event(i), Interval(1.0) / Interval((k + 1) * (k + 2)));
         }
     }
+}
+
+Intervals Stepper::watch(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const {
+    switch (law_of(mode_.state(contact)).watched) {
+        case WatchedFunction::gap:
+            return watch_gap(step, set, contact, opening);
+        case WatchedFunction::normal_force:
+            return watch_force(set, contact);
+    }
+    return {};
 }
 
 Intervals Stepper::watch_force(const Doubleton& set, std::size_t contact) const {
@@ -247,7 +257,7 @@ Step Stepper::make(const Doubleton& set, double longest, const std::vector<Openi
     double length = first_length(set, hull, longest);
     if (last_ > 0.0) length = std::min(length, 1.3 * last_);
     const double least = 0x1p-50 * std::max(mag(hull[Coordinates::t()]), 0x1p-20 * longest);
-    const double fine = held_.empty() ? 2e-17 : 1e-15;
+    const double fine = mode_.is_free() ? 2e-17 : 1e-15;
     Step step;
     tabulate(step, set, openings);
     for (int round = 0; round < 60 && length > least; ++round) {
@@ -265,7 +275,7 @@ Step Stepper::make(const Doubleton& set, double longest, const std::vector<Openi
         if (!(excess > 1.0)) {
             last_ = length;
             for (std::size_t i = 0; i < coordinates_.contacts; ++i)
-                step.watched_.push_back(is_open(i) ? watch_gap(step, set, i, openings[i]) : watch_force(set, i));
+                step.watched_.push_back(watch(step, set, i, openings[i]));
             return step;
         }
         length *= std::clamp(std::pow(excess, -0.7 / (K + 1)), 0.5, 0.95);

@@ -2,6 +2,7 @@
 //     z(tau) = T(tau, c) + S(tau) (z - c) + rho,    S in the derivatives of T over the hull,  rho in R tau^(K+1)
 #pragma once
 
+#include "contacts/contact_law.hpp"
 #include "enclose/expansion.hpp"
 #include "model/model.hpp"
 
@@ -30,8 +31,9 @@ class Step {
     Intervals box_over(const Doubleton& set, const Interval& tau) const;
     // The members after exactly this time.
     void advance(Doubleton& set, double tau) const;
-    // What of a contact must stay positive until its next event, over all members, the last coefficient the remainder's: its
-    // gap with the known root divided out, or, where it is held, -hddot of the motion that holds the others.
+    // What the law of a contact watches: it must stay positive until the next event, over all members, the last
+    // coefficient the remainder's. The gap with the known root divided out, or, for the force, -hddot of the mode in
+    // which it is open.
     const Intervals& watched(std::size_t contact) const { return watched_[contact]; }
 
  private:
@@ -54,8 +56,8 @@ class Stepper {
  public:
     static constexpr int order = 20;  // K
 
-    // Of the motion that holds these contacts.
-    Stepper(const Model& model, const Coordinates& coordinates, ContactSet held);
+    // Of the motion in this mode.
+    Stepper(const Model& model, const Coordinates& coordinates, Mode mode);
 
     // A step that is at most so long; `openings` by contact. Throws Undecided where no a-priori box is found.
     Step make(const Doubleton& set, double longest, const std::vector<Opening>& openings);
@@ -64,16 +66,17 @@ class Stepper {
 
  private:
     void tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings);
+    Intervals watch(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const;
     Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const;
     Intervals watch_force(const Doubleton& set, std::size_t contact) const;
-    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
+    bool keeps_gap(std::size_t contact) const { return law_of(mode_.state(contact)).kept == Constraint::gap; }
     std::size_t event(std::size_t contact) const { return 2 * coordinates_.dof + contact; }  // the row of its hddot
     bool enclose(Step& step, const Intervals& hull, double length);
     double first_length(const Doubleton& set, const Intervals& hull, double longest) const;
     std::vector<double> scales(const Intervals& hull, double length) const;
 
     Coordinates coordinates_;
-    ContactSet held_;
+    Mode mode_;
     std::vector<std::size_t> variables_;
     std::unique_ptr<Expansion> at_centre_, over_hull_, over_box_;
     double last_ = 0.0;  // s

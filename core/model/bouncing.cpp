@@ -58,9 +58,9 @@ Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equat
             Program(joined({slope_of_hddot, shadow}), slots)};
 }
 
-Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSet held, const Expressions& velocity,
-                             HeldMotions& motions, const Layout& layout) {
-    const std::vector<ContactEquations>& contacts = motions.of(held).contacts;
+Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, Mode mode, const Expressions& velocity,
+                             ContactModes& motions, const Layout& layout) {
+    const std::vector<ContactEquations>& contacts = motions.of(mode).contacts;
     std::vector<std::uint32_t> v;
     for (std::size_t i = 0; i < layout.dof; ++i) v.push_back(layout.v(i));
     Neighbours result;
@@ -68,7 +68,7 @@ Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSe
     Row outputs, gaps;
     for (const std::size_t k : bouncing) outputs.push_back(contacts[k].W);
     for (std::size_t j = 0; j < contacts.size(); ++j) {
-        if (held.contains(j)) {
+        if (mode.is_held(j)) {
             result.held.push_back(j);
             outputs.push_back(substitute(contacts[j].hddot, v, velocity));
             outputs.push_back(contacts[j].W);
@@ -82,12 +82,12 @@ Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSe
     return result;
 }
 
-Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout) {
-    const Row& n = motions.of(held).contacts.at(contact).direction;
+Neighbours derive_neighbours(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout) {
+    const Row& n = motions.of(mode).contacts.at(contact).direction;
     Row velocity;
     for (std::size_t i = 0; i < layout.dof; ++i)
         velocity.push_back(motions.graph().symbol(layout.v(i)) + n[i] * motions.graph().symbol(layout.sigma()));
-    return derive_neighbours({contact}, held, velocity, motions, layout);
+    return derive_neighbours({contact}, mode, velocity, motions, layout);
 }
 
 }  // namespace achilles

@@ -96,9 +96,9 @@ struct Neighbours {
     std::vector<std::size_t> bouncing, held, open;
     Program program;
 };
-Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, ContactSet held, const Expressions& velocity,
-                             HeldMotions& motions, const Layout& layout);
-Neighbours derive_neighbours(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout);
+Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, Mode mode, const Expressions& velocity,
+                             ContactModes& motions, const Layout& layout);
+Neighbours derive_neighbours(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
 
 // Derives and compiles the programs of a contact, in a copy of its graph.
 Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "contacts/contact_law.hpp"
 #include "model/rate_polynomial.hpp"
 
 namespace achilles {
@@ -185,9 +186,9 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout) {
            dot(gradient(contact.hddot, v), contact.f_c, graph) + derivative(contact.hddot, layout.t());
 }
 
-HeldMotions::HeldMotions(const Equations& equations, const Layout& layout)
+ContactModes::ContactModes(const Equations& equations, const Layout& layout)
     : graph_(equations.energy.graph()), layout_(layout) {
-    HeldEquations& free = known_[{}] = equations.free;
+    ModeEquations& free = known_[{}] = equations.free;
     const auto adopt = [&](Expression& x) { x = graph_.adopt(x); };
     const auto adopt_all = [&](Row& row) { std::for_each(row.begin(), row.end(), adopt); };
     adopt_all(free.f);
@@ -198,26 +199,26 @@ HeldMotions::HeldMotions(const Equations& equations, const Layout& layout)
     }
 }
 
-const HeldEquations& HeldMotions::of(ContactSet held) {
-    const auto known = known_.find(held);
-    return known != known_.end() ? known->second : known_.emplace(held, derive(held)).first->second;
+const ModeEquations& ContactModes::of(Mode mode) {
+    const auto known = known_.find(mode);
+    return known != known_.end() ? known->second : known_.emplace(mode, derive(mode)).first->second;
 }
 
-// With the last of the held contacts one more than a motion that is known, or will be.
-HeldEquations HeldMotions::derive(ContactSet held) {
+// With the last of the contacts that keep their gap one more than a motion that is known, or will be.
+ModeEquations ContactModes::derive(Mode mode) {
+    const ContactSet kept = contacts_keeping(mode, Constraint::gap);
     std::size_t k = 0;
-    for (std::size_t i = 0; i < known_.at({}).contacts.size(); ++i)
-        if (held.contains(i)) k = i;
-    const HeldEquations& before = of(held.without(k));
+    for (const std::size_t i : kept) k = i;
+    const ModeEquations& before = of(mode.without(k));
     const ContactEquations& last = before.contacts.at(k);
     if (last.delassus[k].is_zero())
         throw std::domain_error("contacts with linearly dependent gradients cannot all be held");
-    HeldEquations result{held, last.f_c, before.contacts};
+    ModeEquations result{mode, last.f_c, before.contacts};
     const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
         ContactEquations& c = result.contacts[i];
-        if (held.contains(i)) {
-            c = of(held.without(i)).contacts[i];
+        if (kept.contains(i)) {
+            c = of(mode.without(i)).contacts[i];
             continue;
         }
         const Expression part = c.delassus[k] / last.W;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "program/program.hpp"
-#include "run/contact_set.hpp"
+#include "run/mode.hpp"
 
 namespace achilles {
 
@@ -46,10 +46,10 @@ struct ContactEquations {
     std::vector<Expression> f_by_force;  // the same as f + impulse lambda
 };
 
-// A motion: which contacts are held, and what their forces make of the acceleration f. The contacts that are held are
-// seen from the motion that holds the others.
-struct HeldEquations {
-    ContactSet held;
+// The motion in one mode: the acceleration f with the forces of its contacts. A held contact is seen from the mode in
+// which it is open and all others are as they are.
+struct ModeEquations {
+    Mode mode;
     std::vector<Expression> f;
     std::vector<ContactEquations> contacts;
 };
@@ -59,7 +59,7 @@ struct Equations {
     std::vector<Expression> M, bias, Q;
     Expression kinetic, potential, energy;
     std::vector<Expression> gaps, restitutions;  // of each contact
-    HeldEquations free;                          // the motion that holds none
+    ModeEquations free;                          // the motion that holds none
     Expression power;                // dE/dt = v'Q + dV/dt of the free motion; less lambda dh/dt of what is held
     std::vector<Expression> pivots;  // D of M = L D L': all positive exactly where M is positive definite
     bool autonomous = true;          // nothing depends on the time
@@ -76,21 +76,21 @@ struct Equations {
 // 0 everywhere (M is not positive definite, or dh = 0), TooLarge where the graph would be.
 void derive(Equations& equations, const Layout& layout, Graph& graph);
 
-// The motions that hold contacts, derived from one another when they are asked for: with one contact k more,
+// The motions of all modes, derived from one another when they are asked for. With one contact k more that keeps its gap
 //     f' = f - n_k hddot_k,   impulse_i' = impulse_i - impulse_k W_ik/W_k
 //     W_ij' = W_ij - W_ik W_jk/W_k,   hddot_i' = hddot_i - W_ik hddot_k/W_k
-class HeldMotions {
+class ContactModes {
  public:
     // In a copy of the equations' graph.
-    HeldMotions(const Equations& equations, const Layout& layout);
-    const HeldEquations& of(ContactSet held);
+    ContactModes(const Equations& equations, const Layout& layout);
+    const ModeEquations& of(Mode mode);
     Graph& graph() { return graph_; }
 
  private:
-    HeldEquations derive(ContactSet held);
+    ModeEquations derive(Mode mode);
     Graph graph_;
     Layout layout_;
-    std::map<ContactSet, HeldEquations> known_;
+    std::map<Mode, ModeEquations> known_;
 };
 
 // h''' of a contact along the motion that holds it and others: hddot_q v + hddot_v f_c + hddot_t.

@@ -4,6 +4,7 @@
 
 #include <stdexcept>
 
+#include "contacts/contact_law.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
 #include "model/unpressed.hpp"
@@ -80,7 +81,7 @@ void Model::compile() {
     const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
     for (const Expression e_of : e.restitutions) restitutions_.push_back(program(e_of));
     for (std::size_t i = 0; i < contacts(); ++i)
-        free_.push_back(&programs_.emplace(WhileHeld({}, i), compile_contact(e.free, i)).first->second);
+        free_.push_back(&programs_.emplace(ContactInMode({}, i), compile_contact(e.free, i)).first->second);
     energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
     start_ = ProgramOf<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
@@ -89,7 +90,7 @@ void Model::compile() {
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), 0, distances.size());
 }
 
-Model::ContactPrograms Model::compile_contact(const HeldEquations& motion, std::size_t contact) const {
+Model::ContactPrograms Model::compile_contact(const ModeEquations& motion, std::size_t contact) const {
     const ContactEquations& c = motion.contacts.at(contact);
     const Slots slots = layout_.slots();
     const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
@@ -101,15 +102,15 @@ Model::ContactPrograms Model::compile_contact(const HeldEquations& motion, std::
             ProgramOf<Definition7Terms>::of(slots, c.hddot, c.direction, motion.f)};
 }
 
-HeldMotions& Model::held_motions() const {
-    if (!held_) held_ = std::make_unique<HeldMotions>(equations_, layout_);
-    return *held_;
+ContactModes& Model::contact_modes() const {
+    if (!modes_) modes_ = std::make_unique<ContactModes>(equations_, layout_);
+    return *modes_;
 }
 
 // An entry that stays where it is from the first question on. A model is shared between threads.
 template <class Map, class Make>
 const auto& Model::derived(Map& map, const typename Map::key_type& key, const Make& make) const {
-    const std::scoped_lock lock(held_mutex_);
+    const std::scoped_lock lock(modes_mutex_);
     const auto known = map.find(key);
     if (known != map.end()) return known->second;
     const Ground ground;
@@ -122,51 +123,51 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
     }
 }
 
-const Motion& Model::motion(ContactSet held) const {
-    return derived(motions_, held, [&] { return make_motion(held_motions().of(held), equations_, layout_); });
+const Motion& Model::motion(Mode mode) const {
+    return derived(motions_, mode, [&] { return make_motion(contact_modes().of(mode), equations_, layout_); });
 }
 
-const SeriesProgram& Model::hddot_series(ContactSet held) const {
-    return derived(hddot_series_, held,
-                   [&] { return make_hddot_series(held_motions().of(held), equations_, layout_); });
+const SeriesProgram& Model::hddot_series(Mode mode) const {
+    return derived(hddot_series_, mode,
+                   [&] { return make_hddot_series(contact_modes().of(mode), equations_, layout_); });
 }
 
-const Model::ContactPrograms& Model::programs_of(std::size_t contact, ContactSet held) const {
-    if (held.empty()) return *free_[contact];
-    return derived(programs_, {held, contact}, [&] { return compile_contact(held_motions().of(held), contact); });
+const Model::ContactPrograms& Model::programs_of(std::size_t contact, Mode mode) const {
+    if (mode.is_free()) return *free_[contact];
+    return derived(programs_, {mode, contact}, [&] { return compile_contact(contact_modes().of(mode), contact); });
 }
 
-const Program& Model::power(ContactSet held) const {
-    return derived(powers_, held, [&] {
-        const HeldEquations& motion = held_motions().of(held);
-        Expression power = held_motions().graph().adopt(equations_.power);
-        for (std::size_t i = 0; i < contacts(); ++i)
-            if (held.contains(i)) power = power - motion.contacts[i].lambda * motion.contacts[i].gap_t;
+const Program& Model::power(Mode mode) const {
+    return derived(powers_, mode, [&] {
+        const ModeEquations& motion = contact_modes().of(mode);
+        Expression power = contact_modes().graph().adopt(equations_.power);
+        for (const std::size_t i : contacts_keeping(mode, Constraint::gap))
+            power = power - motion.contacts[i].lambda * motion.contacts[i].gap_t;
         return Program(std::span(&power, 1), layout_.slots());
     });
 }
 
-bool Model::is_carried(std::size_t contact, ContactSet held) const {
-    return derived(carried_, {held, contact}, [&] { return needs_no_force(contact, held, held_motions(), layout_); });
+bool Model::is_carried(std::size_t contact, Mode mode) const {
+    return derived(carried_, {mode, contact}, [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });
 }
 
-const Bouncing& Model::bouncing(std::size_t contact, ContactSet held) const {
-    return derived(bouncings_, {held, contact},
-                   [&] { return derive_bouncing(held_motions().of(held).contacts.at(contact), equations_, layout_); });
+const Bouncing& Model::bouncing(std::size_t contact, Mode mode) const {
+    return derived(bouncings_, {mode, contact},
+                   [&] { return derive_bouncing(contact_modes().of(mode).contacts.at(contact), equations_, layout_); });
 }
 
-const Neighbours& Model::neighbours(std::size_t contact, ContactSet held) const {
-    return derived(neighbours_, {held, contact},
-                   [&] { return derive_neighbours(contact, held, held_motions(), layout_); });
+const Neighbours& Model::neighbours(std::size_t contact, Mode mode) const {
+    return derived(neighbours_, {mode, contact},
+                   [&] { return derive_neighbours(contact, mode, contact_modes(), layout_); });
 }
 
-const PairPrograms& Model::pair(std::size_t first, std::size_t second, ContactSet held) const {
-    return derived(pairs_, {held, ContactSet::of(first).with(second)},
-                   [&] { return derive_pair(first, second, held, held_motions(), equations_, layout_); });
+const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode mode) const {
+    return derived(pairs_, {mode, ContactSet::of(first).with(second)},
+                   [&] { return derive_pair(first, second, mode, contact_modes(), equations_, layout_); });
 }
 
 LanePrograms Model::lane_programs() const {
-    return {layout_.dof, motion({}).series, motion(ContactSet::of(0)).series, contact_terms()};
+    return {layout_.dof, motion({}).series, motion(Mode::holding(ContactSet::of(0))).series, contact_terms()};
 }
 
 Program Model::compile_view(std::span<const Text> texts) const {

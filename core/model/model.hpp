@@ -46,13 +46,13 @@ class Model {
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
-    // The motion that holds these contacts, compiled when it is first asked for. Lives as long as the model.
-    const Motion& motion(ContactSet held) const;
+    // The motion in a mode, compiled when it is first asked for. Lives as long as the model.
+    const Motion& motion(Mode mode) const;
     LanePrograms lane_programs() const;
     // The same motion with hddot of every contact as event functions, for proofs (make_hddot_series).
-    const SeriesProgram& hddot_series(ContactSet held) const;
+    const SeriesProgram& hddot_series(Mode mode) const;
 
-    // What is asked of one contact while others are held, compiled when it is first asked for.
+    // What is asked of one contact in a mode in which it is open, compiled when it is first asked for.
     struct ContactPrograms {
         Program gap;                  // h
         Program normal_acceleration;  // hddot
@@ -61,10 +61,10 @@ class Model {
         ProgramOf<ReleaseTerms> release_terms;
         ProgramOf<Definition7Terms> definition7_terms;
     };
-    const ContactPrograms& programs_of(std::size_t contact, ContactSet held = {}) const;
-    // Whether hddot of a contact, along the motion that holds these, is proved to be 0 wherever h = hdot = 0 of it and of those,
-    // whatever the parameters: its gap stays 0 with theirs, and nothing presses it (theory-gaps.md 2.7).
-    bool is_carried(std::size_t contact, ContactSet held) const;
+    const ContactPrograms& programs_of(std::size_t contact, Mode mode = {}) const;
+    // Whether hddot of a contact, along the motion in a mode, is proved to be 0 wherever h = hdot = 0 of it and of what
+    // is held, whatever the parameters: its gap stays 0 with theirs, and nothing presses it (theory-gaps.md 2.7).
+    bool is_carried(std::size_t contact, Mode mode) const;
 
     // Programs, compiled once.
     const Program& gap(std::size_t contact = 0) const { return programs_of(contact).gap; }
@@ -82,19 +82,19 @@ class Model {
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
     const ProgramOf<EnergyTerms>& energy() const { return energy_; }
-    // dE/dt along the motion that holds these contacts: v'Q + dV/dt, less lambda dh/dt of each that is held.
-    const Program& power(ContactSet held) const;
+    // dE/dt along the motion in a mode: v'Q + dV/dt, less lambda dh/dt of each that is held.
+    const Program& power(Mode mode) const;
 
     // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
     const std::vector<Edge>& edges() const { return edges_; }
     const SeriesProgram& edge_series() const { return edge_series_; }
 
-    // The programs of the truncation conditions of a contact while others are held, derived when they are first asked
-    // for. Throws InputError if they are too large.
-    const Bouncing& bouncing(std::size_t contact = 0, ContactSet held = {}) const;
-    const Neighbours& neighbours(std::size_t contact, ContactSet held) const;
+    // The programs of the truncation conditions of a contact in a mode in which it is open, derived when they are first
+    // asked for. Throws InputError if they are too large.
+    const Bouncing& bouncing(std::size_t contact = 0, Mode mode = {}) const;
+    const Neighbours& neighbours(std::size_t contact, Mode mode) const;
     // Of two contacts that bounce together while others are held; first < second.
-    const PairPrograms& pair(std::size_t first, std::size_t second, ContactSet held) const;
+    const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
     // An evaluator of one of the programs above with the parameters' values in place.
     template <class Scalar = double>
@@ -116,13 +116,13 @@ class Model {
         if (!evaluator) evaluator = this->evaluator<Scalar>(program, parameters);
         return *evaluator;
     }
-    using MotionEvaluators = std::map<ContactSet, MotionTerms<Evaluator<double>>>;
-    MotionTerms<Evaluator<double>>& lazily(MotionEvaluators& evaluators, ContactSet held,
+    using MotionEvaluators = std::map<Mode, MotionTerms<Evaluator<double>>>;
+    MotionTerms<Evaluator<double>>& lazily(MotionEvaluators& evaluators, Mode mode,
                                            std::span<const double> parameters) const {
-        const auto known = evaluators.find(held);
+        const auto known = evaluators.find(mode);
         if (known != evaluators.end()) return known->second;
-        const Program& program = motion(held).program;
-        return evaluators.try_emplace(held, evaluator(program, parameters), layout_.dof, contacts()).first->second;
+        const Program& program = motion(mode).program;
+        return evaluators.try_emplace(mode, evaluator(program, parameters), layout_.dof, contacts()).first->second;
     }
 
     // The run that the description asks for.
@@ -150,8 +150,8 @@ class Model {
  private:
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
     void compile();
-    ContactPrograms compile_contact(const HeldEquations& motion, std::size_t contact) const;
-    HeldMotions& held_motions() const;
+    ContactPrograms compile_contact(const ModeEquations& motion, std::size_t contact) const;
+    ContactModes& contact_modes() const;
     template <class Map, class Make>
     const auto& derived(Map& map, const typename Map::key_type& key, const Make& make) const;
     // Throw Mistake.
@@ -165,17 +165,16 @@ class Model {
     std::unique_ptr<Graph> graph_;
     Equations equations_;
     std::vector<std::string> slot_names_;
-    using WhileHeld = std::pair<ContactSet, std::size_t>;  // a contact, while others are held
-    mutable std::mutex held_mutex_;                        // of what is derived when it is asked for
-    mutable std::unique_ptr<HeldMotions> held_;
-    mutable std::map<ContactSet, Motion> motions_;
-    mutable std::map<ContactSet, SeriesProgram> hddot_series_;
-    mutable std::map<ContactSet, Program> powers_;
-    mutable std::map<WhileHeld, ContactPrograms> programs_;
-    mutable std::map<WhileHeld, Bouncing> bouncings_;
-    mutable std::map<WhileHeld, Neighbours> neighbours_;
-    mutable std::map<WhileHeld, bool> carried_;
-    mutable std::map<std::pair<ContactSet, ContactSet>, PairPrograms> pairs_;
+    mutable std::mutex modes_mutex_;  // of what is derived when it is asked for
+    mutable std::unique_ptr<ContactModes> modes_;
+    mutable std::map<Mode, Motion> motions_;
+    mutable std::map<Mode, SeriesProgram> hddot_series_;
+    mutable std::map<Mode, Program> powers_;
+    mutable std::map<ContactInMode, ContactPrograms> programs_;
+    mutable std::map<ContactInMode, Bouncing> bouncings_;
+    mutable std::map<ContactInMode, Neighbours> neighbours_;
+    mutable std::map<ContactInMode, bool> carried_;
+    mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // of programs_, those of contacts while none is held
     std::vector<Program> restitutions_;
     SeriesProgram edge_series_;

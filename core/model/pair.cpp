@@ -6,10 +6,10 @@
 
 namespace achilles {
 
-PairPrograms derive_pair(std::size_t first, std::size_t second, ContactSet held, HeldMotions& motions,
+PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
                          const Equations& equations, const Layout& layout) {
-    const HeldEquations& both = motions.of(held.with(first).with(second));
-    const HeldEquations& open = motions.of(held);
+    const ModeEquations& both = motions.of(mode.with(ContactSet::of(first).with(second), ContactState::held));
+    const ModeEquations& open = motions.of(mode);
     Graph& graph = motions.graph();
     const std::size_t n = layout.dof;
     const std::array<std::size_t, 2> pair{first, second};
@@ -58,7 +58,7 @@ PairPrograms derive_pair(std::size_t first, std::size_t second, ContactSet held,
         ProgramOf<PairTerms>::of(layout.slots(), Row{hddot(0), hddot(1)}, delassus, A, joined({N[0], N[1]}),
                                  joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
                                  joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
-    result.others = derive_neighbours({first, second}, held, velocity, motions, layout);
+    result.others = derive_neighbours({first, second}, mode, velocity, motions, layout);
     return result;
 }
 

@@ -40,7 +40,7 @@ struct PairPrograms {
 };
 
 // Two contacts while others are held. Throws std::domain_error where the two cannot be held at once with these.
-PairPrograms derive_pair(std::size_t first, std::size_t second, ContactSet held, HeldMotions& motions,
+PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
                          const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

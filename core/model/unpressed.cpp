@@ -28,7 +28,7 @@ Expression number_of(double value, Graph& graph) {
 // Expressions at states with h = hdot = 0 of some contacts.
 class ClosedStates {
  public:
-    ClosedStates(ContactSet closed, HeldMotions& motions, const Layout& layout, const KnownValues& known)
+    ClosedStates(ContactSet closed, ContactModes& motions, const Layout& layout, const KnownValues& known)
         : closed_(closed), motions_(motions), layout_(layout), known_(known) {
         for (const double value : known.values) values_.push_back(number_of(value, motions.graph()));
         const std::vector<ContactEquations>& free = motions.of({}).contacts;
@@ -58,13 +58,13 @@ class ClosedStates {
         for (std::size_t i = layout_.contacts; i-- > 0;) {
             if (!closed_.contains(i)) continue;
             before = before.without(i);
-            expression = substitute(expression, v, motions_.of(before).contacts[i].s);
+            expression = substitute(expression, v, motions_.of(Mode::holding(before)).contacts[i].s);
         }
         return expression;
     }
 
     ContactSet closed_;
-    HeldMotions& motions_;
+    ContactModes& motions_;
     const Layout& layout_;
     const KnownValues& known_;
     std::vector<Expression> values_, rates_, gaps_;
@@ -72,11 +72,11 @@ class ClosedStates {
 
 }  // namespace
 
-bool needs_no_force(std::size_t contact, ContactSet held, HeldMotions& motions, const Layout& layout,
+bool needs_no_force(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout,
                     const KnownValues& known) {
     try {
-        return ClosedStates(held.with(contact), motions, layout, known)
-            .vanishes(motions.of(held).contacts.at(contact).hddot);
+        return ClosedStates(mode.held().with(contact), motions, layout, known)
+            .vanishes(motions.of(mode).contacts.at(contact).hddot);
     } catch (const TooLarge&) {
     } catch (const std::domain_error&) {  // contacts that depend on one another, or a division by what is 0 there
     }
@@ -86,8 +86,8 @@ bool needs_no_force(std::size_t contact, ContactSet held, HeldMotions& motions, 
 UnpressedContacts::UnpressedContacts(const Model& model, std::span<const double> parameters)
     : model_(&model), parameters_(parameters.begin(), parameters.end()) {}
 
-HeldMotions& UnpressedContacts::motions() {
-    if (!motions_) motions_ = std::make_unique<HeldMotions>(model_->equations(), model_->layout());
+ContactModes& UnpressedContacts::motions() {
+    if (!motions_) motions_ = std::make_unique<ContactModes>(model_->equations(), model_->layout());
     return *motions_;
 }
 
@@ -102,7 +102,7 @@ KnownValues UnpressedContacts::known_parameters() const {
 
 // The parameters and, of the coordinates at rest, those that stay so along the motion that holds these: they do where their
 // accelerations vanish as long as all of them rest. Where a gap of these says where a coordinate is, its own value is not used.
-KnownValues UnpressedContacts::at_rest(ContactSet held, const State& state) {
+KnownValues UnpressedContacts::at_rest(Mode mode, const State& state) {
     const Layout& layout = model_->layout();
     std::vector<std::size_t> rest;
     for (std::size_t i = 0; i < layout.dof; ++i)
@@ -110,7 +110,7 @@ KnownValues UnpressedContacts::at_rest(ContactSet held, const State& state) {
     const auto is_in_a_gap = [&](std::size_t i) {
         const std::uint32_t slot = layout.q(i);
         for (std::size_t contact = 0; contact < layout.contacts; ++contact)
-            if (held.contains(contact) && depends_on(model_->equations().gaps[contact], {&slot, 1})) return true;
+            if (mode.is_held(contact) && depends_on(model_->equations().gaps[contact], {&slot, 1})) return true;
         return false;
     };
     for (;;) {
@@ -124,30 +124,30 @@ KnownValues UnpressedContacts::at_rest(ContactSet held, const State& state) {
             add(layout.v(i), 0.0);
         }
         if (rest.empty()) return known;
-        ClosedStates closed(held, motions(), layout, known);
-        const auto moves = [&](std::size_t i) { return !closed.vanishes(motions().of(held).f[i]); };
+        ClosedStates closed(mode.held(), motions(), layout, known);
+        const auto moves = [&](std::size_t i) { return !closed.vanishes(motions().of(mode).f[i]); };
         if (std::erase_if(rest, moves) == 0) return known;
     }
 }
 
-bool UnpressedContacts::needs_no_force(std::size_t contact, ContactSet held) {
-    if (model_->is_carried(contact, held)) return true;
-    const WhileHeld key(held, contact);
+bool UnpressedContacts::needs_no_force(std::size_t contact, Mode mode) {
+    if (model_->is_carried(contact, mode)) return true;
+    const ContactInMode key(mode, contact);
     const auto known = at_all_states_.find(key);
     if (known != at_all_states_.end()) return known->second;
-    const bool proved = achilles::needs_no_force(contact, held, motions(), model_->layout(), known_parameters());
+    const bool proved = achilles::needs_no_force(contact, mode, motions(), model_->layout(), known_parameters());
     return at_all_states_.emplace(key, proved).first->second;
 }
 
-bool UnpressedContacts::needs_no_force_from(const State& state, std::size_t contact, ContactSet held) {
+bool UnpressedContacts::needs_no_force_from(const State& state, std::size_t contact, Mode mode) {
     if ((state.v.array() != 0.0).all()) return false;
-    const WhileHeld key(held, contact);
+    const ContactInMode key(mode, contact);
     try {
-        const KnownValues rest = at_rest(held.with(contact), state);
+        const KnownValues rest = at_rest(mode.with(contact, ContactState::held), state);
         if (rest.slots.size() == parameters_.size()) return false;
         const auto last = from_state_.find(key);
         if (last != from_state_.end() && last->second.at_rest == rest) return last->second.proved;
-        const bool proved = achilles::needs_no_force(contact, held, motions(), model_->layout(), rest);
+        const bool proved = achilles::needs_no_force(contact, mode, motions(), model_->layout(), rest);
         from_state_.insert_or_assign(key, FromState{rest, proved});
         return proved;
     } catch (const TooLarge&) {

@@ -33,7 +33,7 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     const Event& impact = trajectory_.events[event];
     if (impact.joint && !impact.joint->impulses.empty()) return impact.joint->impulses;
     // G (v+ - v-) = W p over what is held and what lands.
-    const ContactSet all = held_before(trajectory_, event).with(impact.contacts);
+    const ContactSet all = mode_before(trajectory_, event).held().with(impact.contacts);
     if (all.count() > most_contacts) return {};
     const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
     const auto block = HeldBlock<double>::of(closed.W, closed.places_of(all));
@@ -76,7 +76,7 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     for (const Phase& phase : trajectory.phases) {
         const bool is_last = &phase == &trajectory.phases.back();
         for (bool open = true; open && next < events.size(); ++next)
-            open = is_last || (events[next].is_impact() && events[next].held == phase.held);
+            open = is_last || (events[next].is_impact() && events[next].mode == phase.mode);
         ends.push_back(next);
     }
     return ends;

@@ -127,7 +127,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         }
         append(text, energy.total());
         text += fmt::format(",{}", sample.j);
-        if (is_of_several(model)) text += "," + joined_names(model, sample.held, "+");
+        if (is_of_several(model)) text += "," + joined_names(model, sample.mode.held(), "+");
         if (has_work(model)) {
             append(text, sample.work);
             append(text, sample.loss);
@@ -209,14 +209,14 @@ std::string to_text(const Trajectory& trajectory) {
     std::string text;
     for (const Phase& phase : trajectory.phases)
         text += fmt::format("phase {}{} [{:.9g}, {:.9g}] impacts {}\n", to_text(phase.kind),
-                            contacts(trajectory, "held", phase.held), phase.start, phase.end, phase.impacts);
+                            contacts(trajectory, "held", phase.mode.held()), phase.start, phase.end, phase.impacts);
     for (const Event& event : trajectory.events)
         text += fmt::format("{}{}{}{} t {:.9g} q {} before {} after {}\n", names_of(event.kind).word,
                             contacts(trajectory, "of", event.contacts), contacts(trajectory, "opens", event.opened),
-                            contacts(trajectory, "held", event.held), event.t, to_text(event.q),
+                            contacts(trajectory, "held", event.mode.held()), event.t, to_text(event.q),
                             to_text(event.v_before), to_text(event.v_after));
     return text + fmt::format("end t {:.9g} {}{} q {} v {}\noutcome {}: {}\n", trajectory.end_time,
-                              to_text(trajectory.end_phase), contacts(trajectory, "held", trajectory.end_held),
+                              to_text(trajectory.end_phase), contacts(trajectory, "held", trajectory.end_mode.held()),
                               to_text(trajectory.end.q), to_text(trajectory.end.v), to_text(trajectory.outcome.kind),
                               trajectory.outcome.message);
 }

@@ -109,7 +109,7 @@ Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) 
         samples.push_back({{"t", number_json(sample.t)},
                            {"j", sample.j},
                            {"phase", to_text(sample.phase)},
-                           {"held", contact_names(*trajectory.model, sample.held)},
+                           {"held", contact_names(*trajectory.model, sample.mode.held())},
                            {"q", list(sample.state.q)},
                            {"v", list(sample.state.v)}});
     return samples;
@@ -206,10 +206,10 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
 ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
     const Event& event = trajectory.events[index];
     ContactSet all = event.contacts;
-    const ContactSet held = held_before(trajectory, index);
+    const Mode mode = mode_before(trajectory, index);
     if (event.joint)
         for (const auto& [contact, impulse] : event.joint->impulses)
-            if (impulse > 0.0 && !held.contains(contact)) all = all.with(contact);
+            if (impulse > 0.0 && !mode.is_held(contact)) all = all.with(contact);
     return all;
 }
 
@@ -235,7 +235,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
         result["contact"] = contacts[0];
     else
         result["contacts"] = contacts;
-    result["held"] = names(trajectory, event.held);
+    result["held"] = names(trajectory, event.mode.held());
     result["opened"] = names(trajectory, event.opened);
     result["q"] = list(event.q);
     if (event.is_impact()) {
@@ -299,7 +299,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
     Json phases = Json::array();
     for (const Phase& phase : trajectory.phases) {
         phases.push_back({{"kind", to_text(phase.kind)},
-                          {"held", names(trajectory, phase.held)},
+                          {"held", names(trajectory, phase.mode.held())},
                           {"start", number_json(phase.start)},
                           {"end", number_json(phase.end)},
                           {"impacts", phase.impacts}});
@@ -318,7 +318,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"q", list(trajectory.end.q)},
                      {"v", list(trajectory.end.v)},
                      {"phase", to_text(trajectory.end_phase)},
-                     {"held", names(trajectory, trajectory.end_held)},
+                     {"held", names(trajectory, trajectory.end_mode.held())},
                      {"work", number_json(trajectory.work)},
                      {"loss", number_json(trajectory.loss)},
                      {"by_convention", trajectory.by_convention}}},

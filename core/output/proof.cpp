@@ -160,7 +160,7 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
         Json entry = {{"kind", names_of(event.kind).word},
                       {"t", interval(event.t)},
                       {"contact", description.constraints[event.contact].name},
-                      {"held", names(event.held)},
+                      {"held", names(event.mode.held())},
                       {"opened", names(event.opened)},
                       {"q", box(event.q)}};
         if (event.is_impact()) {

@@ -73,7 +73,7 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
     const Phase& phase = trajectory.phases.back();
     if (phase.first_piece == phase.last_piece || trajectory.end_time < trajectory.pieces.back().end)
         return std::nullopt;
-    const ContactSet to_hold = trajectory.pieces.back().held.without(phase.held);
+    const ContactSet to_hold = trajectory.pieces.back().mode.held().without(phase.mode.held());
     bool has_bounces = false;  // that are left out
     for (std::size_t i = 0; i < trajectory.model->contacts(); ++i)
         if (to_hold.contains(i) && trajectory.model->restitution(trajectory.run.parameters, i) > 0.0)

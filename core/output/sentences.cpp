@@ -151,16 +151,16 @@ std::string Sentences::change(std::size_t index) const {
     return text + (energy_unit_.empty() ? " dissipated the energy " : " dissipated ") + loss;
 }
 
-std::string Sentences::holding(ContactSet held, const char* flight) const {
-    if (held.empty()) return flight;
-    return is_of_several_ ? "held by " + joined_names(*trajectory_.model, held, " and ") : "in contact";
+std::string Sentences::holding(Mode mode, const char* flight) const {
+    if (mode.is_free()) return flight;
+    return is_of_several_ ? "held by " + joined_names(*trajectory_.model, mode.held(), " and ") : "in contact";
 }
 
 std::string Sentences::state_at_start() const {
-    return holding(trajectory_.phases.empty() ? trajectory_.end_held : trajectory_.phases.front().held, "free flight");
+    return holding(trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode, "free flight");
 }
 
-std::string Sentences::state_at_end() const { return holding(trajectory_.end_held, "in flight"); }
+std::string Sentences::state_at_end() const { return holding(trajectory_.end_mode, "in flight"); }
 
 std::string Sentences::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
@@ -201,19 +201,20 @@ std::string Sentences::release(const Event& event) const {
            (is_one ? " is released: its force reaches zero" : " are released: their forces reach zero");
 }
 
-std::string Sentences::state(ContactSet held) const {
-    if (held.empty()) return "in free flight";
+std::string Sentences::state(Mode mode) const {
+    if (mode.is_free()) return "in free flight";
     if (!is_of_several_) return "in contact";
-    return joined_names(*trajectory_.model, held, " and ") + (held.count() == 1 ? " is held" : " are held");
+    return joined_names(*trajectory_.model, mode.held(), " and ") +
+           (mode.held().count() == 1 ? " is held" : " are held");
 }
 
 std::string Sentences::start() const {
-    const ContactSet held = trajectory_.phases.empty() ? trajectory_.end_held : trajectory_.phases.front().held;
-    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0), state(held));
+    const Mode mode = trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode;
+    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0), state(mode));
 }
 
 std::string Sentences::end() const {
-    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_held));
+    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_mode));
     if (trajectory_.outcome.kind != Outcome::Kind::end_time)
         text += fmt::format("; the run ends early: {}", to_text(trajectory_.outcome.kind));
     return text;

@@ -47,8 +47,8 @@ class Sentences {
     std::string impact(std::size_t index) const;
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
-    std::string state(ContactSet held) const;
-    std::string holding(ContactSet held, const char* flight) const;
+    std::string state(Mode mode) const;
+    std::string holding(Mode mode, const char* flight) const;
     std::string beginning(const Event& event) const;
     std::string energy(double value, const Event& event) const;
     std::string lost(double energy, const Event& event) const;

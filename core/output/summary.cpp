@@ -47,10 +47,10 @@ std::string indented(std::string sentence) {
 
 // " holding knee", of a system with several contacts.
 // "in flight", "in contact", or of several contacts "in contact with knee".
-std::string contact_state(const Trajectory& trajectory, ContactSet held) {
+std::string contact_state(const Trajectory& trajectory, Mode mode) {
     const Model& model = *trajectory.model;
-    if (held.empty()) return "in flight";
-    return model.contacts() > 1 ? "in contact with " + joined_names(model, held) : "in contact";
+    if (mode.is_free()) return "in flight";
+    return model.contacts() > 1 ? "in contact with " + joined_names(model, mode.held()) : "in contact";
 }
 
 // Phase by phase, event by event.
@@ -85,7 +85,7 @@ class Course {
     std::string time(double t) const { return known_digits(t, precision_.of_time(t), 10); }
 
     std::string phase_line(const Phase& phase) const {
-        return fmt::format("{}, t = {} to {} s{}\n", contact_state(trajectory_, phase.held), time(phase.start),
+        return fmt::format("{}, t = {} to {} s{}\n", contact_state(trajectory_, phase.mode), time(phase.start),
                            time(phase.end), phase.not_unique() ? ", forces not unique" : "");
     }
 
@@ -94,7 +94,7 @@ class Course {
         ContactSet held;
         for (std::size_t i = chatter.first; i < chatter.last; ++i) {
             impacts += trajectory_.phases[i].impacts;
-            held = held.with(trajectory_.phases[i].held);
+            held = held.with(trajectory_.phases[i].mode.held());
         }
         return fmt::format(
             "{} consecutive phases, t = {} to {} s, with {} impacts: a contact comes to rest and an impact of another "
@@ -281,7 +281,7 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
     text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,
-                        contact_state(trajectory, trajectory.end_held), named(model, 0, trajectory.end.q, errors.q),
+                        contact_state(trajectory, trajectory.end_mode), named(model, 0, trajectory.end.q, errors.q),
                         named(model, n, trajectory.end.v, errors.v));
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);

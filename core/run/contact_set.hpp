@@ -1,4 +1,4 @@
-// The contacts that a motion holds.
+// A set of contacts: those that land, that leave, that are looked at. What a motion holds is a Mode.
 #pragma once
 
 #include <bit>
@@ -10,7 +10,6 @@ namespace achilles {
 // The most that a system may have.
 inline constexpr std::size_t max_contacts = 16;
 
-// Free flight holds none; the constrained motion of a system with one gap holds contact 0.
 class ContactSet {
  public:
     constexpr ContactSet() = default;
@@ -31,7 +30,25 @@ class ContactSet {
     friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
     friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }
 
+    // Its contacts, in ascending order.
+    class Iterator {
+     public:
+        constexpr explicit Iterator(std::uint32_t left) : left_(left) {}
+        constexpr std::size_t operator*() const { return static_cast<std::size_t>(std::countr_zero(left_)); }
+        constexpr Iterator& operator++() {
+            left_ &= left_ - 1;
+            return *this;
+        }
+        friend constexpr bool operator==(const Iterator&, const Iterator&) = default;
+
+     private:
+        std::uint32_t left_;
+    };
+    constexpr Iterator begin() const { return Iterator(bits_); }
+    constexpr Iterator end() const { return Iterator(0); }
+
  private:
+    friend class Mode;
     constexpr explicit ContactSet(std::uint32_t bits) : bits_(bits) {}
     std::uint32_t bits_ = 0;
 };

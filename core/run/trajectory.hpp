@@ -2,7 +2,7 @@
 // The central noun of Achilles; read this first.
 //
 // A hybrid phase is free flight and impacts; a constrained phase keeps h = 0 of the contacts that it holds. A phase ends
-// where that set changes: at the Zeno point of a contact, which joins it, at a release, at an impact that opens a held
+// where its mode changes: at the Zeno point of a contact, which joins it, at a release, at an impact that opens a held
 // contact. With one contact impacts happen inside hybrid phases; with several a constrained phase may have its own.
 #pragma once
 
@@ -16,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "contact_set.hpp"
+#include "mode.hpp"
 #include "options.hpp"
 #include "state.hpp"
 
@@ -30,8 +30,9 @@ struct Piece {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    ContactSet held;      // those of its phase, or of the phase to come: the way to a Zeno point is in contact
-    ContactSet carriers;  // of them, whose motion it is: a sample is projected to their h = 0, hdot = 0
+    Mode mode;            // of its phase, or of the phase to come: the way to a Zeno point is in contact
+    ContactSet carriers;  // of what is held, whose motion it is: a sample is projected to their h = 0, hdot = 0
+    Mode motion() const { return mode.only(carriers); }
     double work = 0.0, loss = 0.0;  // of the run, until it starts
 };
 
@@ -41,11 +42,12 @@ State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::
 struct Phase {
     enum class Kind { hybrid, constrained };
     Kind kind = Kind::hybrid;  // exactly where none is held
-    ContactSet held;
-    // Of them, whose motion it is: all, or where gradients depend on one another some, which may change inside the phase (the
-    // last ones). The forces could be shared otherwise, then (theory-gaps.md 2.5).
+    Mode mode;
+    // Of what is held, whose motion it is: all, or where gradients depend on one another some, which may change inside
+    // the phase (the last ones). The forces could be shared otherwise, then (theory-gaps.md 2.5).
     ContactSet carriers;
-    bool not_unique() const { return carriers != held; }
+    Mode motion() const { return mode.only(carriers); }
+    bool not_unique() const { return carriers != mode.held(); }
     double start = 0.0, end = 0.0;
     int impacts = 0;
     std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time
@@ -132,7 +134,8 @@ struct Event : EventBase {
     Vector q, v_before, v_after;         // equal velocities where nothing jumps (release, zeno)
     double impact_speed = 0.0;           // impact: |hdot| before
     ContactSet contacts;                 // that land, come to rest, or leave
-    ContactSet held, opened;             // after it; of an impact: those that were held before and leave
+    Mode mode;                           // after it
+    ContactSet opened;                   // of an impact: those that were held before and leave
     std::shared_ptr<const Joint> joint;  // may be null
     double work = 0.0, loss = 0.0;       // of the run until then, what happens here included
     int impacts = 0;     // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
@@ -232,7 +235,7 @@ struct Trajectory {
     double end_time = 0.0;
     State end;
     Phase::Kind end_phase = Phase::Kind::hybrid;
-    ContactSet end_held;
+    Mode end_mode;
     int by_convention = 0;  // impacts whose order matters and could not be told
     // E(end) - E(start) = work - loss: what forces, a potential that changes with time and moving surfaces have done on the
     // system, and what impacts have taken. The work is no number where the ends of steps alone were kept.

@@ -12,6 +12,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "contacts/contact_law.hpp"
 #include "number/angle.hpp"
 #include "number/eight.hpp"
 #include "number/polynomial.hpp"

@@ -109,7 +109,7 @@ class LaneStepperOver final : public LaneStepper {
     // Contact, where the force keeps its sign by more than its remainder: true there.
     [[gnu::flatten]] Mask stay_once(LaneStep& step, Number& span) {
         step_.gap(contact) = {0.0, 0.0, 0.0, 0.0, step.state_error};
-        Mask plain = expand(contact_.series, contact_.order, step, ContactSet::of(contact));
+        Mask plain = expand(contact_.series, contact_.order, step, Mode::holding(ContactSet::of(contact)));
         span = 0.0;
         if (!any(plain)) return plain;
         span = contact_.order.natural_step(step_, Number(step.until) - step.t);
@@ -127,11 +127,10 @@ class LaneStepperOver final : public LaneStepper {
     Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
 
     // The series at the state where the step starts. True where they are numbers.
-    Mask expand(SeriesEvaluator<Number>& series, const FixedOrder<Number>& order, const LaneStep& step,
-                ContactSet held) {
+    Mask expand(SeriesEvaluator<Number>& series, const FixedOrder<Number>& order, const LaneStep& step, Mode mode) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
         step_.time() = step.t;
-        const auto start = step_.expand(series, order, held, Number(step.until) - step.t);
+        const auto start = step_.expand(series, order, mode, Number(step.until) - step.t);
         return start.numbers & start.regular;
     }
 

@@ -82,7 +82,7 @@ int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& ser
     motion.row = first;
     int order = 1;
     power_ = target_ = longest;
-    if (step.any_open()) order = begin_flight(step, series, motion, longest);
+    if (step.watches_any_gap()) order = begin_flight(step, series, motion, longest);
     for (bool small = false;;) {  // small: whether the order just before was
         const auto [m, largest] = magnitude(step, order);
         if (!(m < infinity)) return leave_out_infinite(step, order);

@@ -2,7 +2,7 @@
 //
 // With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. What events
 // are looked for in is an output of the same program, so its series comes with it: every contact has an event function,
-// its gap where it is open and hddot where it is held.
+// for what its law watches: its gap, or hddot for its force.
 //
 // Order and step: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last terms
 // reach 1. Which order that is, and how far the last terms are trusted, is the order policy's (below).
@@ -13,9 +13,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "contacts/contact_law.hpp"
 #include "number/eight.hpp"
 #include "number/inner_loops.hpp"
-#include "run/contact_set.hpp"
 #include "series/evaluator.hpp"
 #include "series/gap.hpp"
 
@@ -67,10 +67,11 @@ class TaylorStep {
     // What 1 m of a coordinate makes of a gap, roughly: tolerances of event functions are in it. 1 unless it is set.
     double& gap_unit(std::size_t contact) { return gap_units_[contact]; }
     int order() const { return order_; }
-    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
-    bool any_open() const {
+    // Whether the event function of a contact is its gap.
+    bool watches_gap(std::size_t contact) const { return gaps_watched_.contains(contact); }
+    bool watches_any_gap() const {
         for (std::size_t i = 0; i < contacts(); ++i)
-            if (is_open(i)) return true;
+            if (watches_gap(i)) return true;
         return false;
     }
 
@@ -85,10 +86,10 @@ class TaylorStep {
     GapOver<Number>& gap(std::size_t contact) { return gaps_[contact]; }
     Number& time() { return time_; }
     // The series at the state whose q and v stand in row 0, to the order that the policy finds is needed for `longest`
-    // (s), along the motion that holds these contacts.
+    // (s), along the motion in this mode.
     template <class OrderPolicy>
-    Start expand(Series& series, OrderPolicy& policy, ContactSet held, const Number& longest) {
-        held_ = held;
+    Start expand(Series& series, OrderPolicy& policy, Mode mode, const Number& longest) {
+        gaps_watched_ = contacts_watching(mode, WatchedFunction::gap);
         const Start start = begin(series);
         if (any(start.numbers & start.regular)) order_ = policy.expand(*this, series, longest);
         return start;
@@ -96,7 +97,7 @@ class TaylorStep {
     // For a policy: after order 1 has been made, open gaps move at the rates that are known.
     void give_rates() {
         for (std::size_t i = 0; i < contacts(); ++i)
-            if (is_open(i)) row(1)[2 * dof_ + i] = gaps_[i].hdot;
+            if (watches_gap(i)) row(1)[2 * dof_ + i] = gaps_[i].hdot;
     }
     // For a policy, after order 2: as long as the parabola of the open gap that closes first and a little more, or
     // `longest`. Every gap must be known well against the height of such a flight.
@@ -145,7 +146,7 @@ class TaylorStep {
     std::vector<GapOver<Number>> gaps_;  // where the step starts
     std::vector<double> gap_units_;
     Number time_ = 0.0;  // the same
-    ContactSet held_;
+    ContactSet gaps_watched_;
     int order_ = 0;  // of the last expansion
 };
 
@@ -163,7 +164,7 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
     series.begin(c, time_);
     for (std::size_t i = 0; i < dof_; ++i) start.regular = start.regular & (series.start(dof_ + contacts() + i) > 0.0);
     for (std::size_t i = 0; i < contacts(); ++i) {
-        events[i] = is_open(i) ? gaps_[i].h : series.start(dof_ + i);
+        events[i] = watches_gap(i) ? gaps_[i].h : series.start(dof_ + i);
         set_unit(2 * dof_ + i, gap_units_[i] + abs(events[i]));
     }
     Number* const first = row(1);
@@ -180,7 +181,7 @@ Number TaylorStep<Number>::aim(const Number& longest) {
     using std::abs, std::sqrt;
     Number target = longest;
     for (std::size_t i = 0; i < contacts(); ++i) {
-        if (!is_open(i)) continue;
+        if (!watches_gap(i)) continue;
         const Number h0 = max(gaps_[i].h, 0.0), h1 = gaps_[i].hdot, h2 = event(i, 2);
         const Number root = sqrt(h1 * h1 - 4.0 * h0 * h2);
         const Condition<Number> rises = h1 > 0.0;
@@ -189,7 +190,7 @@ Number TaylorStep<Number>::aim(const Number& longest) {
         target = min(1.05 * fall, target);
     }
     for (std::size_t i = 0; i < contacts(); ++i) {
-        if (!is_open(i)) continue;
+        if (!watches_gap(i)) continue;
         const Number height = abs(gaps_[i].h) + abs(gaps_[i].hdot) * target;
         Number& unit = units_[2 * dof_ + i];
         unit = select((height > 0.0) & (height < gap_units_[i]), 1.0 / (tolerance_ * height), unit);
@@ -239,7 +240,7 @@ template <class Number>
 auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const -> Doubt {
     using std::abs;
     const GapOver<Number>& gap = gaps_[contact];
-    const bool open = is_open(contact);
+    const bool open = watches_gap(contact);
     const auto term = [&](int k) { return abs(event(contact, k)); };
     const Number own = max(sizes.last + 4.0 * unit_roundoff * sizes.all, 2.0 / unit(contact));
     const Number drifting = gap.drift(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1), gap_units_[contact]);

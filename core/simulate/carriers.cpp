@@ -100,13 +100,13 @@ bool Execution::hold_dependent(const Closed& closed, const ContactVector<double>
     }
     // At rest for ever nothing has to be told apart.
     const ContactSet pressed_ones = closed.contacts_at(pressed);
-    const bool rests = doubted.empty() && is_at_rest(pressed_ones);
+    const bool rests = doubted.empty() && is_at_rest(Mode::holding(pressed_ones));
     if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))
         return (doubted.empty() || !may_ask_exactly()) && share(closed, hddot, forces);
     const ContactSet carrying = rests ? pressed_ones : closed.contacts_at(enough_of(closed, hddot, pressed));
     if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
-    hold(carrying, closed.contacts_at(all_places(closed)).without(carrying));
+    hold(Mode::holding(carrying), closed.contacts_at(all_places(closed)).without(carrying));
     note_carried(closed, pressed);
     return true;
 }
@@ -128,7 +128,7 @@ bool Execution::share(const Closed& closed, const ContactVector<double>& hddot, 
         return false;
     const ContactSet held = closed.contacts_at(carriers.front().places);
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
-    hold(held, closed.contacts_at(all).without(held));
+    hold(Mode::holding(held), closed.contacts_at(all).without(held));
     note_carried(closed, forces.active);
     next_.unwatched = held;
     return true;
@@ -136,31 +136,31 @@ bool Execution::share(const Closed& closed, const ContactVector<double>& hddot, 
 
 // That time is over.
 void Execution::end_sharing() {
-    const ContactSet resting = next_.resting();
-    decide(next_.held.with(next_.touching));
+    const Mode resting = next_.resting();
+    decide(next_.held().with(next_.touching));
     if (outcome_) return;
     if (next_.resting() == resting) return carry_on();
     stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} were released just before, at {}",
-                                               names_of(resting), where(next_.state)));
+                                               names_of(resting.held()), where(next_.state)));
 }
 
 // Holds these, the carriers, if it can be proved that they do: each force presses, or grows from 0. The others rest with
 // them, or touch, or leave.
 bool Execution::carry(const Closed& closed, const Carriers& carriers) {
-    const ContactSet held = closed.contacts_at(carriers.places);
+    const Mode mode = Mode::holding(closed.contacts_at(carriers.places));
     std::vector<EventStart> starts = next_.starts;
     ContactSet touching;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t contact = closed.which[i];
         EventStart& start = starts[contact];
-        const bool carried = !held.contains(contact) && depends(closed, i, carriers.places);
+        const bool carried = !mode.is_held(contact) && depends(closed, i, carriers.places);
         if (carried) {
             touching = carriers.opening.contains(i) ? touching : touching.with(contact);
             start = {{0.0, 0.0}, 2};  // where it opens
             continue;
         }
-        const auto normal = surfaces_->of(contact, held.without(contact)).normal(next_.state);
-        if (held.contains(contact)) {
+        const auto normal = surfaces_->of(contact, mode.without(contact)).normal(next_.state);
+        if (mode.is_held(contact)) {
             const bool presses = certainly_negative(normal.hddot);
             if (!presses && (certainly_positive(normal.hddot) || !certainly_negative(normal.jerk))) return false;
             start = presses ? EventStart{} : EventStart{{}, 1};
@@ -169,19 +169,19 @@ bool Execution::carry(const Closed& closed, const Carriers& carriers) {
         } else if (!certainly_negative(normal.hddot) && certainly_positive(normal.jerk)) {
             start = {{0.0, 0.0}, 3};
         } else if (!certainly_negative(normal.hddot) && !certainly_negative(normal.jerk) &&
-                   stays_closed(contact, held)) {
+                   stays_closed(contact, mode)) {
             touching = touching.with(contact);
         } else {
             return false;
         }
     }
     next_.starts = std::move(starts);
-    hold(held, touching);
+    hold(mode, touching);
     return true;
 }
 
-void Execution::hold(ContactSet held, ContactSet touching) {
-    next_.held = held;
+void Execution::hold(Mode mode, ContactSet touching) {
+    next_.mode = mode;
     next_.touching = touching;
     next_.unwatched = next_.unpressed = {};
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
@@ -190,7 +190,7 @@ void Execution::hold(ContactSet held, ContactSet touching) {
 
 // Of those that touch, who may bear a part of the forces: whose gradients depend on those of others that do.
 void Execution::note_carried(const Closed& closed, ContactSet pressed) {
-    const ContactSet bearing = closed.places_of(next_.held).with(pressed);
+    const ContactSet bearing = closed.places_of(next_.held()).with(pressed);
     next_.carried = {};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (next_.touching.contains(closed.which[i]) &&
@@ -219,13 +219,13 @@ ContactSet Execution::enough_of(const Closed& closed, const ContactVector<double
 
 // The force of a carrier may touch 0, and whether it does cannot be told: others carry on without it, if they can.
 bool Execution::carry_on_without(std::size_t which, const State& state) {
-    if (next_.carried.empty() || !next_.held.contains(which)) return false;
+    if (next_.carried.empty() || !next_.mode.is_held(which)) return false;
     const StepRequest before = next_;
     next_.state = state;
-    const Closed closed = surfaces_->at(state, before.held.with(before.touching));
+    const Closed closed = surfaces_->at(state, before.held().with(before.touching));
     const ContactVector<double> hddot = accelerations(closed);
     const auto forces = solve_complementarity(closed.W, hddot);
-    const bool goes_on = forces && hold_dependent(closed, hddot, *forces, closed.places_of(before.held)) &&
+    const bool goes_on = forces && hold_dependent(closed, hddot, *forces, closed.places_of(before.held())) &&
                          next_.resting() == before.resting();
     if (!goes_on) next_ = before;
     return goes_on;
@@ -238,9 +238,9 @@ void Execution::carry_on() {
     carriers_since_ = next_.state.t;
     if (changes_of_carriers_ > many)
         return stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} carry load, at {}",
-                                                          names_of(next_.resting()), where(next_.state)));
+                                                          names_of(next_.resting().held()), where(next_.state)));
     enter_or_stay();
-    begin_stretch(next_.held, run_.options.end_time);
+    begin_stretch(next_.mode, run_.options.end_time);
 }
 
 // How long nobody asks who carries: longer than a touch is in doubt, and short beside what the motion needs to change.

@@ -54,9 +54,9 @@ void Execution::land(std::size_t which, const Contact& contact) {
 void Execution::land_alone(const Contact& contact) {
     const double e = restitution(which_);
     conditions_ = nullptr;
-    const ContactSet unpressed = always_unpressed(next_.held);
+    const ContactSet unpressed = always_unpressed(next_.mode);
     for (const OfContact& known : all_conditions_)
-        if (known.contact == which_ && known.held == next_.held && known.unpressed == unpressed)
+        if (known.contact == which_ && known.mode == next_.mode && known.unpressed == unpressed)
             conditions_ = known.conditions.get();
     // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
     if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
@@ -92,10 +92,10 @@ void Execution::land_alone(const Contact& contact) {
 // The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
 bool Execution::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
-        const ContactSet unpressed = always_unpressed(next_.held);
+        const ContactSet unpressed = always_unpressed(next_.mode);
         const Interval& e = surfaces_->restitution(which_).enclosure;
-        all_conditions_.push_back({which_, next_.held, unpressed, timed([&] {
-                                       return truncation_conditions(*model_, run_, e, which_, next_.held, unpressed);
+        all_conditions_.push_back({which_, next_.mode, unpressed, timed([&] {
+                                       return truncation_conditions(*model_, run_, e, which_, next_.mode, unpressed);
                                    })});
         conditions_ = all_conditions_.back().conditions.get();
     }
@@ -117,7 +117,7 @@ void Execution::bounce(const Contact& contact, double e) {
     const Vector v_before = next_.state.v;
     next_.state.v = v_after;
     change_rates(v_before, ContactSet::of(which_));
-    begin_stretch(next_.held, run_.options.end_time);
+    begin_stretch(next_.mode, run_.options.end_time);
     if (run_.options.method == Method::taylor) return;  // a series tells its length itself
     const double hddot = kinematics().normal_acceleration(next_.state);
     next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
@@ -146,7 +146,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
     Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
-    if (surfaces_->needs_no_force(which_, next_.held, collision.with(collision.restart), scale_)) {
+    if (surfaces_->needs_no_force(which_, next_.mode, collision.with(collision.restart), scale_)) {
         hddot = Interval(0.0);
         next_.unpressed = next_.unpressed.with(which_);
     }
@@ -182,11 +182,10 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     record_.impact(next_.state, impact(contact, next_.state.v, restitution(which_)), collision.speed, plastic,
                    ContactSet::of(which_));
     next_.state = collision.with(collision.restart);
-    const ContactSet held = next_.held.with(which_);
-    for (std::size_t i = 0; i < next_.starts.size(); ++i)
-        if (held.contains(i)) next_.starts[i] = {};
+    const Mode mode = next_.mode.with(which_, ContactState::held);
+    for (const std::size_t i : mode.held()) next_.starts[i] = {};
     change_rates(collision.before.v, ContactSet::of(which_));
-    next_.unpressed = unpressed_of(next_.unpressed, held);
+    next_.unpressed = unpressed_of(next_.unpressed, mode);
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
@@ -195,8 +194,8 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
                                          collision.speed};
     event.certificate = std::move(certificate);
     event.contacts = ContactSet::of(which_);
-    event.held = held;
-    begin_stretch(held, std::min(event.t, run_.options.end_time));
+    event.mode = mode;
+    begin_stretch(mode, std::min(event.t, run_.options.end_time));
 }
 
 // The motion in contact has come to the Zeno time.
@@ -208,19 +207,19 @@ void Execution::pass_zeno_point() {
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
     enter_phase();
-    begin_stretch(next_.held, run_.options.end_time);
+    begin_stretch(next_.mode, run_.options.end_time);
 }
 
 // What is held has changed.
 void Execution::enter_phase() {
     record_.close(next_.state.t);
-    record_.open(next_.resting(), next_.held, next_.state.t);
+    record_.open(next_.resting(), next_.held(), next_.state.t);
 }
 
 // If it has. Else others of it may carry now.
 void Execution::enter_or_stay() {
-    if (next_.resting() != record_.held()) return enter_phase();
-    record_.carry_on(next_.held);
+    if (next_.resting() != record_.mode()) return enter_phase();
+    record_.carry_on(next_.held());
 }
 
 // ---- release ----
@@ -231,15 +230,15 @@ void Execution::release(std::size_t which) {
     if (completing())
         return stop(Outcome::Kind::undecided,
                     "the contact force vanishes before the Zeno time at " + where(next_.state));
-    const ContactSet held = next_.held;
+    const Mode mode = next_.mode;
     const ContactSet vanishing = surfaces_->count() > 1 ? vanishing_with(which) : ContactSet::of(which);
-    const bool leaves = certainly_positive(surfaces_->of(which, held.without(which)).normal(next_.state).jerk);
+    const bool leaves = certainly_positive(surfaces_->of(which, mode.without(which)).normal(next_.state).jerk);
     if (surfaces_->count() > 1 &&
         (!leaves || vanishing.count() > 1 || !next_.touching.with(next_.unpressed).empty() || not_unique_)) {
-        const ContactSet resting = next_.resting();
-        decide(held.with(next_.touching), vanishing);
+        const ContactSet resting = next_.resting().held();
+        decide(mode.held().with(next_.touching), vanishing);
         if (outcome_) return;
-        const ContactSet gone = resting.without(next_.resting());
+        const ContactSet gone = resting.without(next_.resting().held());
         return gone.empty() ? carry_on() : leave(gone);
     }
     if (!leaves) {
@@ -248,7 +247,7 @@ void Execution::release(std::size_t which) {
                     fmt::format("the contact force touches zero and h''' > 0 is not proved at {}{}{}",
                                 where(next_.state), hint.empty() ? "" : "; ", hint));
     }
-    next_.held = held.without(which);
+    next_.mode = mode.without(which);
     next_.starts[which] = {{0.0, 0.0}, 3};
     leave(ContactSet::of(which));
 }
@@ -258,7 +257,7 @@ void Execution::leave(ContactSet contacts) {
     Event event;
     event.kind = Event::Kind::release;
     event.contacts = contacts;
-    event.held = next_.resting();
+    event.mode = next_.resting();
     if (not_unique_) {
         auto joint = std::make_shared<Joint>();
         joint->not_unique = true;
@@ -269,7 +268,7 @@ void Execution::leave(ContactSet contacts) {
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
     enter_phase();
-    begin_stretch(next_.held, run_.options.end_time);
+    begin_stretch(next_.mode, run_.options.end_time);
 }
 
 }  // namespace achilles

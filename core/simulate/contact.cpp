@@ -61,7 +61,7 @@ Descent EventStepper::force_descent() {
     if (!flow_->is_expansion()) {
         State end = flow_->end();
         surfaces_->project(end, held(), held());
-        force.c[2] += -surfaces_->of(contact_, held().without(contact_)).normal_acceleration(end) - force(1.0);
+        force.c[2] += -surfaces_->of(contact_, request_->mode.without(contact_)).normal_acceleration(end) - force(1.0);
     }
     if (multiplicity > 0) {
         force.c[0] = 0.0;
@@ -73,7 +73,7 @@ Descent EventStepper::force_descent() {
 
 // The same as locate_impact, for hddot = 0 along the constrained motion.
 std::optional<StepResult::End> EventStepper::locate_release(double theta) {
-    ContactKinematics& leaving = surfaces_->of(contact_, held().without(contact_));
+    ContactKinematics& leaving = surfaces_->of(contact_, request_->mode.without(contact_));
     const double longest = flow_->duration();  // where the force only touches zero Newton's method would run away
     double duration = theta * longest;
     for (int round = 0; round < 8; ++round) {

@@ -8,22 +8,22 @@ namespace achilles {
 ContactForces::ContactForces(const Model& model, std::span<const double> parameters)
     : model_(&model), parameters_(parameters.begin(), parameters.end()), surfaces_(model.contacts()) {}
 
-void ContactForces::set(const State& state, ContactSet held, ContactSet carriers) {
+void ContactForces::set(const State& state, Mode mode, ContactSet carriers) {
     state_ = state;
-    held_ = held;
+    mode_ = mode;
     carriers_ = carriers;
     shared_.clear();
     motion_ = nullptr;
 }
 
 double ContactForces::force(std::size_t contact) {
-    if (!held_.contains(contact)) return 0.0;
-    if (carriers_ != held_) {
+    if (!mode_.is_held(contact)) return 0.0;
+    if (carriers_ != mode_.held()) {
         if (shared_.empty()) share();
         return shared_[contact];
     }
-    const ContactSet others = held_.without(contact);
-    const std::pair key(others, contact);
+    const Mode others = mode_.without(contact);
+    const ContactInMode key(others, contact);
     auto known = forces_.find(key);
     if (known == forces_.end())
         known = forces_.emplace(key, model_->evaluator(model_->programs_of(contact, others).force, parameters_)).first;
@@ -40,7 +40,7 @@ void ContactForces::share() {
         run.parameters = parameters_;
         all_.emplace(*model_, run);
     }
-    const Closed closed = all_->at(state_, held_);
+    const Closed closed = all_->at(state_, mode_.held());
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         hddot[static_cast<Eigen::Index>(i)] = all_->of(closed.which[i]).normal_acceleration(state_);
@@ -55,9 +55,9 @@ void ContactForces::share() {
 }
 
 double ContactForces::acceleration(std::size_t contact) {
-    if (held_.contains(contact)) return 0.0;
+    if (mode_.is_held(contact)) return 0.0;
     if (motion_ == nullptr) {
-        motion_ = &model_->lazily(motions_, carriers_, parameters_);
+        motion_ = &model_->lazily(motions_, mode_.only(carriers_), parameters_);
         set_state(*motion_, state_);
         motion_->run();
     }
@@ -74,7 +74,7 @@ const ContactTerms<Evaluator<double>>& ContactForces::surface(std::size_t contac
 Vector ContactForces::generalised() {
     Vector Q = Vector::Zero(state_.q.size());
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        if (!held_.contains(i)) continue;
+        if (!mode_.is_held(i)) continue;
         const double lambda = force(i);
         const auto& terms = surface(i);
         for (Eigen::Index k = 0; k < Q.size(); ++k) Q[k] += lambda * terms.gradient(static_cast<std::size_t>(k));

@@ -19,9 +19,9 @@ class ContactForces {
     ContactForces(const Model& model, std::span<const double> parameters);
 
     // What is asked next is asked of this state, where these are held, in the motion of the carriers among them.
-    void set(const State& state, ContactSet held, ContactSet carriers);
-    void set(const State& state, ContactSet held) { set(state, held, held); }
-    void set(const Sample& sample) { set(sample.state, sample.held, sample.carriers); }
+    void set(const State& state, Mode mode, ContactSet carriers);
+    void set(const State& state, Mode mode) { set(state, mode, mode.held()); }
+    void set(const Sample& sample) { set(sample.state, sample.mode, sample.carriers); }
 
     // lambda_i, that which holds contact i while the others of them are held; 0 where it is not held. Where not all of them are
     // carriers it is one choice of several: the forces of least norm that press (solve_complementarity).
@@ -42,11 +42,12 @@ class ContactForces {
     const Model* model_;
     std::vector<double> parameters_;
     State state_;
-    ContactSet held_, carriers_;
+    Mode mode_;
+    ContactSet carriers_;
     std::vector<double> shared_;  // of all contacts, where the forces are not unique; empty until they are asked for
     Model::MotionEvaluators motions_;
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until it is asked for
-    std::map<std::pair<ContactSet, std::size_t>, Evaluator<double>> forces_;
+    std::map<ContactInMode, Evaluator<double>> forces_;
     std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
     std::optional<Surfaces> all_;  // where forces are shared
 };

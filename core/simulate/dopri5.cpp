@@ -15,6 +15,7 @@
 #include <cmath>
 #include <limits>
 
+#include "contacts/contact_law.hpp"
 #include "simulate/gap_units.hpp"
 #include "simulate/stepper.hpp"
 
@@ -23,7 +24,7 @@ namespace achilles {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-// q, v, then of each contact, in its unit (GapUnits), h, hdot where it is open, hddot, 0 where it is held.
+// q, v, then of each contact, in its unit (GapUnits), what its law watches: h, hdot of a gap; hddot, 0 of a force.
 using Values = std::vector<double>;
 using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
 
@@ -42,7 +43,7 @@ class Dopri5 : public Stepper {
           gaps_(model.contacts()),
           units_(model, run) {}
 
-    void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
+    void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
@@ -70,7 +71,7 @@ class Dopri5 : public Stepper {
     double own_remainder(std::size_t contact, const Polynomial& p) const;
     double drifting(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
-    bool is_open(std::size_t contact) const { return !held_.contains(contact); }
+    bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // where its event function stands
     std::size_t width() const { return event(gaps_.size()); }
     Values values_of(const State& state) const;
@@ -83,9 +84,9 @@ class Dopri5 : public Stepper {
     Dense dense_;
     const Model* model_;
     std::vector<double> parameters_;
-    ContactSet held_;
+    Mode mode_;
     Model::MotionEvaluators motions_;                   // of those met so far
-    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // of them, that of held_
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // of them, that of mode_
     double span_ = 0.0;
     double natural_ = 0.0;   // the step the error control would take next; 0: not known
     State from_, to_;        // the last step's ends
@@ -112,10 +113,10 @@ void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
         dydt[i] = y[dof_ + i];
         dydt[dof_ + i] = regular ? motion.acceleration(i) : std::numeric_limits<double>::quiet_NaN();
     }
-    for (std::size_t contact = 0, held = 0; contact < gaps_.size(); ++contact) {
+    for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        dydt[i] = is_open(contact) ? y[i + 1] : motion.jerk(held++) / units_[contact];
-        dydt[i + 1] = is_open(contact) ? motion.hddot(contact) / units_[contact] : 0.0;
+        dydt[i] = watches_gap(contact) ? y[i + 1] : motion.jerk(forces++) / units_[contact];
+        dydt[i + 1] = watches_gap(contact) ? motion.hddot(contact) / units_[contact] : 0.0;
     }
 }
 
@@ -128,9 +129,9 @@ Values Dopri5::values_of(const State& state) const {
     return y;
 }
 
-void Dopri5::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
-    if (motion_ == nullptr || held != held_) motion_ = &model_->lazily(motions_, held, parameters_);
-    held_ = held;
+void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
+    if (motion_ == nullptr || mode != mode_) motion_ = &model_->lazily(motions_, mode, parameters_);
+    mode_ = mode;
     to_ = state;
     units_.at(state);
     time_ = state.t;
@@ -155,15 +156,15 @@ void Dopri5::guess_first_step() {
 
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
-    if (!held_.empty()) {  // hddot of the state itself
+    if (!mode_.is_free()) {  // hddot of the state itself
         for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
         motion_->clock() = time_;
         motion_->run();
     }
     for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        y[i] = (is_open(contact) ? gaps_[contact].h : motion_->hddot(contact)) / units_[contact];
-        if (is_open(contact)) y[i + 1] = gaps_[contact].hdot / units_[contact];
+        y[i] = (watches_gap(contact) ? gaps_[contact].h : motion_->hddot(contact)) / units_[contact];
+        if (watches_gap(contact)) y[i + 1] = gaps_[contact].hdot / units_[contact];
     }
     dense_.initialize(y, 0.0, dt);
     begun_ = 0.0;
@@ -261,11 +262,11 @@ double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
     const double allowed = 4.0 * tolerance_ * (units_[contact] + size);
-    return (is_open(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
+    return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
 double Dopri5::drifting(std::size_t contact, const Polynomial& p) const {
-    return gaps_[contact].drift(is_open(contact)
+    return gaps_[contact].drift(watches_gap(contact)
                                     ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                     : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
                                 units_[contact]);
@@ -273,7 +274,7 @@ double Dopri5::drifting(std::size_t contact, const Polynomial& p) const {
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
     const double drift = drifting(contact, p);
-    return is_open(contact) ? gaps_[contact].error_after(span_, drift) : drift;
+    return watches_gap(contact) ? gaps_[contact].error_after(span_, drift) : drift;
 }
 
 double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {

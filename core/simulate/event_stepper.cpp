@@ -24,7 +24,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     flow_ = request.exactly ? exact_.get() : &usual_;
     if (request.begins) {
         for (std::size_t i = 0; i < gaps_.size(); ++i) gaps_[i] = request.starts[i].gap;
-        flow_->start(request.held, request.state, gaps_, request.first_step);
+        flow_->start(request.mode, request.state, gaps_, request.first_step);
     }
     result_.flow = flow_;
     result_.steps = 0;
@@ -55,21 +55,38 @@ std::optional<EventStepper::Incident> EventStepper::first_incident(ContactSet bu
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i) || !is_watched(i)) continue;
         contact_ = i;
-        const Descent descent = held().contains(i) ? force_descent() : gap_descent();
+        const Descent descent = this->descent();
         if (descent.kind == Descent::Kind::none) continue;
         if (!first || descent.theta < first->descent.theta) first = Incident{i, descent};
     }
     return first;
 }
 
+// Of what the contact's law watches, along the flow's last step.
+Descent EventStepper::descent() {
+    switch (watched_of(contact_)) {
+        case WatchedFunction::gap:
+            return gap_descent();
+        case WatchedFunction::normal_force:
+            return force_descent();
+    }
+    return {};
+}
+
 std::optional<StepResult::End> EventStepper::meet(const Incident& incident) {
     contact_ = incident.contact;
-    return held().contains(contact_) ? meet_force(incident.descent) : meet_gap(incident.descent);
+    switch (watched_of(contact_)) {
+        case WatchedFunction::gap:
+            return meet_gap(incident.descent);
+        case WatchedFunction::normal_force:
+            return meet_force(incident.descent);
+    }
+    return std::nullopt;
 }
 
 StepResult::End EventStepper::end_without_event() {
     double least = std::numeric_limits<double>::infinity();
-    if (!held().empty()) {
+    if (!request_->mode.is_free()) {
         if (!end_on_surface()) return End::off_surface;
         least = result_.gap;
     }

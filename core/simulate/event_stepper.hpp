@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "contacts/contact_law.hpp"
 #include "simulate/step.hpp"
 #include "simulate/surfaces.hpp"
 
@@ -30,6 +31,7 @@ class EventStepper {
     };
     End find_event();
     std::optional<Incident> first_incident(ContactSet but);
+    Descent descent();
     std::optional<End> meet(const Incident& incident);
     End end_without_event();
 
@@ -58,7 +60,8 @@ class EventStepper {
     End fail(StepFailure failure);
     bool knows_its_start() const;
     bool is_last() const;
-    ContactSet held() const { return request_->held; }
+    ContactSet held() const { return request_->held(); }
+    WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
     bool is_watched(std::size_t contact) const {
         return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);
     }

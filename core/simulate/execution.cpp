@@ -81,7 +81,7 @@ void Execution::begin() {
         }
     }
     if (landing.empty()) start_at_rest(resting);
-    record_.open(next_.resting(), next_.held, next_.state.t);
+    record_.open(next_.resting(), next_.held(), next_.state.t);
     if (landing.empty() || outcome_) return;
     if (surfaces_->count() == 1) return land(0, last);
     next_.touching = resting;
@@ -125,10 +125,8 @@ const StepRequest* Execution::next() {
         stop_at(StepFailure::step_too_small);
     }
     if (outcome_) return nullptr;
-    const bool in_contact = !next_.held.empty();
-    if (in_contact)
-        for (std::size_t i = 0; i < next_.starts.size(); ++i)
-            if (next_.held.contains(i)) next_.starts[i].gap.state_error = state_error();
+    const bool in_contact = !next_.mode.is_free();
+    for (const std::size_t i : next_.held()) next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
     const EventStart& start = next_.starts.front();  // of the only contact, where it is asked for
     next_.plain =
@@ -213,8 +211,8 @@ void Execution::note_scale() {
 }
 
 // A motion that ends at `until` at the latest.
-void Execution::begin_stretch(ContactSet held, double until) {
-    next_.held = held;
+void Execution::begin_stretch(Mode mode, double until) {
+    next_.mode = mode;
     next_.first_step = 0.0;
     next_.until = until;
     next_.begins = true;
@@ -224,7 +222,7 @@ void Execution::begin_stretch(ContactSet held, double until) {
 // The velocity has jumped: the rates of open gaps, but of these, have too.
 void Execution::change_other_rates(const Vector& v_before, ContactSet but) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (!next_.held.contains(i) && !but.contains(i) && !next_.touching.contains(i))
+        if (!next_.mode.is_held(i) && !but.contains(i) && !next_.touching.contains(i))
             next_.starts[i].gap.hdot += surfaces_->of(i).at(next_.state).g.dot(next_.state.v - v_before);
 }
 
@@ -246,7 +244,7 @@ void Execution::ask_exactly() {
 
 std::string Execution::doubt(const StepResult& result) const {
     const std::string place = where(next_.state);
-    if (next_.held.contains(result.which))
+    if (next_.mode.is_held(result.which))
         return "cannot decide whether the contact is released: the contact force is within integration error of zero "
                "just after " +
                place;

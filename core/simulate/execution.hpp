@@ -78,7 +78,7 @@ class Execution {
     void note_beginning();
     double state_error() const;
     void advance(const StepResult& result);
-    void begin_stretch(ContactSet held, double until);
+    void begin_stretch(Mode mode, double until);
     void change_rates(const Vector& v_before, ContactSet but) {
         if (surfaces_->count() > 1) change_other_rates(v_before, but);
     }
@@ -97,11 +97,11 @@ class Execution {
     // What the impact does to the energy, also by what it passes on to held contacts.
     Exchange exchange_of(const Contact& contact, double e) {
         const Exchange own = exchange(contact, e);
-        return next_.held.empty() ? own : exchange_beside(contact, e, own);
+        return next_.mode.is_free() ? own : exchange_beside(contact, e, own);
     }
     Exchange exchange_beside(const Contact& contact, double e, Exchange own);
     double restitution(std::size_t contact) const { return surfaces_->restitution(contact).value; }
-    ContactKinematics& kinematics() { return surfaces_->of(which_, next_.held); }
+    ContactKinematics& kinematics() { return surfaces_->of(which_, next_.mode); }
     // What some work gives; its time counts as that of proofs.
     template <class Work>
     auto timed(const Work& work) {
@@ -132,26 +132,26 @@ class Execution {
     double plastic_work(const State& before, ContactSet contacts);
     void collide(ContactSet landing);
     bool complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding);
-    bool complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
-                       const Vector& v_after, bool below_rounding);
+    bool complete_pair(std::size_t first, std::size_t second, Mode others, ContactSet landing, const Vector& v_after,
+                       bool below_rounding);
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed, ContactSet vanishing = {});
     ContactVector<double> accelerations(const Closed& closed);
     bool judge(ContactSet closed, ContactSet active, ContactSet vanishing);
     bool judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed);
     ContactSet vanishing_with(std::size_t which);
-    ContactSet pressed_by_rates(ContactSet doubtful, ContactSet held);
-    bool needs_no_force(std::size_t contact, ContactSet held) {
-        return surfaces_->needs_no_force(contact, held.without(contact), next_.state, scale_);
+    ContactSet pressed_by_rates(ContactSet doubtful, Mode mode);
+    bool needs_no_force(std::size_t contact, Mode mode) {
+        return surfaces_->needs_no_force(contact, mode.without(contact), next_.state, scale_);
     }
-    ContactSet unpressed_of(ContactSet contacts, ContactSet held);
-    ContactSet always_unpressed(ContactSet held);
+    ContactSet unpressed_of(ContactSet contacts, Mode mode);
+    ContactSet always_unpressed(Mode mode);
     ContactSet unpressed_among(ContactSet closed, ContactSet active);
     bool is_chatter() const;
     bool moves_within_rounding(std::size_t which, double speed);
     void end_chatter(ContactSet contacts);
-    bool stays_closed(std::size_t contact, ContactSet held);
-    bool is_at_rest(ContactSet held);
+    bool stays_closed(std::size_t contact, Mode mode);
+    bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
     // Where gradients of closed contacts depend on one another (carriers.cpp).
@@ -168,12 +168,15 @@ class Execution {
     void end_sharing();
     double end_of_sharing() const;
     bool carry(const Closed& closed, const Carriers& carriers);
-    void hold(ContactSet held, ContactSet touching);
+    void hold(Mode mode, ContactSet touching);
     void note_carried(const Closed& closed, ContactSet pressed);
     bool is_stuck(const Closed& closed, ContactSet pressed);
     ContactSet enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed);
     bool carry_on_without(std::size_t which, const State& state);
-    void forget_held() { next_.held = next_.touching = next_.carried = next_.unwatched = next_.unpressed = {}; }
+    void forget_held() {
+        next_.mode = {};
+        next_.touching = next_.carried = next_.unwatched = next_.unpressed = {};
+    }
     void carry_on();
 
     StepRequest next_;        // where the motion stands, and how it goes on
@@ -193,13 +196,15 @@ class Execution {
     // The truncation conditions of contacts while others are held, those met so far.
     struct OfContact {
         std::size_t contact;
-        ContactSet held, unpressed;
+        Mode mode;
+        ContactSet unpressed;
         std::unique_ptr<TruncationConditions> conditions;
     };
     std::vector<OfContact> all_conditions_;
     struct PairOf {
         std::size_t first, second;
-        ContactSet held, unpressed;
+        Mode mode;  // of the others
+        ContactSet unpressed;
         std::unique_ptr<PairConditions> conditions;
     };
     std::vector<PairOf> all_pairs_;               // the same of two contacts

@@ -19,14 +19,13 @@ std::size_t first_of(ContactSet contacts, const Model& model) {
 }
 
 // Of what is held those that never need a force.
-ContactSet unpressed_at(const Trajectory& trajectory, ContactSet held, const State& state) {
+ContactSet unpressed_at(const Trajectory& trajectory, Mode mode, const State& state) {
     ContactSet found;
-    if (held.empty()) return found;
+    if (mode.is_free()) return found;
     Surfaces surfaces(*trajectory.model, trajectory.run);
     const State scale = scale_of(trajectory);
-    for (std::size_t i = 0; i < surfaces.count(); ++i)
-        if (held.contains(i) && surfaces.is_nearly_free(i, held.without(i), state, scale) &&
-            surfaces.never_needs_force(i, held.without(i)))
+    for (const std::size_t i : mode.held())
+        if (surfaces.is_nearly_free(i, mode.without(i), state, scale) && surfaces.never_needs_force(i, mode.without(i)))
             found = found.with(i);
     return found;
 }
@@ -49,12 +48,12 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     reason.energy_before = energy_at(impact.v_before);
     reason.energy_after = energy_at(impact.v_after);
 
-    reason.held = held_before(trajectory, event);
+    reason.mode = mode_before(trajectory, event);
     if (impact.contacts.count() != 1 || !impact.opened.empty()) return reason;
     const std::size_t which = first_of(impact.contacts, model);
     reason.contact = which;
-    const ContactSet carriers = carriers_of(trajectory, reason.held, impact.t);
-    ContactKinematics surface(model, run, which, carriers);
+    const Mode motion = reason.mode.only(carriers_of(trajectory, reason.mode, impact.t));
+    ContactKinematics surface(model, run, which, motion);
     const State before{impact.q, impact.v_before, impact.t};
     const Contact contact = surface.at(before);
     const Collision collision{before, std::abs(contact.hdot),
@@ -62,7 +61,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
                               reinitialize(contact, before.v, run.options.truncation.reinitialization)};
     reason.normal_acceleration = surface.normal_acceleration(collision.with(collision.restart));
     if (reason.normal_acceleration < 0.0)
-        reason.attempt = truncation_conditions(model, run, which, carriers, unpressed_at(trajectory, carriers, before))
+        reason.attempt = truncation_conditions(model, run, which, motion, unpressed_at(trajectory, motion, before))
                              ->prove_any(collision);
     return reason;
 }
@@ -73,10 +72,11 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const State state{release.q, release.v_after, release.t};
     ReleaseReason reason;
     const std::size_t which = reason.contact = first_of(release.contacts, model);
-    const ContactSet held = held_before(trajectory, event);
-    const bool unique = carriers_of(trajectory, held, release.t) == held;
-    ContactKinematics surface(model, trajectory.run, which,
-                              unique ? held.without(which) : carriers_of(trajectory, release.held, release.t));
+    const Mode mode = mode_before(trajectory, event);
+    const bool unique = carriers_of(trajectory, mode, release.t) == mode.held();
+    ContactKinematics surface(
+        model, trajectory.run, which,
+        unique ? mode.without(which) : release.mode.only(carriers_of(trajectory, release.mode, release.t)));
     const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);
@@ -87,7 +87,7 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     double start = trajectory.run.options.start_time;
     for (const Phase& phase : trajectory.phases) {
         if (phase.end > release.t) break;
-        if (!phase.held.contains(which)) start = phase.end;
+        if (!phase.mode.is_held(which)) start = phase.end;
     }
     ContactForces forces(model, trajectory.run.parameters);
     Sampler sampler(trajectory);

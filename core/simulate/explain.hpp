@@ -16,8 +16,8 @@ struct ImpactReason {
     double energy_before = 0.0, energy_after = 0.0;
     // The contact that lands; nothing where several do, whose bouncings are not cut.
     std::optional<std::size_t> contact;
-    ContactSet held;  // just before it
-    // hddot of the contact at the velocity that it would be held with, along the motion that holds these.
+    Mode mode;  // just before it
+    // hddot of the contact at the velocity that it would be held with, along the motion in that mode.
     double normal_acceleration = 0.0;
     // What could be proved here whatever the tolerances: its first three inequalities are those of the run's own
     // tolerances, and one that does not hold is the reason. Nothing where hddot is not proved negative around here.

@@ -75,7 +75,7 @@ std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
 bool EventStepper::settle_gaps(ContactSet but, double& least) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i)) continue;
-        if (held().contains(i)) {
+        if (watched_of(i) != WatchedFunction::gap) {
             result_.starts[i] = {{}, 0, asked_again_.contains(i)};
             continue;
         }
@@ -131,7 +131,7 @@ bool EventStepper::surely_closes_at_start() {
 StepResult::End EventStepper::land_here() {
     landed_ = request_->state;
     result_.state = &landed_;
-    if (!surfaces_->land(landed_, contact_, held(), result_.contact)) return End::off_surface;
+    if (!surfaces_->land(landed_, contact_, request_->mode, result_.contact)) return End::off_surface;
     if (!(result_.contact.hdot < 0.0)) return doubt_gap(0.0);
     return End::impact;
 }
@@ -176,7 +176,7 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
 // The flow's last step ends on the surface.
 StepResult::End EventStepper::end_flight() {
     const std::size_t contact = contact_;
-    const bool landed = surfaces_->land(flow_->edit_end(), contact, held(), result_.contact);
+    const bool landed = surfaces_->land(flow_->edit_end(), contact, request_->mode, result_.contact);
     double least = landed ? result_.contact.h : surfaces_->of(contact).at(flow_->end()).h;
     if (landed) {
         if (surfaces_->count() > 1)

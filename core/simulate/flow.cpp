@@ -11,8 +11,8 @@ Flow::Flow(const Model& model, const Run& run)
       model_(&model),
       parameters_(run.parameters) {}
 
-void Flow::start(ContactSet held, const State& state, std::span<const Gap> gaps, double first_step) {
-    held_ = held;
+void Flow::start(Mode mode, const State& state, std::span<const Gap> gaps, double first_step) {
+    mode_ = mode;
     t_ = end_ = state.t;
     span_ = 0.0;
     first_ = first_step;
@@ -30,7 +30,7 @@ StepFailure Flow::step(double until) {
     span_ = 0.0;
     const double longest = until - t_;
     const State& start = end();
-    if (moved_) stepper_->initialize(held_, start, gaps_);
+    if (moved_) stepper_->initialize(mode_, start, gaps_);
     moved_ = false;
     StepFailure failure = stepper_->do_step(t_, longest, first_, least());
     first_ = 0.0;
@@ -68,7 +68,7 @@ void Flow::move_gap(std::size_t contact, const Gap& gap) {
 }
 
 void Flow::shift_end(double dt) {
-    auto& motion = model_->lazily(motions_, held_, parameters_);
+    auto& motion = model_->lazily(motions_, mode_, parameters_);
     set_state(motion, end());
     motion.run();
     for (Eigen::Index i = 0; i < to_.q.size(); ++i) {
@@ -85,7 +85,8 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     Piece piece;
     piece.start = t_;
     piece.end = end_;
-    piece.held = piece.carriers = held_;
+    piece.mode = mode_;
+    piece.carriers = mode_.held();
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;

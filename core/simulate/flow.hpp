@@ -16,9 +16,9 @@ class Flow {
  public:
     Flow(const Model& model, const Run& run);
 
-    // Starts a stretch at this state that holds these contacts. In flight the first step is at most `first_step` (s); 0
+    // Starts a stretch at this state in this mode. In flight the first step is at most `first_step` (s); 0
     // leaves it to the stepper. One gap for each contact; of a held one's only the state_error counts.
-    void start(ContactSet held, const State& state, std::span<const Gap> gaps, double first_step);
+    void start(Mode mode, const State& state, std::span<const Gap> gaps, double first_step);
     // Advances by one accepted step, not past the time `until`, which is met exactly. Where a function leaves its
     // domain inside a step the step is shortened, until it is too short to be a step: that is the failure. So it is
     // where one comes to an edge inside (model/edges.hpp).
@@ -66,7 +66,7 @@ class Flow {
     double first_ = 0.0;                       // bound on the next step; 0: none
     mutable State to_;                         // the end of the last step,
     std::vector<Gap> gaps_;                    // at `to`
-    ContactSet held_;
+    Mode mode_;
     mutable bool fetched_ = true;  // the end has been asked for
     bool moved_ = false;           // it is not where the stepper left it
 };

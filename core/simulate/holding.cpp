@@ -42,10 +42,10 @@ ContactVector<double> Execution::accelerations(const Closed& closed) {
     return hddot;
 }
 
-// Those of the doubtful whose force grows from 0, while these are held.
-ContactSet Execution::pressed_by_rates(ContactSet doubtful, ContactSet held) {
-    const Closed closed = surfaces_->at(next_.state, doubtful.with(held));
-    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(held));
+// Those of the doubtful whose force grows from 0, in this mode.
+ContactSet Execution::pressed_by_rates(ContactSet doubtful, Mode mode) {
+    const Closed closed = surfaces_->at(next_.state, doubtful.with(mode.held()));
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(mode.held()));
     if (!block) return {};
     std::vector<std::size_t> which;
     std::vector<Eigen::Index> places;
@@ -59,7 +59,7 @@ ContactSet Execution::pressed_by_rates(ContactSet doubtful, ContactSet held) {
     ContactVector<double> jerk(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        jerk[i] = surfaces_->of(which[at], held).jerk(next_.state);
+        jerk[i] = surfaces_->of(which[at], mode).jerk(next_.state);
         const ContactVector<double> kappa = block->transmission(closed.W, places[at]).kappa;
         for (Eigen::Index k = 0; k < n; ++k)
             W(k, i) = HeldBlock<double>::between(closed.W, places[static_cast<std::size_t>(k)], places[at], kappa);
@@ -82,16 +82,17 @@ bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing
 bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed) {
     active = active.with(unpressed);
     next_.touching = {};
-    ContactSet held = unpressed, doubtful;
+    Mode mode = Mode::holding(unpressed);
+    ContactSet doubtful;
     const double resolved = 16.0 * 0x1p-52 * std::abs(next_.state.t);
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (unpressed.contains(i)) next_.starts[i] = {};
         if (!closed.without(unpressed).contains(i)) continue;
-        const auto [hddot, jerk] = surfaces_->of(i, active.without(i)).normal(next_.state);
+        const auto [hddot, jerk] = surfaces_->of(i, Mode::holding(active.without(i))).normal(next_.state);
         // Known to be, or nearer to it than time resolves.
         const bool is_zero = vanishing.contains(i) || mag(hddot) <= resolved * mag(jerk);
         if (!is_zero && certainly_negative(hddot)) {
-            held = held.with(i);
+            mode = mode.with(i, ContactState::held);
             next_.starts[i] = {};
         } else if (!is_zero && certainly_positive(hddot)) {
             next_.starts[i] = {{0.0, 0.0}, 2};
@@ -101,42 +102,42 @@ bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing
     }
     if (!doubtful.empty()) {
         // The rates of hddot decide, 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful, as far as they are proved.
-        ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, held);
+        ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, mode);
         const bool alone = doubtful.count() == 1;
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {
             if (!doubtful.contains(i)) continue;
-            const auto normal = surfaces_->of(i, alone ? held : held.with(pressed).without(i)).normal(next_.state);
+            const Mode others = alone ? mode : mode.with(pressed, ContactState::held).without(i);
+            const auto normal = surfaces_->of(i, others).normal(next_.state);
             if (certainly_negative(normal.jerk) && pressed.contains(i)) {
-                held = held.with(i);
+                mode = mode.with(i, ContactState::held);
                 next_.starts[i] = {{}, 1};
             } else if (certainly_positive(normal.jerk) && (alone || !pressed.contains(i))) {
                 next_.starts[i] = {{0.0, 0.0}, 3};
-            } else if (stays_closed(i, held)) {
+            } else if (stays_closed(i, mode)) {
                 next_.touching = next_.touching.with(i);
             } else {
                 return false;
             }
         }
     }
-    next_.held = held;
+    next_.mode = mode;
     next_.unpressed = unpressed;
-    return unpressed_of(unpressed, held) == unpressed;
+    return unpressed_of(unpressed, mode) == unpressed;
 }
 
-// Of these contacts those that stay closed without a force while `held` are.
-ContactSet Execution::unpressed_of(ContactSet contacts, ContactSet held) {
+// Of these contacts those that a mode holds and that stay closed without a force.
+ContactSet Execution::unpressed_of(ContactSet contacts, Mode mode) {
     ContactSet found;
-    for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (contacts.contains(i) && held.contains(i) && needs_no_force(i, held)) found = found.with(i);
+    for (const std::size_t i : contacts)
+        if (mode.is_held(i) && needs_no_force(i, mode)) found = found.with(i);
     return found;
 }
 
 // Those that nothing presses now and that, at whatever state these are held, nothing does.
-ContactSet Execution::always_unpressed(ContactSet held) {
+ContactSet Execution::always_unpressed(Mode mode) {
     ContactSet found;
-    for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (next_.unpressed.contains(i) && held.contains(i) && surfaces_->never_needs_force(i, held.without(i)))
-            found = found.with(i);
+    for (const std::size_t i : next_.unpressed)
+        if (mode.is_held(i) && surfaces_->never_needs_force(i, mode.without(i))) found = found.with(i);
     return found;
 }
 
@@ -144,12 +145,12 @@ ContactSet Execution::always_unpressed(ContactSet held) {
 ContactSet Execution::unpressed_among(ContactSet closed, ContactSet active) {
     ContactSet found;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (closed.contains(i) && surfaces_->is_nearly_free(i, active.without(i), next_.state, scale_))
+        if (closed.contains(i) && surfaces_->is_nearly_free(i, Mode::holding(active.without(i)), next_.state, scale_))
             found = found.with(i);
     active = active.without(found);  // what may be no force presses no other
     for (ContactSet before; before != found;) {
         before = found;
-        found = unpressed_of(found, active.with(found));
+        found = unpressed_of(found, Mode::holding(active.with(found)));
     }
     return found;
 }
@@ -160,18 +161,18 @@ ContactSet Execution::vanishing_with(std::size_t which) {
     ContactSet found = ContactSet::of(which);
     const double known = state_error() + 0x1p-40;
     const State scale{known * scale_.q, known * scale_.v, 0.0};
-    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (i == which || !next_.held.contains(i) || next_.unpressed.contains(i)) continue;
-        const Interval hddot = surfaces_->of(i, next_.held.without(i)).hddot_within(scale, next_.state);
+    for (const std::size_t i : next_.held()) {
+        if (i == which || next_.unpressed.contains(i)) continue;
+        const Interval hddot = surfaces_->of(i, next_.mode.without(i)).hddot_within(scale, next_.state);
         if (!certainly_negative(hddot)) found = found.with(i);
     }
     return found;
 }
 
-// Whether a contact with h = hdot = hddot = 0 stays so along the motion that holds these: where hddot is 0 everywhere, or
+// Whether a contact with h = hdot = hddot = 0 stays so along the motion in a mode: where hddot is 0 everywhere, or
 // the whole system is at rest for ever.
-bool Execution::stays_closed(std::size_t contact, ContactSet held) {
-    return (surfaces_->count() > 1 && model_->is_carried(contact, held)) || is_at_rest(held);
+bool Execution::stays_closed(std::size_t contact, Mode mode) {
+    return (surfaces_->count() > 1 && model_->is_carried(contact, mode)) || is_at_rest(mode);
 }
 
 // What merely touches must go on to do so.
@@ -179,9 +180,9 @@ void Execution::check_touching() {
     if (next_.touching.empty()) return;
     constexpr double closed = 1e-9;
     const double size = 1.0 + next_.state.q.cwiseAbs().maxCoeff();
-    const std::string while_held = next_.held.empty()
-                                       ? "no contact was held"
-                                       : names_of(next_.held) + (next_.held.count() == 1 ? " was held" : " were held");
+    const std::string while_held =
+        next_.mode.is_free() ? "no contact was held"
+                             : names_of(next_.held()) + (next_.held().count() == 1 ? " was held" : " were held");
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (!next_.touching.contains(i)) continue;
         const Contact contact = surfaces_->of(i).at(next_.state);
@@ -195,13 +196,13 @@ void Execution::check_touching() {
 }
 
 // Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.
-bool Execution::is_at_rest(ContactSet held) {
+bool Execution::is_at_rest(Mode mode) {
     if (!model_->equations().autonomous || next_.state.v != Vector::Zero(next_.state.v.size())) return false;
-    const Closed closed = surfaces_->at(next_.state, held);
+    const Closed closed = surfaces_->at(next_.state, mode.held());
     ContactSet places;
     for (std::size_t i = 0; i < closed.which.size(); ++i) places = places.with(i);
-    if (!held.empty() && !HeldBlock<double>::of(closed.W, places)) return false;
-    auto motion = model_->evaluator(model_->motion(held).program, run_.parameters);
+    if (!mode.is_free() && !HeldBlock<double>::of(closed.W, places)) return false;
+    auto motion = model_->evaluator(model_->motion(mode).program, run_.parameters);
     MotionTerms<Evaluator<double>> terms(std::move(motion), static_cast<std::size_t>(model_->dof()),
                                          model_->contacts());
     set_state(terms, next_.state);

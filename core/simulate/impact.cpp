@@ -38,9 +38,9 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
     return v_before - contact.hdot / contact.g.squaredNorm() * contact.g;
 }
 
-ContactKinematics::ContactKinematics(const Model& model, const Run& run, std::size_t contact, ContactSet held)
+ContactKinematics::ContactKinematics(const Model& model, const Run& run, std::size_t contact, Mode mode)
     : model_(&model),
-      programs_(&model.programs_of(contact, held)),
+      programs_(&model.programs_of(contact, mode)),
       parameters_(run.parameters),
       dof_(static_cast<std::size_t>(model.dof())),
       terms_(model.evaluator(programs_->contact_terms, run.parameters)),

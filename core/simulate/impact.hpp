@@ -36,8 +36,8 @@ Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitializa
 // Evaluates contact quantities for one run.
 class ContactKinematics {
  public:
-    // Of a contact while others are held: n, W, hddot and its rate are then those of theory-gaps.md 2.
-    ContactKinematics(const Model& model, const Run& run, std::size_t contact = 0, ContactSet held = {});
+    // Of a contact in a mode in which it is open: n, W, hddot and its rate are then those of theory-gaps.md 2.
+    ContactKinematics(const Model& model, const Run& run, std::size_t contact = 0, Mode mode = {});
 
     Contact at(const State& state);
     // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.

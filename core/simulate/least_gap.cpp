@@ -77,7 +77,7 @@ double least_gap(const Trajectory& trajectory) {
         GapAlong gap(trajectory, contact);
         least = std::min(least, gap.at(trajectory.run.start()).h);
         for (const Piece& piece : trajectory.pieces)
-            if (!piece.held.contains(contact)) least = gap.below(least, piece);
+            if (!piece.mode.is_held(contact)) least = gap.below(least, piece);
     }
     return least;
 }

@@ -63,10 +63,10 @@ void Recorder::go_back(const Mark& mark) {
     any_gap_ = mark.any_gap;
 }
 
-void Recorder::open(ContactSet held, ContactSet carriers, double t) {
+void Recorder::open(Mode mode, ContactSet carriers, double t) {
     Phase phase;
-    phase.kind = held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained;
-    phase.held = held;
+    phase.kind = mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained;
+    phase.mode = mode;
     phase.carriers = carriers;
     phase.start = phase.end = t;
     phase.first_piece = phase.last_piece = trajectory_.pieces.size();
@@ -75,7 +75,7 @@ void Recorder::open(ContactSet held, ContactSet carriers, double t) {
 
 void Recorder::carry_on(ContactSet carriers) {
     Phase& phase = trajectory_.phases.back();
-    if (carriers != phase.held) phase.carriers = carriers;
+    if (carriers != phase.mode.held()) phase.carriers = carriers;
 }
 
 void Recorder::close(double t) {
@@ -98,7 +98,7 @@ void Recorder::steps(long count, double least_gap) {
     any_gap_ = true;
 }
 
-void Recorder::step(const Flow& flow, double gap, ContactSet held) {
+void Recorder::step(const Flow& flow, double gap, Mode mode) {
     steps(1, gap);
     if (keep_ == Keep::end) return;
     Statistics& statistics = trajectory_.statistics;
@@ -108,7 +108,7 @@ void Recorder::step(const Flow& flow, double gap, ContactSet held) {
     make_room(trajectory_.coefficients, most_coefficients, memory);
     make_room(trajectory_.pieces, 1, memory);
     Piece& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
-    piece.held = held;
+    piece.mode = mode;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
     if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
@@ -157,17 +157,17 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.v_after = v_after;
     event.impact_speed = speed;
     event.contacts = contacts;
-    event.held = trajectory_.phases.back().held;
+    event.mode = trajectory_.phases.back().mode;
     if (joint && joint->order_matters) ++trajectory_.by_convention;
     event.joint = std::move(joint);
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
 }
 
-void Recorder::after_impact(ContactSet opened, ContactSet held) {
+void Recorder::after_impact(ContactSet opened, Mode mode) {
     if (keep_ == Keep::end) return;
     trajectory_.events.back().opened = opened;
-    trajectory_.events.back().held = held;
+    trajectory_.events.back().mode = mode;
 }
 
 void Recorder::event(Event event) {
@@ -186,7 +186,7 @@ Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluation
     trajectory_.end_time = state.t;
     trajectory_.end = state;
     trajectory_.end_phase = phase();
-    trajectory_.end_held = trajectory_.phases.back().held;
+    trajectory_.end_mode = trajectory_.phases.back().mode;
     trajectory_.outcome = std::move(outcome);
     trajectory_.statistics.evaluations = evaluations;
     if (largest_change_ > 0.0) trajectory_.statistics.energy_drift = largest_change_ / largest_;

@@ -36,24 +36,24 @@ class Recorder {
     void go_back(const Mark& mark);
 
     // A phase begins. Where not all that is held carries, its forces are not unique.
-    void open(ContactSet held, ContactSet carriers, double t);
+    void open(Mode mode, ContactSet carriers, double t);
     // The phase goes on with other carriers.
     void carry_on(ContactSet carriers);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
-    ContactSet held() const { return trajectory_.phases.back().held; }
+    Mode mode() const { return trajectory_.phases.back().mode; }
 
     // A smooth stretch begins: the energy at its start is what later ends of steps are compared with.
     void stretch(const State& state);
-    // The flow's last step, as it stands, while these rest; `gap` is h at its end.
-    void step(const Flow& flow, double gap, ContactSet held);
+    // The flow's last step, as it stands, in the mode of the phase; `gap` is h at its end.
+    void step(const Flow& flow, double gap, Mode mode);
     // Steps of which the end alone is kept.
     void steps(long count, double least_gap);
     // An impact at this state before it, and what it does to the energy.
     void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
                 std::shared_ptr<const Joint> joint = nullptr);
-    // What the last impact has opened, and what is held after it.
-    void after_impact(ContactSet opened, ContactSet held);
+    // What the last impact has opened, and the mode after it.
+    void after_impact(ContactSet opened, Mode mode);
     // The same of a jump to a velocity that no impact leads to: what is lost follows from the energies.
     Exchange exchange_of_jump(const State& before, const State& after, double work);
     // Any other event.

@@ -11,15 +11,15 @@
 
 namespace achilles {
 
-ContactSet held_before(const Trajectory& trajectory, std::size_t event) {
-    return event == 0 ? trajectory.phases.front().held : trajectory.events[event - 1].held;
+Mode mode_before(const Trajectory& trajectory, std::size_t event) {
+    return event == 0 ? trajectory.phases.front().mode : trajectory.events[event - 1].mode;
 }
 
-ContactSet carriers_of(const Trajectory& trajectory, ContactSet held, double t) {
-    if (held.count() < 2) return held;
-    const auto fits = [&](const Phase& one) { return one.start <= t && one.held == held; };
+ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t) {
+    if (mode.held().count() < 2) return mode.held();
+    const auto fits = [&](const Phase& one) { return one.start <= t && one.mode == mode; };
     const auto phase = std::find_if(trajectory.phases.rbegin(), trajectory.phases.rend(), fits);
-    return phase == trajectory.phases.rend() ? held : phase->carriers;
+    return phase == trajectory.phases.rend() ? mode.held() : phase->carriers;
 }
 
 // A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
@@ -38,7 +38,7 @@ Sample Trajectory::operator()(double t) const { return Sampler(*this).at(t); }
 
 State Sampler::state(const Piece& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
-    if (!piece.held.empty()) {
+    if (!piece.mode.is_free()) {
         State projected = state;
         if (projection_->surfaces.project(projected, piece.carriers, piece.carriers)) return projected;
     }
@@ -62,16 +62,16 @@ Sample Sampler::at(double t) {
     sample.j = static_cast<int>(event - trajectory_.events.begin());
     sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
-        sample.held = trajectory_.end_held;
+        sample.mode = trajectory_.end_mode;
         sample.carriers = trajectory_.phases.back().carriers;
-        sample.contact = !sample.held.empty();
+        sample.contact = !sample.mode.is_free();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
         return sample;
     }
-    sample.contact = !std::prev(piece)->held.empty();
-    sample.held = std::prev(piece)->held;
+    sample.contact = !std::prev(piece)->mode.is_free();
+    sample.mode = std::prev(piece)->mode;
     sample.carriers = std::prev(piece)->carriers;
     sample.state = state(*std::prev(piece), t);
     sample.work = work(*std::prev(piece), t);
@@ -80,9 +80,9 @@ Sample Sampler::at(double t) {
     if (t == trajectory_.end_time) {
         const auto& events = trajectory_.events;
         if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
-            sample.held = events.back().held;
+            sample.mode = events.back().mode;
             sample.carriers = trajectory_.phases.back().carriers;
-            sample.contact = !sample.held.empty();
+            sample.contact = !sample.mode.is_free();
         }
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
@@ -94,9 +94,9 @@ Sample Sampler::at(double t) {
 Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
     Sample sample;
     sample.t = t;
-    sample.phase = piece.held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained;
-    sample.contact = !piece.held.empty();
-    sample.held = piece.held;
+    sample.phase = piece.mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained;
+    sample.contact = !piece.mode.is_free();
+    sample.mode = piece.mode;
     sample.carriers = piece.carriers;
     sample.state = state(piece, t);
     sample.work = with_work ? work(piece, t) : 0.0;
@@ -192,21 +192,21 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
             const bool shown = last && last->first == event.t && last->second == j;
             const bool is_left_out = stride > 1 && event.t < until;
             if (event.is_impact() && !shown && !is_left_out) {
-                const ContactSet held = held_before(trajectory_, j);
-                take({event.t, static_cast<int>(j), held.empty() ? Phase::Kind::hybrid : Phase::Kind::constrained,
-                      !held.empty(), held, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
-                      j == 0 ? 0.0 : events[j - 1].loss, carriers_of(trajectory_, held, event.t)},
+                const Mode mode = mode_before(trajectory_, j);
+                take({event.t, static_cast<int>(j), mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained,
+                      !mode.is_free(), mode, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
+                      j == 0 ? 0.0 : events[j - 1].loss, carriers_of(trajectory_, mode, event.t)},
                      nullptr);
             }
             ++j;
         }
         return any;
     };
-    ContactSet held;
+    Mode mode;
     const auto take_step = [&](const Piece& piece) {
         const double start = std::max(piece.start, selection.from), end = std::min(piece.end, selection.to);
-        const bool fresh = pass_events(start) || !last || piece.held != held || (stride > 1 && last->first != start);
-        held = piece.held;
+        const bool fresh = pass_events(start) || !last || piece.mode != mode || (stride > 1 && last->first != start);
+        mode = piece.mode;
         const Phase::Kind phase = kind(piece.start);
         if (fresh) take(sample_in(piece, start, phase), nullptr);
         take(sample_in(piece, end, phase), &piece);
@@ -225,8 +225,8 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     }
     if (selection.to < trajectory_.end_time && last) return;
     if (pass_events(trajectory_.end_time) || !last)
-        take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_held.empty(),
-              trajectory_.end_held, trajectory_.end, trajectory_.work, trajectory_.loss,
+        take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_mode.is_free(),
+              trajectory_.end_mode, trajectory_.end, trajectory_.work, trajectory_.loss,
               trajectory_.phases.back().carriers},
              nullptr);
 }

@@ -15,16 +15,16 @@ struct Sample {
     int j = 0;
     Phase::Kind phase = Phase::Kind::hybrid;
     bool contact = false;  // h = 0 is kept here (a constrained phase, or the restarted motion just before one)
-    ContactSet held;       // these are
+    Mode mode;
     State state;
     double work = 0.0, loss = 0.0;  // of the run until then
-    ContactSet carriers{};          // of those held, whose motion it is (Phase)
+    ContactSet carriers{};          // of what is held, whose motion it is (Phase)
 };
 
-// What is held just before an event: what the last one left, or the start.
-ContactSet held_before(const Trajectory& trajectory, std::size_t event);
-// Of what is held at a time, the carriers (Phase).
-ContactSet carriers_of(const Trajectory& trajectory, ContactSet held, double t);
+// The mode just before an event: that which the last one left, or the start.
+Mode mode_before(const Trajectory& trajectory, std::size_t event);
+// Of what a mode holds at a time, the carriers (Phase).
+ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t);
 
 // The state at time t (clamped to the run), from dense output; at an event the state after it. One per thread. Throws
 // InputError where t is no number.

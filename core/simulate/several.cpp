@@ -40,11 +40,11 @@ double Execution::rounding_so_far(const Contact& contact) const { return 0x1p-53
 
 // Whether these landings lead to the same in every order, with what is held (theory-gaps.md 2.4).
 bool Execution::is_order_independent(ContactSet landing) {
-    const Closed closed = surfaces_->at(next_.state, next_.held.with(landing));
+    const Closed closed = surfaces_->at(next_.state, next_.held().with(landing));
     ContactVector<double> e(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         e[static_cast<Eigen::Index>(i)] = restitution(closed.which[i]);
-    return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, closed.places_of(next_.held),
+    return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, closed.places_of(next_.held()),
                              closed.places_of(landing))
                 .matters();
 }
@@ -57,14 +57,14 @@ std::optional<ContactSet> Execution::landing_with(std::size_t which, const Conta
     const double when = few * surfaces_->of(which).gap_error(next_.state) / std::abs(contact.hdot) + time;
     ContactSet landing = ContactSet::of(which), in_doubt;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (i == which || next_.held.contains(i) || next_.touching.contains(i)) continue;
+        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         if (!(other.hdot < 0.0)) continue;
         const double own = few * surfaces_->of(i).gap_error(next_.state) - other.hdot * (time + when);
         const double rounding = few * rounding_so_far(other) - other.hdot * resolved * time;
         if (other.h <= std::max(own, rounding)) {
             landing = landing.with(i);
-        } else if (other.h <= next_.starts[i].gap.error && next_.held.count() + 2 <= most_contacts &&
+        } else if (other.h <= next_.starts[i].gap.error && next_.held().count() + 2 <= most_contacts &&
                    !is_order_independent(ContactSet::of(which).with(i))) {
             in_doubt = in_doubt.with(i);
         }
@@ -78,19 +78,19 @@ std::optional<ContactSet> Execution::landing_with(std::size_t which, const Conta
 // Whether all that is held stays so at an impact of this contact: the impact presses it (kappa >= 0), and with the velocities
 // after it the forces, which may depend on them, still do.
 bool Execution::stays_held(std::size_t which, const Contact& contact) {
-    if (next_.held.empty()) return true;
-    if (next_.held.count() >= most_contacts) return false;
-    const Closed closed = surfaces_->at(next_.state, next_.held.with(which));
-    const auto held = closed.places_of(next_.held), lands = closed.places_of(ContactSet::of(which));
+    if (next_.mode.is_free()) return true;
+    if (next_.held().count() >= most_contacts) return false;
+    const Closed closed = surfaces_->at(next_.state, next_.held().with(which));
+    const auto held = closed.places_of(next_.held()), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
     const auto W = enclosure(closed.W, radius_of(closed.W));
     if (order_dependence(W, e, held, lands).by_transmission) return false;
     const State after{next_.state.q, impact(contact, next_.state.v, restitution(which)), next_.state.t};
-    const bool rests = restitution(which) == 0.0 && surfaces_->of(which, next_.held).normal_acceleration(after) < 0.0;
+    const bool rests = restitution(which) == 0.0 && surfaces_->of(which, next_.mode).normal_acceleration(after) < 0.0;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t other = closed.which[i];
         if (!next_.unpressed.contains(other)) continue;
-        if (!surfaces_->needs_no_force(other, next_.held.without(other), after, scale_)) return false;
+        if (!surfaces_->needs_no_force(other, next_.mode.without(other), after, scale_)) return false;
         e[static_cast<Eigen::Index>(i)] = restitution(other);
         if (restitution(other) > 0.0 && order_dependence(W, e, held.without(i), lands.with(i)).matters()) return false;
     }
@@ -117,14 +117,14 @@ bool Execution::is_pressed(const Closed& closed, ContactSet held, const State& s
 // What an impact does to the energy, with what is passed on to held contacts that move.
 Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange own) {
     if (!model_->equations().has_power()) return own;
-    const Closed closed = surfaces_->at(next_.state, next_.held.with(which_));
-    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.held));
+    const Closed closed = surfaces_->at(next_.state, next_.held().with(which_));
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.held()));
     if (!block) return own;
     const auto place = std::find(closed.which.begin(), closed.which.end(), which_) - closed.which.begin();
     const ContactVector<double> kappa = block->transmission(closed.W, place).kappa;
     const double impulse = newton::impulse(e, contact.hdot, contact.W);
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        if (next_.held.contains(closed.which[i]))
+        if (next_.mode.is_held(closed.which[i]))
             own.work += newton::work(kappa[static_cast<Eigen::Index>(i)] * impulse, closed.contacts[i].gap_t);
     return own;
 }
@@ -144,7 +144,7 @@ double Execution::plastic_work(const State& before, ContactSet contacts) {
 
 // An impact of several at once, by Newton's law in Moreau's form.
 void Execution::collide(ContactSet landing) {
-    const ContactSet held = next_.held, resting = next_.resting(), still = held.with(next_.touching),
+    const ContactSet held = next_.held(), resting = next_.resting().held(), still = held.with(next_.touching),
                      all = still.with(landing);
     if (all.count() > most_contacts)
         return stop(Outcome::Kind::redundant_contacts,
@@ -226,9 +226,9 @@ void Execution::collide(ContactSet landing) {
     }
     change_rates(v_before, all);
     decide(left);
-    record_.after_impact(resting.without(next_.resting()), next_.resting());
+    record_.after_impact(resting.without(next_.resting().held()), next_.resting());
     enter_or_stay();
-    if (!outcome_) begin_stretch(next_.held, run_.options.end_time);
+    if (!outcome_) begin_stretch(next_.mode, run_.options.end_time);
 }
 
 // The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is
@@ -241,7 +241,7 @@ bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool be
             const ContactSet two = ContactSet::of(i).with(j);
             // All that is closed but these two has to be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
-            if (complete_pair(std::min(i, j), std::max(i, j), next_.held.without(two), landing, v_after,
+            if (complete_pair(std::min(i, j), std::max(i, j), next_.mode.without(two), landing, v_after,
                               below_rounding))
                 return true;
         }
@@ -249,17 +249,17 @@ bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool be
     return false;
 }
 
-bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet held, ContactSet landing,
+bool Execution::complete_pair(std::size_t first, std::size_t second, Mode others, ContactSet landing,
                               const Vector& v_after, bool below_rounding) {
     const std::array<std::size_t, 2> pair{first, second};
     PairCollision collision{next_.state, {}, {}};
     double speed = 0.0, approach = 0.0, height = 0.0;  // of the gap; the others with |dh| = 1, in any unit
     for (std::size_t k = 0; k < 2; ++k) {
-        const Contact contact = surfaces_->of(pair[k], held).at(next_.state);
+        const Contact contact = surfaces_->of(pair[k], others).at(next_.state);
         const bool closed =
-            landing.contains(pair[k]) || next_.held.contains(pair[k]) || next_.touching.contains(pair[k]);
+            landing.contains(pair[k]) || next_.mode.is_held(pair[k]) || next_.touching.contains(pair[k]);
         collision.h[k] = closed ? 0.0 : contact.h;
-        collision.sigma[k] = next_.held.contains(pair[k]) ? 0.0 : contact.hdot;
+        collision.sigma[k] = next_.mode.is_held(pair[k]) ? 0.0 : contact.hdot;
         const double slope = surfaces_->of(pair[k]).at(next_.state).g.norm();
         height += collision.h[k] / slope;
         if (!landing.contains(pair[k])) continue;
@@ -268,26 +268,27 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     }
     // Quick: what is high above the tolerances needs no look.
     if (!below_rounding && (approach > 1e-2 || height > 1e-4)) return false;
-    const ContactSet unpressed = always_unpressed(held);
+    const ContactSet unpressed = always_unpressed(others);
     const auto same = [&](const PairOf& known) {
-        return known.first == first && known.second == second && known.held == held && known.unpressed == unpressed;
+        return known.first == first && known.second == second && known.mode == others && known.unpressed == unpressed;
     };
     auto known = std::find_if(all_pairs_.begin(), all_pairs_.end(), same);
     if (known == all_pairs_.end()) {
-        const Closed both = surfaces_->at(next_.state, held.with(first).with(second));
+        const Closed both = surfaces_->at(next_.state, others.held().with(first).with(second));
         ContactSet places;
         for (std::size_t i = 0; i < both.which.size(); ++i) places = places.with(i);
         if (!HeldBlock<double>::of(both.W, places)) return false;  // they cannot both be held with the others
         const Ground ground;
         const std::array e{surfaces_->restitution(first).enclosure, surfaces_->restitution(second).enclosure};
         all_pairs_.push_back(
-            {first, second, held, unpressed,
-             std::make_unique<PairConditions>(*model_, run_, e, first, second, held, unpressed, ground)});
+            {first, second, others, unpressed,
+             std::make_unique<PairConditions>(*model_, run_, e, first, second, others, unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
     auto completion = timed([&] { return known->conditions->certify(collision, below_rounding); });
     if (!completion) return false;
-    const ContactSet all = held.with(first).with(second);
+    const ContactSet two = ContactSet::of(first).with(second), all = others.held().with(two);
+    const Mode mode = others.with(two, ContactState::held);
     State restart = completion->restart;
     if (!surfaces_->project(restart, all, all)) return false;
     const State before = next_.state;
@@ -300,15 +301,15 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, ContactSet 
     cut_error_ += std::max(completion->certificate.shadowing_position.value_or(0.0),
                            completion->certificate.shadowing_velocity.value_or(0.0));
     event.certificate = std::move(completion->certificate);
-    event.contacts = ContactSet::of(first).with(second);
-    event.held = all;
+    event.contacts = two;
+    event.mode = mode;
     next_.state = restart;
     next_.touching = next_.carried = next_.unwatched = {};
-    next_.unpressed = unpressed_of(next_.unpressed, all);
+    next_.unpressed = unpressed_of(next_.unpressed, mode);
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (all.contains(i)) next_.starts[i] = {};
     change_rates(before.v, all);
-    begin_stretch(all, std::min(event.t, run_.options.end_time));
+    begin_stretch(mode, std::min(event.t, run_.options.end_time));
     return true;
 }
 
@@ -326,7 +327,7 @@ bool Execution::moves_within_rounding(std::size_t which, double speed) {
     const double way = speed * last_step_ / surfaces_->of(which).at(next_.state).g.norm();
     if (!(way < 0x1p-40 * (1.0 + next_.state.q.cwiseAbs().maxCoeff()))) return false;  // cheap
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (i == which || next_.held.contains(i) || next_.touching.contains(i)) continue;
+        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         const double known = few * surfaces_->of(i).gap_error(next_.state);
         if (other.h < known && std::abs(other.hdot) * last_step_ < known && speed * last_step_ < known) return true;

@@ -41,7 +41,7 @@ SideBySide::SideBySide(const std::shared_ptr<const Model>& model, Vectors vector
       end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
       has_lanes_(model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
-                 !model->motion(ContactSet::of(0)).series.is_partial()),
+                 !model->motion(Mode::holding(ContactSet::of(0))).series.is_partial()),
       vectors_(vectors) {
     result_.starts.resize(1);
     if (has_lanes_) moving_ = moving_parameters(*model);
@@ -127,7 +127,7 @@ bool SideBySide::Member::is_brief() const {
 void SideBySide::go_on(Member& member, bool refused) {
     Execution& run = member.execution;
     while ((member.request = run.next()) != nullptr) {
-        const bool flying = member.request->held.empty();
+        const bool flying = member.request->mode.is_free();
         if (member.request->begins || (member.leaves && member.request->plain)) member.alone = member.leaves = false;
         if (member.request->plain && !member.alone && !refused) {
             const Kind kind = !flying ? Kind::contact : member.is_brief() ? Kind::brief_flight : Kind::flight;

@@ -11,7 +11,7 @@ namespace achilles {
 // The least tolerance that steps can serve: below it they are rounding.
 inline constexpr double exact_tolerance = 1e-14;
 
-// How what is watched along a step leaves the step's start: the gap in flight, the contact force in contact.
+// How what the law of a contact watches along a step leaves the step's start: its gap, or its force.
 struct EventStart {
     Gap gap;                   // in contact its state_error alone has a meaning
     int multiplicity = 0;      // of the zero there: of h in flight; of the force 1 where it starts from zero
@@ -21,7 +21,7 @@ struct EventStart {
 // A step of smooth motion, from the state's t to `until` at the latest, or to the first event in (t, until]: an open gap
 // closes, the force of a held contact vanishes. A zero at t itself is none, as often as multiplicity says.
 struct StepRequest {
-    ContactSet held;      // of independent gradients
+    Mode mode;            // what it holds has independent gradients
     ContactSet touching;  // open as far as the motion goes, but their gap stays 0: no event of theirs is looked for
     // Of those touching, what rests with the held ones since its gradient depends on theirs: it may bear a part of the
     // forces that the held ones are reckoned to bear (theory-gaps.md 2.5). The others that touch bear none.
@@ -38,7 +38,8 @@ struct StepRequest {
     bool exactly = false;  // at exact_tolerance instead of the run's
     bool plain = false;    // steps that show at once that they have no event, or just an impact, may answer it
 
-    ContactSet resting() const { return held.with(carried); }
+    ContactSet held() const { return mode.held(); }
+    Mode resting() const { return mode.with(carried, ContactState::held); }
 };
 
 // What came of a request: from its state to that of the result there is no event, and there what `end` says.

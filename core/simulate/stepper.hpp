@@ -11,7 +11,7 @@
 
 #include "model/model.hpp"
 #include "number/polynomial.hpp"
-#include "run/contact_set.hpp"
+#include "run/mode.hpp"
 #include "run/trajectory.hpp"
 #include "series/gap.hpp"
 
@@ -24,9 +24,9 @@ class Stepper {
  public:
     virtual ~Stepper() = default;
 
-    // Stands at a state, ready to step on from there while these contacts are held. One gap for each contact; of a held
+    // Stands at a state, ready to step on from there in this mode. One gap for each contact; of a held
     // one's only the state_error counts.
-    virtual void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) = 0;
+    virtual void initialize(Mode mode, const State& state, std::span<const Gap> gaps) = 0;
     // One accepted step from where the stepper stands, at this time, not longer than `longest`; `first` > 0 is a step that
     // is known to be sensible after an impact. `least` is the shortest that time can resolve.
     virtual StepFailure do_step(double time, double longest, double first, double least) = 0;

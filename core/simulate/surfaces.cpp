@@ -57,12 +57,12 @@ Surfaces::Surfaces(const Model& model, const Run& run)
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
 }
 
-ContactKinematics& Surfaces::of(std::size_t contact, ContactSet held) {
-    if (held.empty()) return free_[contact];
-    const std::pair key(held, contact);
-    const auto known = while_held_.find(key);
-    if (known != while_held_.end()) return known->second;
-    return while_held_.emplace(key, ContactKinematics(*model_, run_, contact, held)).first->second;
+ContactKinematics& Surfaces::of(std::size_t contact, Mode mode) {
+    if (mode.is_free()) return free_[contact];
+    const ContactInMode key(mode, contact);
+    const auto known = in_modes_.find(key);
+    if (known != in_modes_.end()) return known->second;
+    return in_modes_.emplace(key, ContactKinematics(*model_, run_, contact, mode)).first->second;
 }
 
 Closed Surfaces::at(const State& state, ContactSet contacts) {
@@ -83,20 +83,21 @@ Closed Surfaces::at(const State& state, ContactSet contacts) {
     return closed;
 }
 
-bool Surfaces::is_nearly_free(std::size_t contact, ContactSet held, const State& state, const State& scale) {
+bool Surfaces::is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale) {
     constexpr double roundings = 0x1p-26;  // far more than a projection leaves
     const State distances{roundings * scale.q, roundings * scale.v, roundings * scale.t};
-    const Interval hddot = of(contact, held).hddot_within(distances, state);
+    const Interval hddot = of(contact, mode).hddot_within(distances, state);
     return !certainly_positive(hddot) && !certainly_negative(hddot);
 }
 
-bool Surfaces::needs_no_force(std::size_t contact, ContactSet held, const State& state, const State& scale) {
-    if (!is_nearly_free(contact, held, state, scale)) return false;
-    if (!held.empty()) {
-        const Closed closed = at(state, held.with(contact));
-        if (!HeldBlock<double>::of(closed.W, closed.places_of(held.with(contact)))) return false;
+bool Surfaces::needs_no_force(std::size_t contact, Mode mode, const State& state, const State& scale) {
+    if (!is_nearly_free(contact, mode, state, scale)) return false;
+    if (!mode.is_free()) {
+        const ContactSet all = mode.held().with(contact);
+        const Closed closed = at(state, all);
+        if (!HeldBlock<double>::of(closed.W, closed.places_of(all))) return false;
     }
-    return unpressed().needs_no_force(contact, held) || unpressed().needs_no_force_from(state, contact, held);
+    return unpressed().needs_no_force(contact, mode) || unpressed().needs_no_force_from(state, contact, mode);
 }
 
 UnpressedContacts& Surfaces::unpressed() {
@@ -141,9 +142,9 @@ std::optional<double> Surfaces::project_several(State& state, ContactSet onto, C
     }
 }
 
-bool Surfaces::land_beside(State& state, std::size_t contact, ContactSet held, Contact& landed) {
-    if (!project(state, held.with(contact), held)) return false;
-    landed = of(contact, held).at(state);
+bool Surfaces::land_beside(State& state, std::size_t contact, Mode mode, Contact& landed) {
+    if (!project(state, mode.held().with(contact), mode.held())) return false;
+    landed = of(contact, mode).at(state);
     return true;
 }
 

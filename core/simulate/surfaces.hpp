@@ -35,19 +35,19 @@ class Surfaces {
     const Restitution& restitution(std::size_t contact) const { return restitutions_[contact]; }
     // Takes the restitutions of another run. Its other parameters must be those of the present run.
     void bounce_as(const Run& run) { restitutions_ = model_->restitutions(run.parameters); }
-    // A contact while none is held, and while these are.
+    // A contact in free flight, and in a mode in which it is open.
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }
-    ContactKinematics& of(std::size_t contact, ContactSet held);
+    ContactKinematics& of(std::size_t contact, Mode mode);
 
     // At most most_contacts of them.
     Closed at(const State& state, ContactSet contacts);
-    // Whether hddot of a contact, while these are held, may be 0 but for roundings of `scale`, which is what the coordinates,
+    // Whether hddot of a contact, in this mode, may be 0 but for roundings of `scale`, which is what the coordinates,
     // the rates and the time have come to so far.
-    bool is_nearly_free(std::size_t contact, ContactSet held, const State& state, const State& scale);
-    // Whether a contact that is closed with these is proved to stay so without a force (theory-gaps.md 2.7).
-    bool needs_no_force(std::size_t contact, ContactSet held, const State& state, const State& scale);
+    bool is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale);
+    // Whether a contact that is closed beside what is held is proved to stay so without a force (theory-gaps.md 2.7).
+    bool needs_no_force(std::size_t contact, Mode mode, const State& state, const State& scale);
     // The same at every state of the run.
-    bool never_needs_force(std::size_t contact, ContactSet held) { return unpressed().needs_no_force(contact, held); }
+    bool never_needs_force(std::size_t contact, Mode mode) { return unpressed().needs_no_force(contact, mode); }
     // Moves q onto the surfaces of all these contacts in one solve, until every |h| is at rounding level, and v so that
     // hdot = 0 of those that are still. The least gap of these; nothing where that fails: dh = 0, gaps that contradict one
     // another, or more than most_contacts.
@@ -56,22 +56,22 @@ class Surfaces {
         Contact contact;
         return free_[onto.only()].project(state, still.empty(), contact) ? std::optional(contact.h) : std::nullopt;
     }
-    // Lands a contact while others are held: on all of their surfaces, its hdot kept. Gives it as that motion sees it; false
-    // where that fails.
-    bool land(State& state, std::size_t contact, ContactSet held, Contact& landed) {
-        return held.empty() ? free_[contact].project(state, true, landed) : land_beside(state, contact, held, landed);
+    // Lands a contact beside what is held: on all of their surfaces, its hdot kept. Gives it as that motion sees it;
+    // false where that fails.
+    bool land(State& state, std::size_t contact, Mode mode, Contact& landed) {
+        return mode.is_free() ? free_[contact].project(state, true, landed) : land_beside(state, contact, mode, landed);
     }
 
  private:
     std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
     UnpressedContacts& unpressed();
-    bool land_beside(State& state, std::size_t contact, ContactSet held, Contact& landed);
+    bool land_beside(State& state, std::size_t contact, Mode mode, Contact& landed);
 
     const Model* model_;
     Run run_;
     std::vector<Restitution> restitutions_;
     std::vector<ContactKinematics> free_;
-    std::map<std::pair<ContactSet, std::size_t>, ContactKinematics> while_held_;
+    std::map<ContactInMode, ContactKinematics> in_modes_;
     std::unique_ptr<UnpressedContacts> unpressed_;  // made where it is first asked for
 };
 

@@ -31,15 +31,15 @@ Taylor::Taylor(const Model& model, const Run& run)
       step_(dof_, model.contacts(), tolerance_),
       gap_units_(model, run) {}
 
-void Taylor::initialize(ContactSet held, const State& state, std::span<const Gap> gaps) {
-    if (motion_ == nullptr || held != held_) {
-        auto known = motions_.find(held);
+void Taylor::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
+    if (motion_ == nullptr || mode != mode_) {
+        auto known = motions_.find(mode);
         if (known == motions_.end()) {
-            const SeriesProgram& series = model_->motion(held).series;
-            known = motions_.emplace(held, Expansion{{series, parameters_}, {series, tolerance_}}).first;
+            const SeriesProgram& series = model_->motion(mode).series;
+            known = motions_.emplace(mode, Expansion{{series, parameters_}, {series, tolerance_}}).first;
         }
         motion_ = &known->second;
-        held_ = held;
+        mode_ = mode;
     }
     const std::vector<double>& units = gap_units_.at(state);
     for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
@@ -57,7 +57,7 @@ StepFailure Taylor::expand(double longest) {
         from[i] = to_.q.data()[i];
         from[dof_ + i] = to_.v.data()[i];
     }
-    const auto start = step_.expand(motion_->series, motion_->order, held_, longest);
+    const auto start = step_.expand(motion_->series, motion_->order, mode_, longest);
     if (!start.numbers) return StepFailure::not_a_number;
     return start.regular && step_.order() > 0 ? StepFailure::none : StepFailure::left_the_domain;
 }

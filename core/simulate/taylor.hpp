@@ -16,7 +16,7 @@ class Taylor : public Stepper {
  public:
     Taylor(const Model& model, const Run& run);
 
-    void initialize(ContactSet held, const State& state, std::span<const Gap> gaps) override;
+    void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
@@ -45,9 +45,9 @@ class Taylor : public Stepper {
     double tolerance_;
     const Model* model_;
     std::vector<double> parameters_;
-    std::map<ContactSet, Expansion> motions_;  // those met so far
-    Expansion* motion_ = nullptr;              // of them, that of held_
-    ContactSet held_;
+    std::map<Mode, Expansion> motions_;  // those met so far
+    Expansion* motion_ = nullptr;        // of them, that of mode_
+    Mode mode_;
     TaylorStep<double> step_;
     GapUnits gap_units_;
     State to_;

@@ -9,9 +9,10 @@ Work::Work(const Model& model, const Run& run)
 
 double Work::along(const Piece& piece, std::span<const double> coefficients, double from, double to) {
     if (!any_ || !(to > from)) return 0.0;
-    auto known = powers_.find(piece.carriers);
+    const Mode motion = piece.motion();
+    auto known = powers_.find(motion);
     if (known == powers_.end())
-        known = powers_.emplace(piece.carriers, model_->evaluator(model_->power(piece.carriers), parameters_)).first;
+        known = powers_.emplace(motion, model_->evaluator(model_->power(motion), parameters_)).first;
     Evaluator<double>& power = known->second;
     const auto power_at = [&](double t) {
         set_state(power, state_in(piece, coefficients, dof_, t));

@@ -26,7 +26,7 @@ class Work {
     Eigen::Index dof_;
     const Model* model_;
     std::vector<double> parameters_;
-    std::map<ContactSet, Evaluator<double>> powers_;  // of the motions met so far
+    std::map<Mode, Evaluator<double>> powers_;  // of the motions met so far
 };
 
 }  // namespace achilles

@@ -259,8 +259,8 @@ void Measuring::at_end(const Trajectory& trajectory, std::vector<double>& number
     Sample sample;
     sample.t = trajectory.end_time;
     sample.phase = trajectory.end_phase;
-    sample.held = trajectory.end_held;
-    sample.contact = !sample.held.empty();
+    sample.mode = trajectory.end_mode;
+    sample.contact = !sample.mode.is_free();
     sample.carriers = trajectory.phases.back().carriers;
     sample.state = trajectory.end;
     sample.work = trajectory.work;

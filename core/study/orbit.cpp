@@ -47,7 +47,7 @@ void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
         const std::size_t contact = event.contacts.only();
         const double e = model.restitution(run.run.parameters, contact);
         if (!(e > 0.0 && e < 1.0)) continue;
-        auto hddot = model.evaluator(model.programs_of(contact, event.held.without(contact)).normal_acceleration,
+        auto hddot = model.evaluator(model.programs_of(contact, event.mode.without(contact)).normal_acceleration,
                                      run.run.parameters);
         set_state(hddot, {event.q, event.v_after, event.t});
         hddot.run();
@@ -61,7 +61,7 @@ void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
 // Two for every contact held at one time, and for an impact that takes the whole speed.
 std::size_t forgotten(const Model& model, const Trajectory& run) {
     int most = 0;
-    for (const Phase& phase : run.phases) most = std::max(most, phase.held.count());
+    for (const Phase& phase : run.phases) most = std::max(most, phase.mode.held().count());
     for (const Event& event : run.events)
         for (std::size_t i = 0; i < model.contacts(); ++i)
             if (event.contacts.contains(i) && model.restitution(run.run.parameters, i) == 0.0) most = std::max(most, 1);
@@ -140,7 +140,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
         there << d.end->q, d.end->v;
         orbit.by_parameters.topRows(2 * n) = there.leftCols(2 * n) * by.topRows(2 * n) + there.rightCols(P);
         // At a start time that stands, the end time moves with the period.
-        const VectorXd F = map.rate(lap.parameters, run.end, run.end_held);
+        const VectorXd F = map.rate(lap.parameters, run.end, run.end_mode);
         if (P > 0) orbit.by_parameters.topRows(2 * n) += F * by.row(2 * n);
         orbit.state = run.end;
         orbit.state.t = start_time;
@@ -197,7 +197,7 @@ ClosedLap put_in_place(const ReturnMap& map, const Newton& newton, ClosedLap clo
     };
     const auto& events = closed.shot.run.events;
     const bool any = std::any_of(events.begin(), events.end(),
-                                 [](const Event& event) { return event.is_release() && event.held.empty(); });
+                                 [](const Event& event) { return event.is_release() && event.mode.is_free(); });
     if (!map.is_driven() && any && !last_is_release()) closed = newton.close(rebased(map, closed.lap, true));
     Lap lap = closed.lap;
     const double shifts = shifts_from_start(map, closed);

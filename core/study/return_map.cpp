@@ -74,10 +74,10 @@ ReturnMap::Value ReturnMap::value(std::size_t output, const std::vector<double>&
     return value;
 }
 
-VectorXd ReturnMap::rate(const std::vector<double>& parameters, const State& state, ContactSet held) const {
+VectorXd ReturnMap::rate(const std::vector<double>& parameters, const State& state, Mode mode) const {
     const Index n = dof();
     Model::MotionEvaluators motions;
-    auto& motion = model_->lazily(motions, held, parameters);
+    auto& motion = model_->lazily(motions, mode, parameters);
     set_state(motion, state);
     motion.run();
     VectorXd F(2 * n);
@@ -116,7 +116,7 @@ Shot ReturnMap::shoot(const Lap& lap, std::optional<std::size_t> parameter) cons
     if (shot.run.outcome.kind != Outcome::Kind::end_time)
         throw NoOrbit(
             fmt::format("a trial run stopped at t = {:.10g} s: {}", shot.run.end_time, shot.run.outcome.message));
-    if (!shot.run.phases.front().held.empty() || !shot.run.end_held.empty())
+    if (!shot.run.phases.front().mode.is_free() || !shot.run.end_mode.is_free())
         throw NoOrbit(
             "the search reached a start in contact, but needs one in free flight; try another guess (--from, --set)");
     const auto P = static_cast<Index>(lap.parameters.size());
@@ -267,16 +267,16 @@ struct Flight {
 std::vector<Flight> flights_of(const Trajectory& run) {
     std::vector<Flight> flights;
     double from = run.run.options.start_time;
-    ContactSet held = run.phases.front().held;
+    Mode mode = run.phases.front().mode;
     bool released = false;
     const auto add = [&](double to) {
-        if (held.empty() && to > from) flights.push_back({from, to, released});
+        if (mode.is_free() && to > from) flights.push_back({from, to, released});
     };
     for (const Event& event : run.events) {
         // What follows the collision at which a bouncing is cut is its Zeno point.
         add(event.is_zeno() ? from : event.t);
         from = event.t;
-        held = event.held;
+        mode = event.mode;
         released = event.is_release();
     }
     add(run.end_time);
@@ -335,7 +335,7 @@ double missed(const ReturnMap& map, const State& scale, const State& a, const St
 std::optional<Lap> from_releases(const ReturnMap& map, const Trajectory& run) {
     std::vector<std::size_t> releases;
     for (std::size_t i = 0; i < run.events.size(); ++i)
-        if (run.events[i].is_release() && run.events[i].held.empty()) releases.push_back(i);
+        if (run.events[i].is_release() && run.events[i].mode.is_free()) releases.push_back(i);
     if (releases.size() < 2) return std::nullopt;
     const State scale = scale_of(run);
     const auto state = [&](std::size_t i) {

@@ -66,7 +66,7 @@ class ReturnMap {
     Shot shoot(const Lap& lap, std::optional<std::size_t> parameter = {}) const;
     // The run alone. Throws NoOrbit where it cannot start, or nobody waits any more.
     Trajectory run_of(const Lap& lap, double length) const;
-    Eigen::VectorXd rate(const std::vector<double>& parameters, const State& state, ContactSet held) const;
+    Eigen::VectorXd rate(const std::vector<double>& parameters, const State& state, Mode mode) const;
 
  private:
     Value value(std::size_t output, const std::vector<double>& parameters) const;

@@ -40,7 +40,7 @@ Interval BoundsAlong::value(const Trajectory& trajectory, const Piece& piece, do
         rates_[i] = slope / length;
     }
     section_.clock() = Interval(from, to);
-    section_.input(layout_.contact()) = Interval(piece.held.empty() ? 0.0 : 1.0);
+    section_.input(layout_.contact()) = Interval(piece.mode.is_free() ? 0.0 : 1.0);
     section_.input(layout_.loss()) = Interval(piece.loss);
     section_.run();
     return section_.output(0);
@@ -195,10 +195,10 @@ std::vector<Moment> events_of(const Trajectory& trajectory, const Section& secti
         Sample& sample = moment.sample;
         sample.t = event.t;
         sample.j = static_cast<int>(i + 1);
-        sample.held = event.held;
-        sample.contact = !event.held.empty();
+        sample.mode = event.mode;
+        sample.contact = !event.mode.is_free();
         sample.phase = sample.contact ? Phase::Kind::constrained : Phase::Kind::hybrid;
-        sample.carriers = carriers_of(trajectory, event.held, event.t);
+        sample.carriers = carriers_of(trajectory, event.mode, event.t);
         sample.state = {event.q, event.v_after, event.t};
         sample.work = event.work;
         sample.loss = event.loss;

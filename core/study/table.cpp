@@ -74,7 +74,7 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count, 
         numbers.clear();
         worker.measuring.at_end(*trajectory, numbers);
         std::copy(numbers.begin(), numbers.end(), rows.numbers.begin() + static_cast<std::ptrdiff_t>(i * width));
-        rows.held[i] = trajectory->end_held;
+        rows.held[i] = trajectory->end_mode.held();
         rows.ends[i] = RunEnd(trajectory->outcome.kind);
         rows.signatures[i] = signature_of(*trajectory);
     };
@@ -102,7 +102,7 @@ void SweepTable::add_sections(Measuring& measuring, const Trajectory& trajectory
     for (const Moment& moment : moments) {
         rows.points.push_back(point);
         measuring.at(trajectory, moment, rows.numbers);
-        rows.held.push_back(moment.sample.held);
+        rows.held.push_back(moment.sample.mode.held());
         rows.ends.push_back(end);
         rows.signatures.push_back(signature);
         rows.times.push_back(moment.sample.t);
@@ -127,7 +127,7 @@ Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t c
         }
         rows.points.push_back(point);
         worker.measuring.at_end(*trajectory, rows.numbers);
-        rows.held.push_back(trajectory->end_held);
+        rows.held.push_back(trajectory->end_mode.held());
         rows.ends.emplace_back(trajectory->outcome.kind);
         rows.signatures.push_back(signature_of(*trajectory));
     }

@@ -39,9 +39,9 @@ Sample sample_at(const Trajectory& trajectory, const Event& event) {
     sample.state = {event.q, event.v_after, event.t};
     sample.work = event.work;
     sample.loss = event.loss;
-    sample.held = event.held;
-    sample.contact = !event.held.empty();
-    sample.carriers = carriers_of(trajectory, event.held, event.t);
+    sample.mode = event.mode;
+    sample.contact = !event.mode.is_free();
+    sample.carriers = carriers_of(trajectory, event.mode, event.t);
     return sample;
 }
 
@@ -573,7 +573,7 @@ std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, cons
             return high >= time.low && low <= time.high && low <= end;
         };
         for (const Phase& phase : trajectory.phases) {
-            if (!phase.held.contains(contact) || !is_seen(phase.start, phase.end)) continue;
+            if (!phase.mode.is_held(contact) || !is_seen(phase.start, phase.end)) continue;
             const double until = std::min(phase.end, end);
             if (!marks.empty() && phase.start - marks.back().high < near)
                 marks.back().high = until;

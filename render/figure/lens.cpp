@@ -44,15 +44,16 @@ std::size_t the_contact(const Event& zeno) {
     return contact;
 }
 
-ContactSet held_while_bouncing(const Event& zeno) { return zeno.held.without(zeno.contacts); }
+Mode mode_while_bouncing(const Event& zeno) { return zeno.mode.without(zeno.contacts); }
 
 // Where the row begins: the impacts of that contact alone that nothing else interrupts, while the same others are held.
 std::size_t first_impact(const Trajectory& trajectory, std::size_t zeno) {
-    const ContactSet contact = trajectory.events[zeno].contacts, held = held_while_bouncing(trajectory.events[zeno]);
+    const ContactSet contact = trajectory.events[zeno].contacts;
+    const Mode mode = mode_while_bouncing(trajectory.events[zeno]);
     std::size_t first = zeno;
     while (first > 0) {
         const Event& before = trajectory.events[first - 1];
-        if (!before.is_impact() || !(before.contacts == contact) || !(before.held == held)) break;
+        if (!before.is_impact() || !(before.contacts == contact) || !(before.mode == mode)) break;
         --first;
     }
     return first;
@@ -70,7 +71,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     const std::size_t contact = the_contact(zeno);
     Lens lens;
     lens.e_ = model.evaluator(model.restitution(contact), trajectory.run.parameters).output(0);
-    auto flight = model.evaluator(model.motion(held_while_bouncing(zeno)).program, trajectory.run.parameters);
+    auto flight = model.evaluator(model.motion(mode_while_bouncing(zeno)).program, trajectory.run.parameters);
     set_state(flight, State{zeno.q, zeno.v_after, zeno.t});
     flight.run();
     const double a = -flight.hddot(contact);

@@ -155,10 +155,10 @@ Point Stage::rest_below(const Sample& now, const Drawing& seen, Grip& grip, cons
 
 Drawing Stage::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {
     const auto& parameters = trajectory_.run.parameters;
-    Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.held);
+    Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.mode.held());
     touch_.rest(drawing, now.t, now.state);
     thin_out_large(drawing.shapes, seen);
-    touch_.add_ground(drawing, now.t, now.state, now.held, theme);
+    touch_.add_ground(drawing, now.t, now.state, now.mode.held(), theme);
     if (layers.way) add_way(drawing.shapes, way(now, seen), now.t, theme);
     if (layers.strobe)
         for (const Sample& then : poses_)
@@ -253,7 +253,7 @@ Drawing Sides::draw(std::size_t side, const Sample& now, const Drawing& seen, co
         }
         Shape& line = drawing.shapes.emplace_back();
         line.points = field.zero_line();
-        const bool is_held = now.held.contains(contact);
+        const bool is_held = now.mode.is_held(contact);
         line.stroke.color = is_held ? phase_color(theme, Phase::Kind::constrained) : theme.surface;
         line.stroke.width = is_held ? 2.75 : 2.0;
         const Point out = away(gap, here, 1e-6 * seen.size);

@@ -90,7 +90,7 @@ TEST(Equations, of_several_contacts) {
     EXPECT_NE(text.find("Zeno condition of "), std::string::npos) << text;
     EXPECT_NE(text.find(" is held: h\u0308 < 0 where h = h\u0307 = 0 for both"), std::string::npos) << text;
     EXPECT_GE(sheet.conditions.size(), 4U);
-    for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.held.contains(condition.contact));
+    for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.mode.is_held(condition.contact));
 }
 
 // Lines stand below one another, none outside of the page, and no line of one column in the next.

@@ -180,7 +180,7 @@ std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
     if (trajectory.outcome.kind != Outcome::Kind::end_time || other.outcome.kind != Outcome::Kind::end_time) return {};
     // On the way to a Zeno point one has cut the bouncing, and the other one perhaps not yet.
     for (const Trajectory* one : {&trajectory, &other})
-        if (!one->pieces.empty() && one->pieces.back().held != one->end_held) return {};
+        if (!one->pieces.empty() && one->pieces.back().mode.held() != one->end_mode.held()) return {};
     const Distance apart = between(outline_of(trajectory), outline_of(other));
     if (apart.size <= 1e-8) return {};
     double sensitive = 1.0;

@@ -26,7 +26,7 @@ class Count {
         for (long trial = 0; trial < trials; ++trial) {
             const Trial one = source.next();
             collisions += one.certified.empty() ? 0 : 1;
-            with_held += one.certified.empty() || one.held.empty() ? 0 : 1;
+            with_held += one.certified.empty() || one.mode.is_free() ? 0 : 1;
             add(tallies, one, source.model());
         }
         print(system, tallies);
@@ -39,7 +39,7 @@ class Count {
         for (long run = 0; run < runs; ++run)
             for (const Trial& one : source.next_run()) {
                 ++points;
-                with_held += one.held.empty() ? 0 : 1;
+                with_held += one.mode.is_free() ? 0 : 1;
                 add(tallies, one, source.model());
             }
         print(system + " runs", tallies);

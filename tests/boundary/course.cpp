@@ -37,7 +37,7 @@ void read_events(const Trajectory& trajectory, Course& course) {
     const Phase& last = trajectory.phases.back();
     if (last.kind == Phase::Kind::constrained) return;
     for (std::size_t i = last.first_piece; i < trajectory.pieces.size(); ++i) {
-        if (trajectory.pieces[i].held.empty()) continue;
+        if (trajectory.pieces[i].mode.held().empty()) continue;
         cut_at(course.stretches.back(), trajectory.pieces[i].start);
         break;
     }

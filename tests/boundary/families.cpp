@@ -49,7 +49,7 @@ std::vector<double> Crest::steps(const Question& question, Way way, double toler
     for (const Piece& piece : trajectory.pieces) {
         double a = 0.0;
         for (std::size_t k = piece.degree + 1; k-- > 0;) a += trajectory.coefficients[piece.first + 4 * k];
-        if (!piece.held.empty()) result.push_back(a);
+        if (!piece.mode.held().empty()) result.push_back(a);
     }
     return result;
 }

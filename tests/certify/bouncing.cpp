@@ -58,27 +58,28 @@ Real distance(const Reals& a, const Reals& b) {
 
 template <class Number>
 TrueMotionOf<Number>::TrueMotionOf(const Model& model, const Numbers& parameters, double longest_step,
-                                   std::size_t contact, ContactSet held)
+                                   std::size_t contact, Mode mode)
     : dof_(static_cast<std::size_t>(model.dof())),
       clock_(model.layout().t()),
       longest_step_(longest_step),
       e_(evaluator<Number>(model, model.restitution(contact), parameters).output(0)),
-      flight_(model.motion(held).program, model.layout(), parameters),
-      contact_motion_(model.motion(held.with(contact)).program, model.layout(), parameters),
+      flight_(model.motion(mode).program, model.layout(), parameters),
+      contact_motion_(model.motion(mode.with(contact, ContactState::held)).program, model.layout(), parameters),
       gap_(model.gap(contact), model.layout(), parameters),
-      release_(model.programs_of(contact, held).release_terms, model.layout(), parameters),
-      surface_(evaluator<Number>(model, model.programs_of(contact, held).contact_terms, parameters)),
+      release_(model.programs_of(contact, mode).release_terms, model.layout(), parameters),
+      surface_(evaluator<Number>(model, model.programs_of(contact, mode).contact_terms, parameters)),
       free_surface_(evaluator<Number>(model, model.programs_of(contact).contact_terms, parameters)),
-      normal_(evaluator<Number>(model, model.programs_of(contact, held).release_terms, parameters)),
-      acceleration_(evaluator<Number>(model, model.motion(held.with(contact)).program, parameters)) {
+      normal_(evaluator<Number>(model, model.programs_of(contact, mode).release_terms, parameters)),
+      acceleration_(
+          evaluator<Number>(model, model.motion(mode.with(contact, ContactState::held)).program, parameters)) {
     for (std::size_t j = 0; j < model.contacts(); ++j) {
         if (j == contact) continue;
-        if (held.contains(j)) {
-            const auto terms = [&](ContactSet others) {
+        if (mode.is_held(j)) {
+            const auto terms = [&](Mode others) {
                 return evaluator<Number>(model, model.programs_of(j, others).contact_terms, parameters);
             };
-            held_.push_back({terms(held.without(j).with(contact)), terms(held.without(j)),
-                             evaluator<Number>(model, model.programs_of(j, held.without(j)).force, parameters)});
+            held_.push_back({terms(mode.without(j).with(contact, ContactState::held)), terms(mode.without(j)),
+                             evaluator<Number>(model, model.programs_of(j, mode.without(j)).force, parameters)});
         } else {
             open_.push_back(evaluator<Number>(model, model.gap(j), parameters));
         }

@@ -80,10 +80,10 @@ class TrueMotionOf {
     // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that
     // long.
     TrueMotionOf(const Model& model, const Run& run, double longest_step = 1e300, std::size_t contact = 0,
-                 ContactSet held = {})
-        : TrueMotionOf(model, Numbers(run.parameters.begin(), run.parameters.end()), longest_step, contact, held) {}
+                 Mode mode = {})
+        : TrueMotionOf(model, Numbers(run.parameters.begin(), run.parameters.end()), longest_step, contact, mode) {}
     TrueMotionOf(const Model& model, const Numbers& parameters, double longest_step = 1e300, std::size_t contact = 0,
-                 ContactSet held = {});
+                 Mode mode = {});
 
     // The collision that a computed state stands for: q moved along n until h = 0 to working precision, of what is
     // held as well, whose hdot becomes 0; else v as it is.

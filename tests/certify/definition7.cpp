@@ -25,16 +25,16 @@ std::pair<double, double> eta_and_zeta(const Terms& terms, std::size_t n) {
 
 }  // namespace
 
-Definition7::Definition7(const Model& model, const Run& run, std::size_t contact, ContactSet held)
+Definition7::Definition7(const Model& model, const Run& run, std::size_t contact, Mode mode)
     : dof_(static_cast<std::size_t>(model.dof())),
       kinetic_(run.options.truncation.reinitialization == Reinitialization::kinetic),
       e_(model.evaluator(model.restitution(contact), run.parameters).output(0)),
-      hddot_(model.evaluator<Interval>(model.bouncing(contact, held).hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing(contact, held).gradient, run.parameters),
-             model.bouncing(contact, held).variables),
-      box_(model.evaluator<Interval>(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      point_(model.evaluator(model.programs_of(contact, held).definition7_terms, run.parameters)),
-      surface_(model.evaluator(model.programs_of(contact, held).contact_terms, run.parameters)) {}
+      hddot_(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing(contact, mode).gradient, run.parameters),
+             model.bouncing(contact, mode).variables),
+      box_(model.evaluator<Interval>(model.programs_of(contact, mode).definition7_terms, run.parameters)),
+      point_(model.evaluator(model.programs_of(contact, mode).definition7_terms, run.parameters)),
+      surface_(model.evaluator(model.programs_of(contact, mode).contact_terms, run.parameters)) {}
 
 Definition7::Factors Definition7::factors(const Collision& collision, const Maxima& m) {
     set_state(surface_, collision.before);

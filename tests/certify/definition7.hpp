@@ -10,7 +10,7 @@ namespace achilles::test {
 
 class Definition7 {
  public:
-    Definition7(const Model& model, const Run& run, std::size_t contact = 0, ContactSet held = {});
+    Definition7(const Model& model, const Run& run, std::size_t contact = 0, Mode mode = {});
 
     // What the bounds on time, position and velocity are per unit of the impact speed: eps_t/c1, eps_q'/c2,
     // eps_v'/c3.

@@ -30,9 +30,9 @@ Slope restart_slope(const std::shared_ptr<const Model>& model, Reinitialization 
     const Trajectory trajectory = simulate(model, run);
     const Event& event = zeno_event(trajectory, zeno);
     const std::size_t which = only(event.contacts);
-    const ContactSet held = event.held.without(event.contacts);
-    const Contact contact = ContactKinematics(*model, run, which, held).at({event.q, event.v_after, event.t});
-    TrueMotion motion(*model, run, 1e300, which, held);
+    const Mode others = event.mode.without(event.contacts);
+    const Contact contact = ContactKinematics(*model, run, which, others).at({event.q, event.v_after, event.t});
+    TrueMotion motion(*model, run, 1e300, which, others);
     double sx = 0, sy = 0, sxx = 0, sxy = 0, count = 0;
     Slope slope;
     for (const double w : speeds) {

@@ -42,7 +42,7 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
         run.options.truncation = certified.asked;
         const Collision& collision = trial.restarted(certified.asked.reinitialization).collision;
         const double least =
-            Definition7(model, run, trial.contact, trial.held).at(collision).velocity * collision.speed;
+            Definition7(model, run, trial.contact, trial.mode).at(collision).velocity * collision.speed;
         ratios[formula].push_back(added / least);
     }
     if (violated) ++violations;

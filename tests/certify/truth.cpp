@@ -105,9 +105,9 @@ std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
         for (double& x : state.q) x += uniform(-1.5, 1.5);
         for (double& x : state.v) x += uniform(-1.0, 1.0);
         trial.contact = any_of(contacts);
-        trial.held = {};
+        trial.mode = {};
         const std::size_t other = any_of(contacts);
-        if (other != trial.contact && any_of(2) == 1) trial.held = ContactSet::of(other);
+        if (other != trial.contact && any_of(2) == 1) trial.mode = Mode::holding(ContactSet::of(other));
     } else {
         for (std::size_t i = 0; i < coordinates.size(); ++i) {
             const auto k = static_cast<Eigen::Index>(i);
@@ -116,11 +116,11 @@ std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
         }
     }
     Surfaces surfaces(*model_, trial.run);
-    const ContactSet closed = trial.held.with(trial.contact);
+    const ContactSet closed = trial.mode.held().with(trial.contact);
     if (!surfaces.project(state, closed, closed)) return std::nullopt;
-    if (!(surfaces.of(trial.contact, trial.held).normal_acceleration(state) < 0.0)) return std::nullopt;
+    if (!(surfaces.of(trial.contact, trial.mode).normal_acceleration(state) < 0.0)) return std::nullopt;
     for (std::size_t j = 0; j < contacts; ++j) {
-        const bool fits = closed.contains(j) ? surfaces.of(j, trial.held.without(j)).normal_acceleration(state) < 0.0
+        const bool fits = closed.contains(j) ? surfaces.of(j, trial.mode.without(j)).normal_acceleration(state) < 0.0
                                              : surfaces.of(j).at(state).h > 0.0;
         if (!fits) return std::nullopt;
     }
@@ -128,7 +128,7 @@ std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
 }
 
 void Trials::collide(Trial& trial, const State& before) const {
-    const Contact contact = ContactKinematics(*model_, trial.run, trial.contact, trial.held).at(before);
+    const Contact contact = ContactKinematics(*model_, trial.run, trial.contact, trial.mode).at(before);
     const auto collision = [&](Reinitialization kind) {
         return Collision{before, std::abs(contact.hdot), reinitialize(contact, before.v, Reinitialization::kinetic),
                          reinitialize(contact, before.v, kind)};
@@ -143,7 +143,7 @@ void Trials::certify(Trial& trial, const State& before) {
         for (const auto kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
             run.options.truncation.conditions = conditions;
             run.options.truncation.reinitialization = kind;
-            const auto prover = truncation_conditions(*model_, run, trial.contact, trial.held);
+            const auto prover = truncation_conditions(*model_, run, trial.contact, trial.mode);
             const Collision& own = trial.restarted(kind).collision;
             if (auto c = prover->certify(own))
                 trial.certified.push_back({run.options.truncation, true, *c, best_estimate(run, before, *c)});
@@ -183,7 +183,7 @@ Trial Trials::next() {
     while (!state) state = zeno_equilibrium(trial);
     const double w = std::pow(10.0, uniform(-5.0, 0.0));
     set_tolerances(trial.run, std::pow(10.0, uniform(-6.0, -1.0)));
-    ContactKinematics surface(*model_, trial.run, trial.contact, trial.held);
+    ContactKinematics surface(*model_, trial.run, trial.contact, trial.mode);
     state->v -= w * surface.at(*state).impulse_direction;
     collide(trial, *state);
     certify(trial, *state);
@@ -205,7 +205,7 @@ std::vector<Trial> Trials::next_run() {
             Trial& trial = trials.emplace_back();
             trial.run = run;
             while (!event.contacts.contains(trial.contact)) ++trial.contact;
-            trial.held = event.held.without(event.contacts);
+            trial.mode = event.mode.without(event.contacts);
             const State before{event.truncation->q, event.truncation->v_before, event.truncation->t};
             collide(trial, before);
             trial.certified.push_back(
@@ -218,7 +218,7 @@ std::vector<Trial> Trials::next_run() {
 }
 
 void Trials::find_truth(Trial& trial, const State& before) const {
-    TrueMotion motion(*model_, trial.run, 1e300, trial.contact, trial.held);
+    TrueMotion motion(*model_, trial.run, 1e300, trial.contact, trial.mode);
     const Point collision = motion.collision(before);
     const double tolerance = 1e-20 * trial.kinetic.collision.speed;
     trial.zeno = motion.zeno(collision);

@@ -24,7 +24,7 @@ struct Certified {
 struct Trial {
     Run run;
     std::size_t contact = 0;  // that lands
-    ContactSet held;          // the others' that are held meanwhile
+    Mode mode;                // the others' that are held meanwhile
     std::vector<Certified> certified;
     std::optional<ZenoPoint> zeno;
     struct Restarted {

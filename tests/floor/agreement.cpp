@@ -17,7 +17,7 @@ constexpr double infinity = std::numeric_limits<double>::infinity();
 // Where no events are kept, phases tell who has come to rest, and who has left.
 void read_phases(const Trajectory& trajectory, Outline& outline) {
     for (std::size_t i = 1; i < trajectory.phases.size(); ++i) {
-        const ContactSet before = trajectory.phases[i - 1].held, after = trajectory.phases[i].held;
+        const ContactSet before = trajectory.phases[i - 1].mode.held(), after = trajectory.phases[i].mode.held();
         for (std::size_t contact = 0; contact < outline.contacts.size(); ++contact) {
             Outline::OfContact& known = outline.contacts[contact];
             if (after.without(before).contains(contact)) ++known.zenos;

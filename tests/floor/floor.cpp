@@ -138,7 +138,7 @@ std::string fault(const Trajectory& trajectory, double between) {
     if (!stored.empty()) return stored;
     auto gaps = gaps_of(trajectory);
     for (const Piece& piece : trajectory.pieces) {
-        if (!piece.held.empty()) continue;  // a sample is projected
+        if (!piece.mode.held().empty()) continue;  // a sample is projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
             const double t = piece.start + theta * (piece.end - piece.start);
             const double least = least_of(gaps, state_in(piece, trajectory.coefficients, trajectory.model->dof(), t));

@@ -119,7 +119,7 @@ void complain(Violations& violations, bool holds, const std::string& sentence) {
     if (!holds) violations.push_back(sentence);
 }
 
-ContactSet held_before(const Event& event) { return event.held.with(event.opened).without(event.contacts); }
+ContactSet held_before(const Event& event) { return event.mode.held().with(event.opened).without(event.contacts); }
 
 // The Zeno point of the bouncing that was cut at this impact, if one was.
 const Event* cut_at(const Trajectory& trajectory, const Event& event) {
@@ -134,7 +134,7 @@ const Event* cut_at(const Trajectory& trajectory, const Event& event) {
 // Whether the run ends after this impact on the way to a Zeno point: what it restarted from is not told.
 bool ends_cut(const Trajectory& trajectory, const Event& event) {
     return &event == &trajectory.events.back() && !trajectory.pieces.empty() &&
-           trajectory.pieces.back().start >= event.t && trajectory.pieces.back().held != event.held;
+           trajectory.pieces.back().start >= event.t && trajectory.pieces.back().mode.held() != event.mode.held();
 }
 
 State before(const Event& event) { return {event.q, event.v_before, event.t}; }
@@ -287,7 +287,7 @@ class PhaseCheck {
                 release(event, phase);
                 break;
         }
-        if (event.held != phase.held) next(event);
+        if (event.mode.held() != phase.mode.held()) next(event);
     }
     void finish() {
         const Phase& last = trajectory_.phases.back();
@@ -307,7 +307,8 @@ class PhaseCheck {
         if (at_ + 1 == trajectory_.phases.size()) return check(false, "a phase is missing", event.t);
         ++at_;
         check(trajectory_.phases[at_].start == event.t, "phases do not abut", event.t);
-        check(trajectory_.phases[at_].held == event.held, "a phase holds other contacts than its event says", event.t);
+        check(trajectory_.phases[at_].mode.held() == event.mode.held(),
+              "a phase holds other contacts than its event says", event.t);
     }
     void impact(const Event& event, const Phase& phase) {
         ++impacts_;
@@ -315,8 +316,8 @@ class PhaseCheck {
         ContactSet plastic;
         for (std::size_t i = 0; i < probe_.model.contacts(); ++i)
             if (event.contacts.contains(i) && probe_.restitution[i] == 0.0) plastic = plastic.with(i);
-        check(event.held.without(plastic) == phase.held.without(event.opened).without(plastic), "an impact holds",
-              event.t);
+        check(event.mode.held().without(plastic) == phase.mode.held().without(event.opened).without(plastic),
+              "an impact holds", event.t);
         double speed = 0.0;
         for (std::size_t i = 0; i < probe_.model.contacts(); ++i) {
             if (!event.contacts.contains(i)) continue;
@@ -340,9 +341,10 @@ class PhaseCheck {
         }
     }
     void zeno(const Event& event, const Phase& phase) {
-        still(event, event.held);
-        check(event.held == phase.held.with(event.contacts) && event.held != phase.held, "a Zeno point holds", event.t);
-        const Closed held = probe_.surfaces.at(after(event), event.held);
+        still(event, event.mode.held());
+        check(event.mode.held() == phase.mode.held().with(event.contacts) && event.mode.held() != phase.mode.held(),
+              "a Zeno point holds", event.t);
+        const Closed held = probe_.surfaces.at(after(event), event.mode.held());
         check(probe_.forces(after(event), held).minCoeff() >= 0.0, "a force pulls at a Zeno point", event.t);
         check(event.impacts == impacts_, "a Zeno point counts other impacts", event.t);
         if (is_plastic_landing(event)) return;
@@ -354,8 +356,9 @@ class PhaseCheck {
               "the Zeno time is outside its interval", event.t);
     }
     void release(const Event& event, const Phase& phase) {
-        still(event, phase.held);
-        check(!event.contacts.empty() && event.held == phase.held.without(event.contacts), "a release holds", event.t);
+        still(event, phase.mode.held());
+        check(!event.contacts.empty() && event.mode.held() == phase.mode.held().without(event.contacts),
+              "a release holds", event.t);
     }
 
     const Trajectory& trajectory_;
@@ -377,12 +380,13 @@ Violations phases(const Trajectory& trajectory) {
     };
     check(phases.front().start == trajectory.run.options.start_time, "the first phase starts", phases.front().start);
     check(phases.back().end == trajectory.end_time, "the last phase ends", phases.back().end);
-    check(phases.back().held == trajectory.end_held && phases.back().kind == trajectory.end_phase,
+    check(phases.back().mode.held() == trajectory.end_mode.held() && phases.back().kind == trajectory.end_phase,
           "the end is in another phase than the last", phases.back().end);
     for (const Phase& phase : phases) {
         check(phase.start < phase.end || (&phase == &phases.back() && phase.start == phase.end), "a phase is empty",
               phase.start);
-        check((phase.kind == Phase::Kind::hybrid) == phase.held.empty(), "a phase is of the wrong kind", phase.start);
+        check((phase.kind == Phase::Kind::hybrid) == phase.mode.held().empty(), "a phase is of the wrong kind",
+              phase.start);
     }
     PhaseCheck along(trajectory, violations);
     for (const Event& event : trajectory.events) along.pass(event);
@@ -399,8 +403,9 @@ Violations contact_force(const Trajectory& trajectory) {
     for (const Sample& sample : Sampler(trajectory).all(4)) {
         const auto phase = std::find_if(trajectory.phases.begin(), trajectory.phases.end(),
                                         [&](const Phase& one) { return one.start <= sample.t && sample.t < one.end; });
-        if (phase == trajectory.phases.end() || phase->held.empty() || sample.held != phase->held) continue;
-        const Closed held = probe.surfaces.at(sample.state, phase->held);
+        if (phase == trajectory.phases.end() || phase->mode.held().empty() || sample.mode.held() != phase->mode.held())
+            continue;
+        const Closed held = probe.surfaces.at(sample.state, phase->mode.held());
         if (phase->not_unique()) {
             // One share of them presses, and is told.
             told.set(sample);
@@ -419,7 +424,7 @@ Violations contact_force(const Trajectory& trajectory) {
     }
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::release) continue;
-        const Closed held = probe.surfaces.at(after(event), event.held.with(event.contacts));
+        const Closed held = probe.surfaces.at(after(event), event.mode.held().with(event.contacts));
         const Eigen::VectorXd forces = probe.pressing(after(event), held);
         for (std::size_t i = 0; i < held.which.size(); ++i) {
             if (!event.contacts.contains(held.which[i])) continue;
@@ -427,8 +432,8 @@ Violations contact_force(const Trajectory& trajectory) {
             const double size = std::max(strongest, probe.force_scale(after(event), held.contacts[i]));
             complain(violations, std::abs(force) <= 1e-11 * size,
                      fmt::format("released while the force is {:.3g} of {:.3g} at t = {:.17g}", force, size, event.t));
-            const ContactSet carriers = carriers_of(trajectory, event.held, event.t);
-            complain(violations, probe.surfaces.of(held.which[i], carriers).jerk(after(event)) > 0.0,
+            const ContactSet carriers = carriers_of(trajectory, event.mode, event.t);
+            complain(violations, probe.surfaces.of(held.which[i], event.mode.only(carriers)).jerk(after(event)) > 0.0,
                      fmt::format("released while h''' <= 0 at t = {:.17g}", event.t));
         }
     }

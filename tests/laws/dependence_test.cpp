@@ -54,10 +54,10 @@ class Dependence : public testing::TestWithParam<std::string> {
 TEST_P(Dependence, KeepsPhaseVolumeBetweenImpacts) {
     if (has_damping(model_->description())) return;
     const Trajectory whole = simulate(model_, exact_run(*model_));
-    if (!whole.phases.front().held.empty()) return;
+    if (!whole.phases.front().mode.held().empty()) return;
     double until = whole.end_time;
     for (const Event& event : whole.events)
-        if (event.truncation || event.kind == Event::Kind::release || !event.held.empty()) {
+        if (event.truncation || event.kind == Event::Kind::release || !event.mode.held().empty()) {
             until = event.truncation ? event.truncation->t : event.t;
             break;
         }
@@ -114,12 +114,13 @@ TEST_P(Dependence, IsTangentInContact) {
     for (std::size_t j = 0; j < d.events.size(); ++j) {
         const Event& event = trajectory.events[j];
         if (event.kind == Event::Kind::impact) continue;
-        const ContactSet held = event.kind == Event::Kind::release ? event.held.with(event.contacts) : event.held;
+        const ContactSet held =
+            event.kind == Event::Kind::release ? event.mode.held().with(event.contacts) : event.mode.held();
         expect_tangent({event.q, event.v_after, event.t}, held, d.events[j].q, d.events[j].v_after, d.events[j].t,
                        fmt::format("event {}", j));
     }
     if (!d.end) return;
-    expect_tangent(trajectory.end, trajectory.end_held, d.end->q, d.end->v, VectorXd::Zero(K), "the end");
+    expect_tangent(trajectory.end, trajectory.end_mode.held(), d.end->q, d.end->v, VectorXd::Zero(K), "the end");
     const std::size_t zeno = count(trajectory, Event::Kind::zeno);
     const bool all = std::all_of(d.refused.begin(), d.refused.end(), [](const auto& reason) { return reason.empty(); });
     if (zeno == 0 || !all) return;

@@ -126,7 +126,7 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
                    hddot = output(model_->motion({}).program, 2 * dof_);
     for (const Reals& x : states()) {
         const Reals f = evaluate(model_->motion({}).program, x, 0, dof_),
-                    f_c = evaluate(model_->motion(ContactSet::of(0)).program, x, 0, dof_);
+                    f_c = evaluate(model_->motion(Mode::holding(ContactSet::of(0))).program, x, 0, dof_);
         const Reals n = evaluate(surface, x, 2, dof_), g = evaluate(surface, x, 2 + dof_, dof_);
         const Real W = evaluate(surface, x, 2 + 2 * dof_, 1)[0], lambda = evaluate(model_->force(), x, 0, 1)[0];
         const Reals free = flow(x, f), held = flow(x, f_c);
@@ -148,10 +148,10 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
             expect_same(mass_times(x, push, i), lambda * g[i], "the contact force");
         }
         const Real jerk = along(hddot, x, held);
-        expect_same(output(model_->motion(ContactSet::of(0)).program, 2 * dof_)(x), hddot(x),
+        expect_same(output(model_->motion(Mode::holding(ContactSet::of(0))).program, 2 * dof_)(x), hddot(x),
                     "hddot of the contact program");
-        expect_same(output(model_->motion(ContactSet::of(0)).program, 2 * dof_ + model_->contacts())(x), jerk,
-                    "h''' of the contact program");
+        expect_same(output(model_->motion(Mode::holding(ContactSet::of(0))).program, 2 * dof_ + model_->contacts())(x),
+                    jerk, "h''' of the contact program");
         expect_same(output(model_->release_terms(), 0)(x), hddot(x), "hddot of the release program");
         expect_same(output(model_->release_terms(), 1)(x), jerk, "h''' of the release program");
         expect_same(output(model_->definition7_terms(), 0)(x), hddot(x), "hddot of the bounds");
@@ -192,7 +192,7 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
             expect_same(evaluate(bouncing.rates, y, i, 1, sigma)[0], x[dof_ + i], "v");
             expect_same(rate[i], along([&](const Reals& at) { return tangential(at, i); }, x, free), "s'");
             if (quadratic) expect_same(A[i] + B[i] * sigma + D[i] * sigma * sigma, rate[i], "A + B sigma + D sigma^2");
-            expect_same(A[i], output(model_->motion(ContactSet::of(0)).program, i)(y), "A");
+            expect_same(A[i], output(model_->motion(Mode::holding(ContactSet::of(0))).program, i)(y), "A");
             expect_same(evaluate(shadow, y, first + dof_ + i, 1)[0], evaluate(model_->contact_terms(), x, 2 + i, 1)[0],
                         "n");
             expect_same(evaluate(shadow, y, first + 4 * dof_ + i, 1, sigma)[0],

@@ -33,14 +33,14 @@ void expect_same_run(const Trajectory& a, const Trajectory& b, double tolerance,
     EXPECT_LE(distance(a.end, b.end), tolerance);
     EXPECT_NEAR(a.work, b.work, tolerance);
     EXPECT_NEAR(a.loss, b.loss, tolerance);
-    EXPECT_EQ(renamed(a.end_held, as), b.end_held);
+    EXPECT_EQ(renamed(a.end_mode.held(), as), b.end_mode.held());
     ASSERT_EQ(a.events.size(), b.events.size());
     for (std::size_t i = 0; i < a.events.size(); ++i) {
         SCOPED_TRACE(fmt::format("event {} at {}", i, a.events[i].t));
         const Event &x = a.events[i], &y = b.events[i];
         ASSERT_EQ(x.kind, y.kind);
         EXPECT_EQ(renamed(x.contacts, as), y.contacts);
-        EXPECT_EQ(renamed(x.held, as), y.held);
+        EXPECT_EQ(renamed(x.mode.held(), as), y.mode.held());
         EXPECT_EQ(renamed(x.opened, as), y.opened);
         EXPECT_NEAR(x.t + later, y.t, tolerance);
         EXPECT_LE(distance({x.q, x.v_after}, {y.q, y.v_after}), tolerance);
@@ -303,7 +303,8 @@ TEST(PowerBalance, HoldsWithEveryContactThatMoves) {
             EXPECT_GE(run.loss, 0.0);
             bool struck_while_held = false;
             for (const Event& event : run.events)
-                struck_while_held = struck_while_held || (event.kind == Event::Kind::impact && !event.held.empty());
+                struck_while_held =
+                    struck_while_held || (event.kind == Event::Kind::impact && !event.mode.held().empty());
             EXPECT_TRUE(struck_while_held || std::string(name).starts_with("pendulum"));
         }
 }

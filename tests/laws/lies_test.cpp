@@ -91,7 +91,7 @@ TEST(Lies, ContactForce) {
     // A contact phase said to last into the flight.
     Trajectory late = truth();
     for (Piece& piece : late.pieces)
-        if (piece.start >= late.phases[1].end) piece.held = ContactSet::of(0);
+        if (piece.start >= late.phases[1].end) piece.mode = Mode::holding(ContactSet::of(0));
     late.phases[1].end += 0.3;
     EXPECT_FALSE(contact_force(late).empty());
 }
@@ -124,10 +124,10 @@ TEST(Lies, TwoStops) {
     };
     lie("the knee is said to stay locked", phases, [](Trajectory& t) {
         Event& event = blow(t);
-        event.held = event.opened;
+        event.mode = Mode::holding(event.opened);
         event.opened = {};
     });
-    lie("another contact is held", phases, [](Trajectory& t) { t.phases[1].held = ContactSet::of(1); });
+    lie("another contact is held", phases, [](Trajectory& t) { t.phases[1].mode = Mode::holding(ContactSet::of(1)); });
     lie("another contact strikes", phases, [](Trajectory& t) { blow(t).contacts = ContactSet::of(0); });
     lie("the knee is left where it is", phases, [](Trajectory& t) {
         Event& event = blow(t);
@@ -140,14 +140,14 @@ TEST(Lies, TwoStops) {
     lie("a loss that was none", energy, [](Trajectory& t) { blow(t).loss += 1e-9; });
     lie("a gap that closes unseen", gap, [](Trajectory& t) {
         for (const Piece& piece : t.pieces)
-            if (piece.held.empty()) t.coefficients[piece.first] += 0.4;  // theta1 beyond the wall
+            if (piece.mode.held().empty()) t.coefficients[piece.first] += 0.4;  // theta1 beyond the wall
     });
     lie("a wall that pulls", contact_force, [](Trajectory& t) {
         // The weight at the wall is stronger than the motor.
-        const ContactSet both = ContactSet::of(0).with(1);
+        const Mode both = Mode::holding(ContactSet::of(0).with(1));
         for (Piece& piece : t.pieces)
-            if (!piece.held.empty()) piece.held = both;
-        t.phases[1].held = both;
+            if (!piece.mode.held().empty()) piece.mode = both;
+        t.phases[1].mode = both;
     });
 }
 

@@ -58,7 +58,8 @@ Trajectory run_of(const SystemDescription& system) {
 
 std::string of(const Event& event) {
     std::string text(names_of(event.kind).word);
-    for (const auto& [what, set] : {std::pair("of", event.contacts), {"held", event.held}, {"opened", event.opened}}) {
+    for (const auto& [what, set] :
+         {std::pair("of", event.contacts), {"held", event.mode.held()}, {"opened", event.opened}}) {
         text += fmt::format(" {}", what);
         for (std::size_t i = 0; i < max_contacts; ++i)
             if (set.contains(i)) text += fmt::format(" {}", i);

@@ -171,7 +171,7 @@ TEST(Contact, is_lit_while_it_is_held_in_every_system_that_draws) {
         if (staged.mechanism.is_empty()) continue;
         const auto count = [&](const ContactSet& held) {
             Sample sample = staged.at(staged.run.run.options.start_time);
-            sample.held = held;
+            sample.mode = Mode::holding(held);
             const Drawing drawing = staged.stage.draw(sample, staged.stage.limits(), light_theme(), {false, false});
             return std::count_if(drawing.shapes.begin(), drawing.shapes.end(),
                                  [&](const Shape& shape) { return shape.stroke.color == lit; });

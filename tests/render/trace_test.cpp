@@ -44,7 +44,7 @@ TEST(Trace, ShowsAForceToItsHighestWhereItJumps) {
     drawn::Picture picture(run, view("t", "lambda"));
     EXPECT_LE(drawn::worst_over_time(run, picture), 0.7);
     const auto jump =
-        std::find_if(run.pieces.begin(), run.pieces.end(), [](auto& piece) { return !piece.held.empty(); });
+        std::find_if(run.pieces.begin(), run.pieces.end(), [](auto& piece) { return !piece.mode.is_free(); });
     ASSERT_NE(jump, run.pieces.end());
     int changed = 0;
     for (Curve& curve : picture.figure.panels[0].curves)

@@ -229,18 +229,18 @@ struct Cuts {
             if (zeno.kind != Event::Kind::zeno || zeno.contacts.count() > 1 || is_plastic_landing(zeno)) continue;
             // Of the same contact, while the same are held, with no event of another one between.
             if (cut.kind != Event::Kind::impact || last.kind != Event::Kind::impact) continue;
-            const ContactSet held = held_before(trajectory, i);
-            if (cut.contacts != zeno.contacts || last.contacts != zeno.contacts || last.held != held) continue;
-            if (held_before(trajectory, i - 2) != held) continue;
+            const Mode mode = mode_before(trajectory, i);
+            if (cut.contacts != zeno.contacts || last.contacts != zeno.contacts || last.mode != mode) continue;
+            if (mode_before(trajectory, i - 2) != mode) continue;
             ++all;
             std::size_t which = 0;
             while (!zeno.contacts.contains(which)) ++which;
-            ContactKinematics surface(*trajectory.model, trajectory.run, which, held);
+            ContactKinematics surface(*trajectory.model, trajectory.run, which, mode);
             const State before{last.q, last.v_before, last.t};
             const Contact contact = surface.at(before);
             const Vector s = reinitialize(contact, last.v_before, Reinitialization::kinetic);
             const Collision collision{before, -contact.hdot, s, s};
-            if (truncation_conditions(*trajectory.model, trajectory.run, which, held)->certify(collision)) ++late;
+            if (truncation_conditions(*trajectory.model, trajectory.run, which, mode)->certify(collision)) ++late;
         }
     }
 };

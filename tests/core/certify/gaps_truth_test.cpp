@@ -95,7 +95,7 @@ TEST(Truth, CertificatesWithForcesTimeAndHeldContactsAreTrue) {
             const Trial trial = trials.next();
             if (trial.certified.empty()) continue;
             ++certified;
-            with_held += trial.held.empty() ? 0 : 1;
+            with_held += trial.mode.is_free() ? 0 : 1;
             add(tallies, trial, *model);
         }
         SCOPED_TRACE("\n" + table_head() + table_rows(name, tallies));
@@ -121,7 +121,7 @@ TEST(Truth, CertificatesOfRunsWithSeveralContactsAreTrue) {
         for (int i = 0; i < 20; ++i)
             for (const Trial& trial : trials.next_run()) {
                 ++certified;
-                with_held += trial.held.empty() ? 0 : 1;
+                with_held += trial.mode.is_free() ? 0 : 1;
                 add(tallies, trial, *model);
             }
         SCOPED_TRACE("\n" + table_head() + table_rows(name, tallies));
@@ -298,7 +298,7 @@ constraint = [{ name = "held", gap = "a", restitution = 0.5 }, { name = "floor",
         before.v[1] = -0.3;
         const Vector s = Vector::Zero(2);
         const auto certificate =
-            truncation_conditions(*model, run, 1, ContactSet::of(0))->prove_any({before, 0.3, s, s});
+            truncation_conditions(*model, run, 1, Mode::holding(ContactSet::of(0)))->prove_any({before, 0.3, s, s});
         EXPECT_EQ(certificate.has_value(), t + 0.6 < 1.0) << t;
         if (!certificate) continue;
         EXPECT_NEAR(certificate->zeno_time, t + 0.6, 1e-12);

@@ -111,8 +111,8 @@ TEST(Remarks, AnEndAtARelease) {
     trajectory.phases.back().last_piece = trajectory.phases.back().first_piece;
     trajectory.phases.back().end = trajectory.phases.back().start;
     trajectory.end_time = trajectory.pieces.back().end;
-    ASSERT_FALSE(trajectory.pieces.back().held.empty());
-    ASSERT_TRUE(trajectory.phases.back().held.empty());
+    ASSERT_FALSE(trajectory.pieces.back().mode.held().empty());
+    ASSERT_TRUE(trajectory.phases.back().mode.held().empty());
     for (const Remark& remark : remarks(trajectory)) EXPECT_NE(remark.label, "ends before a Zeno point");
 }
 

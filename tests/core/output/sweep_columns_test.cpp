@@ -48,7 +48,7 @@ TEST(Library, KnowsTheStateAtATime) {
         EXPECT_EQ(one.state.q, other.state.q) << t;
         EXPECT_EQ(one.state.v, other.state.v) << t;
         EXPECT_EQ(one.t, std::min(t, 20.0));
-        EXPECT_EQ(one.held, other.held);
+        EXPECT_EQ(one.mode, other.mode);
     }
 }
 

@@ -61,7 +61,7 @@ class MachineCodes : public testing::Test {
 std::shared_ptr<const Model> load_without(const std::string& system) {
     const test::MachineCodeSwitch off("0");
     auto model = test::load(system);
-    for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) model->motion(held);  // compiled while it is off
+    for (const Mode mode : {Mode(), Mode::holding(ContactSet::of(0))}) model->motion(mode);  // compiled while it is off
     return model;
 }
 
@@ -84,7 +84,8 @@ TEST_F(MachineCodes, AreMadeOfExpressions) {
 TEST_F(MachineCodes, AreMadeOfTheOrdersOfSeries) {
     for (const auto& [system, key] : test::problems) {
         const auto model = test::load(system);
-        for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
+        for (const SeriesProgram* series :
+             {&model->motion({}).series, &model->motion(Mode::holding(ContactSet::of(0))).series}) {
             EXPECT_TRUE(OrderCode::of(LaneAccess::plan_of(*series), *widest_of_processor())) << system;
         }
     }
@@ -97,7 +98,8 @@ TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
         const auto model = test::load(system);
         for (const Width vectors : of_lanes()) {
             EXPECT_TRUE(LaneAccess::machine_code_of(model->contact_terms(), vectors)) << system;
-            for (const SeriesProgram* series : {&model->motion({}).series, &model->motion(ContactSet::of(0)).series}) {
+            for (const SeriesProgram* series :
+                 {&model->motion({}).series, &model->motion(Mode::holding(ContactSet::of(0))).series}) {
                 const SeriesPlan& plan = LaneAccess::plan_of(*series);
                 EXPECT_TRUE(LaneOrderCode::of(plan, LanePlan(plan, series->inner_sums()), vectors)) << system;
             }
@@ -264,7 +266,7 @@ TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
         std::mt19937_64 random(8);
         const auto programs = [](const Model& model) {
             return std::vector<const Program*>{&model.motion({}).program,
-                                               &model.motion(ContactSet::of(0)).program,
+                                               &model.motion(Mode::holding(ContactSet::of(0))).program,
                                                &model.gap(),
                                                &model.force(),
                                                &model.normal_acceleration(),
@@ -321,12 +323,12 @@ TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
     for (const std::string& system : systems_with_time()) {
         const auto with = test::load(system), without = load_without(system);
         std::mt19937_64 random(9);
-        for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) {
+        for (const Mode mode : {Mode(), Mode::holding(ContactSet::of(0))}) {
             int numbers = 0;
             for (int i = 0; i < 30; ++i) {
                 const auto state = any_state(*with, random);
-                numbers += expect_bits(orders_of(*with, with->motion(held).series, state),
-                                       orders_of(*without, without->motion(held).series, state), system);
+                numbers += expect_bits(orders_of(*with, with->motion(mode).series, state),
+                                       orders_of(*without, without->motion(mode).series, state), system);
             }
             EXPECT_GT(numbers, 30 * 3 * with->dof()) << system;
         }

@@ -106,11 +106,11 @@ TEST(SeriesOver, HasSlopesThatAreLimitsOfDifferences) {
         expect_slopes(text);
 }
 
-// The row_count of a system's motion, made by so many last_order at a time: order 21 of q and v alone.
-std::vector<double> coefficients_of(const Model& model, ContactSet held, int at_once) {
+// The coefficients of a system's motion, made by so many orders at a time: order 21 of q and v alone.
+std::vector<double> coefficients_of(const Model& model, Mode mode, int at_once) {
     const Run run = model.default_run();
     const auto n = static_cast<std::size_t>(model.dof());
-    SeriesOver<double> series(model.motion(held).series);
+    SeriesOver<double> series(model.motion(mode).series);
     series.fix(run.parameters);
     std::vector<double> state(run.q.begin(), run.q.end());
     state.insert(state.end(), run.v.begin(), run.v.end());
@@ -132,12 +132,12 @@ TEST(SeriesOver, HasTheSameBitsByMachineCodeAndByAnyNumberOfOrdersAtOnce) {
     const auto expect_same = [](const std::string& name) {
         SCOPED_TRACE(name);
         const auto model = test::load(name);
-        for (const ContactSet held : {ContactSet(), ContactSet::of(0)}) {
-            const std::vector<double> by_code = coefficients_of(*model, held, 20);
+        for (const Mode mode : {Mode(), Mode::holding(ContactSet::of(0))}) {
+            const std::vector<double> by_code = coefficients_of(*model, mode, 20);
             const test::MachineCodeSwitch off("0");
             const auto without = test::load(name);
             for (const int at_once : {1, 3, 20}) {
-                const std::vector<double> by_loops = coefficients_of(*without, held, at_once);
+                const std::vector<double> by_loops = coefficients_of(*without, mode, at_once);
                 ASSERT_EQ(by_code.size(), by_loops.size());
                 EXPECT_EQ(std::memcmp(by_code.data(), by_loops.data(), by_code.size() * sizeof(double)), 0) << at_once;
             }

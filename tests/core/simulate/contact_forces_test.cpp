@@ -38,9 +38,9 @@ TEST(ContactForces, AreWhatTheMotionShows) {
         EXPECT_NEAR((a - expected).norm(), 0.0, 1e-6);
         for (std::size_t i = 0; i < model.contacts(); ++i) {
             EXPECT_NEAR(forces.acceleration(i), (rate(i, after.state) - rate(i, before.state)) / (2 * h), 1e-6) << i;
-            EXPECT_EQ(forces.force(i) > 0.0, now.held.contains(i));
+            EXPECT_EQ(forces.force(i) > 0.0, now.mode.held().contains(i));
         }
-        in_contact += now.held.empty() ? 0 : 1;
+        in_contact += now.mode.held().empty() ? 0 : 1;
     }
     EXPECT_GE(in_contact, 1);
 }

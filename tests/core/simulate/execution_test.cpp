@@ -52,7 +52,7 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     auto execution = this->execution();
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
-    EXPECT_TRUE(request->held.empty());
+    EXPECT_TRUE(request->mode.held().empty());
     EXPECT_EQ(request->state.t, 0.0);
     EXPECT_EQ(request->until, 10.0);
     EXPECT_EQ(request->starts[0].multiplicity, 1);
@@ -79,7 +79,7 @@ TEST_F(Told, BouncesOrCompletes) {
     bouncing.accept(at(2.0, End::impact));
     const StepRequest* request = bouncing.next();
     ASSERT_NE(request, nullptr);
-    EXPECT_TRUE(request->held.empty());
+    EXPECT_TRUE(request->mode.held().empty());
     EXPECT_TRUE(request->begins);
     EXPECT_EQ(request->state.t, 2.0);
     EXPECT_EQ(request->state.v[0], 0.5);
@@ -93,7 +93,7 @@ TEST_F(Told, BouncesOrCompletes) {
     request = completing.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(completing.completing());
-    EXPECT_EQ(request->held, ContactSet::of(0));
+    EXPECT_EQ(request->mode.held(), ContactSet::of(0));
     EXPECT_TRUE(request->begins);
     EXPECT_EQ(request->state.v[0], 0.0);
     EXPECT_NEAR(request->until, 4.0, 1e-9);  // 2 + 2 e/(1 - e)
@@ -104,7 +104,7 @@ TEST_F(Told, BouncesOrCompletes) {
     request = completing.next();
     ASSERT_NE(request, nullptr);
     EXPECT_FALSE(completing.completing());
-    EXPECT_EQ(request->held, ContactSet::of(0));
+    EXPECT_EQ(request->mode.held(), ContactSet::of(0));
     EXPECT_TRUE(request->begins);
     EXPECT_EQ(request->until, 10.0);
     state_.t = 10.0;
@@ -125,7 +125,7 @@ TEST_F(Told, ReleasesOnlyWhereTheForceIsProvedToFall) {
     auto execution = this->execution();
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
-    EXPECT_EQ(request->held, ContactSet::of(0));
+    EXPECT_EQ(request->mode.held(), ContactSet::of(0));
     StepResult result = at(0.5, End::force_vanishes);
     state_.q << 0.0;
     state_.v << 0.0;
@@ -290,15 +290,15 @@ TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
         stretches += request->begins ? 1 : 0;
         const bool zeno = request->begins && !event;  // the motion in contact goes on past the Zeno point
         if (zeno) {
-            EXPECT_EQ(request->held, ContactSet::of(0));
+            EXPECT_EQ(request->mode.held(), ContactSet::of(0));
         } else {
             EXPECT_EQ(request->begins, event);
         }
         if (released) {
-            EXPECT_TRUE(request->held.empty());
+            EXPECT_TRUE(request->mode.held().empty());
         }
         const double t = request->state.t, until = request->until;
-        const ContactSet held = request->held;
+        const ContactSet held = request->mode.held();
         const StepResult& result = stepper.step(*request);
         EXPECT_GT(result.state->t, t);
         EXPECT_LE(result.state->t, until);

@@ -37,7 +37,7 @@ TEST(LandingsAtOnce, NeedNoOrderInACorner) {
                     const Trajectory trajectory = simulate(model, run);
                     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
                     EXPECT_EQ(trajectory.by_convention, 0);
-                    EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1));
+                    EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
                     EXPECT_LT(trajectory.end.q.norm() + trajectory.end.v.norm(), 1e-12);
                     const double fall = std::sqrt(2.0 * height / 9.81);
                     for (std::size_t i = 0; i < 4; ++i) {  // each contact as it would land alone
@@ -69,7 +69,7 @@ end_time = 2
                                              -std::sin(phi), std::cos(phi), phi));
         const Trajectory trajectory = simulate(model, model->default_run());
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-        EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1));
+        EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
         EXPECT_GE(trajectory.by_convention, 1);
         EXPECT_EQ(trajectory.events[0].contacts.count(), 2);
         EXPECT_EQ(trajectory.events[1].contacts.count(), 2);

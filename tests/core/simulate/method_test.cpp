@@ -193,7 +193,7 @@ TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
         run.parameters[0] = g;
         const auto stepper = make_taylor(*model, run);
         const Gap gap;
-        stepper->initialize(ContactSet::of(0), {run.q, run.v}, std::span(&gap, 1));
+        stepper->initialize(Mode::holding(ContactSet::of(0)), {run.q, run.v}, std::span(&gap, 1));
         ASSERT_EQ(stepper->do_step(0.0, 1.0, 0.0, 1e-15), StepFailure::none);
         EXPECT_EQ(stepper->stays_negative(0), g == 1.0) << g;
     }

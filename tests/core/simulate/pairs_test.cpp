@@ -54,11 +54,11 @@ TEST(Pairs, ARodDroppedFlatComesToRest) {
     for (const char* inertia : {"(1/12)", "0.5"}) {  // acute, obtuse
         const Trajectory trajectory = run_to(rod(inertia), 10.0);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-        EXPECT_EQ(trajectory.end_held, both);
+        EXPECT_EQ(trajectory.end_mode.held(), both);
         const auto rests = test::events_of(trajectory, Event::Kind::zeno);
         ASSERT_EQ(rests.size(), 1u);
         EXPECT_EQ(rests[0].contacts, both);
-        EXPECT_EQ(rests[0].held, both);
+        EXPECT_EQ(rests[0].mode.held(), both);
         EXPECT_NEAR(rests[0].t, 3.0 * std::sqrt(2.0), 1e-9);
         EXPECT_LE(rests[0].certificate->zeno_low, 3.0 * std::sqrt(2.0));
         EXPECT_GE(rests[0].certificate->zeno_high, 3.0 * std::sqrt(2.0));
@@ -73,13 +73,13 @@ TEST(Pairs, TiltedRodsAndBallsInWedgesComeToRest) {
         for (const char* inertia : {"(1/12)", "0.1", "0.3", "0.5"}) {
             const Trajectory trajectory = run_to(rod(inertia), 40.0, tilt);
             ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << inertia << " " << trajectory.outcome.message;
-            EXPECT_EQ(trajectory.end_held, both) << inertia << " " << tilt;
+            EXPECT_EQ(trajectory.end_mode.held(), both) << inertia << " " << tilt;
             EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12);
         }
     for (const char* slope : {"0.2", "0.3", "1", "3"}) {
         const Trajectory trajectory = run_to(wedge(slope), 60.0);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << slope << " " << trajectory.outcome.message;
-        EXPECT_EQ(trajectory.end_held, both) << slope;
+        EXPECT_EQ(trajectory.end_mode.held(), both) << slope;
         EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12);
     }
     const Trajectory wide = run_to(wedge("0.2"), 60.0);
@@ -148,7 +148,7 @@ TEST(Pairs, UnequalRestitutionsComeToRestToo) {
             run.q[1] = tilt;
             const Trajectory trajectory = simulate(rod(inertia, "0.3"), run);
             ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << inertia << " " << trajectory.outcome.message;
-            EXPECT_EQ(trajectory.end_held, both) << inertia << " " << tilt;
+            EXPECT_EQ(trajectory.end_mode.held(), both) << inertia << " " << tilt;
             EXPECT_NEAR(trajectory.loss, 1.0, 1e-9);
             // A start that is cut sooner encloses where it rests.
             run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-4;
@@ -173,7 +173,7 @@ TEST(Pairs, TheirRestBalancesTheEnergy) {
                 run.q[1] = tilt;
                 run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-4;
                 const Trajectory trajectory = simulate(model, run);
-                ASSERT_EQ(trajectory.end_held, both) << trajectory.outcome.message;
+                ASSERT_EQ(trajectory.end_mode.held(), both) << trajectory.outcome.message;
                 const auto violations = test::energy(trajectory);
                 EXPECT_TRUE(violations.empty()) << rise << " " << inertia << " " << tilt << ": " << violations.front();
                 EXPECT_NEAR(trajectory.loss, 1.0, 1e-8);
@@ -243,7 +243,7 @@ TEST(Pairs, ABlockOnABlockComesToRest) {
             trajectories.push_back(simulate(model, run));
             const Trajectory& trajectory = trajectories.back();
             EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-            EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1)) << lower << ", " << upper;
+            EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1)) << lower << ", " << upper;
             EXPECT_NEAR(trajectory.loss, 9.81 * (0.3 + 2.0 * 0.8), 1e-9);
         }
         ASSERT_EQ(trajectories[0].events.size(), trajectories[1].events.size());

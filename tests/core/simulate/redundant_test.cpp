@@ -64,7 +64,7 @@ void expect_rest(const Plate& plate) {
         const Trajectory trajectory = simulated(plate.model(), method);
         EXPECT_TRUE(trajectory.events.empty());
         ASSERT_EQ(trajectory.phases.size(), 1u);
-        EXPECT_EQ(trajectory.phases[0].held.count(), static_cast<int>(plate.supports.size()));
+        EXPECT_EQ(trajectory.phases[0].mode.held().count(), static_cast<int>(plate.supports.size()));
         EXPECT_TRUE(trajectory.phases[0].not_unique());
         EXPECT_NEAR(trajectory.end.q.tail(3).norm() + trajectory.end.v.tail(3).norm(), 0.0, 1e-12);
         expect_laws(trajectory);
@@ -104,7 +104,7 @@ TEST(Redundant, OnlyThoseAreReleasedThatOpen) {
         EXPECT_EQ(release.kind, Event::Kind::release);
         EXPECT_NEAR(release.t, 1.5, 1e-9);
         EXPECT_EQ(release.contacts, ContactSet::of(0).with(1));
-        EXPECT_EQ(release.held, ContactSet::of(2));
+        EXPECT_EQ(release.mode.held(), ContactSet::of(2));
         EXPECT_FALSE(trajectory.phases[1].not_unique());
         expect_laws(trajectory);
     }
@@ -156,7 +156,7 @@ end_time = 10
         EXPECT_NEAR(one.work, two.work, 1e-9);
         EXPECT_NEAR(one.loss, two.loss, 1e-9);
         EXPECT_EQ(one.phases.size(), two.phases.size());
-        for (const Phase& phase : two.phases) EXPECT_NE(phase.held.count(), 1);
+        for (const Phase& phase : two.phases) EXPECT_NE(phase.mode.held().count(), 1);
     }
 }
 

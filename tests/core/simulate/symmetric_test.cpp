@@ -155,7 +155,7 @@ TEST(SymmetricRuns, ATableWithOneLegTooManyStandsUnderAnyLoad) {
         const Trajectory trajectory = simulate(model, run);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << load << " " << trajectory.outcome.message;
         EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12) << load;
-        EXPECT_EQ(trajectory.end_held.count(), 4) << load;
+        EXPECT_EQ(trajectory.end_mode.held().count(), 4) << load;
     }
 }
 
@@ -168,7 +168,7 @@ TEST(SymmetricRuns, TheTableOfTheGalleryStandsUnderALoadOnItsMiddle) {
             run.parameters[i] = 0.0;
     const Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    EXPECT_EQ(trajectory.end_held.count(), 4);
+    EXPECT_EQ(trajectory.end_mode.held().count(), 4);
     EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12);
 }
 
@@ -181,7 +181,7 @@ TEST(SymmetricRuns, ATableTipsOverItsEdge) {
     const Event& tips = trajectory.events.back();
     EXPECT_NEAR(tips.t, 1.5, 1e-9);
     EXPECT_EQ(tips.contacts, ContactSet::of(0).with(2));
-    EXPECT_EQ(trajectory.end_held, ContactSet::of(1).with(3));
+    EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(1).with(3));
     auto run = two->default_run();
     run.q = tips.q;
     run.v = tips.v_after;
@@ -214,7 +214,7 @@ TEST(SymmetricRuns, ATouchingCradleGoesOn) {
     const double together[] = {-1.0 / 3, 2.0 / 3, 2.0 / 3};
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(trajectory.end.v[i], together[i], 1e-12);
     EXPECT_NEAR(trajectory.end.q[2] - trajectory.end.q[1], 1.0, 1e-12);
-    EXPECT_EQ(trajectory.end_held, ContactSet::of(1));  // closed, though nothing presses it
+    EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(1));  // closed, though nothing presses it
 
     const auto apart = cradle(1.0, 1e-3);
     const Trajectory one_by_one = simulate(apart, apart->default_run());

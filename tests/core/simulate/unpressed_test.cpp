@@ -64,10 +64,10 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
             EXPECT_EQ(trajectory.events[1].kind, Event::Kind::zeno);
             EXPECT_EQ(trajectory.events[0].t, trajectory.events[1].t);
             EXPECT_TRUE(is_plastic_landing(trajectory.events[1]));
-            EXPECT_EQ(trajectory.end_held, ContactSet::of(0));
+            EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0));
             EXPECT_NEAR(trajectory.end.q[0], at, 1e-12);
             ContactForces forces(*trajectory.model, trajectory.run.parameters);
-            forces.set(trajectory.end, ContactSet::of(0));
+            forces.set(trajectory.end, trajectory.end_mode);
             EXPECT_NEAR(forces.force(0), 0.0, 1e-8);
         }
 }
@@ -76,7 +76,7 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
 TEST(UnpressedContacts, AreNoneWhereTheForceVanishesAtAnInstant) {
     for (const auto& [force, held] : {std::pair("t", false), {"-t", true}, {"sin(t)*cos(x)", false}}) {
         const Trajectory trajectory = to_its_end(stop(force, "x", "", "start = 0"));
-        EXPECT_EQ(trajectory.end_held, held ? ContactSet::of(0) : ContactSet()) << force;
+        EXPECT_EQ(trajectory.end_mode.held(), held ? ContactSet::of(0) : ContactSet()) << force;
         EXPECT_EQ(trajectory.end.q[0] > 0.1, !held) << force;
     }
     for (const char* force : {"t^2", "-t^2", "t^3", "1 - cos(t)"}) {
@@ -85,8 +85,8 @@ TEST(UnpressedContacts, AreNoneWhereTheForceVanishesAtAnInstant) {
     }
     // Far smaller than other forces, but there.
     const Trajectory pressed = to_its_end(stop("-1e-9*(2 + cos(t))", "x")), lifted = to_its_end(stop("1e-9", "x"));
-    EXPECT_EQ(pressed.end_held, ContactSet::of(0));
-    EXPECT_TRUE(lifted.end_held.empty());
+    EXPECT_EQ(pressed.end_mode.held(), ContactSet::of(0));
+    EXPECT_TRUE(lifted.end_mode.held().empty());
     EXPECT_NEAR(lifted.end.q[0], 0.5e-9 * 2.5 * 2.5, 1e-15);
 }
 
@@ -110,7 +110,7 @@ TEST(UnpressedContacts, LetOthersCompleteBesideThem) {
             for (const Method method : methods) {
                 SCOPED_TRACE(fmt::format("{} {} {}", factor, force, to_text(method)));
                 const Trajectory trajectory = to_its_end(wall_and_floor(factor, force), method);
-                EXPECT_EQ(trajectory.end_held, ContactSet::of(0).with(1));
+                EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
                 EXPECT_EQ(trajectory.by_convention, 0);
                 const Event& rest = trajectory.events.back();
                 ASSERT_EQ(rest.kind, Event::Kind::zeno);
@@ -144,14 +144,14 @@ TEST(UnpressedContacts, AreLiftedOrPressedByAForceThatAppears) {
             SCOPED_TRACE(fmt::format("{} {}", factor, to_text(method)));
             // x'' = 0.6 (t - 1) from t = 1 on
             const Trajectory lifted = to_its_end(pulled_later("0.6*z", factor), method);
-            EXPECT_TRUE(lifted.end_held.empty());
+            EXPECT_TRUE(lifted.end_mode.held().empty());
             EXPECT_NEAR(lifted.end.q[0], 0.1 * 8.0, 1e-8);
             EXPECT_NEAR(lifted.events.back().t, 1.0, 1e-9);
             const Trajectory pressed = to_its_end(pulled_later("-0.6*z - 0.1*x'", factor), method);
-            EXPECT_EQ(pressed.end_held, ContactSet::of(0));
+            EXPECT_EQ(pressed.end_mode.held(), ContactSet::of(0));
             EXPECT_NEAR(pressed.end.q[0], 0.0, 1e-12);
             ContactForces forces(*pressed.model, pressed.run.parameters);
-            forces.set(pressed.end, pressed.end_held);
+            forces.set(pressed.end, pressed.end_mode);
             EXPECT_NEAR(forces.force(0) * std::atof(factor), 1.2, 1e-7);
         }
 }
@@ -165,7 +165,7 @@ TEST(UnpressedContacts, AreTheSameSideBySide) {
             [&](std::size_t, Attempt&& attempt) {
                 const Trajectory& one = std::get<Trajectory>(attempt);
                 EXPECT_EQ(one.outcome.kind, Outcome::Kind::end_time) << one.outcome.message;
-                EXPECT_EQ(one.end_held, alone.end_held);
+                EXPECT_EQ(one.end_mode.held(), alone.end_mode.held());
                 EXPECT_LT((one.end.q - alone.end.q).norm() + (one.end.v - alone.end.v).norm(), 1e-9);
                 EXPECT_EQ(sequence_of(one).size(), sequence_of(alone).size());
                 ++ends;
@@ -190,7 +190,7 @@ TEST(UnpressedContacts, StayClosedInProofs) {
     ASSERT_TRUE(proof.end) << proof.outcome.message;
     EXPECT_EQ(proof.events.back().kind, Event::Kind::zeno);
     EXPECT_TRUE(proof.events.back().t.contains(std::sqrt(2.0 * 5.0 / 9.81) * 3.0));
-    EXPECT_EQ(proof.events.back().held, ContactSet::of(0).with(1));
+    EXPECT_EQ(proof.events.back().mode.held(), ContactSet::of(0).with(1));
     // A force that is 0 at an instant presses nothing, and holds nothing.
     const auto instant = stop("t^2", "x", "", "start = 0");
     EXPECT_FALSE(prove(instant, claim_as_written(instant->default_run())).end);

@@ -66,7 +66,7 @@ void expect_single_runs(const SweepTable& table, double tolerance) {
         EXPECT_NEAR(numbers[0], alone.end.q[0], tolerance) << i;
         EXPECT_NEAR(numbers[1], alone.end.v[0], tolerance) << i;
         for (std::size_t kind = 0; kind < 3; ++kind) EXPECT_EQ(numbers[2 + kind], counts[kind]) << i;
-        EXPECT_EQ(rows.held[i], alone.end_held) << i;
+        EXPECT_EQ(rows.held[i], alone.end_mode.held()) << i;
         EXPECT_EQ(rows.signatures[i], signature_of(sequence, RunEnd(alone.outcome.kind))) << i;
         EXPECT_EQ(is_nan(numbers[5]), is_nan(last_zeno)) << i;
         if (is_nan(last_zeno)) continue;

@@ -1,0 +1,104 @@
+#include "run/mode.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <vector>
+
+namespace achilles {
+namespace {
+
+constexpr auto open = ContactState::open, held = ContactState::held;
+
+// Every mode of four contacts, which stand anywhere among the sixteen.
+std::vector<std::pair<Mode, ContactSet>> some_modes() {
+    constexpr std::size_t places[] = {0, 3, 7, 15};
+    std::vector<std::pair<Mode, ContactSet>> modes;
+    for (unsigned bits = 0; bits < 16; ++bits) {
+        Mode mode;
+        ContactSet set;
+        for (unsigned k = 0; k < 4; ++k)
+            if ((bits >> k & 1u) != 0) {
+                mode = mode.with(places[k], held);
+                set = set.with(places[k]);
+            }
+        modes.emplace_back(mode, set);
+    }
+    return modes;
+}
+
+TEST(Mode, StartsAsFreeFlight) {
+    EXPECT_TRUE(Mode().is_free());
+    EXPECT_TRUE(Mode().held().empty());
+    for (std::size_t i = 0; i < max_contacts; ++i) {
+        EXPECT_EQ(Mode().state(i), open);
+        EXPECT_FALSE(Mode().is_held(i));
+    }
+    EXPECT_EQ(Mode::holding({}), Mode());
+    EXPECT_LE(sizeof(Mode), sizeof(std::uint32_t));
+}
+
+TEST(Mode, KnowsTheStateOfEveryContact) {
+    for (const auto& [mode, set] : some_modes()) {
+        EXPECT_EQ(mode, Mode::holding(set));
+        EXPECT_EQ(mode.held(), set);
+        EXPECT_EQ(mode.is_free(), set.empty());
+        EXPECT_EQ(mode.contacts_in(held), set);
+        EXPECT_EQ(mode.contacts_in(open).with(set).count(), static_cast<int>(max_contacts));
+        for (std::size_t i = 0; i < max_contacts; ++i) {
+            EXPECT_EQ(mode.state(i), set.contains(i) ? held : open);
+            EXPECT_EQ(mode.is_held(i), set.contains(i));
+            EXPECT_NE(mode.contacts_in(open).contains(i), set.contains(i));
+        }
+    }
+}
+
+// The two states that no contact law has yet must survive beside the others: friction will need four.
+TEST(Mode, HasRoomForFourStates) {
+    for (const auto& [mode, set] : some_modes())
+        for (const unsigned other : {2u, 3u}) {
+            const auto state = static_cast<ContactState>(other);
+            const Mode more = mode.with(5, state);
+            EXPECT_EQ(more.state(5), state);
+            EXPECT_EQ(more.held(), set.with(5));
+            EXPECT_EQ(more.contacts_in(state), ContactSet::of(5));
+            EXPECT_EQ(more.contacts_in(held), set);
+            EXPECT_EQ(more.without(5), mode);
+            EXPECT_EQ(more.with(5, held), mode.with(5, held));
+            EXPECT_NE(more, mode.with(5, held));
+            EXPECT_EQ(more.only(set), mode);
+            EXPECT_EQ(more.only(ContactSet::of(5)), Mode().with(5, state));
+        }
+}
+
+TEST(Mode, ChangesTheContactsThatAreNamed) {
+    for (const auto& [a, set] : some_modes())
+        for (const auto& [b, other] : some_modes()) {
+            EXPECT_EQ(a.with(other, held).held(), set.with(other));
+            EXPECT_EQ(a.without(other).held(), set.without(other));
+            EXPECT_EQ(a.only(other).held(), set.without(set.without(other)));
+            EXPECT_EQ(a == b, set == other);
+        }
+}
+
+// As the sets of held contacts are: what is in a map by modes comes in the order that it had by sets.
+TEST(Mode, IsOrderedAsWhatItHolds) {
+    std::map<Mode, ContactSet> modes;
+    for (const auto& [mode, set] : some_modes()) modes.emplace(mode, set);
+    EXPECT_EQ(modes.size(), 16u);
+    for (auto at = modes.begin(); std::next(at) != modes.end(); ++at) EXPECT_LT(at->second, std::next(at)->second);
+}
+
+TEST(ContactSet, GivesItsContactsInAscendingOrder) {
+    for (const auto& [mode, set] : some_modes()) {
+        std::vector<std::size_t> found, wanted;
+        for (const std::size_t i : set) found.push_back(i);
+        for (std::size_t i = 0; i < max_contacts; ++i)
+            if (set.contains(i)) wanted.push_back(i);
+        EXPECT_EQ(found, wanted);
+        EXPECT_EQ(mode.held().count(), static_cast<int>(found.size()));
+    }
+}
+
+}  // namespace
+}  // namespace achilles
