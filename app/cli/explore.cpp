@@ -12,7 +12,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/dropped.hpp"
+#include "cli/inputs.hpp"
 #include "cli/manual.hpp"
 #include "journal/journal.hpp"
 #include "journal/preferences.hpp"

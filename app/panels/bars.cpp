@@ -22,16 +22,16 @@ namespace achilles {
 
 namespace {
 
-struct Shown {
+struct ShownPart {
     const char *what, *name;
     int key;
 };
-constexpr std::array<Shown, 6> panels{{{"controls", "Controls", '1'},
-                                       {"plots", "Plots", '2'},
-                                       {"events", "Events", '3'},
-                                       {"sweep", "Sweep", '4'},
-                                       {"depend", "Sensitivities", '5'},
-                                       {"orbit", "Periodic run", '6'}}};
+constexpr std::array<ShownPart, 6> panels{{{"controls", "Controls", '1'},
+                                           {"plots", "Plots", '2'},
+                                           {"events", "Events", '3'},
+                                           {"sweep", "Sweep", '4'},
+                                           {"depend", "Sensitivities", '5'},
+                                           {"orbit", "Periodic run", '6'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
@@ -94,7 +94,7 @@ void show_edit_menu(const Session& session, PanelState& state, Commands& command
 
 void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
     const Scene& scene = session.scene();
-    for (const Shown& panel : panels)
+    for (const ShownPart& panel : panels)
         if (menu_item(panel.name, state, scene.shows(panel.what)))
             commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
     if (menu_item("Automatic panel sizes", state))
@@ -136,7 +136,7 @@ bool switch_button(const std::string& name, const std::string& about, PanelState
 }
 
 // A little window whose left, right, lower or lower right part is filled where the panel is shown.
-void panel_switch(const Session& session, const Shown& panel, PanelState& state, Commands& commands) {
+void panel_switch(const Session& session, const ShownPart& panel, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows(panel.what);
     Rectangle r;
     if (switch_button(std::string("switch ") + panel.what,
@@ -176,7 +176,7 @@ void use_view_keys(const Session& session, PanelState& state, Commands& commands
     const ImGuiIO& io = ImGui::GetIO();
     if (takes_key(state, key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
     if (!io.KeyCtrl || io.KeyAlt) return;
-    for (const Shown& panel : panels)
+    for (const ShownPart& panel : panels)
         if (takes_key(state, panel.key, false))
             commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
     if (takes_key(state, 'D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});

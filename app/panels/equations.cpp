@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "figure/label.hpp"
-#include "model/derived_values.hpp"
+#include "model/model.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "paint/paint.hpp"

@@ -13,7 +13,7 @@
 #include "paint/paint.hpp"
 #include "panels/panels.hpp"
 #include "panels/widgets.hpp"
-#include "session/orbit_job.hpp"
+#include "session/study_jobs.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 

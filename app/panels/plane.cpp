@@ -139,13 +139,13 @@ void show_plane_heading(const Session& session, const Rectangle& row, PanelState
 
 namespace {
 
-struct Box {
+struct LabelBox {
     double left = 0.0, top = 0.0, right = 0.0, bottom = 0.0;
-    bool meets(const Box& other) const {
+    bool meets(const LabelBox& other) const {
         return left < other.right && other.left < right && top < other.bottom && other.top < bottom;
     }
 };
-Box around(const Point& p, double width, double height) {
+LabelBox around(const Point& p, double width, double height) {
     return {p.x - 0.5 * width, p.y - 0.5 * height, p.x + 0.5 * width, p.y + 0.5 * height};
 }
 
@@ -172,7 +172,7 @@ class Trodden {
                 tread(at.x, at.y);
             }
     }
-    bool is_free(const Box& box) const {
+    bool is_free(const LabelBox& box) const {
         for (double y = box.top; y < box.bottom + side_; y += side_)
             for (double x = box.left; x < box.right + side_; x += side_) {
                 const auto at = square(std::min(x, box.right), std::min(y, box.bottom));
@@ -198,8 +198,9 @@ class Trodden {
 };
 
 // Where a word stands on one of these lines, or beside it (1 or -1): far from the others, and where the run does not go.
-std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map, const Box& inside,
-                              double width, double height, const std::vector<Box>& taken, const Trodden& run) {
+std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map,
+                              const LabelBox& inside, double width, double height, const std::vector<LabelBox>& taken,
+                              const Trodden& run) {
     constexpr double far = 1e3;
     constexpr std::size_t looked_at = 60;
     const std::size_t segments = line.size() / 3, step = std::max<std::size_t>(1, segments / looked_at);
@@ -213,12 +214,12 @@ std::optional<Point> room_for(const std::vector<Point>& line, double beside, con
             const double clear = beside * (0.5 * (std::abs(u) * width + std::abs(v) * height) + double{units(6.0F)});
             middle = {middle.x + clear * u, middle.y + clear * v};
         }
-        const Box box = around(middle, width, height);
+        const LabelBox box = around(middle, width, height);
         if (!(box.left > inside.left && box.right < inside.right && box.top > inside.top && box.bottom < inside.bottom))
             continue;
         double nearest = far;
         bool is_taken = false;
-        for (const Box& other : taken) {
+        for (const LabelBox& other : taken) {
             is_taken = is_taken || box.meets(other);
             nearest = std::min(nearest, std::hypot(middle.x - 0.5 * (other.left + other.right),
                                                    middle.y - 0.5 * (other.top + other.bottom)));
@@ -238,9 +239,9 @@ void name_plane_lines(const Session& session, const Panel& panel, const PanelMap
     const Theme& theme = session.theme();
     const float size = 0.85F * ImGui::GetFontSize();
     const double edge = double{units(4.0F)}, height = 1.2 * double{size};
-    const Box inside{double{plot.x} + edge, double{plot.y} + edge, double{plot.x} + double{plot.width} - edge,
-                     double{plot.y} + double{plot.height} - edge};
-    std::vector<Box> taken;
+    const LabelBox inside{double{plot.x} + edge, double{plot.y} + edge, double{plot.x} + double{plot.width} - edge,
+                          double{plot.y} + double{plot.height} - edge};
+    std::vector<LabelBox> taken;
     for (const Point& place : places) taken.push_back(around(place, 5.0 * edge, 5.0 * edge));
     const Trodden run(panel, map, plot, false), signs(panel, map, plot, true);
     const auto name = [&](const std::vector<Point>& line, const std::string& text, const Color& color, bool always) {
@@ -253,7 +254,7 @@ void name_plane_lines(const Session& session, const Panel& panel, const PanelMap
             if (!at && always) at = room(beside, run);
         if (!at && always) at = room(0.0, signs);
         if (!at) return;
-        const Box box = around(*at, width, height);
+        const LabelBox box = around(*at, width, height);
         const auto left = static_cast<float>(box.left), top = static_cast<float>(box.top);
         list->AddRectFilled({left, top}, {static_cast<float>(box.right), static_cast<float>(box.bottom)},
                             packed(theme.background, 0.8F), units(2.0F));

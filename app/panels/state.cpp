@@ -9,7 +9,7 @@
 #include "figure/label.hpp"
 #include "figure/stage.hpp"
 #include "number/angle.hpp"
-#include "output/energy.hpp"
+#include "output/contacts.hpp"
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
@@ -247,7 +247,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
     std::array<ImU32, 4> colors{};
     for (std::size_t i = 0; i < all.size(); ++i) colors[i] = packed(all[i].color, all[i].alpha);
     const float stripe = std::max(2.0F, std::floor(units(2.0F)));
-    const ImU32 between = packed(all[striped].color, 0.15F);
+    const ImU32 stripe_color = packed(all[striped].color, 0.15F);
     for (float x = 0.0F; x + 1.0F <= width; x += 1.0F) {
         const double t = start + double{(x + 1.0F) / width} * (end - start);
         if (t > reached + (end - start) / width) break;
@@ -255,7 +255,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
         float from = bottom;
         for (std::size_t i = 0; i < ends.size(); ++i) {
             const float to = std::min(from, bottom - length(ends[i], course.full(), height));
-            const ImU32 color = i == striped && std::fmod(x, 2.0F * stripe) >= stripe ? between : colors[i];
+            const ImU32 color = i == striped && std::fmod(x, 2.0F * stripe) >= stripe ? stripe_color : colors[i];
             if (to < from) list->AddRectFilled({left + x, to}, {left + x + 1.0F, from}, color);
             from = to;
         }

@@ -7,7 +7,7 @@
 #include "check/check.hpp"
 #include "cli/assets.hpp"
 #include "expression/nearest.hpp"
-#include "model/derived_values.hpp"
+#include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "module.hpp"
 #include "output/page.hpp"

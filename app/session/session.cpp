@@ -16,8 +16,7 @@
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "session/command.hpp"
-#include "session/orbit_job.hpp"
-#include "simulate/least_gap.hpp"
+#include "session/study_jobs.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -7,7 +7,7 @@
 #include "pictures/film.hpp"
 #include "pictures/take_away.hpp"
 #include "session/command.hpp"
-#include "session/orbit_job.hpp"
+#include "session/study_jobs.hpp"
 #include "session/session.hpp"
 
 namespace achilles {

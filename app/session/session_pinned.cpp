@@ -8,7 +8,7 @@
 #include "figure/difference.hpp"
 #include "output/proof.hpp"
 #include "session/command.hpp"
-#include "session/orbit_job.hpp"
+#include "session/study_jobs.hpp"
 #include "session/session.hpp"
 
 namespace achilles {

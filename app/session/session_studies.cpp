@@ -9,7 +9,7 @@
 #include "figure/sweep_figure.hpp"
 #include "journal/journal.hpp"
 #include "session/command.hpp"
-#include "session/orbit_job.hpp"
+#include "session/study_jobs.hpp"
 #include "session/session.hpp"
 
 namespace achilles {

@@ -1,5 +1,5 @@
 // What a window asks of the present run that takes longer than a frame, each on threads of its own: the derivatives of a
-// quantity, a proof, a sweep. (The search for a periodic run is in orbit_job.hpp: few files see it.)
+// quantity, a proof, a sweep, a periodic run.
 #pragma once
 
 #include <functional>
@@ -12,6 +12,7 @@
 #include "figure/proof.hpp"
 #include "session/command.hpp"
 #include "session/worker.hpp"
+#include "study/orbit.hpp"
 #include "study/table.hpp"
 
 namespace achilles {
@@ -82,7 +83,6 @@ class InfluencesJob {
 };
 
 // A proof of a whole run.
-
 class ProofJob : public Job<Proof, ProofWatch> {
  public:
     // A proof of a run of this model. The last proof is forgotten. update() throws InputError for a system that no
@@ -134,6 +134,31 @@ class SweepJob {
     bool is_current_ = false;
     std::string problem_;
     Job<SweepData> job_;
+};
+
+// The search for a periodic run, and its branch, on a thread of their own.
+
+// What was found, and how it was asked for.
+struct FoundOrbit {
+    std::string text;  // of the command
+    Run base;          // of which that was asked
+    OrbitAnswer answer;
+
+    // What is told as one after the other: the points of the branch or, without one, the orbit alone. Empty: there is none.
+    std::size_t count() const { return answer.branch ? answer.branch->points.size() : answer.orbit ? 1 : 0; }
+    const OrbitPoint& point(std::size_t i) const { return answer.branch ? answer.branch->points[i] : *answer.orbit; }
+    // Which of them the search had found, before a branch was followed.
+    std::size_t first() const;
+};
+
+// `run` on this periodic run: its start and parameters; no shorter than a period.
+Run run_on(const OrbitPoint& point, Run run);
+
+class OrbitJob : public Job<FoundOrbit, OrbitWatch> {
+ public:
+    // The last orbit is forgotten, and a search under way stopped.
+    void begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
+               OrbitQuestion question);
 };
 
 }  // namespace achilles

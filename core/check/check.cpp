@@ -6,7 +6,7 @@
 #include "check/equations_on_page.hpp"
 #include "check/finite_differences.hpp"
 #include "check/simplified.hpp"
-#include "model/derived_values.hpp"
+#include "model/model.hpp"
 #include "output/contacts.hpp"
 
 namespace achilles {

@@ -7,7 +7,6 @@
 #include "expression/parse.hpp"
 #include "model/behind.hpp"
 #include "simulate/contact_forces.hpp"
-#include "simulate/least_gap.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

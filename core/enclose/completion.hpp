@@ -7,7 +7,7 @@
 
 #include "certify/range.hpp"
 #include "certify/truncation.hpp"
-#include "enclose/coordinates.hpp"
+#include "enclose/doubleton.hpp"
 #include "model/model.hpp"
 
 namespace achilles {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "enclose/coordinates.hpp"
+#include "enclose/doubleton.hpp"
 #include "model/model.hpp"
 
 namespace achilles {

@@ -7,7 +7,6 @@
 
 #include "enclose/completion.hpp"
 #include "enclose/enclosure.hpp"
-#include "enclose/first_root.hpp"
 #include "enclose/maps.hpp"
 #include "enclose/section.hpp"
 #include "enclose/step.hpp"

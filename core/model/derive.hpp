@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "program/program.hpp"
+#include "program/terms.hpp"
 #include "run/mode.hpp"
+#include "series/series.hpp"
 
 namespace achilles {
 
@@ -95,5 +97,21 @@ class ContactModes {
 
 // h''' of a contact along the motion that holds it and others: hddot_q v + hddot_v f_c + hddot_t.
 Expression jerk_of(const ContactEquations& contact, const Layout& layout);
+
+// The motion of a system in one mode, as programs.
+
+// Every contact has an event function along a motion, for what its law watches (contacts/contact_law.hpp): its gap, or
+// for its force the hddot of the mode in which it is open (the force, times -W).
+struct Motion {
+    Mode mode;
+    ProgramOf<MotionTerms> program;
+    SeriesProgram series;  // MotionSeries
+};
+
+// Compiles a motion; `equations` has the graph of `motion`, or that it was copied from. Throws TooLarge.
+Motion make_motion(const ModeEquations& motion, const Equations& equations, const Layout& layout);
+// The series of a motion with hddot of every contact, open or held, for event functions: what proofs follow, in which the gap
+// is a coordinate by itself (theory-enclosure.md 1).
+SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

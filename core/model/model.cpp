@@ -1,7 +1,6 @@
 #include "model/model.hpp"
 
 #include <fmt/format.h>
-
 #include <stdexcept>
 
 #include "contacts/contact_law.hpp"
@@ -215,6 +214,19 @@ Program Model::compile_drawing(std::span<const Text> texts, const std::string& o
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));
     return Program(outputs, layout_.slots());
+}
+
+std::vector<double> derived_values(const Model& model, std::span<const double> parameters) {
+    const auto& all = model.description().derived;
+    if (all.empty()) return {};
+    std::vector<Text> names;
+    for (const DerivedDescription& derived : all) names.push_back({derived.name, derived.definition.at});
+    const Program program = model.compile_drawing(names);
+    auto value = model.evaluator(program, parameters);
+    value.run();
+    std::vector<double> values;
+    for (std::size_t i = 0; i < all.size(); ++i) values.push_back(value.output(i));
+    return values;
 }
 
 }  // namespace achilles

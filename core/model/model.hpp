@@ -21,8 +21,6 @@
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/edges.hpp"
-#include "model/motion.hpp"
-#include "model/pair.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"
 #include "program/program.hpp"
@@ -182,5 +180,10 @@ class Model {
     ProgramOf<EnergyTerms> energy_;
     ProgramOf<StartTerms> start_;
 };
+
+// The values of the parameters that follow from others.
+
+// In the order of the description's `derived`, for these values of the parameters.
+std::vector<double> derived_values(const Model& model, std::span<const double> parameters);
 
 }  // namespace achilles

@@ -1,8 +1,16 @@
 // What the expressions of a system file mean: the equations' ingredients T, V, Q, h, e and M (theory.md 1).
 #pragma once
 
+#include <array>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "expression/expression.hpp"
 #include "expression/parse.hpp"
 #include "model/derive.hpp"
+#include "run/state.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"
 #include "system/read_tables.hpp"
@@ -18,5 +26,15 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
 
 // Adds what is wrong with any expression of the file: the above, drawings and views. Whether the above had nothing wrong.
 bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
+
+// An expression as a polynomial in the rates: how a kinetic energy is proved quadratic and its mass matrix read off.
+
+// Exponents of the rates -> coefficient, free of rates. No coefficient is the number 0.
+using RatePolynomial = std::map<std::array<std::uint8_t, max_coordinates>, Expression>;
+
+// Expands an expression in the symbols of `slots` (the rates). Returns nothing where it is no polynomial of degree <=
+// 8; then `offender` is the smallest part of the expression that is not one.
+std::optional<RatePolynomial> expand_in_rates(Expression expression, std::span<const std::uint32_t> slots,
+                                              Expression& offender);
 
 }  // namespace achilles

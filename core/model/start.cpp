@@ -3,7 +3,6 @@
 
 #include <cmath>
 
-#include "model/derived_values.hpp"
 #include "model/flat.hpp"
 #include "model/model.hpp"
 #include "model/undefined.hpp"

@@ -3,13 +3,11 @@
 
 #include "depend/error_estimate.hpp"
 #include "depend/quantities.hpp"
-#include "model/derived_values.hpp"
 #include "model/model.hpp"
 #include "number/ground.hpp"
 #include "output/contacts.hpp"
 #include "output/json_parts.hpp"
 #include "output/output.hpp"
-#include "simulate/least_gap.hpp"
 #include "simulate/sampler.hpp"
 #include "system/input_error.hpp"
 

@@ -13,7 +13,7 @@
 
 #include "enclose/enclosure.hpp"
 #include "model/model.hpp"
-#include "output/energy.hpp"
+#include "output/contacts.hpp"
 #include "simulate/surfaces.hpp"
 
 namespace achilles {

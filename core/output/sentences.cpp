@@ -8,7 +8,6 @@
 #include "model/model.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
-#include "output/energy.hpp"
 #include "output/precision.hpp"
 #include "system/units.hpp"
 

@@ -13,7 +13,7 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "output/sentences.hpp"
-#include "simulate/least_gap.hpp"
+#include "simulate/sampler.hpp"
 #include "system/units.hpp"
 
 namespace achilles {

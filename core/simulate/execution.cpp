@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/flat.hpp"
-#include "simulate/domain.hpp"
+#include "simulate/edge_watch.hpp"
 
 namespace achilles {
 

@@ -17,7 +17,7 @@
 #include "contacts/complementarity.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/simulate.hpp"
-#include "simulate/step.hpp"
+#include "simulate/event_stepper.hpp"
 #include "simulate/surfaces.hpp"
 
 namespace achilles {

@@ -6,7 +6,6 @@
 #include "simulate/flow.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/simulate.hpp"
-#include "simulate/work.hpp"
 
 namespace achilles {
 

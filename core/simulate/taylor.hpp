@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "series/taylor_step.hpp"
-#include "simulate/gap_units.hpp"
+#include "simulate/surfaces.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {

@@ -10,7 +10,7 @@
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
 #include "study/orbit.hpp"
-#include "study/signature.hpp"
+#include "study/measures.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {

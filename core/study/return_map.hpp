@@ -39,7 +39,7 @@ struct Shot {
     Eigen::MatrixXd P;       // of x(T) - shift by the parameters, T fixed
     Eigen::VectorXd F0, F1;  // dx/dt at the start and at the end
     Derivatives derivatives;
-    std::uint64_t word = 0;  // of its events (study/signature.hpp)
+    std::uint64_t word = 0;  // of its events (study/measures.hpp)
 };
 
 class ReturnMap {

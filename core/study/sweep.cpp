@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "study/signature.hpp"
+#include "study/measures.hpp"
 
 namespace achilles {
 

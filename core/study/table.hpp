@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "study/measures.hpp"
-#include "study/signature.hpp"
 
 namespace achilles {
 
@@ -61,7 +60,6 @@ class SweepTable {
 
 // The table of a sweep, or what is there of it, as a value: what its figures are made from. A coarse grid is the data of a
 // sweep with fewer points.
-
 struct SweepData {
     SweepData() = default;
     // Without rows.

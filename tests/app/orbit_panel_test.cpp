@@ -7,7 +7,7 @@
 #include <iostream>
 
 #include "app/hands.hpp"
-#include "session/orbit_job.hpp"
+#include "session/study_jobs.hpp"
 #include "session/recipe.hpp"
 
 namespace achilles {

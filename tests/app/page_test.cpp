@@ -8,7 +8,7 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
-#include "cli/dropped.hpp"
+#include "cli/inputs.hpp"
 #include "journal/journal.hpp"
 #include "pictures/picture_format.hpp"
 #include "pictures/take_away.hpp"

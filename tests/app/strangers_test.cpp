@@ -10,7 +10,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "cli/dropped.hpp"
+#include "cli/inputs.hpp"
 #include "image/notes.hpp"
 #include "journal/journal.hpp"
 #include "model/read_system.hpp"

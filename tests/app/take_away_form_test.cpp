@@ -7,7 +7,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "cli/dropped.hpp"
+#include "cli/inputs.hpp"
 #include "journal/journal.hpp"
 
 namespace achilles {

@@ -6,7 +6,7 @@
 
 #include "app/hands.hpp"
 #include "app/program.hpp"
-#include "cli/dropped.hpp"
+#include "cli/inputs.hpp"
 #include "figure/axes.hpp"
 #include "output/output.hpp"
 

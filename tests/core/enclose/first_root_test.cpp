@@ -4,7 +4,7 @@
 #include <random>
 
 #include "certify/taylor.hpp"
-#include "enclose/first_root.hpp"
+#include "enclose/section.hpp"
 
 namespace achilles::test {
 

@@ -9,7 +9,6 @@
 #include "core/several.hpp"
 #include "core/systems.hpp"
 #include "output/contacts.hpp"
-#include "output/energy.hpp"
 #include "output/output.hpp"
 #include "simulate/sampler.hpp"
 

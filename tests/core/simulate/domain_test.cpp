@@ -1,6 +1,6 @@
 // Where a motion leaves the domain of its equations, the run ends and says what ceases to be defined, when and in which
 // state; it neither hangs nor goes on.
-#include "simulate/domain.hpp"
+#include "simulate/edge_watch.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,4 @@
 // The least gap of a run: where it starts, where steps end, and where the gap turns round between.
-#include "simulate/least_gap.hpp"
 
 #include <gtest/gtest.h>
 

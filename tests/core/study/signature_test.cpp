@@ -1,5 +1,5 @@
 // Which sequences of events have one signature, and which have not.
-#include "study/signature.hpp"
+#include "study/measures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/systems.hpp"
-#include "simulate/least_gap.hpp"
+#include "simulate/sampler.hpp"
 #include "study/chunks.hpp"
 
 namespace achilles {

@@ -3,7 +3,7 @@
 
 #include "core/system/mistakes.hpp"
 #include "core/systems.hpp"
-#include "model/derived_values.hpp"
+#include "model/model.hpp"
 #include "model/read_expressions.hpp"
 #include "output/output.hpp"
 #include "simulate/simulate.hpp"
