@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Of what assets() stands in.
+// The binary beside which assets() looks.
 fs::path& binary() {
     std::error_code problem;
     static fs::path file = fs::read_symlink("/proc/self/exe", problem);
@@ -60,7 +60,7 @@ bool is_path(const fs::path& path, const char* extension) {
 
 constexpr const char *of_systems = ".toml", *of_journals = ".journal";
 
-// The names of files with this ending in a folder.
+// Appends the names of files with this extension in a folder.
 void add_files_in(const fs::path& folder, const char* extension, std::vector<std::string>& names) {
     constexpr std::size_t most = 10000;
     std::error_code problem;
@@ -70,7 +70,7 @@ void add_files_in(const fs::path& folder, const char* extension, std::vector<std
     }
 }
 
-// A folder in place of a file: which file in it may be meant.
+// Error if the user names a folder instead of a file; the hint suggests a file in it.
 InputError a_folder(const fs::path& folder, const char* kind, const char* extension) {
     std::vector<std::string> names;
     add_files_in(folder, extension, names);
@@ -81,8 +81,8 @@ InputError a_folder(const fs::path& folder, const char* kind, const char* extens
                         names.empty() ? "" : fmt::format(", for example {}", names.front()))};
 }
 
-// A path, or the name of one of these files. What looks like a path is one, there or not: its absence is the reader's
-// to tell, unless the gallery has such a file.
+// Resolves a path or the name of one of `files`. A word in the form of a path is returned even if the file does not
+// exist, unless the gallery has such a file; the reader then reports that it is missing.
 fs::path find(std::string_view wanted, const std::vector<fs::path>& files, const char* kind, const char* extension) {
     const fs::path path{std::string(wanted)};
     std::error_code problem;

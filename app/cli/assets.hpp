@@ -1,4 +1,4 @@
-// Where the assets are, and which systems there are. A file in assets/systems is a system: the folder is the registry.
+// Location of the assets, and lookup of systems, journals and manual pages. Every file in assets/systems is a system.
 #pragma once
 
 #include <filesystem>
@@ -8,30 +8,30 @@
 
 namespace achilles {
 
-// The folder that holds systems/, journals/, manual/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
-// "../share/achilles". Throws InputError if none is there.
+// The folder with systems/, journals/, manual/ and fonts/: $ACHILLES_ASSETS, else "assets" beside the binary, else
+// "../share/achilles". Throws InputError if none exists.
 std::filesystem::path assets();
-// The binary is this file from now on: a library does not lie where the program lies that has loaded it.
+// Looks for the assets beside this file from now on. A library needs this: it is not in the folder of its host program.
 void look_for_assets_beside(const std::filesystem::path& file);
 
 // The system files in assets/systems, sorted by name.
 std::vector<std::filesystem::path> system_files();
 
-// The same as names: what SYSTEM may be besides a path.
+// Their names: valid values of SYSTEM besides paths.
 std::vector<std::string> system_names();
 
-// The same of journals: a file in assets/journals is a tour.
+// The same for journals: every file in assets/journals is a tour.
 std::vector<std::filesystem::path> journal_files();
 std::filesystem::path find_journal(std::string_view journal);
 
 // The pages of the manual.
 std::vector<std::filesystem::path> manual_files();
 
-// Whether SYSTEM or JOURNAL is a path, there or not, rather than the name of one of the assets.
+// True if SYSTEM or JOURNAL has the form of a path, existing or not; false if it is the name of an asset.
 bool is_system_path(std::string_view system);
 bool is_journal_path(std::string_view journal);
 
-// The file of SYSTEM, a path or a name. Throws InputError with the nearest name and the list of names.
+// The file of SYSTEM, a path or a name. Throws InputError with the closest name and the list of names.
 std::filesystem::path find_system(std::string_view system);
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// The explorer in a window, which lives by the clock.
+// The explorer in a window, which runs in real time.
 #include "cli/explore.hpp"
 
 #include <fmt/format.h>
@@ -30,11 +30,11 @@ namespace achilles {
 
 namespace {
 
-// What a command waits for its run in a window: about a frame. Most runs are done by then, and the curves follow the
-// hand; the others are shown when they are there.
+// Time a command waits for its run in a window, s: about a frame. Most runs are finished by then, so the curves follow
+// the mouse; the others are shown when they are finished.
 constexpr double frame_patience = 1.0 / 40.0;
 
-// Seconds since it was last asked, none the first time.
+// Seconds since the last call; 0 at the first call.
 class Clock {
  public:
     double elapsed() {
@@ -49,7 +49,8 @@ class Clock {
     std::optional<std::chrono::steady_clock::time_point> last_;
 };
 
-// One explorer in its window: who gives commands (the hand, files that are dropped, a tour), and who is told of them.
+// The explorer in its window. It passes commands from the user, dropped files and tours to the session, the record file
+// and the panels.
 class Explorer {
  public:
     Explorer(Session& session, Window& window, const ExploreOptions& options, FilmInHand& film, PanelState state,
@@ -71,10 +72,10 @@ class Explorer {
         state_.thumbnails->on_ready(Window::wake);
     }
 
-    // What is done at the start, at a tour's pace: journals that the command line names, and what it says itself.
+    // Starts the journals and --do commands of the command line, at the pace of a tour.
     void begin(const std::vector<Command>& journal) {
         tour_.begin(journal);
-        session_.set_patience({});  // a journal tells what was done after each run: every run is waited for
+        session_.set_patience({});  // every run is waited for, since the result of a journal must not depend on timing
     }
 
     bool may_close() { return request_close(session_, state_); }
@@ -87,7 +88,7 @@ class Explorer {
         std::vector<Command> commands = explorer(session_, state_);
         take_dropped(commands);
         if (!commands.empty()) {
-            lead_on(PanelState::OnTour::stop);  // the hand takes over
+            lead_on(PanelState::OnTour::stop);  // user input ends the tour
             replayed_ = 0;
         }
         for (const Command& command : commands) take(command);
@@ -101,7 +102,7 @@ class Explorer {
             window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
         lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
         if (state_.editor.may_close) window_.close();
-        // A run that is under way is asked now and then how far it is.
+        // Redraw now and then to show the progress of a run.
         constexpr double progress_seconds = 0.25;
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
@@ -113,7 +114,7 @@ class Explorer {
                 : 0.0);
     }
 
-    // The window was closed: what is not saved was given up. Tells the record what is not told yet.
+    // The window was closed, so unsaved changes are discarded. Writes the last wait to the record.
     void finish() {
         recovery_.forget();
         keep_wait();
@@ -123,18 +124,18 @@ class Explorer {
     void pass_time() {
         if ((!session_.playing() && !tour_.runs()) || state_.file_question) return clock_.stop();
         const double seconds = clock_.elapsed();
-        // Playing is seeking, by the clock; nothing a journal would keep.
+        // Playback advances with the clock and is not recorded.
         if (!tour_.runs()) return play_on(session_, seconds);
         for (const Command& command : tour_.advance(seconds)) take_from_tour(command);
         if (!tour_.runs()) stop_tour();
     }
 
-    // What it does comes after the frame that led to it was drawn.
+    // Performs a command. The current frame is drawn already, so its effect needs another one.
     void take(const Command& command) {
         window_.draw_again();
         const auto* replay = std::get_if<command::Replay>(&command);
         if (replay == nullptr) {
-            keep(command);  // first, for the case that it crashes
+            keep(command);  // recorded first, in case it crashes
             try {
                 if (!session_.apply(command) && record_) record_->take_back();
             } catch (const Forbidden& problem) {
@@ -150,7 +151,7 @@ class Explorer {
         }
     }
 
-    // A journal saves no text that is no system.
+    // A journal may not save a text that is not a valid system.
     void take_from_tour(const Command& command) {
         if (std::holds_alternative<command::Save>(command) && !session_.document().problems.empty())
             return give_up(session_.document().problems.front());
@@ -167,9 +168,8 @@ class Explorer {
         return state_.file_question || state_.editor.asking != EditorState::Asking::nothing || state_.editor.waiting;
     }
 
-    // Files dropped on the window, one after the other: what one asks is answered, and what it replays is done, before the
-    // next. A journal and what a picture carries are replayed; a system is opened, once changes of the text are saved or
-    // given up. A hand that drops takes over from a tour.
+    // Handles dropped files one at a time, each after the questions and replay of the last one. Journals and pictures
+    // are replayed. A system is opened after unsaved changes are saved or discarded. A drop ends a running tour.
     void take_dropped(std::vector<Command>& commands) {
         const std::vector<std::string> files = window_.dropped();
         dropped_.insert(dropped_.end(), files.begin(), files.end());
@@ -180,8 +180,8 @@ class Explorer {
         request(session_, state_, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
     }
 
-    // Of a journal, or of what a picture carries. Every file that it wants is asked about once, whoever wants it next;
-    // one no, and nothing of a journal is done. Those that one journal replays were named by it, and ask as well.
+    // Replays a journal or the content of a picture. Asks once about every file it needs; if one answer is no, nothing
+    // of the journal is done. Journals that it replays are subject to the same questions.
     void begin_replay(const std::string& name) {
         const std::string file = is_picture(name) ? name : find_journal(name).string();
         if (trust_.budget) trust_.budget->limit();
@@ -193,7 +193,7 @@ class Explorer {
                 throw Forbidden(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
             begin(journal);
         } catch (const Forbidden& problem) {
-            // What it may already is not among these: what was asked among them was refused.
+            // If nothing is left to ask, or an answer was no, the error stays.
             const auto& wants = problem.wants;
             if (wants.empty() || std::any_of(wants.begin(), wants.end(),
                                              [&](const std::string& want) { return trust_.answered.contains(want); }))
@@ -209,7 +209,7 @@ class Explorer {
         take(command::Replay{question.asker});
     }
 
-    // What is typed is kept as it comes: no signal, no crash and no display that goes away takes it.
+    // Saves the text while it is typed, so that it survives a signal, a crash or the loss of the display.
     void keep_text() {
         const bool typing = is_typing(state_);
         if (typing || session_.document().is_changed())
@@ -218,7 +218,7 @@ class Explorer {
             recovery_.forget();
     }
 
-    // Offers what earlier windows left, one text after the other.
+    // Offers the texts left by earlier windows, one after the other.
     void recover() {
         using Answer = RecoveryQuestion::Answer;
         if (unsaved_.empty() || tour_.runs()) return;
@@ -234,7 +234,7 @@ class Explorer {
         state_.recovery_question.reset();
         if (answer == Answer::recover) {
             take(text.steps[0]);
-            if (!session_.error().empty()) take(command::New{});  // its file is gone
+            if (!session_.error().empty()) take(command::New{});  // the file no longer exists
             take(text.steps[1]);
             take(command::Show{"editor", true});
             keep_text();
@@ -244,7 +244,7 @@ class Explorer {
         unsaved_.erase(unsaved_.begin());
     }
 
-    // For the next window, once the hand rests. What a tour changes is not what the user wants to have.
+    // Saves preferences when the user is idle. Changes made by a tour are not preferences.
     void remember_looks() {
         preferences_.keep(session_);
         state_.recent = preferences_.recent();
@@ -267,7 +267,7 @@ class Explorer {
         session_.set_patience(frame_patience);
     }
 
-    // The pieces of a wait are one wait to the record.
+    // The record merges the parts of a wait.
     void keep(const Command& command) {
         if (const auto* wait = std::get_if<command::Wait>(&command)) {
             waited_ += wait->seconds;
@@ -288,17 +288,17 @@ class Explorer {
     std::optional<JournalFile> record_;
     Tour tour_;
     Preferences preferences_;
-    double scale_, text_scale_ = 1.0;  // as the command line has it; what the session makes of it
+    double scale_, text_scale_ = 1.0;  // scale of the command line; scale of the session
     Recovery recovery_;
-    std::vector<Unsaved> unsaved_;  // by earlier windows, not offered yet
+    std::vector<Unsaved> unsaved_;  // from earlier windows, not offered yet
     Trust trust_;
-    std::deque<std::string> dropped_;  // files that wait for their turn
-    std::size_t replayed_ = 0;         // commands of journals since the hand did something
+    std::deque<std::string> dropped_;  // dropped files not handled yet
+    std::size_t replayed_ = 0;         // commands from journals since the last user input
     Clock clock_;
     double waited_ = 0.0;
 };
 
-// Where there is no display, the message says what works without one.
+// If there is no display, the message names what works without one.
 Window window_for(const ExploreOptions& options, const std::string& system) {
     try {
         return Window(surface_options(options), "Achilles");
@@ -315,7 +315,7 @@ Window window_for(const ExploreOptions& options, const std::string& system) {
 int explore(const ExploreOptions& options) {
     std::vector<Command> journal = parse_steps(options.steps);
     if (!options.journal.empty()) {
-        read_journal(find_journal(options.journal));  // its mistakes are told before there is a window
+        read_journal(find_journal(options.journal));  // report errors before the window opens
         journal.insert(journal.begin(), command::Replay{options.journal});
     }
     if (!options.record.empty()) refuse_record(options.record);
@@ -329,12 +329,12 @@ int explore(const ExploreOptions& options) {
     library.folder = std::filesystem::current_path(no_folder).string();
     FilmInHand film;
     library.film = [&film](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
-    // The window system takes its time: the other core reads the gallery.
+    // Opening the window takes time; read the gallery on another thread meanwhile.
     std::future<PanelState> state = std::async(std::launch::async, panel_state, true);
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
     Window window = window_for(options, name);
-    // After everything that can fail: a journal that is there already is not lost to a missing display.
+    // Created last, so that an existing record file is not lost if there is no display.
     Explorer explorer(session, window, options, film, state.get(), trust);
     session.set_patience(frame_patience);
     if (!journal.empty()) explorer.begin(journal);
@@ -380,7 +380,7 @@ std::vector<SystemEntry> known_systems() {
         try {
             entries.push_back({name, read_system(file).title, std::string(group_of(name))});
         } catch (const InputError&) {
-            // It stays in the list: choosing it shows what is wrong with it.
+            // Keep it in the list: opening it shows the error.
             entries.push_back({name, name, std::string(group_of(name))});
         }
     }
@@ -399,7 +399,7 @@ std::vector<SystemEntry> known_tours() {
             const std::string line = text.substr(0, text.find('\n'));
             entries.push_back({name, line.rfind("# ", 0) == 0 ? line.substr(2) : name});
         } catch (const InputError&) {
-            entries.push_back({name, name});  // choosing it tells what is wrong with it
+            entries.push_back({name, name});  // opening it shows the error
         }
     }
     return entries;

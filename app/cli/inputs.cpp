@@ -33,7 +33,7 @@ Inputs::Inputs(std::vector<Source> kept, const std::string& command)
     time_limit_.arm(trust_.budget->how_to_allow());
 }
 
-// Of a picture: what this name stood for when it was asked for so often; what came last stays.
+// For a picture: the text that this name had at this request; after the last stored text, that one again.
 const Source& Inputs::next(const std::string& name, bool is_journal) {
     const std::size_t wanted = asked_[{name, is_journal}]++;
     const Source* found = nullptr;
@@ -57,8 +57,8 @@ std::string Inputs::data(const std::string& path) {
     return kept_.back().text;
 }
 
-// Messages call a system what it was called here: an explorer that shows one is a picture too, and must not depend on
-// where the assets are.
+// Messages use the name as given. A picture of the explorer shows them, and must not depend on the location of the
+// assets.
 SystemDescription Inputs::system(const std::string& name) { return parse_system(text(name), name); }
 
 std::string Inputs::journal_text(const std::string& path) {
@@ -80,7 +80,7 @@ std::vector<Command> Inputs::steps(const std::vector<std::string>& lines) {
     return commands;
 }
 
-// Every command that is done was counted when it was read, so journals that replay one another come to an end.
+// Counts commands as they are read, so that journals which replay each other are stopped.
 void Inputs::count(const std::string& name, const std::vector<Command>& commands) {
     replayed_ += commands.size();
     if (replayed_ > most_replayed)
@@ -103,7 +103,7 @@ namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 28;  // bytes
 
-// What of a picture's command line leads to what it shows; how large it was drawn does not.
+// The parts of a picture's command line that determine its session; its size is ignored.
 struct Asked {
     std::string kind, system, journal, at;
     bool dark = false;
@@ -122,17 +122,17 @@ Asked parsed(const std::string& command_line) {
     command.add_option("SYSTEM", asked.system);
     command.add_option("--journal", asked.journal);
     add_view_option(command, asked.views, "");
-    bool allowed = false;  // of no account: what is replayed here writes nothing, and reads what the window allows
+    bool allowed = false;  // ignored: this replay writes nothing, and the window decides what may be read
     add_step_option(command, asked.steps, allowed);
     add_run_options(command, asked.settings, asked.overrides);
-    // Known, so that their values are not taken for the system.
+    // Declared so that their values are not taken for the system.
     std::string ignored;
     command.add_option("--at", asked.at);
     command.add_flag("--dark", asked.dark);
     for (const char* flag : {"--width-mm", "--height-mm", "--font-pt", "--dpi", "--size", "--scale", "--columns",
                              "--format", "--fps", "--speed", "--camera", "--record"})
         command.add_option(flag, ignored);
-    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+    std::reverse(words.begin(), words.end());  // CLI11 expects reverse order
     try {
         command.parse(words);
     } catch (const CLI::ParseError& error) {
@@ -147,15 +147,15 @@ const Source* carried(const Origin& origin, Source::Kind kind, const std::string
     return nullptr;
 }
 
-// Where the commands go, and who says which files they may come from.
+// The commands collected so far, and the permission to read files.
 struct Opening {
     const std::string& picture;
     const Trust& trust;
     std::vector<Command> commands{};
 };
 
-// Whether the file of that name still holds the text. The name is the picture's, and so a stranger's: a path is looked
-// into only where the user lets it. Throws Forbidden where that is to be asked.
+// Whether the file of that name still has the same text. The name comes from an untrusted picture, so a path is read
+// only with permission. Throws Forbidden if the user must be asked.
 bool is_held(const Source& source, const Opening& opening) {
     std::error_code problem;
     if (is_system_path(source.name)) {
@@ -175,7 +175,7 @@ bool is_held(const Source& source, const Opening& opening) {
     }
 }
 
-// Opens what the picture knows under this name.
+// Opens the system that the picture stores under this name.
 void open(const Source& source, Opening& opening) {
     if (is_held(source, opening)) {
         opening.commands.emplace_back(command::Open{source.name});
@@ -185,7 +185,7 @@ void open(const Source& source, Opening& opening) {
     opening.commands.emplace_back(command::Text{source.text});
 }
 
-// The run and the plots that a command line asks for.
+// The run and the plots that a command line specifies.
 void ask(const Asked& asked, const Source& source, std::vector<Command>& commands) {
     const SystemDescription description = parse_system(source.text, source.name);
     Run run = asked_run(description, asked.settings, asked.overrides);
@@ -211,7 +211,8 @@ void ask(const Asked& asked, const Source& source, std::vector<Command>& command
     }
 }
 
-// The commands of a journal, with what they read taken from the picture. They write nothing, and play nothing again.
+// The commands of a journal, with their inputs taken from the picture. Commands that write files or start playback are
+// left out.
 void replay(const std::vector<Command>& journal, const Origin& origin, Opening& opening) {
     for (const Command& command : journal) {
         if (const auto* opened = std::get_if<command::Open>(&command)) {

@@ -1,5 +1,5 @@
-// What a picture is made from: system files and journals, by the names they were asked for. From the disk, and then
-// they are remembered; or from a picture that remembers them, and then from nowhere else.
+// Inputs of a picture, by the names used to request them: system files, journals, data files. They are read from the
+// disk and remembered, or taken only from a picture in which they are stored.
 #pragma once
 
 #include <map>
@@ -13,7 +13,8 @@
 
 namespace achilles {
 
-// A change may make another run: those of a stranger's picture are fewer than what a session may replay.
+// Maximum number of commands that start a new run, in a picture's journals. It is lower than the limit for a session,
+// since pictures may come from untrusted sources.
 constexpr std::size_t most_changes = 1000;
 
 struct Source {
@@ -26,34 +27,35 @@ struct Source {
 class Inputs {
  public:
     Inputs() = default;
-    // Reads the inputs that are kept in a picture; `command` is the command that made it.
+    // Reads the inputs stored in a picture; `command` is the command that made it.
     Inputs(std::vector<Source> kept, const std::string& command);
 
-    // What the journals may do with files: nothing, until this is said. A picture's have no file to lose.
+    // What the journals may do with files; by default nothing. Ignored for a picture, whose journals access no files.
     void trust(const Trust& trust) {
         if (!from_picture_) trust_ = trust;
     }
 
-    // Limits the work done with these inputs; null means no limits. The budget of a picture begins at once, with the
-    // time limit; any other begins with the first journal that is not trusted.
+    // Limits of the work done with these inputs; null: no limits. For a picture they apply at once, with the time
+    // limit; else from the first untrusted journal on.
     const std::shared_ptr<Budget>& budget() const { return trust_.budget; }
-    // What follows is short, and must not be ended in the middle.
+    // Stops the time limit before a short final step that must not be interrupted.
     void end_time_limit() { time_limit_.disarm(); }
 
-    // The text of a system by path or name, and read. What a name stands for may change while a journal saves files:
-    // every time it is asked for counts. Throw InputError.
+    // The text of a system by path or name, and its description. Each request is recorded separately, since a journal
+    // may save a file and so change what a name refers to. Throw InputError.
     std::string text(const std::string& name);
     SystemDescription system(const std::string& name);
-    // The text of a file of data, by its path.
+    // The text of a data file, by its path.
     std::string data(const std::string& path);
-    // The commands of a journal. Throws Forbidden for what it may not, and where all of them together are too many.
+    // The commands of a journal. Throws Forbidden if it does what it may not, or if all journals together have too many
+    // commands.
     std::vector<Command> journal(const std::string& path);
-    // Commands that are no journal's; those of a picture count, too.
+    // Commands from a command line; for a picture they count toward the limits, too.
     std::vector<Command> steps(const std::vector<std::string>& lines);
-    // The first that was asked for: where a command line names none, a picture tells.
+    // The first system requested: the default for a command line, stored in a picture, that names none.
     std::string first_system() const;
     const std::vector<Source>& kept() const { return kept_; }
-    // From the disk.
+    // Files read from the disk.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
 
  private:
@@ -66,19 +68,19 @@ class Inputs {
     bool from_picture_ = false;
     Trust trust_;
     TimeLimit time_limit_;
-    std::size_t replayed_ = 0, changes_ = 0;                     // commands, and those of them that make another run
-    std::map<std::pair<std::string, bool>, std::size_t> asked_;  // how often, of a picture
+    std::size_t replayed_ = 0, changes_ = 0;                     // commands, and how many of them start a new run
+    std::map<std::pair<std::string, bool>, std::size_t> asked_;  // number of requests of each input of a picture
 };
 
-// What a file that is dropped on the window stands for, as commands.
+// Files dropped on the window, as commands.
 
-// Whether a path names a picture by its ending: .png or .svg.
+// True if the extension is .png or .svg.
 bool is_picture(const std::string& path);
 
-// The commands that lead to the session a picture shows, from what it carries: its system as the file of that name if
-// that still holds the same text and may be read, else as a new text that belongs to no file. What its journal would write
-// is left out. Throws Forbidden, with what is to be asked, before it looks into a file that nobody named; InputError for a
-// file that is no picture of Achilles, or shows no session.
+// Commands that restore the session shown in a picture, from what is stored in it. Its system is opened from the file
+// of that name if the file may be read and still has the same text, else as an unsaved new text. File output of its
+// journal is left out. Throws Forbidden, with the questions to ask, before it reads a file that the user has not named.
+// Throws InputError if the file is not a picture of Achilles, or shows no session.
 std::vector<Command> session_in(const std::string& picture, const Trust& trust);
 
 }  // namespace achilles

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Columns as wide as what stands in them, so that the page reads well as plain text, too.
+// A Markdown table with padded columns, so that it is readable as plain text.
 std::string table(const std::vector<std::vector<std::string>>& rows) {
     std::vector<std::size_t> widths(rows[0].size(), 3);
     for (const auto& row : rows)
@@ -108,7 +108,7 @@ std::string csv_header() {
     return fmt::format("    {}\n", csv.substr(0, csv.find('\n')));
 }
 
-// What a line {{NAME}} stands for.
+// The replacement of a line {{NAME}}.
 std::string expanded(std::string_view name) {
     constexpr std::string_view keys = "keys ";
     if (name.starts_with(keys)) return keys_table(name.substr(keys.size()));
@@ -129,7 +129,7 @@ std::string title_of(const fs::path& page) {
     return begin == std::string::npos ? "" : text.substr(begin, text.find('\n') - begin);
 }
 
-// The two pages that have a word most often, tables included; small and capital letters are the same.
+// The two pages in which a word occurs most often, tables included, ignoring case.
 std::vector<std::string> pages_about(std::string_view word) {
     constexpr std::size_t most = 2;
     const auto lower = [](std::string text) {

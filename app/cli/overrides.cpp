@@ -126,7 +126,7 @@ bool can_start(const Model& model, const Run& run) {
     return true;
 }
 
-// The run with this setting's value as the file has it.
+// The run with the file's value for this setting.
 Run without(const Model& model, const std::string& setting, Run run) {
     std::string name = setting.substr(0, setting.find('='));
     name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
@@ -161,7 +161,7 @@ void check_asked(const Model& model, const Run& run, const std::vector<std::stri
             if (can_start(model, without(model, setting, run))) alone = "--set " + setting;
             file = without(model, setting, file);
         }
-        if (!can_start(model, file)) throw;  // it is not the settings
+        if (!can_start(model, file)) throw;  // the settings are not the cause
         std::vector<InputError> told;
         for (const InputError& each : each_of(problem))
             told.emplace_back(shown(alone.empty() ? all : alone), Location{}, each.message, each.hint);

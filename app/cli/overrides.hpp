@@ -1,4 +1,4 @@
-// What the command line changes in a run: the top of "command line over file over default".
+// Changes that the command line makes to a run: the command line overrides the file, which overrides the defaults.
 #pragma once
 
 #include <functional>
@@ -15,47 +15,47 @@ namespace achilles {
 
 class Model;
 
-// The options that were given, by flag; the others keep what the file or the default says. `--eps` gives the three of
-// the explorer's command `eps`, and --eps-q and its kin go over it.
+// Options given on the command line, by flag. All others keep the value of the file or the default. `--eps` sets the
+// three values of the explorer's command `eps`; --eps-q etc. override it.
 struct OptionOverrides {
     std::map<std::string, OptionValue, std::less<>> by_flag;
 
-    // What was given for an option: the flag, and its value; null if nothing was.
+    // The flag and value given for an option; null if none was given.
     const std::pair<const std::string, OptionValue>* given(const Option& option) const;
 };
-// The flag that gives all options of one command of the explorer. Most stand alone: it is theirs.
+// The flag that sets all options of one explorer command. Most commands set a single option: then it is that option's
+// flag.
 std::string common_flag(const Option& option);
 
-// A number as read_number() takes it, all of it; CLI11 would take more (hexadecimal, "nan"). Throws InputError.
+// Parses a complete number by read_number(). CLI11 would accept more (hexadecimal, "nan"). Throws InputError.
 double number_from(const std::string& option, std::string_view text, std::string_view unit = {});
 
-// The value of an option as typed: one of its words, a whole number, or a number. Throws InputError about the flag.
+// Parses the value of an option: one of its words, an integer, or a number. Throws InputError about the flag.
 OptionValue value_from(const Option& option, const std::string& flag, const std::string& text);
 
-// Puts them over the options of a file. Throws InputError (without a location) for a value out of range.
+// Applies the overrides to the options of a file. Throws InputError (without a location) for a value out of range.
 void apply(const OptionOverrides& overrides, Options& options);
 
-// What a command line says of the work of one run: memory and max_steps; the defaults where it says nothing.
+// The options memory and max_steps from the command line, or their defaults.
 Options work_options(const OptionOverrides& overrides);
 
-// The run of a system that a command line asks for: the file's own, with --set and the options over it. Throws
-// InputError.
+// The run specified by a command line: the file's run with --set and options applied. Throws InputError.
 Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
               const OptionOverrides& overrides);
 
-// What a command line gives one value: the names of --set, and the flags of options.
+// Names fixed by the command line: those of --set, and the flags of options.
 std::vector<std::string> fixed_names(const std::vector<std::string>& settings, const OptionOverrides& overrides);
 
-// The intervals among settings, which may be NAME=LOW..HIGH; `points` becomes the settings with the middle of each. Throws
-// InputError.
+// Parses settings that may be intervals, NAME=LOW..HIGH. `points` receives the settings with the midpoint of each
+// interval. Throws InputError.
 Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,
                    std::vector<std::string>& points);
 
-// Model::check(). What a --set makes impossible is told with that setting in place of the file's line. Throws InputErrors.
+// Model::check(), but if a --set value causes the error, the message names that setting instead of a line of the file.
+// Throws InputErrors.
 void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings);
 
-// Tells on standard error what a person should know of a run: core's warnings(), outside_ranges() and
-// unseen_lines().
+// Prints the warnings about a run to standard error: core's warnings(), outside_ranges() and unseen_lines().
 void warn(const SystemDescription& description, const Run& run);
 
 }  // namespace achilles

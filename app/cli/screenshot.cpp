@@ -1,4 +1,4 @@
-// The explorer in a picture, which knows no clock.
+// The explorer as an off-screen picture, independent of the clock.
 #include <algorithm>
 #include <vector>
 

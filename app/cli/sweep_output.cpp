@@ -29,7 +29,7 @@ namespace {
     throw std::system_error(problem, std::generic_category(), path);
 }
 
-// To a file that is open.
+// Writes to an open file.
 void put(int file, std::string_view bytes, const std::string& path) {
     while (!bytes.empty()) {
         const ssize_t count = ::write(file, bytes.data(), bytes.size());
@@ -39,7 +39,7 @@ void put(int file, std::string_view bytes, const std::string& path) {
     }
 }
 
-// Opens the file, or standard output, and closes it. Messages call it `name`, as the user did.
+// Opens a file or standard output, writes and closes it. Messages use `name`, as the user typed it.
 void write_file(const std::string& path, const std::string& name, const std::function<void(int file)>& write) {
     const bool is_standard = path == "-";
     const int file = is_standard ? STDOUT_FILENO : ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
@@ -53,14 +53,14 @@ void write_file(const std::string& path, const std::string& name, const std::fun
     if (!is_standard && ::close(file) != 0) fail(name, errno);
 }
 
-// Standard output, or a device.
+// True for standard output and devices.
 bool is_stream(const std::string& path) {
     std::error_code ignored;
     const fs::file_status there = fs::status(path, ignored);
     return path == "-" || (fs::exists(there) && !fs::is_regular_file(there));
 }
 
-// The two parts of what is kept of a chunk: the text of its rows, behind its length, and the rows.
+// The two parts of a chunk's stored form: the length and text of its rows, then the binary rows.
 std::string_view text_in(std::string_view bytes) {
     std::uint64_t size = 0;
     std::memcpy(&size, bytes.data(), sizeof size);
@@ -145,8 +145,8 @@ void SweepOutput::write_csv(const std::string& path) const {
     });
 }
 
-// Under another name first, which is always the same: one that was left behind is overwritten. On disk before it has its own,
-// with the mode of what it replaces.
+// Writes under a fixed temporary name, so a leftover is overwritten. Flushes to disk before renaming, and keeps the
+// mode of a replaced file.
 void SweepOutput::make(const std::string& path, const std::function<void(const std::string&)>& write) const {
     if (is_stream(path)) return write(path);
     const fs::path target = fs::weakly_canonical(path);
@@ -207,7 +207,7 @@ std::string SweepOutput::how_to_continue() {
     if (log_->done() == table_.sweep().count())
         return fmt::format("; the runs are kept in {}: the same command writes the files", log_path_);
     if (log_->done() > 0) return fmt::format(": the same command with --resume continues from {}", log_path_);
-    log_->remove();  // there is nothing in it
+    log_->remove();  // it is empty
     return "";
 }
 
@@ -284,7 +284,7 @@ std::string SweepSummary::unit_of(std::size_t number) const {
     return unit.empty() ? "" : " " + unit;
 }
 
-// "e >= 0.7125" where one axis has it at one end, else the first point; "" over no axis.
+// Where a quantity is undefined: "e >= 0.7125" if that is one end of one axis, else the first point; "" without axes.
 std::string SweepSummary::where_missing(const Column& column) const {
     const Sweep& sweep = table_->sweep();
     if (sweep.axes.empty()) return "";
@@ -367,7 +367,7 @@ SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& 
         print_clean(stderr, "achilles: warning: --print {}: text values are not drawn in a section\n", word);
 }
 
-// Without its fonts, or what draws without a window, a picture fails: before the runs, not after them.
+// Missing fonts or a missing off-screen renderer must cause an error before the runs, not after them.
 void SweepPictures::try_to_draw() const {
     for (const std::string& file : asked_.files) {
         const std::string format = format_for(file, "");
@@ -399,7 +399,7 @@ std::optional<Figure> SweepPictures::figure(const EachRows& each_rows) const {
             every, most_drawn_rows);
     SweepLook look = asked_.look;
     look.columns = columns_with_values(data, asked_.look);
-    const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one over the other
+    const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one is drawn over the other
     if (look.columns.empty() || (needs_both && look.columns.size() < 2)) {
         print_clean(stderr, "achilles: no picture is drawn: no run has a value to draw\n");
         return std::nullopt;

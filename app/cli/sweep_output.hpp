@@ -1,4 +1,4 @@
-// Where the table of a sweep goes.
+// Output of a sweep: table files, pictures and the summary.
 #pragma once
 
 #include <cstdint>
@@ -22,21 +22,22 @@ struct SweepPicturesAsked {
     std::vector<std::string> files;  // .png, .svg or .pdf
     SweepLook look;
     PictureSize size;
-    bool has_size = false;  // that of pixels is given
+    bool has_size = false;  // size in pixels was given
     PaperSize page;
 };
 
 class SweepPictures {
  public:
-    // Whether they can be drawn: throws InputError before anything is computed. Refers to the table and the job.
+    // Checks that they can be drawn, and throws InputError if not, before the sweep starts. Keeps references to the
+    // table and the job.
     SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job);
 
     const std::vector<std::string>& files() const { return asked_.files; }
-    // Drawn from all rows at the end, of which it holds most_drawn_rows at most: of more, every second, third, ... one. Columns
-    // without a value are left out; nothing where no column has one, which is said on standard error. Throws
-    // std::runtime_error where it cannot be drawn.
+    // Draws all rows at the end. Holds at most most_drawn_rows rows: if there are more, uses every second, third, ...
+    // row. Columns without values are left out. If no column has a value, returns nothing and prints a warning to
+    // standard error. Throws std::runtime_error if drawing fails.
     std::optional<Figure> figure(const EachRows& each_rows) const;
-    // As the name of such a file says. A height that is not asked for is no less than what its panels need.
+    // The picture in the format of the file's extension. A height that was not given is at least what the panels need.
     std::string bytes(const Figure& figure, const std::string& file) const;
 
  private:
@@ -48,44 +49,46 @@ class SweepPictures {
     const PictureJob& job_;
 };
 
-// Makes the one picture that a job is asked for again, keeping no file.
+// Makes the one picture that `reproduce` wants, without writing files.
 void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads);
 
 struct SweepOutputAsked {
-    std::string csv, hdf5;  // files; csv: or -, standard output
+    std::string csv, hdf5;  // file names; csv may be -, standard output
     bool units = false, resume = false;
 };
 
-// What is kept of rows until the files are made of it, or printed: their text, themselves; in a log both, told apart.
+// How rows are stored until the output is written: as text, as binary data, or in a log as both, separately.
 struct SweepKept {
     bool text = false, rows = false, in_log = false;
 };
-// Asked of several threads at once.
+// The stored form of these rows. Thread-safe.
 std::string kept_bytes(const SweepTable& table, SweepKept kept, const Rows& rows);
 
-// Files that are there when the sweep is done. Until then it is kept in a log, F.part of the first file F, which is gone on with
-// where it ends. A table for standard output or a device alone is written as it is made, and kept nowhere.
+// Output files of a sweep, written when it is finished. Until then the rows are stored in a log, F.part of the first
+// file F, from which --resume continues. A table that goes only to standard output or a device is written at once,
+// without a log.
 class SweepOutput {
  public:
-    // Looks whether the files can be written; nothing is computed before. Throws InputError. Refers to the pictures.
+    // Checks that the files can be written, before the sweep starts. Throws InputError. Keeps a reference to the
+    // pictures.
     SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const SweepPictures& pictures,
                 const std::filesystem::path& system_file, const std::string& system_name);
     ~SweepOutput();
     SweepOutput(const SweepOutput&) = delete;
     SweepOutput& operator=(const SweepOutput&) = delete;
 
-    // So many points are there already.
+    // Number of points finished earlier.
     std::uint64_t done() const { return log_ ? log_->done() : printed_; }
     SweepKept kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
-    // Takes what is kept of rows, in the order of the points. Throws std::system_error.
+    // Appends the stored form of a chunk. Chunks must come in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
-    // Makes the files. False where a picture would be empty: it is not made then, and the others are. Throws
-    // std::runtime_error; the log stays then.
+    // Writes the files. Returns false if a picture would be empty; it is then left out and the others are written.
+    // Throws std::runtime_error; the log is kept then.
     bool finish();
-    // Those that finish() has made.
+    // The files written by finish().
     const std::vector<std::string>& files() const { return made_; }
-    // The end of a message, if runs are kept: ": the same command with --resume continues from F.part", or once all runs are
-    // done "; the runs are kept in F.part: ...". Empty otherwise.
+    // End of a message if rows are stored: ": the same command with --resume continues from F.part" or, if all runs are
+    // done, "; the runs are kept in F.part: ...". Empty otherwise.
     std::string how_to_continue();
 
  private:
@@ -101,28 +104,31 @@ class SweepOutput {
     std::string csv_, hdf5_, log_path_;
     bool units_;
     SweepOrigin origin_;
-    OutputFiles files_;  // whether they can be written
+    OutputFiles files_;  // tests whether the files can be written
     std::vector<std::string> made_;
     std::unique_ptr<SweepLog> log_;
-    int stream_ = -1;  // where there is no log
+    int stream_ = -1;  // used if there is no log
     std::uint64_t printed_ = 0;
 };
 
-// What a sweep came to, in a few lines: how many runs reached their end, and the range of each quantity.
+// Summary of a sweep: how many runs reached their end, and the range of each quantity.
 
-// Counts and ranges over rows, chunk by chunk, in whichever process: they travel as bytes behind those of a chunk.
+// Counts and ranges over rows, accumulated chunk by chunk in any process. For transport they are appended to a chunk's
+// bytes.
 class SweepSummary {
  public:
     explicit SweepSummary(const SweepTable& table) : table_(&table), columns_(table.measures().numbers()) {}
 
     void note(const Rows& rows);
-    // As bytes behind others, and taken away from there again: added to these.
+    // behind() appends the totals to `bytes`. take() adds the totals at the end of `bytes` to these and returns the
+    // rest.
     std::string behind(std::string bytes) const;
     std::string take(std::string bytes);
 
-    // "Ball on a sine: 9 runs, all reached the end time", and a line for each quantity: its range, and where it does not exist.
+    // "Ball on a sine: 9 runs, all reached the end time", then a line per quantity: its range, and where it is
+    // undefined.
     std::string text() const;
-    // A sentence for each quantity that exists in no run.
+    // A sentence for each quantity that is undefined in every run.
     std::vector<std::string> nowhere() const;
 
  private:

@@ -76,7 +76,7 @@ std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk) {
     return summary.behind(failures.behind(kept_bytes(table, kept, rows)));
 }
 
-// Lines, and the system's file behind them.
+// Header lines, then the text of the system file.
 std::string sweep_order(const SweepTable& table, SweepKept kept, int threads) {
     const SystemDescription& description = table.model().description();
     return fmt::format("{}\n{:d} {:d} {:d} {}\n{}\n{}", version(), kept.text, kept.rows, kept.in_log, threads,
@@ -105,7 +105,7 @@ Share sweep_share(std::string_view order) {
 }
 
 void help_with_sweep(Messages& messages) {
-    // Rank 0 is asked to stop as well, and dismisses this one. Where it is no more, this one ends soon.
+    // Rank 0 also receives the signal and releases this process. If rank 0 is gone, this process ends soon by itself.
     struct sigaction action {};
     static std::atomic<bool> asked_to_stop{false};
     action.sa_handler = [](int) {

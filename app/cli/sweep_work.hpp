@@ -1,4 +1,4 @@
-// What a sweep is made of, chunk by chunk, in whichever process: this one, or one that was told so by an order.
+// The computation of one chunk of a sweep, in this process or in another one that received an order for it.
 #pragma once
 
 #include <map>
@@ -10,14 +10,15 @@
 
 namespace achilles {
 
-// Runs that are points with another outcome than the end time: so many of each, and the first.
+// Counts runs whose outcome is not the end time, by outcome, with the first point of each.
 class RunFailures {
  public:
     void note(const Rows& rows);
-    // As bytes behind others, and taken away from there again: added to these.
+    // behind() appends the counts to `bytes`. take() adds the counts at the end of `bytes` to these and returns the
+    // rest.
     std::string behind(std::string bytes) const;
     std::string take(std::string bytes);
-    // Says them on standard error.
+    // Prints them to standard error.
     void tell(const SweepTable& table) const;
 
  private:
@@ -28,15 +29,15 @@ class RunFailures {
     std::map<std::uint8_t, Kind> kinds_;
 };
 
-// The bytes of a chunk: what is kept of its rows, behind them their failures and their summary.
+// The bytes of a chunk: the stored form of its rows, then its failures and its summary.
 std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk);
 
-// What other processes are told of a sweep: neither files nor options of theirs are asked.
+// The description of a sweep for other processes, which use no files or options of their own.
 std::string sweep_order(const SweepTable& table, SweepKept kept, int threads);
-// What they do then. Throws where the order is of another version of the program.
+// The work that an order describes. Throws if the order is from another version of the program.
 Share sweep_share(std::string_view order);
 
-// All that a process does whom rank 0 tells what to do. It ends with rank 0, which alone hears Ctrl-C.
+// Main function of all ranks except 0: performs the orders of rank 0 until it ends. Only rank 0 handles Ctrl-C.
 void help_with_sweep(Messages& messages);
 
 }  // namespace achilles

@@ -1,5 +1,5 @@
-// What is told on a terminal. Titles, names and messages may come from anybody's file or picture: nothing in them steers
-// the terminal.
+// Output to a terminal. Titles, names and messages may come from untrusted files or pictures, so control characters are
+// replaced.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 
 namespace achilles {
 
-// Prints printable() of what is formatted.
+// Prints printable() of the formatted text.
 template <class... Arguments>
 void print_clean(std::FILE* where, fmt::format_string<Arguments...> format, Arguments&&... arguments) {
     const std::string text = printable(fmt::format(format, std::forward<Arguments>(arguments)...));

@@ -31,7 +31,7 @@ namespace {
                      fmt::format("the file cannot be written: {}", std::strerror(reason)));
 }
 
-// Writes and closes; standard output stays open. A temporary file is on disk then.
+// Writes and closes the file; standard output stays open. With `to_disk` the data are flushed to disk.
 void write_all(int descriptor, const std::string& path, const std::string& content, bool to_disk = false) {
     if (descriptor < 0) cannot_write(path, errno);
     int problem = 0;
@@ -47,7 +47,7 @@ void write_all(int descriptor, const std::string& path, const std::string& conte
     if (problem != 0) cannot_write(path, problem);
 }
 
-// A name that was given away stays so when the power fails. A folder that cannot be opened is not worth a loss.
+// Flushes a folder so that renames survive a power failure. A folder that cannot be opened is skipped.
 void keep_names(const fs::path& folder) {
     const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (descriptor < 0) return;
@@ -55,7 +55,7 @@ void keep_names(const fs::path& folder) {
     ::close(descriptor);
 }
 
-// A link is followed: what it points at is replaced or made, not the link.
+// Resolves symbolic links: their target is replaced or created, not the link.
 fs::path place_of(const std::string& path) {
     std::error_code problem;
     fs::path place = fs::absolute(path, problem);
@@ -66,7 +66,7 @@ fs::path place_of(const std::string& path) {
     return problem ? fs::path(path) : whole;
 }
 
-// What a new file may have: all but what the process masks.
+// The mode of a new file, from the umask.
 mode_t usual_mode() {
     const mode_t mask = ::umask(0);
     ::umask(mask);
@@ -122,9 +122,9 @@ int OutputFiles::open_temporary(File& file) {
     struct stat there {};
     const bool is_there = ::stat(file.target.c_str(), &there) == 0;
     mode_t mode = is_there ? there.st_mode & 07777 : usual_mode();
-    // Where it cannot keep its owner, what it could do in that name is not for another.
+    // If the owner cannot be kept, drop setuid and setgid bits: they must not apply to another owner.
     if (is_there && ::fchown(descriptor, there.st_uid, there.st_gid) != 0) mode &= 0777;
-    if (::fchmod(descriptor, mode) != 0) ::fchmod(descriptor, mode & 0777);  // some file systems know no modes
+    if (::fchmod(descriptor, mode) != 0) ::fchmod(descriptor, mode & 0777);  // some file systems do not support modes
     return descriptor;
 }
 
@@ -163,7 +163,8 @@ void OutputFiles::put(const std::string& path, std::string content) {
         }
 }
 
-// The temporary file takes the target's name. Where the file system can, what was there stays until all have theirs.
+// Renames the temporary file to the target. If the file system can exchange names, the old file is kept until all are
+// renamed.
 void OutputFiles::take_name(File& file) {
     const char *from = file.temporary.c_str(), *to = file.target.c_str();
     std::error_code problem;
@@ -187,7 +188,7 @@ void OutputFiles::commit(Care care) {
     refuse_inputs();
     for (File& file : files_)
         if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Care::on_disk);
-    // A device can be full, so it is written before files are renamed: renaming needs no room.
+    // Devices can be full, so they are written before the renames, which need no space.
     for (const File& file : files_) {
         if (!file.in_place) continue;
         const bool standard = file.path == "-";

@@ -1,4 +1,4 @@
-// Output files that are there whole or not at all.
+// Atomic output files: each is written completely or not at all.
 #pragma once
 
 #include <sys/types.h>
@@ -11,14 +11,13 @@
 
 namespace achilles {
 
-// Opens a device or a named pipe to write to it; negative, with errno, where it cannot be opened. Waits for a program that reads
-// the pipe, and says so on standard error.
+// Opens a device or a named pipe for writing; returns a negative number and sets errno on failure. Waits for a reader
+// of the pipe, with a note on standard error.
 int open_in_place(const std::string& path);
 
-// A set of files. Whether each can be written is tried when it is added, before the work; nothing stays behind if the
-// work is interrupted. At the end all are written under temporary names, which no other process uses, are on disk, and
-// then get their own. A file that is replaced keeps its mode and, where that may be given away, its owner. "-" is
-// standard output.
+// A set of output files. add() checks that each can be written, before the work; nothing remains if the work is
+// interrupted. commit() writes all under unique temporary names, flushes them to disk, and then renames them. A
+// replaced file keeps its mode and, if permitted, its owner. "-" is standard output.
 class OutputFiles {
  public:
     OutputFiles() = default;
@@ -26,27 +25,28 @@ class OutputFiles {
     OutputFiles(const OutputFiles&) = delete;
     OutputFiles& operator=(const OutputFiles&) = delete;
 
-    // A file that was read: no output may be it, by whatever name. Throws InputError where one is.
+    // Registers an input file. Throws InputError for outputs that resolve to the same file (same device and inode).
     void spare(const std::filesystem::path& input);
-    // Throws InputError if the file cannot be written, or was added or is spared.
+    // Registers an output. Throws InputError if it cannot be written, was added before, or is an input.
     void add(const std::string& path);
-    // Throws InputError where somebody else would write to a file that was added.
+    // Throws InputError if `path` is a registered output, which is also written for another purpose.
     void refuse_output(const std::string& path) const;
-    // What an added file will hold.
+    // Sets the content of a registered output.
     void put(const std::string& path, std::string content);
-    // Writes all. Throws InputError (the disk is full); then every file is as it was.
-    enum class Care { on_disk, quick };  // quick: what can be made again, or is written at every letter
+    // Writes all files. Throws InputError (e.g. disk full); then every file is as it was.
+    // `quick` does not flush to disk: for files that can be made again or are written often.
+    enum class Care { on_disk, quick };
     void commit(Care care = Care::on_disk);
 
  private:
     using Identity = std::pair<dev_t, ino_t>;
     struct File {
         std::string path, content;                // as given
-        std::filesystem::path target, temporary;  // no temporary: none is written now
-        std::optional<Identity> identity;         // of what is there
-        bool in_place = false;                    // a device, standard output
-        bool swapped = false;                     // the target has its content, the temporary what was there
-        bool made = false;                        // the target has its content, and there was none
+        std::filesystem::path target, temporary;  // temporary is empty unless it exists now
+        std::optional<Identity> identity;         // of the existing file
+        bool in_place = false;                    // a device or standard output
+        bool swapped = false;  // target and temporary have been exchanged: the temporary is the old file
+        bool made = false;     // the target is new and complete
     };
     static std::optional<Identity> identity_of(const std::string& path);
     void refuse_inputs() const;

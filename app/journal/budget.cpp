@@ -16,7 +16,7 @@ namespace achilles {
 
 namespace {
 
-// What the signal prints: a handler may not format.
+// The message printed by the signal handler, which must not format text itself.
 std::string time_message;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What journals and pictures of unknown origin may cost. Memory, steps and points decide alike on every machine; the time
-// limit is for what these do not see, and ends the program without a picture.
+// Resource limits for journals and pictures from untrusted sources. Limits on memory, steps and points give the same
+// result on every machine. The time limit covers everything else and ends the program without writing a picture.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +13,32 @@ namespace achilles {
 struct Sweep;
 struct Trajectory;
 
-// The limits of one session. Until limit() is called nothing is refused: what a person types has no limits.
+// The limits of one session. They apply only after limit(): commands typed by the user are not limited.
 class Budget {
  public:
-    // Points, and rows, of one sweep.
+    // Maximum number of points, and of rows, of one sweep.
     static constexpr std::uint64_t max_points = std::uint64_t{1} << 22;
-    // All runs together: each counts as the share that it takes of the steps, or the memory, of one.
+    // Maximum total of all runs. Each run counts as the fraction it uses of the steps or memory allowed for one run.
     static constexpr double max_full_runs = 4.0;
 
-    // `how_to_allow`: what a refusal says to type. `allowed`: memory and max_steps of a run, at most.
+    // `how_to_allow`: what the error message tells the user to type. `allowed`: upper limits of memory and max_steps of
+    // a run.
     explicit Budget(std::string how_to_allow, const Options& allowed = {})
         : how_to_allow_(std::move(how_to_allow)), allowed_(allowed) {}
     const std::string& how_to_allow() const { return how_to_allow_; }
 
     void limit() { is_limited_ = true; }
-    // Lifts the limits, and forgets the runs.
+    // Lifts the limits and resets the total.
     void lift();
     bool is_limited() const { return is_limited_; }
-    // Raises the limits of memory and max_steps to those of options that a person typed.
+    // Raises the limits of memory and max_steps to the options that the user typed.
     void allow(const Options& typed);
 
-    // Throw Forbidden where a run may keep more memory or take more steps than the limits, or a sweep has too many points.
+    // Throw Forbidden if a run may use more memory or steps than the limits, or if a sweep has too many points.
     void check(const Options& options) const;
     void check(const Sweep& sweep) const;
-    void check_rows(std::uint64_t rows) const;  // of the sections of a sweep
-    // Counts a run. Throws Forbidden where all of them together are too many.
+    void check_rows(std::uint64_t rows) const;  // rows of the sections of a sweep
+    // Adds a run to the total. Throws Forbidden if the total exceeds max_full_runs.
     void charge(const Trajectory& run);
 
  private:
@@ -47,8 +48,8 @@ class Budget {
     double full_runs_ = 0.0;
 };
 
-// Ends the process, with a message and the exit status of bad input, when it is armed for so long. For programs without a
-// window: nothing has been written by then.
+// Ends the process with a message and the exit status of bad input after the given time. For programs without a window:
+// they write their output last, so nothing has been written by then.
 class TimeLimit {
  public:
     static constexpr unsigned usual_seconds = 600;
@@ -57,7 +58,7 @@ class TimeLimit {
     TimeLimit(const TimeLimit&) = delete;
     TimeLimit& operator=(const TimeLimit&) = delete;
 
-    // Begins, unless it is armed already. There is one timer in a process.
+    // Starts the timer, unless it is running. There is one timer per process.
     void arm(const std::string& how_to_allow, unsigned seconds = usual_seconds);
     void disarm();
 

@@ -52,7 +52,8 @@ bool is_named(const std::string& path, const Trust& trust) {
     });
 }
 
-// Whether somebody allowed it. A picture that is made again carries what is read and writes nothing.
+// Whether this use is allowed. While a picture is reproduced everything is: it supplies all inputs and nothing is
+// written.
 bool is_allowed(const FileUse& use, const Trust& trust) {
     if (use.path.empty() || trust.files != Trust::Files::refused || (is_named(use.path, trust) && !use.writes))
         return true;
@@ -65,7 +66,7 @@ bool would_overwrite(const FileUse& use, const Trust& trust) {
     return use.writes && trust.files != Trust::Files::imagined && fs::exists(use.path, problem);
 }
 
-// Throws Forbidden where the command sets an option beyond the budget.
+// Throws Forbidden if the command sets an option beyond the budget.
 void check_work(const Command& command, const Budget* budget) {
     const auto* use = std::get_if<command::UseOption>(&command);
     if (use == nullptr || budget == nullptr) return;
@@ -226,7 +227,7 @@ std::vector<Command> Tour::advance(double seconds) {
             due.push_back(left_.front());
             keep(left_.front());
             left_.pop_front();
-            if (std::holds_alternative<command::Replay>(due.back())) break;  // what it holds comes first
+            if (std::holds_alternative<command::Replay>(due.back())) break;  // the commands of that journal come first
             continue;
         }
         const double passed = std::min(wait->seconds, seconds);
@@ -255,7 +256,7 @@ void Tour::begin(const std::vector<Command>& journal) {
     if (is_named)
         done_.pop_back();
     else if (left_.empty())
-        done_.clear();  // of another tour, which has come to its end
+        done_.clear();  // those of a finished tour
     left_.insert(left_.begin(), journal.begin(), journal.end());
 }
 
@@ -265,7 +266,7 @@ std::vector<Command> Tour::back() {
     auto from = done_.begin();
     for (std::size_t count = 0; from != done_.end(); ++from)
         if (says(*from) && ++count == now - 1) break;
-    // A wait of which a part has passed is whole again.
+    // Restore a wait that had partly elapsed.
     auto* const rest = left_.empty() ? nullptr : std::get_if<command::Wait>(&left_.front());
     auto* const passed = std::get_if<command::Wait>(&done_.back());
     if (rest != nullptr && passed != nullptr) {
@@ -283,7 +284,7 @@ namespace {
 
 constexpr std::string_view spaces = " \t\r";
 
-// What would end the line or the word, and how it is written: \n.
+// Characters that would end the line or the word, and their escape letters (\n).
 constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
 
 char meant_by(char letter) {

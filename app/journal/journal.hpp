@@ -1,4 +1,4 @@
-// Commands to and from a text file: a replay, a bug report, a tour, a test. One command a line, # comments.
+// Journals: text files of commands, one per line, with # comments. Used for replay, bug reports, tours and tests.
 #pragma once
 
 #include <cstddef>
@@ -20,96 +20,96 @@ namespace achilles {
 
 // Throw InputError with file, line and column.
 std::vector<Command> parse_journal(std::string_view text, const std::string& name = "<journal>");
-std::string journal_file(const std::filesystem::path& file);  // its text
+std::string journal_file(const std::filesystem::path& file);  // the text of the file
 std::vector<Command> read_journal(const std::filesystem::path& file);
 
-// What a journal may do with files. Journals are passed on, and a stranger's is no program: unless the user says
-// otherwise it opens and replays the assets alone, by their names.
+// What a journal may do with files. Journals may come from untrusted sources. Unless the user allows more, a journal
+// opens and replays only assets, by their names.
 struct Trust {
     enum class Files {
-        refused,   // but those that are `named`
-        allowed,   // it reads and writes where it says (--allow-files), but over nothing that is there
-        imagined,  // in a picture that is made again, which carries what is read and writes nothing
+        refused,   // no files except those in `named`
+        allowed,   // reads and writes the paths it names, but replaces no existing file (--allow-files)
+        imagined,  // files are read from the picture being reproduced; nothing is written
     };
     Files files = Files::refused;
-    std::vector<std::filesystem::path> named;  // by the user: these may be read
-    std::map<std::string, bool> answered{};    // "write /home/me/a.toml": whether it may, where the user was asked
-    std::shared_ptr<Budget> budget{};          // of its work; null: it has no limits
+    std::vector<std::filesystem::path> named;  // files named by the user, which may be read
+    std::map<std::string, bool> answered{};    // the user's answers: "write /home/me/a.toml" -> allowed or not
+    std::shared_ptr<Budget> budget{};          // limits of its work; null: no limits
 };
-// With a budget, unless it is trusted with files: memory and max_steps may be the defaults, or more where these options say so.
+// Has a budget unless `allow_files`. The budget allows the default memory and max_steps, or those of `typed` if larger.
 Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
 
-// The commands of all journals that one session replays are counted: one that replays itself ends.
+// Maximum number of commands in all journals that one session replays. It stops a journal that replays itself.
 constexpr std::size_t most_replayed = 10000;
 
-// What is asked about a file: "read /home/me/a.toml".
+// The question to the user about a file: "read /home/me/a.toml".
 std::string want(const std::string& file, bool writes);
-// Whether what comes from anybody may read this file; nothing: the user is to be asked.
+// Whether an untrusted journal may read this file; empty: ask the user.
 std::optional<bool> may_read(const std::string& file, const Trust& trust);
 
-// parse_journal() of a journal that may come from anybody. `overwrite` in it counts for nothing. Throws Forbidden, also for
-// an option that its budget refuses, and InputError as there.
+// parse_journal() for an untrusted journal. `overwrite` in it is ignored. Throws InputError as parse_journal() does,
+// and Forbidden for file access or options that `trust` does not allow.
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust);
 
-// Of a command line: --do "seek 3.2". Each is a line of its own; blank ones do nothing.
+// Parses the --do "seek 3.2" arguments of a command line. Each is one line; blank lines are ignored.
 std::vector<Command> parse_steps(const std::vector<std::string>& lines);
 
 std::string journal_text(const std::vector<Command>& commands);
 
-// Throws InputError where a record of a session would take the place of a file.
+// Throws InputError if recording a session to this file would replace an existing file.
 void refuse_record(const std::filesystem::path& file);
 
-// A journal that grows while things happen; every line is on disk before the next command runs, so that a journal tells
-// what led to a crash.
+// Records a session. Every line is on disk before its command runs, so that the journal shows what led to a crash.
 class JournalFile {
  public:
-    // Begins a file. Throws InputError if it cannot be written, or there is one.
+    // Creates the file. Throws InputError if it cannot be written or exists already.
     explicit JournalFile(const std::filesystem::path& file);
     void append(const Command& command);
-    // The last command was refused: nothing has been done.
+    // Removes the last command, which was refused and had no effect.
     void take_back();
 
  private:
     std::filesystem::path path_;
     std::ofstream stream_;
-    std::streamoff before_ = 0;  // the last command
+    std::streamoff before_ = 0;  // offset of the last command
 };
 
-// A journal replayed at a person's pace: every `wait` takes its time, and what plays goes on meanwhile.
+// Replays a journal in real time: every `wait` takes its time, and playback continues meanwhile.
 class Tour {
  public:
     Tour() = default;
     explicit Tour(const std::vector<Command>& journal) : left_(journal.begin(), journal.end()) {}
 
     bool runs() const { return !left_.empty(); }
-    // What is due when so many seconds have passed: commands, and of a wait what has passed of it, so that the waits
-    // add up to those of the journal and the end is that of a replay at once.
+    // Commands due after `seconds` more seconds. A `wait` that has partly elapsed is returned as a shorter `wait`. Thus
+    // all waits add up to those of the journal, and the final state equals that of an immediate replay.
     std::vector<Command> advance(double seconds);
-    // The rest of the present wait at once.
+    // Skips the rest of the current wait.
     std::vector<Command> next();
-    // Of the sentences that it says: the how manieth is said, and how many there are, as far as is known.
+    // The number of `say` captions shown so far, and the total as far as known.
     std::size_t said() const;
     std::size_t sentences() const;
-    // Back to the sentence before: what leads there from the beginning, at once; what follows is due again. Commands that
-    // write files, or replay journals whose commands have been done, are not among them. Nothing where there is none before.
+    // Goes back to the previous caption. Returns the commands that lead there from the beginning; the later ones become
+    // due again. Commands that write files, and `replay` commands already expanded, are left out. Empty if there is no
+    // previous caption.
     std::vector<Command> back();
     void stop() { left_.clear(), done_.clear(); }
-    // Another journal, in place of a command that names it, or of the tour that runs.
+    // Inserts another journal, in place of the `replay` command that names it or before the rest of the running tour.
     void begin(const std::vector<Command>& journal);
 
  private:
     void keep(const Command& command);
 
     std::deque<Command> left_;
-    std::vector<Command> done_;  // a wait as one, however many pieces it passed in
+    std::vector<Command> done_;  // the parts of an interrupted wait are merged
 };
 
-// The words of one line of a journal. A word that holds spaces, # or quotes stands in "double quotes".
+// Tokens of one journal line. A word with spaces, # or quotes is written in "double quotes".
 
-// The words of a line and where they stand, to complain about. Refers to the text and the file's name.
+// The words of a line with their columns, for error messages. Keeps references to the text and the file name.
 class Line {
  public:
-    // Throws InputError where quotes are not closed. What follows a # outside quotes is a comment.
+    // Throws InputError for an unclosed quote. A # outside quotes starts a comment.
     Line(std::string_view text, const std::string& file, int number);
 
     struct Word {
@@ -119,10 +119,10 @@ class Line {
     const Word& word(std::size_t i) const { return words_[i]; }
     std::size_t count() const { return words_.size(); }
 
-    // Each reads a word and throws an InputError that names its place where it is something else.
+    // Each parses a word, and throws InputError with its position if it has the wrong form.
     double number(std::size_t i) const;
     int whole_number(std::size_t i) const;
-    // So many words follow the first, or else an error that shows the usage.
+    // Throws InputError with the usage unless the number of words after the first is between `least` and `most`.
     void expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const;
     InputError error(int column, const std::string& message, const std::string& hint = {}) const;
 
@@ -136,11 +136,11 @@ class Line {
     std::vector<Word> words_;
 };
 
-// A word as it is written in a line: in quotes, or plain where it may stand so.
+// The written form of a word: always quoted, or quoted only if necessary.
 std::string quoted(const std::string& word);
 std::string quoted_where_needed(const std::string& word);
 
-// Whether a line holds nothing but space and a comment.
+// True for a line of only spaces and a comment.
 bool is_blank(std::string_view line);
 
 }  // namespace achilles

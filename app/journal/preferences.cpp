@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t most_recent = 8;
 
-// $XDG_CONFIG_HOME/achilles, else ~/.config/achilles; empty where there is no home.
+// $XDG_CONFIG_HOME/achilles, else ~/.config/achilles; empty without a home folder.
 fs::path config_folder() {
     const char* const given = std::getenv("XDG_CONFIG_HOME");
     if (given != nullptr && fs::path(given).is_absolute()) return fs::path(given) / "achilles";
@@ -88,7 +88,7 @@ void Preferences::keep(const Session& session) {
         files.put(file_, text);
         files.commit(OutputFiles::Care::quick);
     } catch (const InputError&) {
-        return;  // a full disk, a folder that is read only: this window is as it was set all the same
+        return;  // disk full or read-only folder: the settings still apply to this window
     }
 }
 

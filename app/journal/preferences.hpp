@@ -1,5 +1,5 @@
-// What the explorer's window remembers for the next one: the theme, the size of everything and of the panels, the files that
-// were open last. A journal in $XDG_CONFIG_HOME/achilles; pictures and other commands without a window never read it.
+// Settings that the explorer keeps between windows: theme, interface scale, panel sizes and recent files. They are
+// stored as a journal in $XDG_CONFIG_HOME/achilles. Pictures and other commands without a window never read it.
 #pragma once
 
 #include <filesystem>
@@ -12,24 +12,23 @@ namespace achilles {
 
 class Preferences {
  public:
-    // Reads them. What is no preference is passed over: a file that somebody spoilt keeps nobody from starting.
+    // Reads the file. Lines that are not preferences are ignored, so a damaged file does not prevent startup.
     Preferences();
-    // What leads to a session that looks as the last one did.
+    // Commands that restore the appearance of the last session.
     const std::vector<Command>& looks() const { return looks_; }
-    // Paths of system files, the last first.
+    // Paths of system files, most recent first.
     const std::vector<std::string>& recent() const { return recent_; }
-    // Writes what is to be remembered of this session, if that is not what the file has. Where it cannot be written nothing
-    // is remembered.
+    // Writes the preferences of this session if they differ from the file. Write errors are ignored.
     void keep(const Session& session);
 
  private:
-    std::filesystem::path file_;  // empty: there is no home
+    std::filesystem::path file_;  // empty: no home folder
     std::vector<Command> looks_;
     std::vector<std::string> recent_;
-    std::string text_;  // of the file, as far as it is known
+    std::string text_;  // last known content of the file
 };
 
-// The commands of a session's looks: theme, enlarge and size, where they are not as at first.
+// The commands for theme, scale and panel sizes that differ from the defaults.
 std::vector<Command> looks_of(const Session& session);
 
 }  // namespace achilles

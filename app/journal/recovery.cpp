@@ -19,9 +19,9 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* name_format = "unsaved-{}-{}.journal";  // the process, a number
+constexpr const char* name_format = "unsaved-{}-{}.journal";  // process id, sequence number
 
-// $XDG_STATE_HOME/achilles, else ~/.local/state/achilles; empty where there is no home.
+// $XDG_STATE_HOME/achilles, else ~/.local/state/achilles; empty without a home folder.
 fs::path state_folder() {
     const char* const given = std::getenv("XDG_STATE_HOME");
     if (given != nullptr && fs::path(given).is_absolute()) return fs::path(given) / "achilles";
@@ -29,7 +29,7 @@ fs::path state_folder() {
     return home == nullptr || *home == '\0' ? fs::path() : fs::path(home) / ".local/state/achilles";
 }
 
-// A name that no other file has: after its owner's end a process may have the same number.
+// An unused file name: a process id may be reused after its process has ended.
 fs::path new_file() {
     const fs::path folder = state_folder();
     if (folder.empty()) return {};
@@ -41,7 +41,7 @@ fs::path new_file() {
     }
 }
 
-// Whether the window that writes this file is open.
+// Whether the window that writes this file is still open.
 bool is_in_use(long process) {
     if (process == ::getpid()) return false;
     std::error_code problem;
@@ -58,7 +58,7 @@ std::string local_time(const fs::path& file) {
     return text;
 }
 
-// Its steps; none where it is no such file.
+// The commands in the file; empty if it is not a recovery file.
 std::vector<Command> steps_in(const fs::path& file) {
     try {
         const std::vector<Command> steps = parse_journal(read_text(file, 4 * largest_file), file.string());
@@ -87,7 +87,7 @@ void Recovery::keep(const Document& document, const std::string& text) {
         files.put(file_, journal_text(steps));
         files.commit(OutputFiles::Care::quick);
     } catch (const InputError&) {
-        file_.clear();  // a full disk, a folder that is read only: the next letter tries again
+        file_.clear();  // disk full or read-only folder: try again at the next edit
     }
 }
 

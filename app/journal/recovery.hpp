@@ -1,5 +1,5 @@
-// Text that was typed and not saved outlives its window, however that ends: it stands in a file while it is not saved, as
-// a journal that leads to it, and the next window offers it.
+// Crash recovery for unsaved text. While a text is unsaved, a file keeps it as a journal that restores it, and the next
+// window offers to open it.
 #pragma once
 
 #include <filesystem>
@@ -18,10 +18,10 @@ class Recovery {
     Recovery(const Recovery&) = delete;
     Recovery& operator=(const Recovery&) = delete;
 
-    // Keeps the text of a document as it stands in the editor, if it is not kept already. Where no file can be written
-    // there is none: typing goes on.
+    // Saves the editor text of a document, if it has changed. If the file cannot be written, editing continues without
+    // it.
     void keep(const Document& document, const std::string& text);
-    // The text is saved, or given up on purpose.
+    // Removes the file: the text was saved or deliberately discarded.
     void forget();
 
  private:
@@ -29,14 +29,14 @@ class Recovery {
     std::string text_;
 };
 
-// What a window left that has ended.
+// Unsaved text of a window that is no longer open.
 struct Unsaved {
     std::filesystem::path file;
-    std::string name, when;      // of the document, and when it was written to last
-    std::vector<Command> steps;  // to it: the document, then its text
+    std::string name, when;      // name of the document, and time of the last write
+    std::vector<Command> steps;  // open the document, then set its text
 };
 
-// The newest first. Files of windows that are open, and what is no such file, are passed over.
+// Newest first. Files of open windows and files of another kind are skipped.
 std::vector<Unsaved> left_unsaved();
 
 }  // namespace achilles

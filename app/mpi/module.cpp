@@ -9,12 +9,12 @@
 #include <list>
 #include <vector>
 
-// What is wrong MPI tells itself, and ends all processes.
+// MPI reports its errors itself and ends all processes.
 
 namespace {
 
-// Of the cores that the processes of this machine may use, an equal share, and no more than this one may use: mpirun may have
-// bound each to its own.
+// An equal share of the cores that the processes on this machine may use, but not more than this process may use:
+// mpirun may have bound each process to some cores.
 int share_of_cores() {
     cpu_set_t own, all;
     CPU_ZERO(&own);
@@ -30,7 +30,8 @@ int share_of_cores() {
 }
 
 void begin(int* rank, int* size, int* cores) {
-    // Open MPI looks for fast networks for a quarter of a second. A few messages a second need none. What the user says counts.
+    // Open MPI searches for fast networks for 0.25 s, which a few messages per second do not need. A user setting takes
+    // precedence.
     ::setenv("OMPI_MCA_pml", "ob1", 0);
     int provided = 0;
     MPI_Init_thread(nullptr, nullptr, MPI_THREAD_FUNNELED, &provided);
@@ -44,19 +45,19 @@ void send(int to, const void* bytes, int size) {
     MPI_Isend(bytes, size, MPI_BYTE, to, 0, MPI_COMM_WORLD, &request);
     for (int has_gone = 0;;) {
         MPI_Test(&request, &has_gone, MPI_STATUS_IGNORE);
-        if (has_gone != 0) return;  // NOLINT: the test has waited
+        if (has_gone != 0) return;  // NOLINT: MPI_Test has completed it
         ::usleep(200);
     }
 }
 
-// A message that is coming. Of a process that was killed in the middle of it the rest never comes: nobody waits for that.
+// A message being received. If its sender is killed, the rest never arrives; nothing waits for that.
 struct Coming {
     std::vector<char> bytes;
     int from = 0;
     MPI_Request request = MPI_REQUEST_NULL;
 };
 std::list<Coming> coming;
-std::list<Coming>::iterator come;  // all of it
+std::list<Coming>::iterator come;  // the complete one
 
 int next(int* from) {
     int is_there = 0;
@@ -70,7 +71,7 @@ int next(int* from) {
         one.from = status.MPI_SOURCE;
         MPI_Irecv(one.bytes.data(), size, MPI_BYTE, one.from, 0, MPI_COMM_WORLD, &one.request);
     }
-    for (come = coming.begin(); come != coming.end(); ++come) {  // NOLINT: the test waits
+    for (come = coming.begin(); come != coming.end(); ++come) {  // NOLINT: MPI_Test completes it
         int is_all = 0;
         MPI_Test(&come->request, &is_all, MPI_STATUS_IGNORE);
         if (is_all == 0) continue;

@@ -1,16 +1,16 @@
-// What the program asks of MPI. The library libachilles_mpi.so alone knows <mpi.h> and is linked with it; it is loaded only where
-// mpirun has started the program.
+// C interface of the MPI module. Only the library libachilles_mpi.so includes <mpi.h> and is linked with MPI. It is
+// loaded only if the program was started by mpirun.
 #pragma once
 
 extern "C" {
 
 struct AchillesMpi {
     int version;  // of this interface
-    // Once, by the thread that asks all else. cores: of those that this process may use, its share.
+    // Call once, from the thread that makes all later calls. cores: this process's share of the available cores.
     void (*begin)(int* rank, int* size, int* cores);
-    // Returns when the bytes may go. Waits asleep, not by asking again and again: others want the processor.
+    // Returns when `bytes` may be reused. Sleeps while it waits, to leave the processor to computations.
     void (*send)(int to, const void* bytes, int size);
-    // The size of a message that has come, and whom it is from; -1: there is none. Then its bytes.
+    // Size and sender of a message that has arrived; -1: none. receive() then returns its bytes.
     int (*next)(int* from);
     void (*receive)(void* bytes);
     void (*end)();

@@ -42,7 +42,7 @@ const AchillesMpi* load(const Launch& launch) {
     const fs::path file = fs::exists(folder / name, problem) ? folder / name : installed;
     if (!fs::exists(file, problem))
         cannot_share(launch, fmt::format("{} is missing (it is built if libopenmpi-dev is installed)", file.string()));
-    // Its own plug-ins look for MPI's names among all.
+    // RTLD_GLOBAL: MPI's plug-ins need its symbols.
     void* const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
     if (module == nullptr) cannot_share(launch, dlerror());
     const auto functions = reinterpret_cast<decltype(&achilles_mpi)>(dlsym(module, "achilles_mpi"));
@@ -59,7 +59,7 @@ std::optional<Launch> find_launch() {
         const char *rank, *size;
         bool has_mpi;
     };
-    // Open MPI; MPICH, Intel MPI and srun --mpi=pmi2; srun --mpi=pmix; srun that tells them nothing.
+    // In this order: Open MPI; MPICH, Intel MPI and srun --mpi=pmi2; srun --mpi=pmix; srun without a connection.
     constexpr std::array<Variables, 4> known{{{"OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE", true},
                                               {"PMI_RANK", "PMI_SIZE", true},
                                               {"PMIX_RANK", "SLURM_STEP_NUM_TASKS", true},
@@ -89,7 +89,7 @@ Ranks::Ranks(const Launch& launch) {
 
 Ranks::~Ranks() {
     if (rank_ == 0) dismiss(*this);
-    if (!is_left_) mpi_->end();  // which waits for all
+    if (!is_left_) mpi_->end();  // waits for all ranks
 }
 
 void Ranks::send(int to, std::string_view bytes) {

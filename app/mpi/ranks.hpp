@@ -1,4 +1,4 @@
-// The processes that mpirun or srun has started as one program.
+// The processes that mpirun or srun has started together.
 #pragma once
 
 #include <memory>
@@ -10,19 +10,19 @@ struct AchillesMpi;
 
 namespace achilles {
 
-// How many there are, and which this one is, by what is in the environment.
+// Number of processes and rank of this one, from environment variables.
 struct Launch {
     int rank = 0;
-    int size = 0;         // 0: not told
-    bool has_mpi = true;  // whether it told them how to reach one another
+    int size = 0;         // 0: unknown
+    bool has_mpi = true;  // whether the launcher provides a connection between the processes
 };
-// Nothing where this process is alone, or where ACHILLES_MPI=0 says that it is to do as if it was.
+// Empty if this process is alone, or if ACHILLES_MPI=0 makes it act as if it were.
 std::optional<Launch> find_launch();
 
-// The ranks of a launch, by MPI; it ends with this object, and rank 0 dismisses the others before.
+// The ranks of a launch, connected by MPI. The connection ends with this object; rank 0 must release the others before.
 class Ranks final : public Messages {
  public:
-    // Waits for all. Throws InputError where they cannot be reached.
+    // Waits for all processes. Throws InputError if they cannot be reached.
     explicit Ranks(const Launch& launch);
     ~Ranks() override;
     Ranks(const Ranks&) = delete;

@@ -7,25 +7,25 @@ namespace achilles {
 
 namespace {
 
-// Lengths at scale 1. Below these widths and heights a panel cannot be read.
+// Lengths at scale 1. The minimum sizes keep panels readable.
 constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
                 least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F,
                 least_plane = 230.0F, least_world = 90.0F, least_plot = 110.0F;
 
-// What the user asked for, or what fits; whole pixels, at least `least`, and where there is room for both also at most
-// `most`.
+// The size set by the user or, without one, the preferred size; rounded down to whole pixels and clamped to [least,
+// most].
 float size_of(double share, float whole, float fitting, float least, float most) {
     const float wanted = share > 0.0 ? static_cast<float>(share) * whole : fitting;
     return std::floor(std::max(0.0F, std::min(std::max(wanted, least), std::max(most, 0.0F))));
 }
 
-// The energy stands under the results: with its course, without where the picture above would be too low, or not at all.
+// The energy panel: with its time plot, without it if the picture above would be too low, or hidden.
 float energy_in(const Measures& m, float room) {
     if (m.energy <= room) return m.energy;
     return m.least_energy <= room ? m.least_energy : 0.0F;
 }
 
-// To a class: the mechanism beside one plot, below them the results and the player; nothing else.
+// Presentation mode: the mechanism beside one plot, the results and the player below, nothing else.
 Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float edge = margin * m.unit, between = gap * m.unit, inside = std::max(0.0F, m.width - 2.0F * edge);
     const float bottom = std::max(0.0F, m.height - edge);
@@ -50,7 +50,7 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
     const float centre = inside - (has_plots ? right + between : 0.0F);
     parts.mechanism = {edge, top, centre, height};
-    // What runs beside the present one is what a class looks at.
+    // A visible sweep replaces the plot.
     (scene.shows("sweep") ? parts.sweep : parts.plots) = {edge + centre + between, top, right, height};
     parts.results = {edge, lower - between - below_results - results, inside, results};
     parts.energy = {edge, lower - between - energy, inside, energy};
@@ -76,13 +76,12 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const std::string left_panel = editor ? "editor" : "controls";
     const float least_left = (editor ? least_editor : least_controls) * u;
     const float others = (least_centre + (has_plots ? least_plots : 0.0F)) * u + 2.0F * between;
-    // A text needs room for its lines.
+    // Room for the lines of the text.
     const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
     const float left =
         has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
-    // Where there is room for it, what a certificate says stands there without scrolling.
-    // Equations and plots are higher than lines of text.
+    // Space for a certificate without scrolling, if available. Equations and plots are taller than lines of text.
     const float fitting_events = lower_panel == "equations" || lower_panel == "orbit"
                                      ? std::max(180.0F * u, 0.38F * m.height)
                                      : std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
@@ -96,20 +95,20 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
                                   : 0.0F;
     const float centre = std::max(0.0F, width - (right > 0.0F ? right + between : 0.0F));
 
-    // Beside a text the events would be too narrow for what a certificate says: they stand below it.
+    // Beside the editor the events would be too narrow for a certificate: put them below it.
     const bool events_below = editor && low > 0.0F;
     parts.controls = {edge, top, left, events_below ? height : all};
     const float timeline = std::min(m.timeline, height);
-    const float lower = top + height - timeline - between;  // the end of what stands above the player
+    const float lower = top + height - timeline - between;  // lower end of the parts above the player
     const float all_results = m.results ? m.results(centre) : 0.0F;
     const auto below = [&](float part, float its_height) {
         return part + its_height + (its_height > 0.0F ? 0.6F * between : 0.0F);
     };
     const float caption = m.caption ? m.caption(centre) : 0.0F;
-    // Above the axes stand the numbers and a heading, below them what is to be shown.
+    // Minimum height: numbers and heading above the axes, and the picture itself.
     const float least = std::max((scene.shows("plane") ? least_plane : least_picture) * u,
                                  (m.state ? m.state(centre) : 0.0F) + least_world * u);
-    // The message stands above the picture; where that would be too low then, above the plots, which have the height.
+    // The error message is above the picture or, if that would become too low, above the plots.
     float error = std::min(m.error ? m.error(centre) : 0.0F, height);
     const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;
     const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
@@ -119,9 +118,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float said_at = below(top, error), said = std::min(caption, top + height - said_at);
     parts.caption = {x, said_at, centre, said};
     const float picture = below(said_at, said);
-    // The picture first: where it would be too low to be one, the results stand back.
+    // The picture takes precedence: if it would be too low, the results shrink.
     float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
-    if (results < 0.4F * all_results) results = 0.0F;  // not even a line of them
+    if (results < 0.4F * all_results) results = 0.0F;  // less than one line
     const float space = results > 0.0F ? 0.4F * between : 0.0F;
     const float energy = energy_in(m, lower - results - space - 0.4F * between - picture - least);
     const float under = lower - (energy > 0.0F ? energy + 0.4F * between : 0.0F);
@@ -133,7 +132,7 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float plots_height = top + height - plots_at;
     parts.plots = {x + centre + between, plots_at, right, plots_height};
     if (has_sweep) {
-        // Alone where the plots are not shown, or there is no room for both.
+        // The sweep alone, if the plots are hidden or there is no room for both.
         const bool with_plots = scene.shows("plots") && plots_height > 2.0F * least_plot * u + between;
         const float sweep = with_plots ? size_of(scene.share("sweep"), m.height, 0.5F * (plots_height - between),
                                                  least_plot * u, plots_height - between - least_plot * u)

@@ -1,4 +1,4 @@
-// What stands where in the explorer: every part of the surface has its rectangle, none covers another.
+// Layout of the explorer: a rectangle for every part of the surface, without overlap.
 #pragma once
 
 #include <functional>
@@ -11,9 +11,9 @@
 namespace achilles {
 
 struct Arrangement {
-    Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, sweep, events,
-        status;  // of no size: not shown
-    // What a hand drags to resize a panel: the gap beside it.
+    // A rectangle of size 0: not shown.
+    Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, sweep, events, status;
+    // The gap beside a panel, which can be dragged to resize it.
     struct Splitter {
         std::string panel;  // as in command::Size
         Rectangle area;
@@ -22,23 +22,23 @@ struct Arrangement {
         double share_at(double x, double y) const {
             return moves_sideways ? (x - origin) / extent : (y - origin) / extent;
         }
-        double origin = 0.0, extent = 1.0;  // extent < 0: the panel is on the other side
+        double origin = 0.0, extent = 1.0;  // extent < 0: the panel is on the right or lower side of the gap
     };
     std::vector<Splitter> splitters;
 };
 
-// The sizes that the text decides, in pixels.
+// Sizes that depend on the text, in pixels.
 struct Measures {
-    float width = 0.0F, height = 0.0F;  // of the surface
-    float unit = 1.0F;                  // a pixel at scale 1
+    float width = 0.0F, height = 0.0F;  // the surface
+    float unit = 1.0F;                  // one pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
-    float energy = 0.0F, least_energy = 0.0F;  // with its course and without; 0: it is not shown
-    // How high a message, what a tour says, the results, and the numbers over the picture are in so much width; 0: there
-    // are none.
+    float energy = 0.0F, least_energy = 0.0F;  // with and without its time plot; 0: not shown
+    // Heights, for a given width, of the error message, the tour caption, the results, and the numbers over the
+    // mechanism; 0: not shown.
     std::function<float(float width)> error, caption, results, state;
 };
 
-// Panels keep a width that can be read as long as the surface has room for it.
+// Panels keep a readable width as long as the surface is large enough.
 Arrangement arrange(const Scene& scene, const Measures& measures);
 
 }  // namespace achilles

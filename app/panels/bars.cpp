@@ -1,4 +1,4 @@
-// The first line and the last.
+// The menu bar at the top and the status line at the bottom.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -18,7 +18,7 @@
 
 namespace achilles {
 
-// ---- above everything: menus, and at the right end a switch for every panel and for the theme ----
+// ---- menu bar, with toggles for the panels and the theme at its right end ----
 
 namespace {
 
@@ -27,11 +27,11 @@ struct ShownPart {
     int key;
 };
 constexpr std::array<ShownPart, 6> panels{{{"controls", "Controls", '1'},
-                                           {"plots", "Plots", '2'},
-                                           {"events", "Events", '3'},
-                                           {"sweep", "Sweep", '4'},
-                                           {"depend", "Sensitivities", '5'},
-                                           {"orbit", "Periodic run", '6'}}};
+                                       {"plots", "Plots", '2'},
+                                       {"events", "Events", '3'},
+                                       {"sweep", "Sweep", '4'},
+                                       {"depend", "Sensitivities", '5'},
+                                       {"orbit", "Periodic run", '6'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
@@ -43,7 +43,7 @@ void menu(const char* name, PanelState& state, const Content& content) {
     ImGui::EndMenu();
 }
 
-// The next size of everything, as browsers have them.
+// The next interface scale; the same steps as in browsers.
 double next_size(double now, int step) {
     constexpr std::array sizes{0.5, 0.67, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
     if (step > 0) {
@@ -59,7 +59,7 @@ void enlarge(const Session& session, int step, Commands& commands) {
     if (next != now) commands.emplace_back(command::Enlarge{next});
 }
 
-// The files that were open last.
+// Menu of recently opened files.
 void show_recent(const Session& session, PanelState& state, Commands& commands) {
     if (state.recent.empty()) return;
     ImGui::Separator();
@@ -121,7 +121,7 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
         commands.emplace_back(command::UseTheme{!session.theme().dark});
 }
 
-// A picture to press, as wide as it is high. Returns where to draw it.
+// A square button with a picture. Returns true if pressed; `area` is where to draw.
 bool switch_button(const std::string& name, const std::string& about, PanelState& state, Rectangle& area) {
     const float size = ImGui::GetFrameHeight();
     const bool pressed = ImGui::InvisibleButton(name.c_str(), {size, size});
@@ -135,7 +135,7 @@ bool switch_button(const std::string& name, const std::string& about, PanelState
     return pressed;
 }
 
-// A little window whose left, right, lower or lower right part is filled where the panel is shown.
+// A small window icon whose left, right, lower or lower right part is filled if the panel is shown.
 void panel_switch(const Session& session, const ShownPart& panel, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows(panel.what);
     Rectangle r;
@@ -196,7 +196,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     const float width = 5.0F * size + 4.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;
     const float title_at = ImGui::GetCursorPosX() + units(16.0F);
-    // Where no panel tells what runs, this line does.
+    // Show the system's title if no panel does.
     if (!session.scene().shows("controls") && !session.shows_editor() && left - title_at > units(80.0F)) {
         ImGui::SetCursorPosX(title_at);
         label(session.description().title, left - title_at);
@@ -211,13 +211,13 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     ImGui::EndMenuBar();
 }
 
-// ---- the last line: how the run went, and what the colors and signs mean ----
+// ---- status line: outcome of the run, legend of colors and markers ----
 
 namespace {
 
-constexpr float edge = 10.0F;  // left and right, as beside the panels
+constexpr float edge = 10.0F;  // left and right, as for the panels
 
-// Shows a colored marker and its meaning on the current line.
+// A colored marker and its meaning, on the current line.
 void legend_entry(const std::string& text, const std::function<void(ImDrawList*, ImVec2)>& sign) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy({units(16.0F), ImGui::GetTextLineHeight()});
@@ -279,7 +279,7 @@ void show_legend(const Session& session) {
     });
 }
 
-// How much is done of what is under way, along the upper edge.
+// A progress bar along the upper edge.
 void paint_share(double share) {
     const ImVec2 corner = ImGui::GetWindowPos();
     const float width = static_cast<float>(share) * ImGui::GetWindowWidth();
@@ -287,8 +287,8 @@ void paint_share(double share) {
                                               ImGui::GetColorU32(ImGuiCol_SliderGrab));
 }
 
-// A run takes longer than a frame: how far it is, of its time or of the impacts it may have. What is shown meanwhile is
-// the run before it or, of another system, its start.
+// Progress of a run that takes longer than a frame: the larger of its fractions of the end time and of the impact
+// limit. Meanwhile the previous run is shown or, for a new system, its start.
 void show_progress(const Session& session, const PanelState& state, const Watch& watch) {
     const Run& run = session.run();
     const double time = watch.time, impacts = static_cast<double>(watch.impacts);
@@ -308,7 +308,7 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
         "%s", session.shows_start() ? "the start is shown until then" : "the previous run is shown until then");
 }
 
-// How far the proof of the run has come, or how far it goes.
+// Progress or result of the proof.
 void show_proof(const Session& session) {
     const Options& options = session.run().options;
     if (const ProofWatch* watch = session.proof_under_way()) {
@@ -338,11 +338,11 @@ void show_proof(const Session& session) {
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
-// Shows the estimated error of the run at the end of the line, once it is known. It is left out if the legend needs the room. If
-// there is no estimate, the summary says why.
+// The estimated error of the run at the end of the line, once known; left out if the legend needs the room. If there is
+// no estimate, the summary says why.
 void show_estimate(const Session& session) {
     const ErrorEstimate* estimate = session.error_estimate();
-    if (estimate == nullptr || !estimate->end || session.horizon()) return;  // a remark tells of the horizon
+    if (estimate == nullptr || !estimate->end || session.horizon()) return;  // a remark states the horizon
     const std::string text = fmt::format("   \u00b7   estimated error {}", number(estimate->end->size(), "{:.1g}"));
     const float room = ImGui::GetWindowPos().x + content_right() - ImGui::GetItemRectMax().x;
     const float needed = ImGui::CalcTextSize(text.c_str()).x + ImGui::GetStyle().ItemSpacing.x + legend_width(session);

@@ -43,7 +43,7 @@ std::vector<FolderEntry> entries_of(const std::string& folder, const std::vector
     std::vector<FolderEntry> entries;
     std::error_code problem;
     fs::directory_iterator at(folder.empty() ? "." : folder, fs::directory_options::skip_permission_denied, problem);
-    constexpr std::size_t most_visited = 20000;  // a frame waits for this
+    constexpr std::size_t most_visited = 20000;  // limits the time spent in a frame
     for (std::size_t n = 0; !problem && at != fs::directory_iterator() && n < most_visited;
          at.increment(problem), ++n) {
         if (entries.size() == most_entries) break;
@@ -79,7 +79,7 @@ std::string one_up(const std::string& folder) {
     if (folder.empty() || folder == "/") return folder.empty() ? "../" : folder;
     const std::string without = folder.substr(0, folder.size() - 1);
     const PathParts parts = parts_of(without);
-    // Above the folder where the explorer was started.
+    // Relative paths start in the working directory.
     if (parts.name == "..") return folder + "../";
     return parts.name == "~" ? one_up(expanded("~/")) : parts.folder;
 }
@@ -106,7 +106,8 @@ void use(BrowserState& browser, std::string line) {
     browser.chosen = -1;
 }
 
-// Keys of the field: Tab completes; Backspace behind a slash goes up a folder. The text is ours by way of ImGui alone.
+// Key handling of the field: Tab completes; Backspace after a slash goes up a folder. ImGui owns the text while
+// editing.
 int take_field_keys(ImGuiInputTextCallbackData* data) {
     auto& browser = *static_cast<BrowserState*>(data->UserData);
     const std::string text(data->Buf, static_cast<std::size_t>(data->BufTextLen));
@@ -131,7 +132,7 @@ int take_field_keys(ImGuiInputTextCallbackData* data) {
     return 0;
 }
 
-// The rows are of what stands in the field; a folder is read again now and then: others may write there.
+// Updates the rows for the path in the field. Rereads the folder at intervals, since other programs may change it.
 void list(BrowserState& browser, const std::string& path, const std::vector<std::string>& endings) {
     const PathParts parts = parts_of(path);
     const bool is_hidden = parts.name.starts_with('.'), is_late = ImGui::GetTime() - browser.read_at > reread_seconds;
@@ -144,14 +145,14 @@ void list(BrowserState& browser, const std::string& path, const std::vector<std:
     browser.letters = parts.name;
     browser.endings = endings;
     browser.is_hidden = is_hidden;
-    // A name that is there already, or that nobody typed, narrows nothing: what stands beside it is seen.
+    // The name of an existing entry, or a proposed one, does not filter the list.
     const bool is_whole = std::any_of(browser.all.begin(), browser.all.end(),
                                       [&](const FolderEntry& entry) { return entry.name == parts.name; });
     browser.rows = is_whole || path == browser.line ? browser.all : filtered(browser.all, parts.name);
     browser.chosen = std::min(browser.chosen, static_cast<int>(browser.rows.size()) - 1);
 }
 
-// The keys of the field, and where no control of the dialog has keys or letters they lead back to it.
+// Arrow keys select a row. If no control of the dialog has the keys, letters return to the field.
 void choose(PanelState& state) {
     BrowserState& browser = state.browser;
     const int count = static_cast<int>(browser.rows.size()), before = browser.chosen;
@@ -166,7 +167,7 @@ void choose(PanelState& state) {
     browser.focuses = !state.browser_has_field;
 }
 
-// The row that was clicked; -1: none.
+// Returns the row that was clicked; -1: none.
 int show_rows(BrowserState& browser, PanelState& state) {
     int clicked = -1;
     const float height = static_cast<float>(shown_rows) * ImGui::GetTextLineHeightWithSpacing() + units(8.0F);
@@ -199,13 +200,13 @@ bool path_line(PanelState& state, bool focuses) {
     BrowserState& browser = state.browser;
     std::string& path = state.editor.path;
     if (ImGui::IsWindowAppearing()) {
-        browser.line = path;  // what is proposed
+        browser.line = path;  // the proposed path
         browser.selects = true;
         browser.rewrites = false;
-        browser.chosen = -1;  // by another dialog
+        browser.chosen = -1;  // selected in another dialog
     }
     if (focuses || browser.focuses) ImGui::SetKeyboardFocusHere();
-    // Where the field has not the hand, its text is ours; when it gets it, the cursor goes behind that.
+    // Without the keyboard, the field's text can be set here; when it gets the keyboard, the cursor goes to the end.
     if (browser.rewrites && !state.browser_has_field) path = browser.line;
     browser.focuses = browser.tab = false;
     ImGui::SetNextItemWidth(-1.0F);

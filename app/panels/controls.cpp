@@ -1,4 +1,4 @@
-// The left column: which system, and every value a hand may change.
+// The left column: the system, and all values and options that the user can change.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -20,7 +20,7 @@ namespace achilles {
 
 namespace {
 
-// "double pendulum" for the file double_pendulum.toml: short enough for the column, whatever the title.
+// "double pendulum" for the file double_pendulum.toml; short enough for the column.
 std::string short_name(const std::string& system) {
     std::string name = std::filesystem::path(system).stem().string();
     std::replace(name.begin(), name.end(), '_', ' ');
@@ -57,7 +57,7 @@ void describe_system(const Session& session) {
     ImGui::PopStyleVar();
 }
 
-// The first heading; at its right end what puts all values back, if there is something to put back.
+// The first heading, with a "reset all" button at its right end if any value differs from the file.
 void first_section(const char* title, const Session& session, const Run& file, PanelState& state, Commands& commands) {
     const char* text = "reset all";
     const bool changed = session.run() != file;
@@ -96,7 +96,7 @@ void parameters(const Session& session, const Run& file, PanelState& state, Comm
     }
 }
 
-// A coordinate's start, or the rate at the start.
+// An initial coordinate or rate.
 void start_value(const Session& session, const Run& file, std::size_t i, bool is_rate, PanelState& state,
                  Commands& commands) {
     const CoordinateDescription& c = session.description().coordinates[i];
@@ -120,14 +120,14 @@ void start_value(const Session& session, const Run& file, std::size_t i, bool is
     if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
 }
 
-// An option under the hand: a slider, or a row of buttons of which one is down.
+// An option as a slider or as a row of buttons, one of which is selected.
 struct OptionRow {
     const char* key;
-    const char* id;  // of its place, for a slider
+    const char* id;  // name of its area, for a slider
     const char* title;
     const char* about;
-    double low = 0.0, high = 1.0;  // of a slider
-    int digits = 3;                // that a dragged value keeps
+    double low = 0.0, high = 1.0;  // range of the slider
+    int digits = 3;                // digits of a dragged value
 };
 
 void choice(const OptionRow& row, const Options& now, const Options& file, PanelState& state, Commands& commands) {
@@ -162,7 +162,7 @@ double number_in(const OptionValue& value) {
     return count != nullptr ? *count : std::get<double>(value);
 }
 
-// The option's value in `options` under the hand; true where it has moved it.
+// Shows the slider of an option in `options`. Returns true if the user moved it.
 bool moved(const OptionRow& row, Options& options, const Options& file, PanelState& state) {
     const Option& slid = option(row.key);
     const bool is_of_cut = slid.table == "truncation", is_count = std::holds_alternative<int>(slid.get(options));
@@ -185,7 +185,7 @@ bool moved(const OptionRow& row, Options& options, const Options& file, PanelSta
 }
 
 void bounds(const Options& now, const Options& file, PanelState& state, Commands& commands) {
-    // One slider for all three, and one for each.
+    // One slider for all three bounds, and one for each.
     constexpr double low = 1e-12, high = 1e-1;
     const OptionRow all{"eps_q", "eps", "\u03b5, all", "set all three bounds below together", low, high};
     const OptionRow each[] = {
@@ -203,17 +203,17 @@ void bounds(const Options& now, const Options& file, PanelState& state, Commands
     if (changed != now) commands.emplace_back(command::UseOption(option("eps_q"), changed));
 }
 
-// One option that a slider moves.
+// A slider for one option.
 void slide(const OptionRow& row, const Session& session, const Run& file, PanelState& state, Commands& commands) {
     Options changed = session.run().options;
     if (moved(row, changed, file.options, state)) commands.emplace_back(command::UseOption(option(row.key), changed));
 }
 
-// The keys of what the section holds.
+// Options in the accuracy section.
 constexpr const char* accuracy_keys[] = {"eps_q",     "eps_v",  "eps_t",       "conditions", "reinitialization",
                                          "tolerance", "method", "max_impacts", "max_steps"};
 
-// What the folded section says: "ε 1e-06, sharp, tol 1e-10".
+// Summary of the folded section: "ε 1e-06, sharp, tol 1e-10".
 std::string accuracy_text(const Options& options) {
     const Truncation& t = options.truncation;
     const bool alike = t.eps_q == t.eps_v && t.eps_v == t.eps_t;
@@ -221,7 +221,7 @@ std::string accuracy_text(const Options& options) {
                        fmt::format("{:.3g}", options.tolerance));
 }
 
-// The heading that folds and opens the section; folded it tells what it holds. A dot in the accent's colour: something
+// The heading that folds and unfolds the section; folded, it shows the summary. A colored dot means that an option
 // differs from the file.
 bool accuracy_heading(const Session& session, const Run& file, PanelState& state, Commands& commands) {
     const bool open = session.scene().shows("accuracy");
@@ -263,7 +263,7 @@ bool accuracy_heading(const Session& session, const Run& file, PanelState& state
     return false;
 }
 
-// How the bouncing is cut short, and how closely the motion between is followed.
+// Options of the truncation and of the integration.
 void accuracy(const Session& session, const Run& file, PanelState& state, Commands& commands) {
     if (!accuracy_heading(session, file, state, commands)) return;
     const Options& now = session.run().options;
@@ -288,8 +288,8 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
           session, file, state, commands);
 }
 
-// How many lines of a list can follow. It alone must not bring a scroll bar, which would move the rows above under the hand that
-// has just changed one of them; where there is one anyway, all.
+// Maximum number of lines of a list that follows. The list alone must not cause a scroll bar, which would move the rows
+// under the mouse. If there is a scroll bar anyway, all lines.
 std::size_t lines_that_fit(std::size_t lines) {
     const float below = ImGui::GetWindowHeight() - ImGui::GetCursorPosY() - units(8.0F);
     if (below <= 0.0F) return lines;
@@ -298,7 +298,7 @@ std::size_t lines_that_fit(std::size_t lines) {
     return std::min(lines, static_cast<std::size_t>(room));
 }
 
-// One difference from the file on a line: what it is, what the file has. A click puts it back.
+// One difference from the file on a line, with the file's value. A click restores that value.
 void show_difference(const Difference& difference, const std::string& of, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
@@ -314,7 +314,7 @@ void show_difference(const Difference& difference, const std::string& of, PanelS
 }
 
 void end_time(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    // Of the file, not of the run: a range that grew with the value would run away under the hand.
+    // Based on the file, not on the run: a range that grew with the value would move under the mouse.
     const double longest = std::max(50.0, 2.0 * file.options.end_time);
     slide({"end_time", "end", "end", "end time of the run", 0.1, longest, 4}, session, file, state, commands);
 }
@@ -339,7 +339,7 @@ void show_changes(const Session& session, const std::string& of, std::size_t lin
     const std::size_t count = std::min(lines, all.size());
     if (count == 0) return;
     section(("Differs from the " + of).c_str());
-    // The tail of an italic y reaches out to the left.
+    // The tail of an italic y extends beyond the left edge.
     ImDrawList* const list = ImGui::GetWindowDrawList();
     const ImVec2 low = list->GetClipRectMin();
     list->PushClipRect({low.x - units(2.0F), low.y}, list->GetClipRectMax());
@@ -349,7 +349,7 @@ void show_changes(const Session& session, const std::string& of, std::size_t lin
 
 void show_controls(const Session& session, PanelState& state, Commands& commands) {
     describe_system(session);
-    // Rows close enough that most systems need no scrolling.
+    // Dense rows, so that most systems need no scrolling.
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});
     const Run& file = session.file_run();
     const bool has_parameters = !file.parameters.empty();
@@ -364,7 +364,7 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
     end_time(session, file, state, commands);
     accuracy(session, file, state, commands);
     show_runs(session, state, commands);
-    // Where there is no room for all the others have their marks, and "reset all".
+    // If not all lines fit, the other differences still have their markers and "reset all".
     show_changes(session, "file", lines_that_fit(differences(session.description(), session.run(), file).size()), state,
                  commands);
     ImGui::PopStyleVar();

@@ -1,5 +1,5 @@
-// Below, in place of the events: what a quantity of the run depends on. A bar for every slider: how much the quantity would change
-// over all of it, at the slope that it has now.
+// The sensitivity panel, in place of the events. A bar for every slider shows how much the quantity would change over
+// the slider's whole range according to its derivative.
 #include "panels/sweep.hpp"
 
 #include <fmt/format.h>
@@ -49,7 +49,7 @@ std::string explanation(const Session& session, const Influences& known, const I
 
 // ---- the quantity ----
 
-// What most people ask of this run.
+// Quantities offered in the menu.
 std::vector<std::string> usual_quantities(const Session& session) {
     constexpr int most = 6;
     std::vector<std::string> all;
@@ -83,7 +83,7 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
     ImGui::EndPopup();
 }
 
-// What is known, of which run, and what the bars are.
+// Status text: which run the values belong to, and what the bars mean.
 std::string remark(const Session& session) {
     if (session.influences() == nullptr) return session.influences_job().is_busy() ? "computing\u2026" : "";
     if (!session.influences_are_current()) return "from the previous run; this run is being computed";
@@ -117,7 +117,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
 
 // ---- the bars ----
 
-// The widths of what a line has: name, bar, derivative.
+// Widths of the parts of a line: name, bar, derivative.
 constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F,
                 most_bar = 560.0F;
 
@@ -128,25 +128,25 @@ struct Lines {
         const auto most = std::max<std::size_t>(static_cast<std::size_t>(room.width / least), 1);
         const std::size_t columns = std::clamp<std::size_t>((count + fit - 1) / fit, 1, most);
         each = (count + columns - 1) / columns;
-        // A bar that is longer than a glance takes in tells no more.
+        // Limit the length of bars; longer ones are not easier to read.
         const float others = units(slider_name_width + number_width + between);
         width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(most_bar));
         bar = std::max(units(8.0F), width - others);
         corner = {room.x, room.y};
     }
-    std::size_t each = 0;  // in a column
+    std::size_t each = 0;  // lines per column
     float width = 0.0F, bar = 0.0F, height = 0.0F;
     ImVec2 corner;
     ImVec2 at(std::size_t i) const {
         return {std::floor(corner.x + width * static_cast<float>(i / each)),
                 std::floor(corner.y + height * static_cast<float>(i % each + 1))};
     }
-    // The middle of the bars of the column that line i stands in.
+    // Middle of the bars in the column of line i.
     float middle(std::size_t i) const { return std::floor(at(i).x + units(slider_name_width) + 0.5F * bar); }
     float half() const { return 0.5F * bar - units(4.0F); }
 };
 
-// Over each column how long a bar would be: the least and the largest.
+// The scale above each column: zero, and plus and minus the largest value.
 void paint_scale(const Influences& known, const Lines& lines, std::size_t first) {
     const float middle = lines.middle(first);
     const auto put = [&](const std::string& text, float x, float share) {

@@ -1,4 +1,4 @@
-// What the explorer asks: which file to open, where to save, what to do with changes that are not saved.
+// The dialogs: open a file, save, unsaved changes, file access, recovery.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -19,13 +19,13 @@ namespace {
 
 constexpr float dialog_width = 560.0F;
 
-// A system file has an ending: "mine" is mine.toml.
+// Adds the extension of a system file: "mine" becomes mine.toml.
 std::string as_system(const std::string& path) {
     const fs::path file(path);
     return file.has_filename() && file.extension().empty() ? path + ".toml" : path;
 }
 
-// What is to be known of a path before anything is done with it.
+// Result of checking a path: a note, whether it can be used, and whether to ask first.
 struct Verdict {
     std::string note;
     bool is_good = false, asks = false;
@@ -71,11 +71,11 @@ Verdict to_take_away(const Session& session, const PanelState& state, const std:
         return refuse("a PDF needs rsvg-convert (librsvg2-bin), which is not installed");
     const TakeAwayNote note = is_data ? TakeAwayNote() : take_away_note(session, form);
     if (note.is_wrong) return refuse(note.text);
-    // A picture of the dialog knows no folder.
+    // A picture of the dialog must not depend on existing files.
     return state.reads_folders ? to_save(Document(), path) : Verdict{"writes to " + path, true, false};
 }
 
-// "contact force" as a part of a file's name.
+// "contact force" as part of a file name.
 std::string as_name(const std::string& title) {
     std::string name;
     for (const char c : title) {
@@ -86,7 +86,7 @@ std::string as_name(const std::string& title) {
     return name;
 }
 
-// With a number where there is such a file already: Enter alone writes it.
+// An unused file name, numbered if necessary, so that Enter alone does not overwrite a file.
 std::string free_name(const std::string& stem, const std::string& ending) {
     std::error_code problem;
     std::string name = stem + ending;
@@ -94,7 +94,7 @@ std::string free_name(const std::string& stem, const std::string& ending) {
     return name;
 }
 
-// A window in the middle, which keeps everything else from the hand.
+// A modal window in the middle of the surface.
 template <class Content>
 void dialog(const char* title, Content content) {
     const ImVec2 size = ImGui::GetIO().DisplaySize;
@@ -121,7 +121,7 @@ void close(EditorState& editor) {
     ImGui::CloseCurrentPopup();
 }
 
-// Nothing is done of what was asked about.
+// Cancels the pending action.
 void give_up(EditorState& editor) {
     editor.waiting.reset();
     editor.is_closing = false;
@@ -133,7 +133,7 @@ bool is_escape(const PanelState& state) { return takes_key(state, key::escape, f
 const std::vector<std::string> systems_and_sessions{".toml", ".journal", ".svg", ".png", ".pdf"};
 const std::vector<std::string> taken_away{".svg", ".png", ".pdf", ".mp4", ".gif", ".json", ".csv", ".journal"};
 
-// The line to type a path in, its folder, what is to say about it, and two buttons. True when the path is chosen.
+// The path field, the folder, a note and two buttons. Returns true if a path was chosen.
 template <class Judge>
 bool path_chosen(const char* action, const std::vector<std::string>& endings, PanelState& state, const Judge& judge) {
     EditorState& editor = state.editor;
@@ -147,10 +147,10 @@ bool path_chosen(const char* action, const std::vector<std::string>& endings, Pa
     const bool pressed = button(verdict.asks ? "Overwrite" : action, state, verdict.is_good);
     ImGui::SameLine();
     if (button("Cancel", state) || is_escape(state)) give_up(editor);
-    // Enter alone overwrites nothing, and what goes to a folder or a row only goes there.
+    // Enter alone does not overwrite a file, and Enter on a folder or row only opens it.
     const bool goes = entered && !verdict.asks && !browsed.has_taken;
     const bool chosen = verdict.is_good && (pressed || goes || (can_choose && browsed.is_chosen));
-    editor.keeps_path = entered && !chosen;  // Enter lets go of the line: hold it while it is wrong
+    editor.keeps_path = entered && !chosen;  // Enter releases the field: keep it while the path is wrong
     return chosen;
 }
 
@@ -158,7 +158,7 @@ void open_dialog(PanelState& state, const Session& session, Commands& commands) 
     if (!path_chosen("Open", systems_and_sessions, state, to_open)) return;
     close(state.editor);
     const std::string path = expanded(state.editor.path);
-    // A journal and what a picture carries are replayed, as where they are dropped.
+    // Journals and pictures are replayed, as when they are dropped on the window.
     const bool replays = ending_of(path) == "journal" || !ending_of_picture(path).empty();
     request(session, state, replays ? Command(command::Replay{path}) : Command(command::Open{path}), commands);
 }
@@ -188,7 +188,7 @@ void take_away_dialog(PanelState& state, const Session& session, Commands& comma
     commands.emplace_back(take_away_command(state.take_away, file, judge(file).asks));
 }
 
-// Nothing keeps what waited any longer.
+// Performs the pending action.
 void go_on(EditorState& editor, Commands& commands) {
     editor.may_close = std::exchange(editor.is_closing, false);
     if (editor.waiting) commands.push_back(*std::exchange(editor.waiting, std::nullopt));
@@ -211,13 +211,13 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     if (button("Discard", state)) {
         close(editor);
         go_on(editor, commands);
-        editor.known = editor.text;  // nor is what was typed last
+        editor.known = editor.text;  // discard also what was typed last
     }
     ImGui::SameLine();
     if (button("Cancel", state) || is_escape(state)) give_up(editor);
 }
 
-// A journal or a picture may come from anybody: nothing is allowed by Enter.
+// Asks for file access by a journal or a picture, which may be untrusted: Enter does not grant it.
 void file_dialog(PanelState& state) {
     FileQuestion& question = *state.file_question;
     const std::string more = question.more == 0   ? ""
@@ -252,7 +252,7 @@ void recovery_dialog(PanelState& state) {
     if (question.answer != Answer::none) ImGui::CloseCurrentPopup();
 }
 
-// A question that is not about the text in the editor: it comes where nothing else is asked.
+// A question that does not concern the edited text; shown only if no other dialog is open.
 template <class Question, class Content>
 void question_dialog(const char* title, const std::optional<Question>& question, bool is_free, const Content& content) {
     if (question && is_free && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
@@ -264,7 +264,7 @@ void question_dialog(const char* title, const std::optional<Question>& question,
     });
 }
 
-// What waited for the changes to be saved is done once they are; if that failed, it is not.
+// After saving: performs the pending action if the save succeeded.
 void go_on_if_saved(const Session& session, EditorState& editor, Commands& commands) {
     if (!std::exchange(editor.has_saved, false)) return;
     if (!session.document().is_changed()) go_on(editor, commands);
@@ -290,7 +290,7 @@ void ask_to_open(PanelState& state) {
 
 void ask_to_save(const Session& session, PanelState& state) {
     const Document& document = session.document();
-    // An asset is not saved over unasked: a copy where the explorer was started.
+    // Propose a copy in the working directory for an asset, which must not be overwritten.
     state.editor.path = document.file.empty() ? fs::path(document.name).stem().string() + ".toml" : document.file;
     state.editor.asking = EditorState::Asking::save;
 }

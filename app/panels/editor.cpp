@@ -1,4 +1,4 @@
-// The text of the system: what is typed takes effect when the hand rests, what cannot be read is told under it.
+// The text editor of the system. Changes take effect after a pause in typing; errors are shown below the text.
 #include <fmt/format.h>
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
@@ -17,13 +17,13 @@ namespace achilles {
 
 namespace {
 
-constexpr double pause = 0.4;            // s without a letter: the hand rests
+constexpr double pause = 0.4;            // s without a keystroke
 constexpr float problem_padding = 8.0F;  // around the message, at scale 1
 constexpr float gutter_padding = 6.0F;
 constexpr const char* text_id = "##text";
 
-// ImGui keeps what is typed as 16-bit characters up to a zero, and is slow with very long texts: what it would change
-// by itself is shown but not edited.
+// ImGui keeps text as 16-bit characters up to a zero, and is slow with very long texts. Text that it would change is
+// shown read-only.
 const char* reason_against_editing(const std::string& text) {
     if (text.size() > std::size_t{1} << 20) return "Too long to edit here: more than 1 MB.";
     for (const char c : text)
@@ -32,14 +32,14 @@ const char* reason_against_editing(const std::string& text) {
     return nullptr;
 }
 
-// The line, from 1, in which two texts begin to differ.
+// The first line, from 1, in which two texts differ.
 int first_difference(const std::string& a, const std::string& b) {
     const auto at = std::mismatch(a.begin(), a.end(), b.begin(), b.end()).first;
     return 1 + static_cast<int>(std::count(a.begin(), at, '\n'));
 }
 
-// Another text than the one that was typed: opened, new, from a journal, or undone. Of the same document what has changed is
-// to be seen, of another one its beginning.
+// Takes over a text that was not typed: opened, new, from a journal, or after undo. Scrolls to the change if it is the
+// same document, else to the beginning.
 void follow_session(const Session& session, EditorState& editor) {
     const Document& document = session.document();
     const bool is_same = std::exchange(editor.document, document.name) == document.name;
@@ -48,15 +48,15 @@ void follow_session(const Session& session, EditorState& editor) {
     if (!is_same) editor.scroll = 0.0F;
     editor.text = editor.known = document.text;
     editor.resting = 0.0;
-    ++editor.revision;  // the widget begins anew: its cursor and its undo belong to the old text
+    ++editor.revision;  // recreates the widget, whose cursor and undo history belong to the old text
     if (!document.problems.empty()) editor.go_to = document.problems.front().at.line;
 }
 
-// What the text looks like on the screen: where the first letter of a line stands.
+// Geometry of the text on the screen.
 struct TextPage {
-    float left, top;      // of the first letter, scrolling included
+    float left, top;      // position of the first letter, including scrolling
     float line, letter;   // height, width
-    Rectangle text, all;  // what is visible of the text; that and the gutter
+    Rectangle text, all;  // visible text; text with line numbers
     float y(int number) const { return top + static_cast<float>(number - 1) * line; }
 };
 
@@ -65,7 +65,8 @@ void paint_line_numbers(const TextPage& page, int lines, const std::vector<Input
     const int last = std::min(lines, static_cast<int>((page.all.y + page.all.height - page.top) / page.line) + 1);
     const float right = page.text.x - units(gutter_padding);
     for (int number = first; number <= last; ++number) {
-        if (page.y(number) + page.line > page.all.y + page.all.height + 1.0F) continue;  // half a line has no number
+        // A partly visible line gets no number.
+        if (page.y(number) + page.line > page.all.y + page.all.height + 1.0F) continue;
         const bool is_wrong = std::any_of(problems.begin(), problems.end(),
                                           [number](const InputError& problem) { return problem.at.line == number; });
         const std::string text = std::to_string(number);
@@ -74,7 +75,7 @@ void paint_line_numbers(const TextPage& page, int lines, const std::vector<Input
     }
 }
 
-// A wave under the word that begins at the place, and the line behind it tinted.
+// A wavy line under the word at the error, and a tinted background from there to the end of the line.
 void paint_problem(const TextPage& page, const std::string& text, Location at, ImDrawList* list) {
     if (at.line < 1) return;
     const float top = page.y(at.line), bottom = top + page.line;
@@ -102,18 +103,18 @@ void paint_problem(const TextPage& page, const std::string& text, Location at, I
     list->PopClipRect();
 }
 
-// Where a text is scrolled to so that a line of it is seen: as it is, or with the line in the upper half.
+// The scroll position that makes a line visible: unchanged if it is, else with the line in the upper half.
 float scroll_to(int line, const EditorState& editor, float line_height, float height) {
     const float y = static_cast<float>(line - 1) * line_height;
     const bool is_seen = y >= editor.scroll && y + line_height <= editor.scroll + height;
     return is_seen ? editor.scroll : std::max(0.0F, y - std::floor(0.4F * height / line_height - 1.0F) * line_height);
 }
 
-// The widget itself, without its frame: the page is painted behind it. True if a letter was typed. It takes letters back
-// one by one, unless the text is no system: then undo is the session's.
+// The text widget without a frame, since the page is drawn behind it. Returns true after typing. It handles undo itself
+// while the text is valid; otherwise undo belongs to the session.
 bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
     const ImGuiID id = ImGui::GetID(text_id);
-    // Escape would take back everything that was typed since the text was clicked.
+    // Hide Escape from ImGui, which would revert all typing since the widget was activated.
     float& escape = time_held(key::escape);
     const float was = std::exchange(escape, ImGui::GetActiveID() == id ? -1.0F : escape);
     ImGui::PushStyleColor(ImGuiCol_FrameBg, 0U);
@@ -123,7 +124,7 @@ bool typed(EditorState& editor, ImVec2 size, ImGuiInputTextFlags more) {
     return ImGui::IsItemEdited();
 }
 
-// Text, line numbers and marks, as high as given.
+// Text, line numbers and error marks in the given height.
 void show_text(const Session& session, PanelState& state, float height) {
     EditorState& editor = state.editor;
     push_font(monospace_font());
@@ -133,12 +134,12 @@ void show_text(const Session& session, PanelState& state, float height) {
     const float digits = static_cast<float>(std::max<std::size_t>(2, std::to_string(lines).size()));
     const float gutter = std::floor(digits * letter + 2.0F * units(gutter_padding));
     Rectangle all = remaining();
-    // Whole lines: the last is not cut, until somebody scrolls.
+    // Height of whole lines, so that the last one is not cut off before scrolling.
     const float paddings = ImGui::GetStyle().FramePadding.y + units(1.0F), font = ImGui::GetFontSize();
     height = std::max(std::floor((height - paddings) / font), 1.0F) * font + paddings;
     all.height = height;
     const ImVec2 padding = ImGui::GetStyle().FramePadding;
-    // Paper first: ImGui paints a scroll bar right onto it.
+    // Draw the page first, since ImGui draws the scroll bar onto it.
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 low{all.x, all.y}, high{all.x + all.width, all.y + all.height};
     list->AddRectFilled(low, high, packed(session.theme().background), units(4.0F));
@@ -147,7 +148,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     ImGuiInputTextFlags more = ImGuiInputTextFlags_None;
     if (reason_against_editing(editor.text) != nullptr) more |= ImGuiInputTextFlags_ReadOnly;
     if (!session.document().problems.empty()) more |= ImGuiInputTextFlags_NoUndoRedo;
-    // A widget that begins anew is a new window, which would begin at the top.
+    // A recreated widget is a new ImGui window, which would start at the top.
     if (std::exchange(editor.shown_revision, editor.revision) != editor.revision)
         scroll_next_window(editor.scroll, static_cast<float>(lines) * font + 2.0F * ImGui::GetStyle().FramePadding.y);
     const bool has_typed = typed(editor, {all.width - gutter, height}, more);
@@ -156,14 +157,14 @@ void show_text(const Session& session, PanelState& state, float height) {
     editor.is_active = ImGui::IsItemActive();
     const ImGuiInputTextState* input = ImGui::GetInputTextState(ImGui::GetID(text_id));
     const float sideways = input != nullptr ? scrolled_sideways(*input) : 0.0F;
-    // The widget scrolls in a window of its own.
+    // The widget scrolls in a child window.
     const std::string name =
         fmt::format("{}/{}_{:08X}", ImGui::GetCurrentWindow()->Name, text_id, ImGui::GetID(text_id));
     ImGuiWindow* child = ImGui::FindWindowByName(name.c_str());
     const float line = ImGui::GetFontSize();
     if (child != nullptr && editor.go_to > 0)
         ImGui::SetScrollY(child, scroll_to(std::exchange(editor.go_to, 0), editor, line, height));
-    // A message that appears takes room from the text: the line under the hand stays in sight.
+    // A message that appears reduces the height: keep the cursor line visible.
     if (child != nullptr && input != nullptr && height < editor.height) {
         const float below = static_cast<float>(line_of_cursor(*input, editor.text)) * line + paddings - height;
         if (child->Scroll.y < below) ImGui::SetScrollY(child, below);
@@ -178,7 +179,7 @@ void show_text(const Session& session, PanelState& state, float height) {
                         {all.x + gutter, all.y, all.width - gutter, height},
                         all};
     list->PushClipRect(low, {high.x - (child != nullptr ? child->ScrollbarSizes.x : 0.0F), high.y}, true);
-    // Marks belong to the text that was read, not to what was typed since.
+    // Errors refer to the text that was parsed, not to later edits.
     const bool is_known = editor.text == session.document().text;
     const std::vector<InputError> none;
     const auto& problems = is_known ? session.document().problems : none;
@@ -211,7 +212,7 @@ void show_problems(const Session& session, EditorState& editor, float height) {
     ImGui::PopStyleVar();
 }
 
-// How high the messages are, at most a third of the panel.
+// Height of the messages, at most a third of the panel.
 float problems_height(const Session& session, float width, float room) {
     if (session.document().problems.empty()) return 0.0F;
     float height = 2.0F * units(problem_padding);
@@ -239,7 +240,7 @@ void show_buttons(const Session& session, PanelState& state, Commands& commands)
     if (button("Save as\u2026", "save to another file")) ask_to_save(session, state);
 }
 
-// In a text that is no system: back to the last that was one, at once; redo has this one.
+// In an invalid text: undo returns to the last valid text in one step; redo restores the invalid one.
 void use_undo(const Session& session, EditorState& editor, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     if (!editor.is_active || session.document().problems.empty() || !session.can_undo() || !io.KeyCtrl || io.KeyShift ||
@@ -249,7 +250,7 @@ void use_undo(const Session& session, EditorState& editor, Commands& commands) {
     commands.emplace_back(command::Undo{});
 }
 
-// Which file it is, and whether it holds what is seen.
+// The file name, and whether the text has unsaved changes.
 void show_file(const Session& session, const EditorState& editor) {
     const Document& document = session.document();
     const bool is_changed = editor.text != document.saved;
@@ -269,7 +270,7 @@ void show_file(const Session& session, const EditorState& editor) {
     }
 }
 
-// What of this text does not hold in the run, which sliders and options have changed.
+// Values of the text that do not hold in the run because sliders or options changed them.
 void show_run(const Session& session, PanelState& state, Commands& commands) {
     constexpr std::size_t lines = 4;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {ImGui::GetStyle().ItemSpacing.x, units(3.0F)});

@@ -1,4 +1,4 @@
-// Below, in place of the events: the equations, and what the Zeno conditions are now.
+// The equations panel, in place of the events, with the current state of the Zeno conditions.
 #include "panels/equations.hpp"
 
 #include <fmt/format.h>
@@ -17,18 +17,18 @@
 
 namespace achilles {
 
-// ---- equations on a page: which lines, which columns ----
+// ---- layout of equations in lines and columns ----
 
 namespace {
 
 using Ink = SetSheet::Ink;
 
-// Shares of the letters' size.
+// Relative to the letter size.
 constexpr float caption_size = 0.867F, leading = 0.38F, before_heading = 1.0F, before_caption = 0.3F,
                 before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 20.0F;
 constexpr int most_columns = 3;
 
-// What must not be torn apart: lines below one another, from (0, 0).
+// A block of lines that must stay together, positioned from (0, 0).
 struct Unit {
     std::vector<SetSheet::Line> lines;
     std::vector<SetSheet::Now> now;
@@ -76,7 +76,7 @@ class Setter {
         }
     }
 
-    // Fractions too wide for the column stand in a line of words as N/D.
+    // Fractions too wide for the column are written inline as N/D.
     Formula in_words(const Formula& row) const {
         Formula result;
         const auto bracketed = [&](const Formula& part) {
@@ -111,7 +111,7 @@ class Setter {
     void put(FormulaBox box, float x, Ink ink) {
         if (units_.empty()) begin(0.0F);
         Unit& unit = units_.back();
-        // Lines of letters alone are as far apart as lines of text.
+        // Lines of plain letters get the line spacing of text.
         const float ascent = std::max(box.ascent, 0.72F * size_), descent = std::max(box.descent, 0.22F * size_);
         const float y = std::round(unit.height + ascent);
         unit.width = std::max(unit.width, x + box.width);
@@ -128,7 +128,7 @@ class Setter {
         }
     }
 
-    // A fraction wider than the column is N/D, with N and D below.
+    // A fraction wider than the column becomes N/D, with N and D below.
     void formula(const std::string& left, Formula right) {
         const Formula beginning = left.empty() ? Formula{} : joined({read_formula(left + " =", {})});
         std::vector<std::pair<std::string, Formula>> below;
@@ -152,7 +152,7 @@ class Setter {
         return width;
     }
 
-    // In brackets where there is room, else entry by entry; of a square one, which is symmetric, no entry twice.
+    // As a matrix in brackets if there is room, else entry by entry; a square matrix is symmetric, so each entry once.
     void matrix(const std::string& left, const std::vector<std::vector<std::string>>& rows) {
         std::vector<std::vector<Formula>> entries;
         for (const auto& row : rows) {
@@ -208,7 +208,7 @@ SetSheet in_columns(const std::vector<Unit>& units, int columns, float column, f
             y = widest = 0.0F;
             ++at;
         }
-        // At the top of a column nothing stands above it.
+        // No space above the first line of a column.
         const float space = y == 0.0F && !unit.lines.empty()
                                 ? unit.lines.front().y - std::max(unit.lines.front().box.ascent, 0.72F * size)
                                 : 0.0F;
@@ -260,7 +260,7 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
         worker_->start([model, run](const std::stop_token& stop) -> Made {
             try {
                 return std::make_shared<const EquationSheet>(equation_sheet(*model, run, stop));
-            } catch (const std::exception& too_large) {  // for the graph, or for the memory
+            } catch (const std::exception& too_large) {  // too many terms, or out of memory
                 EquationSheet sheet;
                 const std::string why = Page::escaped(too_large.what());
                 sheet.blocks.push_back({Block::Kind::sentence, {why, "The equations are not written out: " + why}, {}});
@@ -308,7 +308,7 @@ namespace {
 
 constexpr float page_padding = 12.0F;
 
-// One of those that share the place; the one that is seen is underlined.
+// One of the tabs; the current one is underlined.
 bool tab(const char* title, const char* place, const char* about, bool is_seen, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), text = ImGui::CalcTextSize(title);
     const bool is_pressed = ImGui::InvisibleButton(place, {text.x, ImGui::GetFrameHeight()});
@@ -322,7 +322,7 @@ bool tab(const char* title, const char* place, const char* about, bool is_seen, 
     return is_pressed && !is_seen;
 }
 
-// "m1 = 2 kg", "theta1 = 30° now", with what the file says about it.
+// "m1 = 2 kg", "theta1 = 30° now", with the description from the file.
 std::string told(const Session& session, const std::string& name) {
     const SystemDescription& system = session.description();
     const auto value = [](double x, const std::string& unit, bool is_rate) {
@@ -344,7 +344,7 @@ std::string told(const Session& session, const std::string& name) {
     return fmt::format("{} = {} now", name, value(session.now().t, "s", false));
 }
 
-// What a condition says of the present, and whether it applies.
+// The current state of a condition, and whether it applies now.
 struct Now {
     std::string text;
     bool applies = false;
@@ -404,7 +404,7 @@ class PageDrawing {
     bool is_seen(float from, float to) const { return corner_.y + to >= top_ && corner_.y + from <= bottom_; }
     static Color ink(SetSheet::Ink ink) { return ink == SetSheet::Ink::caption ? faint_color() : text_color(); }
 
-    // Behind a name that is pointed at, here or by its slider; and who it is.
+    // Highlights names that are pointed at, here or on a slider, and shows a tooltip.
     void mark(const SetSheet::Line& line) {
         for (const FormulaBox::Letters& one : line.box.letters) {
             if (one.name < 0) continue;
@@ -462,7 +462,7 @@ void show_equations(const Session& session, PanelState& state, Commands& command
     show_lower_tabs(session, state, commands);
     if (state.equations == nullptr) state.equations = std::make_shared<EquationsView>();
     EquationsView& view = *state.equations;
-    // A picture waits for them; a window has other things to do.
+    // A picture waits for the equations; a window does not.
     const EquationSheet* sheet =
         view.sheet(session.model(), session.run(), state.in_window ? Patience(0.0) : Patience());
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
@@ -472,7 +472,7 @@ void show_equations(const Session& session, PanelState& state, Commands& command
         ImGui::TextDisabled("The equations are being simplified\u2026");
     } else {
         const Rectangle room = remaining();
-        // As wide with a scroll bar as without one: what appears must not set everything anew.
+        // Reserve the width of a scroll bar, so that its appearance does not change the layout.
         const float bar = ImGui::GetStyle().ScrollbarSize;
         const float width = ImGui::GetWindowWidth() - 2.0F * units(page_padding) - bar;
         const SetSheet& page =

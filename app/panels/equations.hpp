@@ -1,4 +1,4 @@
-// The equations as the panel keeps them: simplified once for a system, set once for a width, drawn every frame.
+// The equations in the panel: simplified once per system, typeset once per width, drawn every frame.
 #pragma once
 
 #include <map>
@@ -13,16 +13,16 @@
 
 namespace achilles {
 
-// A sheet in its place on a page that may be scrolled.
+// A typeset sheet of equations on a scrollable page.
 struct SetSheet {
     enum class Ink { heading, caption, formula };
     struct Line {
-        float x = 0.0F, y = 0.0F;  // of its base line's left end, from the page's corner
+        float x = 0.0F, y = 0.0F;  // left end of its baseline, relative to the corner of the page
         FormulaBox box;
         Ink ink = Ink::formula;
         std::size_t block = 0;
     };
-    // Where what a condition is now stands: the left end of the top, and how wide.
+    // Place for the current value of a condition: its upper left corner and width.
     struct Now {
         std::size_t condition = 0;
         float x = 0.0F, y = 0.0F, width = 0.0F;
@@ -32,32 +32,31 @@ struct SetSheet {
     float width = 0.0F, height = 0.0F;
 };
 
-// In columns side by side where there is room for them, and as few as make it as high as asked for. `size`: of the
-// letters.
+// Typesets the sheet in columns: as few as keep it within the height, if the width allows. `size`: of the letters.
 SetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height);
 
 class EquationsView {
  public:
-    // The sheet of this model, with the signs that the parameters' ranges and these values allow. Without patience null
-    // until it is ready.
+    // The sheet of this model, simplified with the signs that the parameter ranges and these values imply. With a
+    // timeout: null until it is ready.
     const EquationSheet* sheet(const std::shared_ptr<const Model>& model, const Run& run, Patience patience);
     bool is_under_way() const { return is_under_way_; }
-    // The sheet that was asked for last, set.
+    // The sheet requested last, typeset.
     const SetSheet& set(float size, const FormulaFont& font, float width, float height);
-    // What the sign of a condition's hddot depends on, at a state.
+    // The quantity that determines the sign of a condition's hddot, at a state.
     double value(std::size_t condition, const Model& model, const Run& run, const State& state, double t);
 
  private:
     using Made = std::shared_ptr<const EquationSheet>;
     std::unique_ptr<Worker<Made>> worker_;
     bool is_under_way_ = false;
-    std::shared_ptr<const Model> model_;  // of what was asked for last
-    std::vector<double> signs_;           // the parameters' ranges, with the values
+    std::shared_ptr<const Model> model_;  // of the last request
+    std::vector<double> signs_;           // ranges and values of the parameters that determine the signs
     Made sheet_;
     std::vector<float> set_for_;
     SetSheet set_;
     std::map<std::size_t, Evaluator<double>> evaluators_;
-    std::vector<double> parameters_;  // of these
+    std::vector<double> parameters_;  // values in `evaluators_`
 };
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// Beside the list of events: why the chosen event is what it is.
+// Cards beside the event list that explain the selected event.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ void row(const std::string& name, const std::string& first, const std::string& s
     ImGui::Dummy({units(second_at + 90.0F), ImGui::GetTextLineHeight()});
 }
 
-// The rates before and after, in the units that are shown.
+// The rates before and after, in display units.
 void show_rates(const Session& session, const Event& event) {
     row("", "before", "after");
     const State errors = session.precision().of_state(event.t);
@@ -53,7 +53,7 @@ void show_rates(const Session& session, const Event& event) {
     }
 }
 
-// The first inequality that does not hold, if any.
+// The first inequality that fails, if any.
 std::optional<Inequality> failed(const Certificate& certificate) {
     for (const Inequality& inequality : certificate.inequalities())
         if (!(inequality.left < inequality.right)) return inequality;
@@ -84,7 +84,7 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, 
                        number(inequality->left / inequality->right, "{:.3g}"));
 }
 
-// Lambda during the contact, down to zero, and dotted how it would go on.
+// Lambda during contact until it reaches zero, and dotted its extrapolation.
 Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& reason) {
     const std::string time = "t (s)", lambda_name = "\u03bb";
     Panel panel;
@@ -109,12 +109,12 @@ Panel force_panel(const Theme& theme, const Event& event, const ReleaseReason& r
     return panel;
 }
 
-// When the proof of the run has it.
+// The enclosure of the event time, if the run is proved.
 void show_proved(const Session& session, std::size_t event) {
     if (session.enclosed(event) != nullptr) ImGui::TextUnformatted(proved_text(session, event).c_str());
 }
 
-// "Impact of wall, event 7"; without the contact where there is one.
+// "Impact of wall, event 7"; without the name if there is only one contact.
 std::string title(const char* kind, const Session& session, const Event& event, std::size_t index) {
     const std::string contacts = contacts_told(session.trajectory(), event);
     return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
@@ -125,7 +125,7 @@ std::string time_of(const Session& session, std::size_t event) {
                        number(session.trajectory().events[event].t, session.precision().of_event(event), 10));
 }
 
-// Where there are several contacts.
+// Text for systems with several contacts.
 std::string what_is_held(const Session& session, const Event& event, const ImpactReason& reason) {
     const Model& model = *session.model();
     std::string text = reason.mode.is_free() ? "No contact is held. "
@@ -147,7 +147,7 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     const ImpactReason reason = explain_impact(session.trajectory(), index);
     show_rates(session, event);
     const SystemDescription& description = session.description();
-    // In the units of the file; of several contacts that of the first that lands.
+    // In the file's units; with several contacts in that of the first impacting one.
     std::size_t first = 0;
     while (first + 1 < session.model()->contacts() && !event.contacts.contains(first)) ++first;
     const auto with = [&](const std::string& value, const std::string& of) {
@@ -201,12 +201,11 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
         words - units(16.0F), text_color());
 }
 
-// ---- Zeno points: what is proved, and by how much each inequality holds ----
+// ---- Zeno points: the certificate, and the margin of each inequality ----
 
 namespace {
 
-// The share of the right-hand side that the left one uses up: 0 is a wide margin, 1 none. An inequality whose right
-// side is 0 (a sign) has none.
+// left/right of an inequality: near 0 is a wide margin, 1 is none. 0 if the right side is 0 (a sign condition).
 double share_of(const Inequality& inequality) {
     return inequality.right > 0.0 ? std::clamp(inequality.left / inequality.right, 0.0, 1.0) : 0.0;
 }
@@ -217,7 +216,7 @@ void quiet(const std::string& text) {
     ImGui::PopStyleColor();
 }
 
-// One row: name, left < right, and a bar of how much of the right side is used. The one that decided is set off.
+// One row: name, left < right, and a bar for left/right. The tightest inequality is marked.
 void show_inequality(const Inequality& inequality, bool decisive) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
@@ -229,7 +228,8 @@ void show_inequality(const Inequality& inequality, bool decisive) {
     list->AddText(at, packed(color), name.c_str());
     const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
     const ImVec2 middle{std::floor(at.x + units(138.0F)), at.y};
-    cell(middle, sides, std::min(units(150.0F), at.x + width + units(6.0F) - middle.x), color);  // into the margin
+    // It may extend into the margin.
+    cell(middle, sides, std::min(units(150.0F), at.x + width + units(6.0F) - middle.x), color);
     const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
     const float top = at.y + 0.35F * line, bottom = at.y + 0.7F * line;
     if (room > units(12.0F) && inequality.right > 0.0) {
@@ -291,7 +291,7 @@ std::vector<std::string> certificate_lines(const Event& event) {
 
 namespace {
 
-// A word that opens the lens in place of the plots, and closes it.
+// A button that opens and closes the lens.
 void lens_button(const Session& session, PanelState& state, Commands& commands) {
     const bool open = session.scene().shows("lens");
     const char* const name = open ? "close the Zeno lens" : "open the Zeno lens";
@@ -307,7 +307,7 @@ void lens_button(const Session& session, PanelState& state, Commands& commands) 
 
 }  // namespace
 
-// "; q in rad, v in rad/s": of what stands below.
+// "; q in rad, v in rad/s": units of the bounds that follow.
 std::string units_told(const SystemDescription& description) {
     const NormUnits unit = norm_units(description);
     return unit.position.empty() ? "" : fmt::format("; q in{}, v in{}", unit.position, unit.velocity);

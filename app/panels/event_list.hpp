@@ -1,4 +1,4 @@
-// The list of events: which lines it has, and its columns.
+// The event list: its rows and its columns.
 #pragma once
 
 #include <imgui.h>
@@ -14,10 +14,10 @@
 
 namespace achilles {
 
-// The events of a run at which what is held changes. A run may have a hundred thousand impacts, and a frame has no time to
-// look at each: phases begin and end where these events are.
+// The events at which the set of held contacts changes. A run may have 100,000 impacts, too many to examine in each
+// frame; these events are found at the starts and ends of phases.
 
-// The indices of Zeno points and releases, in order; with openings, of impacts that open a contact, too.
+// Indices of Zeno points and releases, in order; with_openings: also of impacts that open a contact.
 inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_openings = false) {
     std::vector<std::size_t> result;
     const auto& events = trajectory.events;
@@ -33,22 +33,22 @@ inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_op
     return result;
 }
 
-// Which lines the list of events has.
+// Rows of the event list.
 
-// The lines of the list: each event, but impacts one after the other as one line, until it is opened; so, too, where contacts
-// come to rest and are opened again and again. A run may have a
-// hundred thousand impacts: only what is seen is made.
+// The rows: one per event, but consecutive impacts are folded into one row until it is unfolded, and so are sequences
+// in which contacts repeatedly come to rest and are opened. A run may have 100,000 impacts, so rows are computed on
+// demand.
 class EventRows {
  public:
     struct Row {
-        std::size_t event;      // the first, of impacts in one line
-        std::size_t count = 0;  // of these impacts; 0: the line is an event
-        bool is_open = false;   // they follow, line by line
+        std::size_t event;      // index of the event, or of the first folded impact
+        std::size_t count = 0;  // number of folded impacts; 0: the row is a single event
+        bool is_open = false;   // the folded impacts follow, one per row
     };
     EventRows(const Session& session, const PanelState& state) {
         const Trajectory& trajectory = session.trajectory();
         const std::vector<std::size_t> all_turns = turns(trajectory, true);
-        folds_ = !state.show_impacts && !all_turns.empty();  // where there are only impacts each is seen
+        folds_ = !state.show_impacts && !all_turns.empty();  // a run with only impacts is not folded
         std::size_t next = 0;
         const std::vector<Chatter> chatters = chatters_of(trajectory);
         auto chatter = chatters.begin();
@@ -74,7 +74,7 @@ class EventRows {
         if (part.is_folded && within == 0) return {part.first, part.count, part.is_open};
         return {part.first + within - (part.is_folded ? 1 : 0)};
     }
-    // The line of this event, or that which it is folded into.
+    // The row of this event, or the row into which it is folded.
     std::size_t row_of(std::size_t event) const {
         const auto after = std::upper_bound(parts_.begin(), parts_.end(), event,
                                             [](std::size_t e, const Part& part) { return e < part.first; });
@@ -107,14 +107,14 @@ class EventRows {
     bool folds_ = true;
 };
 
-// The columns of the list of events: a sign, a number, the time and a sentence, and behind it numbers below one another.
+// Columns of the event list: a marker, a number, the time, a sentence, and right-aligned numbers.
 
-// Where they are, at scale 1, from the left edge of the list: signs and words begin there, numbers end there. The sentence has
-// what the numbers behind it leave, and these stand back before it has less than a sentence needs.
+// Positions at scale 1 from the left edge of the list. Markers and words are left-aligned, numbers right-aligned.
+// Number columns are dropped before the sentence becomes too narrow.
 constexpr float sign_at = 14.0F, number_at = 62.0F, time_at = 164.0F, words_at = 180.0F, words_width = 600.0F,
                 state_width = 112.0F;
 
-// A column of the state after an event: a coordinate or its rate.
+// A column of the state after an event: one coordinate or its rate.
 struct StateColumn {
     std::string name, title;
     Eigen::Index coordinate = 0;
@@ -127,15 +127,15 @@ struct StateColumn {
 
 std::vector<StateColumn> state_columns(const Session& session);
 
-// A number, or a word over numbers, that ends at x; a long word is cut.
+// A number or a column title that ends at x; a long title is shortened.
 void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
 
-// The columns at the right end of the list: the energy loss, the held contacts if there are several contacts, and as many
-// coordinates and rates as fit. Beside a card the list has no such columns, only the time.
+// The columns at the right end of the list: the energy loss, the held contacts if there are several contacts, and as
+// many coordinates and rates as fit. Beside a card the list has only the time column.
 class EventColumns {
  public:
     EventColumns(const Session& session, float width, bool is_alone);
-    float words() const;  // how wide the words are, pixels
+    float words() const;  // width of the sentence, pixels
     void put_words(ImVec2 at, const std::string& text, const Color& color) const;
     void titles(const Session& session, ImVec2 at) const;
     // Writes the numbers of an event. For consecutive impacts `event` is null, and only their energy loss is written.

@@ -1,4 +1,4 @@
-// Below: what happened, event by event, and what is proved of it.
+// The event list, below the plots, and the proof of the run.
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -23,13 +23,13 @@ namespace {
 
 constexpr float list_padding = 4.0F, list_beside_card = 300.0F, least_card = 540.0F;
 
-// The index of the event that the user chose, which is shown with its reasons; or none.
+// Index of the selected event, for which a card is shown; or none.
 std::optional<std::size_t> chosen(const Session& session) {
     if (session.selected() == 0) return std::nullopt;
     return static_cast<std::size_t>(session.selected() - 1);
 }
 
-// Whether something stands beside the list.
+// Whether a card is shown beside the list.
 bool shows_runs(const Session& session) { return !session.pinned().empty() && session.scene().shows("runs"); }
 bool has_card(const Session& session) { return chosen(session) || shows_runs(session); }
 
@@ -44,7 +44,7 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
     }
 }
 
-// The last event that the present has reached, or none.
+// Index of the last event up to the current time; -1: none.
 int reached(const Session& session) {
     const auto& events = session.trajectory().events;
     const auto later = std::upper_bound(events.begin(), events.end(), session.time(),
@@ -52,7 +52,7 @@ int reached(const Session& session) {
     return static_cast<int>(later - events.begin()) - 1;
 }
 
-// "Zeno point", and where there are several contacts "Zeno knee", "wall opens knee".
+// "Zeno point" or, with several contacts, "Zeno knee", "wall opens knee".
 std::string event_name(const Session& session, const Event& event) {
     const std::string contacts = contacts_told(session.trajectory(), event);
     if (!event.opened.empty()) return contacts + " opens " + joined_names(*session.model(), event.opened);
@@ -60,7 +60,7 @@ std::string event_name(const Session& session, const Event& event) {
     return contacts.empty() ? std::string(names.name) : fmt::format("{} {}", names.label, contacts);
 }
 
-// Gap speeds of angles are in degrees a second, as the rates beside them.
+// Factor for gap rates of angles: degrees per second, like the other rates.
 double speed_factor(const Session& session, const Event& event) {
     const std::vector<std::string> rates = output_names(session.description(), "gap'");
     std::size_t first = 0;
@@ -68,7 +68,7 @@ double speed_factor(const Session& session, const Event& event) {
     return shown_unit(unit_of_expression(session.description(), rates[first])).factor;
 }
 
-// The events for a spreadsheet, every digit: the chosen one, or all. In the units of the list.
+// Tab-separated table of all events, or of the selected one, with all digits, in the units of the list.
 std::string table(const Session& session) {
     const std::vector<StateColumn> columns = state_columns(session);
     const bool several = session.model()->contacts() > 1;
@@ -100,10 +100,10 @@ constexpr float button_gap = 6.0F;
 
 float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F * ImGui::GetStyle().FramePadding.x; }
 
-// (The button is wider than its word: a short one is hard to hit.)
+// (Buttons are wider than their words, since short ones are hard to hit.)
 float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
 
-// Its left end at x: pin the present run, and the comparison of the two ways to cut a bouncing.
+// Buttons from x on: pin the current run, and compare the two sets of truncation conditions.
 void show_comparing(float x, PanelState& state, Commands& commands) {
     const float pin_width = button_width("unpin");
     ImGui::SameLine(x + pin_width + units(button_gap));
@@ -130,7 +130,7 @@ float proving_width() {
            ImGui::GetFrameHeight();
 }
 
-// For how much around the run's start.
+// Menu of the half-widths of the start interval.
 void show_spreads(PanelState& state, Commands& commands) {
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(8.0F), units(8.0F)});
     const bool is_open = ImGui::BeginPopup("spreads");
@@ -146,7 +146,7 @@ void show_spreads(PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// Its left end at x: the proof of the present run begins, ends, or goes.
+// Button at x that starts, stops or removes the proof of the current run.
 void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
     const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
@@ -199,7 +199,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     show_comparing(buttons, state, commands);
 }
 
-// Points stand below one another, whatever digits an error leaves.
+// Aligns decimal points, whatever digits the error leaves.
 void time_cell(ImVec2 at, double t, double error, const Color& color) {
     constexpr int decimals = 9;
     const int known = known_decimals(error, decimals);
@@ -216,19 +216,19 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     paint_marker(list, markers, {at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()}, units(1.0F));
     number_cell(at, number_at, std::to_string(index + 1), faint_color());
     time_cell(at, event.t, session.precision().of_event(index), text_color());
-    // Beside a card, which says the rest, its name.
+    // Beside a card, which has the details, only the name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
     const EnclosedEvent* const enclosed = has_card(session) ? nullptr : session.enclosed(index);
     const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
     columns.put_words(at, proved + name, text_color());
-    // At a Zeno point all its impacts, as the sentence has it.
+    // At a Zeno point the loss of its whole impact sequence, as in the sentence.
     const double lost =
         is_zeno_point(event) ? pile_of(session.trajectory(), index).loss : energy_lost(session.trajectory(), index);
     columns.row(session, &event, lost, at, text_color());
 }
 
-// "10 impacts", when the first of them was, and what they have lost: quiet, the Zeno point says it again.
+// A folded row: "10 impacts", the time of the first, and their energy loss; in a faint color.
 void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at, const EventColumns& columns) {
     const auto& events = session.trajectory().events;
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -278,14 +278,14 @@ void show_event(const Session& session, std::size_t event, int present, const Ev
     const int event_number = static_cast<int>(event) + 1;
     const bool is_selected =
         session.selected() == event_number || (session.selected() == 0 && present == static_cast<int>(event));
-    // Another click on the chosen event lets go of it.
+    // A second click on the selected event deselects it.
     if (ImGui::Selectable("##row", is_selected))
         commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
     remember(state, "event " + std::to_string(event_number));
     paint_event(session, event, at, columns);
 }
 
-// Where the run begins or ends, and how: a click goes there.
+// The row of the start or the end of the run; a click goes there.
 void show_end(const Session& session, bool is_start, const EventColumns& columns, PanelState& state,
               Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -298,51 +298,51 @@ void show_end(const Session& session, bool is_start, const EventColumns& columns
     remember(state, is_start ? "event start" : "event end");
     if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
     time_cell(at, t, 0.0, faint_color());
-    // Its time stands in a column.
+    // The time is in its own column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");
     text = (is_start ? "start" : "end") + text.substr(colon);
     columns.put_words(at, typeset_sentence(text), faint_color());
 }
 
-// Scrolls so that the row is seen, once whenever another row is the one to see.
+// Scrolls to the row of the current event when it changes.
 void follow(const EventRows& all, int event, PanelState& state) {
     if (event == state.followed) return;
     state.followed = event;
-    // The first line is the start. Before anything has happened that is what is to be seen.
+    // Row 0 is the start, which is shown before the first event.
     const std::size_t row = event < 0 ? 0 : all.row_of(static_cast<std::size_t>(event)) + 1;
     const float y = static_cast<float>(row) * ImGui::GetTextLineHeightWithSpacing();
     const float height = ImGui::GetWindowHeight(), line = ImGui::GetTextLineHeightWithSpacing();
-    // By whole lines: none is cut at the top.
+    // Scroll by whole lines.
     if (y < ImGui::GetScrollY() || y + 3.0F * line > ImGui::GetScrollY() + height)
         ImGui::SetScrollY(std::max(0.0F, std::floor((y - 0.3F * height) / line) * line));
 }
 
 void show_list(const Session& session, ImVec2 size, PanelState& state, Commands& commands) {
     begin_padded_child("list", size);
-    // As wide as the rows are where they can be scrolled.
+    // Width of the rows beside the scroll bar.
     const EventColumns columns(session, ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize,
                                !has_card(session));
     paint_titles(session, ImGui::GetCursorScreenPos(), columns);
     ImGui::SetCursorPosX(ImGui::GetCursorPosX() + units(words_at));
     ImGui::Dummy({units(state_width), ImGui::GetTextLineHeight()});
     if (!has_card(session)) tooltip(precision_text());
-    const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
+    const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole rows
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::BeginChild("rows", {0.0F, room}, false);
     const EventRows all(session, state);
     const int present = reached(session), seen = session.selected() > 0 ? session.selected() - 1 : present;
-    // At the end nothing has been reached but the end itself.
+    // At the end of the run its last row is highlighted instead of an event.
     const bool is_over = session.selected() == 0 && session.time() >= session.trajectory().end_time;
-    ImGui::SetCursorPosY(
-        std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));  // the first line is marked as high as the others
+    // Aligns the highlight of the first row with those of the others.
+    ImGui::SetCursorPosY(std::floor(0.5F * ImGui::GetStyle().ItemSpacing.y));
     follow(all, seen, state);
     ImGuiListClipper clipper;
     const int rows = static_cast<int>(all.size()) + 2;
     clipper.Begin(rows, ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-            ImGui::PushID(i);  // not its address, which another frame gives to another row
+            ImGui::PushID(i);  // not its address, which may belong to another row in the next frame
             if (i == 0 || i == rows - 1) {
                 show_end(session, i == 0, columns, state, commands);
             } else {
@@ -377,12 +377,12 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     show_header(session, state, commands);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(list_padding), units(6.0F)});
-    // As high as whole lines are.
+    // Height of whole lines.
     const float line = ImGui::GetTextLineHeightWithSpacing(), room = ImGui::GetContentRegionAvail().y - units(12.0F);
     const float height = std::max(1.0F, std::floor((room + ImGui::GetStyle().ItemSpacing.y) / line)) * line +
                          units(12.0F) - ImGui::GetStyle().ItemSpacing.y;
     const bool with_card = has_card(session);
-    // A card needs its width; where there is none for both it stands alone, until it is closed.
+    // A card needs a minimum width; if there is no room for both, the list is hidden until the card is closed.
     const float width = ImGui::GetContentRegionAvail().x, gap = units(8.0F);
     const float least = chosen(session) ? units(least_card) : std::max(units(least_card), comparison_width(session));
     const bool with_list = !with_card || width - units(list_beside_card) - gap >= least;
@@ -440,7 +440,7 @@ void EventColumns::titles(const Session& session, ImVec2 at) const {
 }
 
 void EventColumns::row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const {
-    // Below so much a loss is rounding.
+    // A smaller loss is rounding.
     const double size = 10.0 * std::max(std::abs(session.trajectory().loss), session.sentences().energy_scale());
     const double shown_loss = without_noise(lost, size);
     const Precision& precision = session.precision();

@@ -1,4 +1,4 @@
-// The frame: what stands where.
+// The frame: layout and the drawing of all parts.
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -17,13 +17,14 @@ namespace {
 constexpr ImGuiWindowFlags fixed_window = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize |
                                           ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoCollapse |
                                           ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoNavFocus |
-                                          ImGuiWindowFlags_NoFocusOnAppearing;  // a message must not close a menu
+                                          // an error message must not close a menu
+                                          ImGuiWindowFlags_NoFocusOnAppearing;
 constexpr ImGuiWindowFlags still_window =
     fixed_window | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse;
 
 constexpr float card_padding = 10.0F;
 
-// A window that fills its part of the surface, if it has one.
+// A window that fills its rectangle, if that is not empty.
 template <class Content>
 void part(const char* name, const Rectangle& area, ImGuiWindowFlags flags, const Content& content) {
     if (area.width < 1.0F || area.height < 1.0F) return;
@@ -33,7 +34,7 @@ void part(const char* name, const Rectangle& area, ImGuiWindowFlags flags, const
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowMinSize, {1.0F, 1.0F});
     const bool is_seen = ImGui::Begin(name, nullptr, flags);
-    ImGui::PopStyleVar(3);  // menus and lists that open from here have their own
+    ImGui::PopStyleVar(3);  // menus and lists opened from here have their own style
     if (is_seen) content();
     ImGui::End();
 }
@@ -62,7 +63,7 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     return achilles::arrange(session.scene(), measures);
 }
 
-// The gap beside a panel: dragged it resizes the panel, a double click gives it the size that fits.
+// The gap beside a panel: a drag resizes the panel, a double click restores the automatic size.
 void show_splitter(const Arrangement::Splitter& splitter, PanelState& state, Commands& commands) {
     const ImVec2 size{splitter.area.width, splitter.area.height};
     ImGui::InvisibleButton("splitter", size);
@@ -89,7 +90,7 @@ void show_splitter(const Arrangement::Splitter& splitter, PanelState& state, Com
     commands.emplace_back(command::Size{splitter.panel, std::round(share * 1e4) / 1e4});
 }
 
-// What the last command was refused for; without the editor also why its text is no system.
+// The error of the last command or, without the editor, of an invalid text.
 std::string card_text(const Session& session) {
     const auto& problems = session.document().problems;
     if (!session.error().empty()) return session.error();
@@ -109,7 +110,7 @@ void show_card(const Session& session, const std::string& message) {
     else
         show_message(message, width);
     ImGui::EndGroup();
-    if (!is_good && message[0] == '/') tooltip(message);  // with the folder of its file
+    if (!is_good && message[0] == '/') tooltip(message);  // with the folder of the file
 }
 
 // Ctrl+Z and Ctrl+Shift+Z or Ctrl+Y, unless a text field has them.
@@ -121,14 +122,14 @@ void use_keys(const Session& session, const PanelState& state, Commands& command
     if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
 }
 
-// What the last command copied goes to the clipboard, once.
+// Copies the text of the last `copy` command to the clipboard, once.
 void copy(const Session& session, PanelState& state) {
     if (session.copies() == state.copies) return;
     state.copies = session.copies();
     ImGui::SetClipboardText(session.copied().c_str());
 }
 
-// A hand that presses anew begins another change, be it of the same slider. A double click is one with its first press.
+// A new mouse press starts a new change, even of the same slider. A double click belongs to its first press.
 void begin_change(PanelState& state, Commands& commands) {
     const auto& clicked = ImGui::GetIO().MouseClickedCount;
     if (!state.changing || (clicked[ImGuiMouseButton_Left] != 1 && clicked[ImGuiMouseButton_Right] != 1)) return;
@@ -136,12 +137,12 @@ void begin_change(PanelState& state, Commands& commands) {
     commands.emplace_back(command::Done{});
 }
 
-// For the panels; whatever stands before them takes Escape for itself.
+// Escape for the panels; anything in front of them uses it first.
 bool escape_pressed(const PanelState& state) {
     return takes_key(state, key::escape, false) && !ImGui::GetIO().WantTextInput;
 }
 
-// A frame around the panel that a tour's words are about.
+// A frame around the panel that a tour refers to.
 void show_highlight(const std::string& panel, const Arrangement& parts) {
     const std::pair<const char*, const Rectangle*> all[] = {
         {"bar", &parts.bar},          {"controls", &parts.controls},   {"energy", &parts.energy},
@@ -150,7 +151,7 @@ void show_highlight(const std::string& panel, const Arrangement& parts) {
         {"timeline", &parts.timeline}};
     for (const auto& [name, area] : all) {
         if (panel != name || area->width < 1.0F || area->height < 1.0F || is_covered()) continue;
-        // Inside the surface, and in the space between the panels where there is some.
+        // Within the surface, in the gap between panels if possible.
         const ImVec2 whole = ImGui::GetIO().DisplaySize;
         const float out = units(3.0F), half = units(1.25F);
         const ImVec2 low{std::max(area->x - out, half), std::max(area->y - out, half)};
@@ -174,7 +175,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     begin_focus(state);
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
-    // Of a slider that is shown no longer.
+    // Discard a click on a slider that is no longer shown.
     if (ImGui::GetTime() - state.pressed.clicked_since > 1.0) state.pressed.clicked.clear();
     const std::string message = card_text(session);
     const Arrangement parts = arrange(session, state, message);

@@ -16,7 +16,7 @@ namespace achilles {
 
 namespace {
 
-// These ask where the mouse is; the rows of a folder are walked from the field above them.
+// These controls need a mouse position; rows of a folder are selected from the path field.
 constexpr std::array<std::string_view, 9> wants_mouse{"mechanism", "timeline",  "plane",       "plot ", "splitter ",
                                                       "lens ",     "value of ", "expression ", "file "};
 constexpr std::array<std::string_view, 4> takes_letters{"text", "path", "command", "take field "};
@@ -28,7 +28,7 @@ bool begins(const std::string& name, const std::array<std::string_view, count>& 
 
 Point middle(const Rectangle& area) { return {area.x + 0.5 * area.width, area.y + 0.5 * area.height}; }
 
-// Of the dialog in front; without one of all.
+// Controls of the dialog in front or, without a dialog, all.
 std::vector<Stop> reachable(const Focus& focus) {
     const unsigned front = front_dialog();
     std::vector<Stop> stops;
@@ -54,7 +54,7 @@ void paint_ring(const Rectangle& area) {
                      units(5.0F), units(2.0F));
 }
 
-// Tab goes on, with Shift back; from the field that has letters to the control after it.
+// Tab goes to the next control, Shift+Tab to the previous one; from a text field to the control after it.
 void tab(PanelState& state, const std::vector<Stop>& stops) {
     if (stops.empty()) return;
     const int count = static_cast<int>(stops.size()), step = ImGui::GetIO().KeyShift ? -1 : 1;
@@ -82,7 +82,7 @@ void arrows(Focus& focus, const std::vector<Stop>& stops, const Stop& here) {
 
 int neighbour(const std::vector<Stop>& stops, const Stop& from, int dx, int dy) {
     const Point here = middle(from.area);
-    constexpr double aside = 3.0;  // what a step to the side costs
+    constexpr double aside = 3.0;  // cost of a sideways step
     double least = std::numeric_limits<double>::infinity();
     int best = -1;
     for (std::size_t i = 0; i < stops.size(); ++i) {
@@ -90,7 +90,7 @@ int neighbour(const std::vector<Stop>& stops, const Stop& from, int dx, int dy) 
         const Point there = middle(stops[i].area);
         const double along = dx * (there.x - here.x) + dy * (there.y - here.y);
         const double across = std::abs(dy * (there.x - here.x)) + std::abs(dx * (there.y - here.y));
-        // What is more beside than ahead lies in another direction.
+        // Skip controls that are mostly sideways.
         if (!(along > 1.0) || across > 4.0 * along || along + aside * across >= least) continue;
         least = along + aside * across;
         best = static_cast<int>(i);
@@ -128,7 +128,7 @@ void begin_focus(PanelState& state) {
     focus.is_owned = false;
     const bool in_menu = is_covered() && front_dialog() == 0;
     walk_menus_by_keys(in_menu && !ImGui::GetIO().WantTextInput);
-    // ImGui's own Tab would give letters to a field while the ring goes to another control.
+    // Suppress ImGui's own Tab handling, which would focus a text field of its own choice.
     if (is_pressed(key::tab) && !ImGui::GetIO().WantTextInput) ImGui::NavMoveRequestCancel();
     const auto& clicked = ImGui::GetIO().MouseClicked;
     if (clicked[ImGuiMouseButton_Left] || clicked[ImGuiMouseButton_Right]) focus.at.clear();
@@ -137,12 +137,12 @@ void begin_focus(PanelState& state) {
 
 void use_focus(PanelState& state) {
     Focus& focus = state.focus;
-    if (is_covered() && front_dialog() == 0) return;  // a menu has them
+    if (is_covered() && front_dialog() == 0) return;  // a menu has the keys
     const std::vector<Stop> stops = reachable(focus);
     const ImGuiIO& io = ImGui::GetIO();
-    // What has opened or closed in this frame was not there for its keys.
+    // A window that opened or closed in this frame was not in front when the keys were pressed.
     const bool is_new = focus.front != front_popup();
-    // The palette and a path complete by Tab; in the text of a system it is a letter.
+    // The palette and the path field use Tab for completion; in the editor it is a character.
     const bool is_taken = is_new || (io.WantTextInput && !state.browser.tab);
     if (is_pressed(key::tab) && !io.KeyCtrl && !io.KeyAlt && !is_taken) tab(state, stops);
     state.browser.tab = false;

@@ -1,4 +1,4 @@
-// The gallery (Ctrl+G): every system that comes with the program as a small picture, in groups; a click or Enter opens it.
+// The gallery (Ctrl+G): pictures of the example systems in groups; a click or Enter opens a system.
 #include <imgui.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ void show_gallery(const Session& session, PanelState& state, Commands& commands)
     if (!shown && is_shortcut()) commands.emplace_back(command::Show{"gallery", true});
     if (shown && !is_covered()) {
         ImGui::OpenPopup(gallery_title);
-        state.focus.at = "gallery " + session.system();  // the keys walk from here
+        state.focus.at = "gallery " + session.system();  // arrow keys start here
         state.focus.scrolls = true;
     }
     const float width = std::min(units(widest_gallery), io.DisplaySize.x - units(48.0F));

@@ -1,4 +1,4 @@
-// The Help menu and the card of keys and words (F1), above everything else.
+// The Help menu, the manual, and the card of keys and terms (F1).
 #include <imgui.h>
 
 #include <algorithm>
@@ -49,13 +49,13 @@ void show_keys() {
     }
 }
 
-// ">=" and "<=" are one sign each.
+// Replaces ">=" and "<=" by single signs.
 std::string formula_label(std::string_view formula) {
     return replaced(replaced(typeset(formula), ">=", "\u2265"), "<=", "\u2264");
 }
 
-// The word, and beside it its formula, what it means, and where that stands: at the right end of the first line, or where there
-// is no room on a line below.
+// A term with its formula, its meaning and its source. The source is at the right end of the first line or, without
+// room, below.
 void show_term(const Term& term) {
     const float size = ImGui::GetFontSize(), column = ImGui::GetCursorPosX() + units(word_column);
     const std::string formula = formula_label(term.formula), source(term.source);
@@ -86,7 +86,7 @@ void show_words() {
     for (const Term& term : glossary()) show_term(term);
 }
 
-// A part of the card with a scroll bar of its own.
+// A scrollable part of the card.
 template <class Content>
 void column(const char* name, const ImVec2& size, const Content& content) {
     ImGui::BeginChild(name, size);
@@ -121,7 +121,7 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// ---- the menu, and the pages of the manual in a window of their own ----
+// ---- the menu, and the window with a page of the manual ----
 
 namespace {
 
@@ -134,7 +134,7 @@ void show_page(PanelState& state) {
     ImGui::SetNextWindowSize({all.width - 2.0F * margin, all.height - 2.0F * margin});
     if (!ImGui::BeginPopupModal(manual_title, nullptr, ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoMove)) return;
     const float button_row = ImGui::GetFrameHeightWithSpacing();
-    // Tables need letters of one width.
+    // Tables need a monospace font.
     ImGui::BeginChild("page", {0.0F, -button_row}, false, ImGuiWindowFlags_HorizontalScrollbar);
     push_font(monospace_font());
     ImGui::TextUnformatted(state.manual_text.data(), state.manual_text.data() + state.manual_text.size());
@@ -151,7 +151,7 @@ void show_page(PanelState& state) {
 void show_help_items(PanelState& state, Commands& commands) {
     if (menu_item("Keys and words", state)) commands.emplace_back(command::Show{"help", true});
     ImGui::Separator();
-    // The menu is there in any case: a picture must not depend on where the assets are.
+    // Shown even without pages, so that a picture does not depend on the location of the assets.
     if (state.manual.empty()) ImGui::MenuItem("The manual is missing", nullptr, false, false);
     for (const SystemEntry& page : state.manual) {
         const bool chosen = ImGui::MenuItem(page.title.c_str());

@@ -1,5 +1,5 @@
-// The Zeno lens in place of the plots: the bouncing before the chosen Zeno point in logarithmic time, to be scrolled
-// for ever.
+// The Zeno lens in place of the plots: the impacts before the selected Zeno point over a logarithmic time axis without
+// end.
 #include "figure/lens.hpp"
 
 #include <fmt/format.h>
@@ -26,7 +26,7 @@ std::string explanation(const Lens& lens) {
         number(lens.restitution(), "{:.4g}"));
 }
 
-// Where to go in the row: its beginning, the cut, the interval.
+// Buttons that scroll to the start of the sequence, the cut, and the certified interval.
 void show_places(const Lens& lens, double width, PanelState& state, Commands& commands) {
     const auto place = [&](const char* name, double x, const char* about) {
         if (ImGui::Button(name)) commands.emplace_back(command::Lens{x});
@@ -42,7 +42,7 @@ void show_places(const Lens& lens, double width, PanelState& state, Commands& co
     }
 }
 
-// The row moves with the hand, and a quarter of a decade a notch of the wheel.
+// Drag scrolls; the wheel scrolls by a quarter of a decade per notch.
 void use_mouse(const Lens& lens, double low, double width, const Rectangle& inside, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
     double moved = 0.0;
@@ -68,7 +68,7 @@ void show_row(const Session& session, const Lens& lens, float height, PanelState
     show_places(lens, width, state, commands);
 }
 
-// What is proved, in words.
+// The certified interval in words.
 void show_interval(const Session& session, const Event& zeno, float width) {
     if (zeno.truncation)
         paragraph(fmt::format("Cut {:.3g} s before \u03c4\u221e, after {} impacts.", zeno.t - zeno.truncation->t,

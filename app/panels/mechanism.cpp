@@ -1,6 +1,6 @@
-// The centre: the mechanism as it is now, with its trail, its velocity and the contact force. The wheel zooms, dragging
-// the ground moves the picture, a double click shows all; the body is dragged to where the run shall start, the tip of
-// its velocity to how fast.
+// The mechanism view: the mechanism at the current time with trail, velocity and contact force. The wheel zooms,
+// dragging the background pans, a double click fits. Dragging the body changes the initial position, dragging the tip
+// of the velocity arrow the initial velocity.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,21 +17,22 @@
 
 namespace achilles {
 
-// ---- how the panel is looked at: where its camera stands, the menu of cameras, the scale bar ----
+// ---- view: camera, its menu, scale bar ----
 
-// The longest arrow of a run takes this share of the picture's smaller side.
+// Length of the longest arrow of a run, as a share of the picture's smaller side.
 constexpr double longest_arrow = 0.16;
 
-// The height of the line at the bottom: the scale, what is drawn, the camera.
+// Height of the bottom line: scale bar, layer toggles, camera menu.
 float switches_height();
-// What can be seen of the world in this part of the surface, all of it: what the run needs ends above the line at the bottom.
+// The visible part of the world, including the bottom line; the extent of the run lies above that line.
 Drawing seen_world(const Session& session, const Rectangle& area);
-// Shows the menu of cameras with its right end at `right` and returns its left end. A fixed camera keeps the present view, `seen`.
+// Shows the menu of cameras with its right end at `right` and returns its left end. A fixed camera keeps the current
+// view, `seen`.
 float show_camera_menu(const Session& session, const Drawing& seen, float right, float y, PanelState& state,
                        Commands& commands);
-// In the lower left corner, as long as the line left of `right` has room for; above that where it has none.
+// In the lower left corner up to `right`; above the bottom line if there is no room.
 void show_scale_bar(const Session& session, const Rectangle& area, double unit, float right, PanelState& state);
-// A system in space from two sides, beside one another or one above the other. Pixels for a unit of the world.
+// Two side views of a 3D system, beside or above one another. Returns pixels per world unit.
 bool shows_sides(const Session& session);
 double show_sides(const Session& session, const Rectangle& area);
 
@@ -39,13 +40,13 @@ namespace {
 
 constexpr const char* camera_popup = "camera menu";
 
-// More of the world below, so that what the run needs ends above the lowest `strip` pixels of the picture.
+// Extends the view downward, so that the extent of the run ends above the lowest `strip` pixels.
 void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
     const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
     const double unit = std::min(double{area.width} / width, double{area.height} / height);
     const double below = 0.5 * (double{area.height} - unit * height);
     if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 2.5 * strip) return;
-    double more = 2.0 * (strip - below) / unit;  // as long as the width decides what is seen
+    double more = 2.0 * (strip - below) / unit;  // valid while the width limits the view
     if (unit * (height + more) > double{area.height}) more = strip * height / (double{area.height} - strip);
     drawing.y_low -= more;
 }
@@ -155,7 +156,7 @@ namespace {
 
 using Holding = HeldMechanism::What;
 
-// As much of an arrow as is inside: its head shows that it goes on that way.
+// The arrow, clipped to the area: its head then marks the direction.
 Point inside(const Point& from, const Point& to, const Rectangle& area) {
     const double edge = units(3.0F);
     double share = 1.0;
@@ -182,22 +183,22 @@ void arrow(const Point& from, const Point& to, const Color& color) {
     list->AddTriangleFilled(at(0.0, 0.0), at(head, 0.4 * head), at(head, -0.4 * head), packed(color));
 }
 
-// Pixels for a unit of velocity or force.
+// Pixels per unit of velocity or force.
 double arrow_scale(const Rectangle& area, double largest) {
     return largest > 0.0 ? longest_arrow * double{std::min(area.width, area.height)} / largest : 0.0;
 }
 
-// What the mouse needs to know of the picture.
+// Geometry of the picture, for mouse handling.
 struct Picture {
     Rectangle area;
     Placement placement;
-    std::vector<Body> bodies;    // by Mechanism::grips(); the first has the arrow
+    std::vector<Body> bodies;    // by index of Mechanism::grips(); the first has the arrow
     std::vector<Point> centers;  // pixels
-    Point tip;                   // of the velocity, pixels
-    double scale = 0.0;          // pixels for a unit of velocity
+    Point tip;                   // of the velocity arrow, pixels
+    double scale = 0.0;          // pixels per unit of velocity
 };
 
-// What the arrows are measured by: the run, or until the hand lets go what they were measured by when it took hold.
+// Largest velocity and force, for the arrow scale: those of the run or, during a drag, those at its start.
 std::pair<double, double> largest(const Session& session, const HeldMechanism& held) {
     if (held.what == Holding::nothing) return {session.trail().fastest, session.trail().strongest};
     return {held.fastest, held.strongest};
@@ -207,7 +208,7 @@ bool holds_start(const HeldMechanism& held) {
     return held.has_moved && (held.what == Holding::body || held.what == Holding::arrow);
 }
 
-// The state in the picture: the present, or the start while the hand moves it. (A run that takes long is not awaited.)
+// The state to draw: the current one or, while the start is dragged, the start. (A slow run is not waited for.)
 State shown_state(const Session& session, const HeldMechanism& held) {
     return holds_start(held) ? State{session.run().q, session.run().v} : session.now().state;
 }
@@ -216,7 +217,7 @@ double shown_time(const Session& session, const HeldMechanism& held) {
     return holds_start(held) ? session.run().options.start_time : session.now().t;
 }
 
-// What can be seen of the world so that everything stays where it was on the screen.
+// The view that keeps everything at its place on the screen.
 void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& area) {
     const Point low = placement.world({area.x, double{area.y} + double{area.height}});
     const Point high = placement.world({double{area.x} + double{area.width}, area.y});
@@ -230,7 +231,8 @@ bool is_same(const Shape& a, const Shape& b) {
                       [](const Point& p, const Point& q) { return p.x == q.x && p.y == q.y; });
 }
 
-// Behind everything the pinned runs at the same instant, each in its hue; of the world what is another one there.
+// Draws the pinned runs at the same time behind everything else, each in its hue. Shapes equal to the current run's are
+// left out.
 void add_ghosts(const Session& session, Drawing& drawing) {
     const std::vector<Shape> present = drawing.shapes;
     std::vector<Shape> ghosts;
@@ -275,12 +277,12 @@ void paint_arrows(const Session& session, const HeldMechanism& held, Picture& pi
 }
 
 Picture paint_picture(const Session& session, const Rectangle& area, const HeldMechanism& held) {
-    // While the hand moves the start, nothing is known to be held.
+    // While the start is dragged, no contact counts as held.
     Sample now = session.now();
     if (holds_start(held)) now = {}, now.state = shown_state(session, held), now.t = shown_time(session, held);
     const State& state = now.state;
     const double t = now.t;
-    // Those of the run that is seen, be it that another was asked for.
+    // Parameters of the run that is shown, even if another was requested.
     const auto& parameters = (holds_start(held) ? session.run() : session.trajectory().run).parameters;
     Drawing seen = seen_world(session, area);
     if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
@@ -306,7 +308,7 @@ double distance(const Point& a, const ImVec2& b) { return std::hypot(a.x - doubl
 
 ImVec2 pixel(const Point& point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
-// Looks so that the world at the mouse stays there while `factor` times as much is seen, moved by some pixels.
+// The view after zooming by `factor` about the mouse position and panning by `moved` pixels.
 command::Look look_again(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
     const Rectangle& a = picture.area;
     const Point middle{a.x + 0.5 * a.width, a.y + 0.5 * a.height};
@@ -315,7 +317,7 @@ command::Look look_again(const Picture& picture, const ImVec2& mouse, double fac
     return {center.x, center.y, factor * double{a.width} / picture.placement.unit};
 }
 
-// Start values as a command; coordinates, rates or both.
+// The `start` command for coordinates, rates or both.
 command::Start start_of(const Session& session, const Vector* q, const Vector* v) {
     command::Start start;
     const auto& coordinates = session.description().coordinates;
@@ -327,7 +329,7 @@ command::Start start_of(const Session& session, const Vector* q, const Vector* v
     return start;
 }
 
-// Where the hand wants what it holds, in pixels.
+// Target position of the dragged object, pixels.
 Point wanted(const HeldMechanism& held) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     return {mouse.x + held.offset.x, mouse.y + held.offset.y};
@@ -354,12 +356,12 @@ void drag_arrow(const Session& session, const Picture& picture, const HeldMechan
     if (const auto v = body->rates(session.run().v, velocity)) commands.emplace_back(start_of(session, nullptr, &*v));
 }
 
-// What is under the mouse: the tip of the velocity, else the nearest body.
+// The object under the mouse: the tip of the velocity arrow, else the nearest body.
 struct Aim {
     Holding what = Holding::world;
     std::size_t grip = 0;
     Point at;            // pixels
-    double reach = 0.0;  // of its ring
+    double reach = 0.0;  // radius of its ring
 };
 
 Aim aim(const Session& session, const Picture& picture, const ImVec2& mouse) {
@@ -396,7 +398,7 @@ void drag(const Session& session, const Picture& picture, HeldMechanism& held, C
     }
     held.has_moved = true;
     const double start_time = session.run().options.start_time;
-    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});  // the start is what is dragged
+    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});  // the drag changes the start
     if (held.what == Holding::body) drag_body(session, picture, held, commands);
     if (held.what == Holding::arrow) drag_arrow(session, picture, held, commands);
 }
@@ -438,18 +440,18 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
         state.held = {};
 }
 
-// What any system has in place of a mechanism, where it draws none or the user wants it.
+// True if the plane replaces the mechanism: by the user's choice, or since the system has no drawing.
 bool shows_plane(const Session& session) { return session.scene().shows("plane") || session.mechanism().is_empty(); }
 
-// What is drawn besides the mechanism, in the corner.
-// Returns where they begin.
+// Toggles for layers, in the corner. Returns their left end.
 float show_switches(const Session& session, const Rectangle& area, float right, PanelState& state, Commands& commands) {
     float x = right;
     const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
     const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
     const bool has_sides = Sides(session.trajectory(), session.samples()).exist();
     for (const char* what : {"plane", "contours", "sides", "force", "velocity", "strobe", "trail"}) {
-        // Of the plane its contours are switched, and where nothing is drawn the plane is not; of the sides the trail is.
+        // With the plane: the toggle for contours, and for the plane itself only if there is a mechanism. With side
+        // views: the trail.
         const std::string_view word = what;
         const bool is_plane = word == "plane";
         if (is_plane ? session.mechanism().is_empty() : plane != (word == "contours")) continue;

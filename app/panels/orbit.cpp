@@ -1,5 +1,5 @@
-// Below, in place of the events: a periodic run near the present one. "Make periodic" searches for it and makes the present run
-// begin on it; where its branch is followed a slider, and a hand in its plots, go along that.
+// The orbit panel, in place of the events: a periodic orbit near the current run. "Make periodic" searches for it and
+// lets the run start on it. If a branch is followed, a slider and the mouse in its plots select a point.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -19,20 +19,20 @@
 
 namespace achilles {
 
-// What is asked next, and the plots of what was found.
+// The request being edited, and the plots of the result.
 struct OrbitView {
     AskedOrbit asked;
-    const Model* of = nullptr;  // the system that this is asked of
+    const Model* of = nullptr;  // the system of the request
     const FoundOrbit* seen = nullptr;
-    std::string low, high, shift;  // as they are typed
-    bool goes = false;             // the run begins on it when it is found
+    std::string low, high, shift;  // as typed
+    bool goes = false;             // the run starts on the orbit when it is found
     bool dark = false;
     std::vector<BranchPanel> panels;
 };
 
 namespace {
 
-// What a search starts with: what the file knows of an orbit while the run is the file's, else the start of the run.
+// The initial request: the file's [orbit] table while the run is the file's, else a search from the start of the run.
 AskedOrbit usual(const Session& session) {
     AskedOrbit asked;
     const Run &now = session.run(), &file = session.file_run();
@@ -52,7 +52,7 @@ OrbitView& view_of(const Session& session, PanelState& state) {
     if (view.seen == found.get() && view.dark == session.theme().dark) return view;
     if (found && view.seen != found.get()) {
         view.asked = read_orbit(found->text);
-        // From where the run then is.
+        // The next search starts from the run, which is then on the orbit.
         if (found->answer.orbit) view.asked.from = "start";
     }
     view.seen = found.get();
@@ -60,11 +60,11 @@ OrbitView& view_of(const Session& session, PanelState& state) {
     view.panels.clear();
     if (found && found->answer.branch)
         view.panels = branch_panels(*found->answer.orbit, *found->answer.branch, session.theme());
-    for (BranchPanel& one : view.panels) one.panel.title.clear();  // its axis says it, and its neighbours have none
+    for (BranchPanel& one : view.panels) one.panel.title.clear();  // the axis label says it
     return view;
 }
 
-// ---- what is asked ----
+// ---- request ----
 
 void show_from(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit from")) return;
@@ -95,7 +95,7 @@ void show_closing(const Session& session, OrbitView& view, PanelState& state) {
     ImGui::EndPopup();
 }
 
-// The parameter of the branch, over the range of its slider until somebody says otherwise.
+// Menu for the parameter of the branch; its default range is that of the slider.
 void show_along(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit along")) return;
     const std::size_t equals = view.asked.along.find('=');
@@ -134,7 +134,7 @@ std::string from_text(const AskedOrbit& asked) {
     return asked.from.empty() ? "from the file's guess" : "from the " + asked.from;
 }
 
-// What the search has come to.
+// Status text of the search.
 std::string remark(const Session& session) {
     if (const OrbitWatch* const watch = session.orbit_under_way())
         return fmt::format("searching: {} runs tried", watch->runs.load());
@@ -180,9 +180,9 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
     ImGui::Dummy({0.0F, row.height});
 }
 
-// ---- what was found ----
+// ---- result ----
 
-// The point that is told: the run's, or where the search had come to.
+// Index of the point to describe: that of the run or, without one, the first found.
 std::size_t told_point(const Session& session, const FoundOrbit& found) {
     return session.orbit_point().value_or(found.first());
 }
@@ -194,7 +194,7 @@ std::string value_text(const FoundOrbit& found, const OrbitPoint& point) {
     return typeset(name) + " = " + number(branch.value(point), "{:.8g}");
 }
 
-// "period doubling at b = 0.0667": a click goes to the point nearest to it.
+// "period doubling at b = 0.0667": a click goes to the nearest point.
 void show_happenings(const FoundOrbit& found, PanelState& state, Commands& commands) {
     const Branch& branch = *found.answer.branch;
     const auto each = [&](const char* what, const std::vector<OrbitPoint>& all) {
@@ -263,7 +263,7 @@ void show_numbers(const Session& session, const FoundOrbit& found, PanelState& s
     tell_end(branch.points.back(), branch.ends[1]);
 }
 
-// The point of the branch that is drawn nearest to the hand.
+// The point of the branch nearest to the mouse.
 std::optional<std::size_t> point_at(const FoundOrbit& found, const BranchPanel& panel, const PanelMap& map) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     std::optional<std::size_t> nearest;

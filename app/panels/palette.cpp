@@ -1,4 +1,4 @@
-// The command palette (Ctrl+Shift+P): any command by a few of its letters, above everything else while the scene shows it.
+// The command palette (Ctrl+Shift+P), which finds commands by a few letters, while the scene shows it.
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -25,7 +25,7 @@ std::vector<std::pair<std::string, std::string>> names_of(const std::vector<Syst
     return names;
 }
 
-// What this session has to say after a command's name.
+// Possible arguments of commands in this session.
 std::vector<Completions> completions(const Session& session, const PanelState& state) {
     Completions open{"open", names_of(state.systems)}, replay{"replay", names_of(state.tours)};
     Completions set{"set", {}, false}, show{"show", {}}, hide{"hide", {}};
@@ -38,7 +38,7 @@ std::vector<Completions> completions(const Session& session, const PanelState& s
     return {std::move(open), std::move(replay), std::move(set), std::move(show), std::move(hide)};
 }
 
-// What is in the field is ours between two frames only by way of ImGui: the cursor goes behind a line that was completed.
+// ImGui callback, the only way to change the field while it is active: puts the cursor at the end of a completed line.
 int put_cursor(ImGuiInputTextCallbackData* data) {
     auto& palette = *static_cast<PaletteState*>(data->UserData);
     if (data->EventFlag == ImGuiInputTextFlags_CallbackCompletion) palette.completes = true;
@@ -49,7 +49,7 @@ int put_cursor(ImGuiInputTextCallbackData* data) {
     return 0;
 }
 
-// The field of the palette has the hand again, with this line in it.
+// Gives the field the keyboard again, with this line.
 void write_line(PaletteState& palette, const std::string& line) {
     palette.text = line;
     palette.chosen = 0;
@@ -64,7 +64,7 @@ void run(const std::string& line, const Session& session, PanelState& state, Com
         const Command command = parse_command(line, "command");
         const bool replaces =
             std::holds_alternative<command::Open>(command) || std::holds_alternative<command::New>(command);
-        // Before the palette is known to close: what is asked about the text stands in front of it.
+        // Close the palette first, so that the question about unsaved changes is in front.
         if (replaces && (session.document().is_changed() || is_typing(state))) {
             commands.emplace_back(command::Show{"palette", false});
             return request(session, state, command, commands);
@@ -77,7 +77,7 @@ void run(const std::string& line, const Session& session, PanelState& state, Com
     palette.focuses = palette.to_end = true;
 }
 
-// Takes a row of the list: runs it, or completes the line with it.
+// Chooses a row of the list: executes it, or completes the line with it.
 void take(const Found& found, const Session& session, PanelState& state, Commands& commands) {
     if (found.runs) {
         write_line(state.palette, found.line);
@@ -96,7 +96,7 @@ void choose(PanelState& state, int count) {
     if (count > 0) palette.chosen = (palette.chosen + count) % count;
 }
 
-// True where Enter was pressed.
+// Returns true if Enter was pressed.
 bool show_line(PanelState& state) {
     PaletteState& palette = state.palette;
     if (ImGui::IsWindowAppearing() || std::exchange(palette.focuses, false)) ImGui::SetKeyboardFocusHere();
@@ -115,7 +115,7 @@ bool show_line(PanelState& state) {
     return entered;
 }
 
-// The row that was clicked; -1: none.
+// Returns the row that was clicked; -1: none.
 int show_rows(const std::vector<Found>& found, PanelState& state) {
     PaletteState& palette = state.palette;
     int clicked = -1;
@@ -128,7 +128,7 @@ int show_rows(const std::vector<Found>& found, PanelState& state) {
         ImGui::PopID();
         const Found& row = found[static_cast<std::size_t>(i)];
         remember(state, "command " + row.line);
-        // The name stands out from what follows it.
+        // The name is brighter than the rest.
         const std::string name = row.usage.substr(0, row.usage.find(' '));
         const float name_width = ImGui::CalcTextSize((name + " ").c_str()).x;
         ImDrawList* list = ImGui::GetWindowDrawList();
@@ -140,8 +140,8 @@ int show_rows(const std::vector<Found>& found, PanelState& state) {
     return clicked;
 }
 
-// What the last command was refused for; or how the present one is written, where the list does not tell, and what Enter
-// makes of it.
+// The error of the last command. Otherwise the usage of the current one, if the list does not show it, and the effect
+// of Enter.
 void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
     const float width = ImGui::GetContentRegionAvail().x;
     if (!palette.wrong.empty()) return show_message(palette.wrong, width);
@@ -154,7 +154,7 @@ void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
     paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
 }
 
-// Also on the card of keys and in the gallery, whose place the palette takes.
+// Also works on the card of keys and in the gallery, which the palette replaces.
 bool is_shortcut(const PanelState& state) {
     const ImGuiIO& io = ImGui::GetIO();
     const bool is_card = ImGui::IsPopupOpen("Keys and words") || ImGui::IsPopupOpen("Gallery");
@@ -170,7 +170,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
         palette.revision = revision;
         palette.to_end = true;
     }
-    // The command that was run is done by now: it was refused, or there is nothing more to say.
+    // The command has been executed by now: show its error, or close the palette.
     if (std::exchange(palette.has_run, false)) {
         palette.wrong = session.error();
         if (palette.wrong.empty()) commands.emplace_back(command::Show{"palette", false});

@@ -1,5 +1,5 @@
-// In place of the mechanism, of any system: the plane of two quantities, shaded where the gap is open, the run in it,
-// and where they are coordinates or rates the start to drag.
+// The configuration plane in place of the mechanism: the plane of two quantities with the region of open gaps shaded,
+// the run, and its start, which can be dragged if the axes are coordinates or rates.
 #include <imgui.h>
 
 #include <algorithm>
@@ -19,16 +19,15 @@
 
 namespace achilles {
 
-// The line above the axes: what they are, to be pressed for a menu, and what shade and contours mean.
+// The line above the axes: buttons for their menu, and a legend of shading and contours.
 void show_plane_heading(const Session& session, const Rectangle& row, PanelState& state, Commands& commands);
 
-// The present pictures of the plane: how contours and surfaces are named where their lines have room, no name over the
-// run, another name or one of these places, and the impacts as arrows that go around the surface.
+// Labels for contours and surfaces, placed where they cover neither the run, other labels nor `places`.
 void name_plane_lines(const Session& session, const Panel& panel, const PanelMap& map, const Rectangle& plot,
                       const PlaneView& plane, const std::vector<Point>& places);
 void paint_impacts(const Session& session, const PanelMap& map, const PlaneView& plane);
 
-// ---- what the plane shows is chosen here ----
+// ---- choice of the axes ----
 
 namespace {
 
@@ -68,7 +67,7 @@ void show_menu(const Session& session, PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// What shade and contours mean, from the right. Returns where that begins.
+// Legend of shading and contours, right-aligned. Returns its left end.
 float show_meaning(const Session& session, const Rectangle& row, float left, const PlaneView& plane) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), box = units(11.0F), between = units(14.0F);
@@ -135,7 +134,7 @@ void show_plane_heading(const Session& session, const Rectangle& row, PanelState
     show_menu(session, state, commands);
 }
 
-// ---- words and arrows over the plot ----
+// ---- labels and arrows over the plot ----
 
 namespace {
 
@@ -149,7 +148,7 @@ LabelBox around(const Point& p, double width, double height) {
     return {p.x - 0.5 * width, p.y - 0.5 * height, p.x + 0.5 * width, p.y + 0.5 * height};
 }
 
-// Which little squares of the plot hold something of the run: all of it, or the signs of its events alone.
+// Grid cells of the plot that are covered by the run: by its curve and markers, or by its markers alone.
 class Trodden {
  public:
     Trodden(const Panel& panel, const PanelMap& map, const Rectangle& plot, bool by_signs_alone)
@@ -197,10 +196,9 @@ class Trodden {
     std::vector<bool> squares_;
 };
 
-// Where a word stands on one of these lines, or beside it (1 or -1): far from the others, and where the run does not go.
-std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map,
-                              const LabelBox& inside, double width, double height, const std::vector<LabelBox>& taken,
-                              const Trodden& run) {
+// A free place for a label on one of these lines, or beside it (1 or -1), far from other labels and off the run.
+std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map, const LabelBox& inside,
+                              double width, double height, const std::vector<LabelBox>& taken, const Trodden& run) {
     constexpr double far = 1e3;
     constexpr std::size_t looked_at = 60;
     const std::size_t segments = line.size() / 3, step = std::max<std::size_t>(1, segments / looked_at);
@@ -210,7 +208,7 @@ std::optional<Point> room_for(const std::vector<Point>& line, double beside, con
         const Point a = map(line[3 * k]), b = map(line[3 * k + 1]);
         Point middle{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
         if (const double length = std::hypot(b.x - a.x, b.y - a.y); length > 0.0) {
-            const double u = (b.y - a.y) / length, v = (a.x - b.x) / length;  // across the line
+            const double u = (b.y - a.y) / length, v = (a.x - b.x) / length;  // normal of the line
             const double clear = beside * (0.5 * (std::abs(u) * width + std::abs(v) * height) + double{units(6.0F)});
             middle = {middle.x + clear * u, middle.y + clear * v};
         }
@@ -240,7 +238,7 @@ void name_plane_lines(const Session& session, const Panel& panel, const PanelMap
     const float size = 0.85F * ImGui::GetFontSize();
     const double edge = double{units(4.0F)}, height = 1.2 * double{size};
     const LabelBox inside{double{plot.x} + edge, double{plot.y} + edge, double{plot.x} + double{plot.width} - edge,
-                          double{plot.y} + double{plot.height} - edge};
+                     double{plot.y} + double{plot.height} - edge};
     std::vector<LabelBox> taken;
     for (const Point& place : places) taken.push_back(around(place, 5.0 * edge, 5.0 * edge));
     const Trodden run(panel, map, plot, false), signs(panel, map, plot, true);
@@ -278,7 +276,7 @@ void paint_impacts(const Session& session, const PanelMap& map, const PlaneView&
     for (const ImpactArrow& arrow : plane.arrows) {
         const Point a = map(arrow.from), b = map(arrow.to), coming = map(arrow.coming);
         const double x = b.x - a.x, y = b.y - a.y, length = std::hypot(x, y);
-        // A bow away from where the motion comes from, so that it crosses nothing of it; the longer the flatter.
+        // An arc bent away from the incoming motion, so that it does not cross that; longer arcs are flatter.
         constexpr double deepest = 30.0, bend = 80.0;
         const double side = x * (coming.y - a.y) - y * (coming.x - a.x) > 0.0 ? 1.0 : -1.0;
         const double across_x = side * y / length, across_y = -side * x / length;
@@ -289,12 +287,12 @@ void paint_impacts(const Session& session, const PanelMap& map, const PlaneView&
         const double deep = std::min({deepest * unit * length / (length + bend * unit),
                                       room(middle.x, across_x, double{low.x}, double{high.x}),
                                       room(middle.y, across_y, double{low.y}, double{high.y})});
-        const double depth = 2.0 * std::max(deep, 0.0);  // of the point that the bow bends towards
+        const double depth = 2.0 * std::max(deep, 0.0);  // depth of the control point
         const Point top{middle.x + depth * across_x, middle.y + depth * across_y};
         const double end = std::hypot(b.x - top.x, b.y - top.y);
-        const double u = (b.x - top.x) / end, v = (b.y - top.y) / end;  // the way it arrives
+        const double u = (b.x - top.x) / end, v = (b.y - top.y) / end;  // direction of arrival
         const double head = std::min(8.0 * unit, 0.5 * length), half = 0.4 * head;
-        const Point tip{b.x - 3.0 * unit * u, b.y - 3.0 * unit * v};  // at the edge of the event's sign
+        const Point tip{b.x - 3.0 * unit * u, b.y - 3.0 * unit * v};  // at the edge of the event marker
         const Point neck{tip.x - head * u, tip.y - head * v};
         std::vector<Point> bow;
         constexpr int parts = 16;
@@ -324,7 +322,7 @@ void choose(const Session& session, PlaneView& plane) {
     plane.panel.reset();
 }
 
-// The run's picture in the plane, made anew where something of it has changed.
+// The panel of the run in the plane, recomputed after changes.
 const Panel& panel_of(const Session& session, PlaneView& plane) {
     const Trajectory& trajectory = session.trajectory();
     const bool is_same = plane.panel && plane.run == trajectory.run && plane.end == trajectory.end_time &&
@@ -345,13 +343,13 @@ const Panel& panel_of(const Session& session, PlaneView& plane) {
     return *plane.panel;
 }
 
-// Where the hand moves the start, the other coordinates are those of the start; else the present ones.
+// The values of the other coordinates: those of the start while it is dragged, else the current ones.
 State slice_of(const Session& session, const PlaneView& plane) {
     if (!plane.is_held) return session.now().state;
     return {session.run().q, session.run().v, session.run().options.start_time};
 }
 
-// The part of the plane that is seen.
+// The visible part of the plane.
 Drawing seen(const Panel& panel) {
     Drawing limits;
     limits.x_low = panel.x.low, limits.x_high = panel.x.high;
@@ -359,10 +357,10 @@ Drawing seen(const Panel& panel) {
     return limits;
 }
 
-// Lines and shade as they are at the present: made anew where what they depend on has changed.
+// Recomputes contours and surfaces if their inputs have changed.
 void update_lines(const Session& session, const Panel& panel, PlaneView& plane) {
     const State state = slice_of(session, plane);
-    // Those of the run that is seen, be it that another was asked for.
+    // Parameters of the run that is shown, even if another was requested.
     const auto& parameters = (plane.is_held ? session.run() : session.trajectory().run).parameters;
     const Drawing limits = seen(panel);
     const auto changes = [&](std::vector<double>& key, std::vector<double> now) {
@@ -373,7 +371,7 @@ void update_lines(const Session& session, const Panel& panel, PlaneView& plane) 
         return true;
     };
     std::vector<double> of_surfaces = plane.plane->surfaces_key(state);
-    const bool by_run = !plane.plane->is_of_states();  // of two functions of two coordinates, seen where the run goes
+    const bool by_run = !plane.plane->is_of_states();  // axes are functions of the coordinates: evaluated along the run
     if (by_run && has_moving_gap(*session.model())) of_surfaces.push_back(state.t);
     if (changes(plane.surfaces_key, std::move(of_surfaces))) {
         plane.surfaces = plane.plane->surfaces(parameters, state, limits);
@@ -389,11 +387,11 @@ void update_lines(const Session& session, const Panel& panel, PlaneView& plane) 
 
 ImVec2 screen_point(const Point& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
 
-// Lightly, over everything: what lies under it stays what it is.
+// A translucent overlay.
 void shade(const std::vector<std::vector<Point>>& parts, const PanelMap& map, ImU32 color) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImDrawListFlags flags = list->Flags;
-    list->Flags &= ~ImDrawListFlags_AntiAliasedFill;  // its soft edges would show where parts meet
+    list->Flags &= ~ImDrawListFlags_AntiAliasedFill;  // antialiasing would show seams between the parts
     for (const std::vector<Point>& part : parts) {
         for (const Point& corner : part) list->PathLineTo(screen_point(map(corner)));
         list->PathFillConvex(color);
@@ -401,7 +399,7 @@ void shade(const std::vector<std::vector<Point>>& parts, const PanelMap& map, Im
     list->Flags = flags;
 }
 
-// The event whose marker is under the mouse, by its number; of a run with very many, no impact.
+// Number of the event whose marker is under the mouse; without impacts if the run has very many events.
 std::optional<int> event_at(const Session& session, const PanelMap& map, PlaneView& plane) {
     constexpr std::size_t most = 20000;
     const auto& events = session.trajectory().events;
@@ -423,7 +421,7 @@ std::optional<int> event_at(const Session& session, const PanelMap& map, PlaneVi
     return nearest.found();
 }
 
-// As in a plot: a click on a marker selects that event.
+// A click on a marker selects that event, as in a plot.
 void use_events(const Session& session, const PanelMap& map, PlaneView& plane, Commands& commands) {
     if (ImGui::IsItemHovered() && !ImGui::IsAnyMouseDown())
         if (const auto event = event_at(session, map, plane)) name_event(session, *event);
@@ -431,7 +429,7 @@ void use_events(const Session& session, const PanelMap& map, PlaneView& plane, C
     if (const auto event = event_at(session, map, plane)) commands.emplace_back(command::Select{*event});
 }
 
-// The start under the hand: what it holds stays there, and the axes stand still until it lets go.
+// Drag of the start. The axes stay fixed while it lasts.
 void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, const Point& start, PanelState& state,
                Commands& commands) {
     PlaneView& plane = state.plane;
@@ -472,7 +470,7 @@ bool has_contours(const PlaneView& plane) { return plane.plane && plane.plane->i
 
 namespace {
 
-// The run over the lines, and the arrows of its impacts.
+// Draws the run over contours and surfaces, and the arrows of its impacts.
 Rectangle paint_lines(const Session& session, const Rectangle& area, Panel panel, PlaneView& plane) {
     const Theme& theme = session.theme();
     std::vector<Curve> lines;
@@ -495,7 +493,7 @@ void update_arrows(const Session& session, const Panel& panel, const Rectangle& 
                                  least * double{units(1.0F)});
 }
 
-// Where a sample is in the plane: a circle each for the start and the present.
+// The position of a sample in the plane; used for the start and the current state.
 Point place_of(const Session& session, const PanelMap& map, const PlaneView& plane, const Sample& sample) {
     if (plane.plane->is_of_states()) return map(plane.plane->at(sample.state));
     const std::vector<double> values = values_at(session.trajectory(), sample, plane.plane->view());
@@ -523,7 +521,7 @@ void show_plane(const Session& session, const Rectangle& area, PanelState& state
     update_arrows(session, panel, plot, plane);
     paint_impacts(session, map, plane);
     Sample first = session.at(session.run().options.start_time);
-    if (plane.plane->is_of_states()) first.state = {session.run().q, session.run().v};  // while another run is made
+    if (plane.plane->is_of_states()) first.state = {session.run().q, session.run().v};  // while another run is computed
     const Point start = place_of(session, map, plane, first), now = place_of(session, map, plane, session.now());
     name_plane_lines(session, panel, map, plot, plane, {start, now});
     list->AddCircleFilled(screen_point(start), units(6.0F), packed(theme.background), 24);

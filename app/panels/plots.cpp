@@ -1,6 +1,6 @@
-// The right side: a grid of plots, with the present and the pointer's instant in each. Wheel zooms where the pointer is
-// (over an axis only along it), dragging pans, the right button draws a box to zoom to, a double click fits, a click on
-// a plot over time goes there.
+// The grid of plots at the right, each with the current time and the time under the mouse. The wheel zooms at the
+// mouse, over an axis only along it. Dragging pans, and the right button draws a zoom box. A double click fits; a click
+// on a plot over time goes to that time.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -23,7 +23,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double click = 4.0;  // pixels that a hand may slip and still click
+constexpr double click = 4.0;  // click tolerance, pixels
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
     const std::vector<Curve>& curves = session.plots()[plot].curves;
@@ -38,7 +38,7 @@ struct Place {
     PanelMap map;
 };
 
-// The instant of the present, or of the pointer: a line over time, a dot on every curve.
+// Marks a time, the current one or that under the mouse: a line in plots over time, else a dot on every curve.
 void paint_instant(const Session& session, const Place& place, const Sample& sample, float strength) {
     const PanelMap& map = place.map;
     const std::vector<double> values = session.values(place.plot, sample);
@@ -61,7 +61,7 @@ void paint_instant(const Session& session, const Place& place, const Sample& sam
     list->PopClipRect();
 }
 
-// Lines of text in the corner that is away from an instant at pixel x.
+// Lines of text in the corner farthest from a time at pixel x.
 void paint_lines(const Session& session, const Place& place, double x, const std::vector<std::string>& lines) {
     const float size = 0.87F * ImGui::GetFontSize(), line = 1.15F * size, padding = units(5.0F);
     float width = 0.0F;
@@ -82,7 +82,7 @@ void paint_lines(const Session& session, const Place& place, double x, const std
                     i == 0 ? faint_color() : text_color(), size);
 }
 
-// The values under the pointer's instant, in the corner that is away from it.
+// The values at the time under the mouse, in the corner farthest from it.
 void paint_values(const Session& session, const Place& place, const Sample& sample) {
     const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
     const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
@@ -97,7 +97,7 @@ void paint_values(const Session& session, const Place& place, const Sample& samp
     paint_lines(session, place, place.map.x(values[0]), lines);
 }
 
-// The same of a plot of differences, where a line over time tells the instant.
+// The same for a plot of differences, in which a line marks the time.
 void paint_differences(const Session& session, const Place& place, double t, float strength, bool with_values) {
     const Plot& plot = session.plotted().list()[place.plot];
     const Rectangle& area = place.area;
@@ -125,7 +125,7 @@ void paint_differences(const Session& session, const Place& place, double t, flo
     paint_lines(session, place, double{at}, lines);
 }
 
-// The limits that put the pixels a, b of each axis at its ends.
+// The limits that put these pixels at the ends of the axes.
 command::Zoom zoom_to(const PanelMap& map, std::size_t plot, double left, double right, double top, double bottom) {
     return {static_cast<int>(plot) + 1, map.x.value(left), map.x.value(right), map.y.value(bottom), map.y.value(top)};
 }
@@ -142,7 +142,7 @@ void use_wheel(const Place& place, bool along_x, bool along_y, Commands& command
                                   about(a.y, mouse.y, along_y), about(a.y + a.height, mouse.y, along_y)));
 }
 
-// Moves with the hand from where it took hold.
+// Pans with the mouse.
 void use_drag(const Place& place, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, static_cast<float>(click)) || (delta.x == 0 && delta.y == 0))
@@ -153,7 +153,7 @@ void use_drag(const Place& place, Commands& commands) {
         zoom_to(map, place.plot, a.x - delta.x, a.x + a.width - delta.x, a.y - delta.y, a.y + a.height - delta.y));
 }
 
-// With the right button: a box, and when it is let go the box is the plot.
+// Right button: draws a box and zooms to it on release.
 void use_box(const Place& place, PanelState& state, Commands& commands) {
     const int number = static_cast<int>(place.plot);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -177,8 +177,8 @@ void use_box(const Place& place, PanelState& state, Commands& commands) {
     commands.emplace_back(zoom_to(place.map, place.plot, left, right, top, bottom));
 }
 
-// The event whose marker is within reach of the mouse, by its number; nothing where there is none. Only events that can be
-// there are asked: over time those of a short time, else all of a run that has not too many.
+// Number of the event whose marker is within reach of the mouse; empty if none. In a plot over time only events near
+// that time are tested, else all events of a run with not too many.
 std::optional<int> event_at(const Session& session, const Place& place) {
     constexpr std::size_t most = 3000;
     const auto& events = session.trajectory().events;
@@ -213,7 +213,7 @@ void use_click(const Session& session, const Place& place, Commands& commands) {
         commands.emplace_back(command::Fit{number});
         return;
     }
-    // The left button let go where it was pressed, and not for the second time.
+    // The left button was released where it was pressed, and not in a double click.
     const ImVec2 moved = ImGui::GetMouseDragDelta(ImGuiMouseButton_Left, 0.0F);
     if (!ImGui::IsItemDeactivated() || !ImGui::IsMouseReleased(ImGuiMouseButton_Left) ||
         ImGui::GetIO().MouseClickedLastCount[ImGuiMouseButton_Left] > 1 || std::hypot(moved.x, moved.y) > click)
@@ -225,7 +225,7 @@ void use_click(const Session& session, const Place& place, Commands& commands) {
     if (time != session.time()) commands.emplace_back(command::Seek{time});
 }
 
-// A part of the card that the mouse can use. Its wheel is ours: no panel scrolls.
+// A part of the card that reacts to the mouse. It uses the wheel, so that no panel scrolls.
 bool hot(const std::string& name, const Rectangle& area) {
     if (area.width < 1.0F || area.height < 1.0F) return false;
     ImGui::SetCursorScreenPos({area.x, area.y});
@@ -246,13 +246,13 @@ void use_mouse(const Session& session, const Place& place, PanelState& state, Co
     if (ImGui::IsItemActive()) use_drag(place, commands);
     use_click(session, place, commands);
     use_box(place, state, commands);
-    // No marker lies far outside the axes, and none is looked for while the hand is busy.
+    // Markers are only near the axes' area, and not tested while a button is down.
     if (hovered && !ImGui::IsAnyMouseDown())
         if (const auto event = event_at(session, place)) name_event(session, *event);
     if (hovered && place.over_time) state.pointed_at = place.map.x.value(ImGui::GetIO().MousePos.x);
 }
 
-// Clickable: the curves of a plot that has several. Returns where it began.
+// Names of the curves, clickable, if there are several. Returns their left end.
 float show_legend(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state,
                   Commands& commands) {
     const Plot& shown = session.plotted().list()[plot];
@@ -261,8 +261,8 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
     if (quantities.size() < 3) return right;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = 0.87F * ImGui::GetFontSize(), line = units(16.0F), space = units(5.0F);
-    const float room = 0.7F * row.width, around = line + 3.0F * space;  // the title needs some room
-    // Where they have none for all names each is shortened to its share.
+    const float room = 0.7F * row.width, around = line + 3.0F * space;  // reserves room for the title
+    // If not all names fit, each is shortened.
     constexpr float longest = 110.0F, shortest = 14.0F;
     float wanted = 0.0F;
     for (std::size_t i = 1; i < quantities.size(); ++i)
@@ -294,7 +294,7 @@ float show_legend(const Session& session, std::size_t plot, const Rectangle& row
     return right;
 }
 
-// The title opens the plot's menu; the legend stands at its right.
+// The title, which opens the plot's menu, with the legend at its right.
 void show_head(const Session& session, std::size_t plot, const Rectangle& row, PanelState& state, Commands& commands) {
     float right = show_legend(session, plot, row, state, commands);
     if (plot == 0) right = name_runs(session, row, right);
@@ -343,9 +343,9 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
 }  // namespace
 
 void show_plots(const Session& session, PanelState& state, Commands& commands) {
-    state.pointed_before = state.pointed_at;  // by the last frame: this one may point in a plot that comes later
+    state.pointed_before = state.pointed_at;  // from the last frame, since a later plot may set it in this one
     state.pointed_at.reset();
-    const bool is_alone = session.scene().presents();  // a class looks at the first
+    const bool is_alone = session.scene().presents();  // presentation mode shows only the first
     if (!is_alone) show_grid_bar(session, state, commands);
     const Rectangle area = remaining();
     const Plots& plots = session.plotted();
@@ -354,7 +354,7 @@ void show_plots(const Session& session, PanelState& state, Commands& commands) {
         return;
     }
     const float gap = units(8.0F);
-    // Above a sweep there is no room for all rows: so many as can be read.
+    // Above a sweep there may be no room for all rows: show as many as are readable.
     const int rows_shown = session.scene().shows("sweep")
                                ? std::clamp(static_cast<int>(area.height / units(120.0F)), 1, plots.rows())
                                : plots.rows();
@@ -369,7 +369,7 @@ void show_plots(const Session& session, PanelState& state, Commands& commands) {
     }
 }
 
-// ---- what is plotted is chosen here: the row above the plots, and the menu of each ----
+// ---- choice of what is plotted: the row above the plots, and the menu of each ----
 
 namespace {
 
@@ -382,7 +382,7 @@ std::string joined(const std::vector<Text>& texts) {
     return text;
 }
 
-// Expressions separated by commas that stand outside parentheses.
+// Splits expressions at commas outside parentheses.
 std::vector<std::string> split(const std::string& text) {
     std::vector<std::string> parts(1);
     int depth = 0;
@@ -397,7 +397,7 @@ std::vector<std::string> split(const std::string& text) {
     return parts;
 }
 
-// A little picture of the grid, to press.
+// A button with a picture of the grid.
 bool grid_button(int columns, int rows, bool chosen, PanelState& state) {
     const float size = ImGui::GetFrameHeight(), edge = units(5.0F), gap = units(2.0F);
     const std::string id = "grid " + std::to_string(columns) + " " + std::to_string(rows);
@@ -420,7 +420,7 @@ bool grid_button(int columns, int rows, bool chosen, PanelState& state) {
     return pressed;
 }
 
-// The views that the file names, and those any system has.
+// Menu of the file's views and the generic ones.
 void show_choices(const Session& session, std::size_t plot, Commands& commands) {
     for (std::size_t i = 0; i < session.plotted().choices().size(); ++i) {
         const ViewDescription& view = session.plotted().choices()[i];

@@ -1,5 +1,5 @@
-// Under the mechanism: what came out of the run, from left to right. Every Zeno point, release and opening impact has a cell
-// with its name and its time, and is pressed to go there; the strip moves with the time, and with a hand or a wheel.
+// The strip of results below the mechanism, from left to right. Every Zeno point, release and opening impact has a cell
+// with its name and time; a click goes there. The strip follows the time, and can be moved by drag or wheel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,10 +21,10 @@ namespace {
 
 constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, most_of_strip = 0.6F, arrow_width = 30.0F;
 
-// A result in the strip: its name over its time.
+// A result in the strip: its name above its time.
 struct Result {
     std::size_t event = 0;
-    int zeno = 0;  // the how manieth Zeno point
+    int zeno = 0;  // number among the Zeno points
 };
 
 std::string explanation(const Session& session, std::size_t index) {
@@ -32,7 +32,7 @@ std::string explanation(const Session& session, std::size_t index) {
     const std::string said = typeset_sentence(
         fmt::format("{} at t = {} s: {}", names_of(event).name,
                     known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
-    if (session.precision().is_beyond(event.t)) return said;  // a certificate is of the computed motion
+    if (session.precision().is_beyond(event.t)) return said;  // a certificate refers to the computed motion
     if (!event.is_zeno()) return said + proved_text(session, index, "\n") + "\nClick: why";
     if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
     std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
@@ -50,7 +50,7 @@ std::string name_of(const Trajectory& trajectory, const Result& result) {
     return fmt::format("{}{}{}{}", names_of(event).label, number, space, contacts);
 }
 
-// All of a run. Of contacts that come to rest and are opened again and again only how it ends.
+// All results of a run. Of contacts that repeatedly come to rest and are opened only the last.
 std::vector<Result> results_of(const Trajectory& trajectory) {
     std::vector<Result> results;
     int zeno = 0;
@@ -66,7 +66,7 @@ std::vector<Result> results_of(const Trajectory& trajectory) {
     return results;
 }
 
-// What is to be seen: the chosen event, or the last one that the present has reached; else the first.
+// The result to show: the selected event, or the last one up to the current time; else the first.
 std::size_t wanted(const Session& session, const std::vector<Result>& results) {
     const auto& events = session.trajectory().events;
     const auto reaches = [&](const Result& result) {
@@ -77,7 +77,7 @@ std::size_t wanted(const Session& session, const std::vector<Result>& results) {
     return after == results.begin() ? 0 : static_cast<std::size_t>(after - results.begin()) - 1;
 }
 
-// What a cell says, and how wide it is. In a strip of one line the time stands behind the name.
+// Text and width of a cell. In a strip of one line the time is beside the name.
 struct Cell {
     std::string name, time;
     float width = 0.0F;
@@ -99,13 +99,13 @@ Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
     return cell;
 }
 
-// The cells that stand in the strip: results [begin, begin + size). Only these are measured: a run may have thousands.
+// The visible cells: results [begin, begin + size). Only these are measured, since a run may have thousands.
 struct Shown {
     std::size_t begin = 0;
     std::vector<Cell> cells;
 };
 
-// As many as have room from this one on and, where that leaves room at the end of the run, before it.
+// As many as fit from `begin` on; at the end of the run the strip is filled with earlier ones.
 Shown shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin, const Strip& strip) {
     Shown shown{begin, {}};
     float x = 0.0F;
@@ -126,7 +126,7 @@ Shown shown_from(const Session& session, const std::vector<Result>& results, std
     return shown;
 }
 
-// With what is to be seen about in the middle, so that what comes before and after it is seen as well.
+// The cells around result `seen`, which is near the middle.
 Shown shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen, const Strip& strip) {
     std::size_t begin = seen;
     float x = 0.5F * cell_of(session, results[seen], strip).width;
@@ -138,7 +138,7 @@ Shown shown_around(const Session& session, const std::vector<Result>& results, s
     return shown_from(session, results, begin, strip);
 }
 
-// What a hand has moved the strip to, until the present reaches another result.
+// The user's scroll position, until the current time reaches another result.
 Shown shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
                const Strip& strip) {
     ResultStrip& by_hand = state.strip;
@@ -150,13 +150,13 @@ Shown shown_by(const Session& session, PanelState& state, const std::vector<Resu
     return shown_from(session, results, std::min(*by_hand.begin, results.size() - 1), strip);
 }
 
-// A drag takes the strip along by whole cells, a wheel by one.
+// A drag scrolls by whole cells, the wheel by one.
 void use_hand(const Shown& shown, std::size_t count, bool is_hovered, PanelState& state) {
     ResultStrip& strip = state.strip;
     const ImGuiIO& io = ImGui::GetIO();
     const auto move = [&](int cells) {
         const int last = static_cast<int>(count) - 1, to = static_cast<int>(shown.begin) + cells;
-        // At the end of the run nothing comes after what is shown.
+        // Stop at the last result.
         if (cells > 0 && shown.begin + shown.cells.size() >= count) return;
         strip.begin = static_cast<std::size_t>(std::clamp(to, 0, last));
     };
@@ -194,7 +194,7 @@ void show_result(const Session& session, const Result& result, const Cell& cell,
     if (is_chosen || ImGui::IsItemHovered())
         list->AddRectFilled(low, high, is_chosen ? ImGui::GetColorU32(ImGuiCol_Header) : packed(text_color(), 0.06F),
                             units(3.0F));
-    // The last that the present has reached is marked, what is still to come is quiet.
+    // The last result up to the current time is marked; later ones are faint.
     if (is_present) list->AddRectFilled({low.x, high.y - units(2.0F)}, high, packed(text_color()));
     const bool is_to_come = event.t > session.time();
     paint_marker(list, event_markers(session.theme(), event.kind), {at.x + units(6.0F), at.y + 0.5F * line},
@@ -206,11 +206,11 @@ void show_result(const Session& session, const Result& result, const Cell& cell,
     put(0.5F * (line - ImGui::GetTextLineHeight()), cell.name, is_to_come ? faint_color() : text_color());
     put(line - units(1.0F), cell.time, is_to_come ? faint_color() : text_color());
     tooltip(explanation(session, result.event),
-            {at.x, strip.y, cell.width, strip.height});  // the other results stay in sight
+            {at.x, strip.y, cell.width, strip.height});  // keep the other results visible
     if (pressed && !state.strip.was_dragged) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
 
-// To a class: what happened last, in a sentence.
+// Presentation mode: the last event in a sentence.
 void show_sentence(const Session& session, ImVec2 at, float width) {
     const auto& events = session.trajectory().events;
     const auto after = std::upper_bound(events.begin(), events.end(), session.time(),
@@ -221,7 +221,7 @@ void show_sentence(const Session& session, ImVec2 at, float width) {
     cell(at, typeset_sentence(reached == 0 ? sentences.start() : sentences.of(reached - 1)), width, text_color());
 }
 
-// "‹ 3" or "12 ›": how many stand before or after those that are shown; a click goes on by a strip.
+// "‹ 3" or "12 ›": the number of results before or after the visible ones; a click scrolls by one strip.
 void show_more(bool is_before, std::size_t count, ImVec2 at, const Shown& shown, PanelState& state) {
     if (count == 0) return;
     const bool is_low = shown.cells.front().time.empty();
@@ -280,7 +280,7 @@ std::string time_text(const Trajectory& trajectory, std::size_t index, double er
                  high = is_proved ? event.certificate->zeno_high : 0.0;
     const double half = 0.5 * (high - low);
     if (!is_proved || !(half > 0.0)) return number_with_decimals(event.t, error, 6);
-    // Digits that it may change mean nothing.
+    // Leave out digits within the tolerance.
     const double integration = std::max(error, integration_error_of_time(trajectory, index));
     const int digits = std::clamp(static_cast<int>(std::ceil(-std::log10(std::max(half, integration)))), 0, 12);
     const std::string text = fmt::format("{:.{}f}", event.t, digits);
@@ -304,7 +304,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
     const float left = area.x + units(12.0F), width = area.width - units(24.0F), top = area.y + units(padding);
-    // A window stands on whole pixels: a strip of results_height() may have one less.
+    // Windows are aligned to whole pixels, so a strip of results_height() may be one pixel lower.
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / line);
     if (lines < 1) return;
@@ -312,7 +312,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     const std::vector<Result> results = results_of(session.trajectory());
     if (results.empty()) return show_none(session, {left, top}, width);
     const std::size_t seen = wanted(session, results);
-    // Room for the arrows on both sides: what stands between them does not jump when one appears.
+    // Always reserve room for both arrows, so that the cells do not jump when one appears.
     const float inset = units(arrow_width + 6.0F);
     const bool is_low = lines < 2;
     Shown shown = shown_from(session, results, 0, {width, is_low});

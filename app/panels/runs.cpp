@@ -1,4 +1,4 @@
-// The present run and those that are pinned.
+// The list of the current and the pinned runs, and their comparison.
 #include <algorithm>
 #include <cmath>
 
@@ -10,13 +10,13 @@
 
 namespace achilles {
 
-// ---- under the sliders: each with its color and what it differs by ----
+// ---- below the sliders: each run with its color and its differences ----
 
 namespace {
 
 constexpr float run_sign_width = 20.0F, word_gap = 10.0F;
 
-// A quiet word that is pressed, which ends at x, on the line at y; its left end becomes x.
+// A faint text button that ends at x on the line at y; x becomes its left end.
 bool word(const char* text, const std::string& name, const std::string& about, float& x, float y, PanelState& state) {
     const ImVec2 size = ImGui::CalcTextSize(text);
     x = std::floor(x - size.x);
@@ -30,7 +30,7 @@ bool word(const char* text, const std::string& name, const std::string& about, f
     return pressed;
 }
 
-// A line as thick as in the plots; hollow where the run is hidden.
+// A line as thick as in the plots; hollow if the run is hidden.
 void paint_sign(const ImVec2& at, const Color& color, bool shown) {
     const float middle = std::floor(at.y + 0.5F * ImGui::GetTextLineHeight()), half = units(3.0F);
     const ImVec2 low{at.x, middle - half}, high{at.x + units(14.0F), middle + half};
@@ -53,7 +53,7 @@ void show_heading(const Session& session, PanelState& state, Commands& commands)
              open ? "close the table of the runs" : "show the differences between the runs in a table below", right, y,
              state)) {
         commands.emplace_back(command::Show{"runs", !open});
-        // It stands where the reasons of an event do.
+        // It shares the place of the event cards and lower panels.
         if (!open && session.selected() > 0) commands.emplace_back(command::Select{0});
         for (const std::string& other : command::shown_below)
             if (!open && session.scene().shows(other)) commands.emplace_back(command::Show{other, false});
@@ -88,7 +88,7 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
     ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
 }
 
-// One that is pinned when it is there, of which nothing is known yet.
+// A run to be pinned that is not finished yet.
 void show_waiting(int place, const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F);
@@ -108,8 +108,8 @@ float name_runs(const Session& session, const Rectangle& row, float right) {
     if (session.pinned().empty() || are_named) return right;
     const float size = 0.87F * ImGui::GetFontSize(), sign = units(16.0F), space = units(10.0F);
     const float y = row.y + 0.5F * (row.height - 1.2F * size), middle = std::floor(row.y + 0.5F * row.height) + 0.5F;
-    const float room = right - (row.x + 0.35F * row.width);  // the title needs some
-    // From the right: the present run stands first.
+    const float room = right - (row.x + 0.35F * row.width);  // leaves room for the title
+    // Collected from the right; the current run comes first.
     std::vector<std::pair<std::string, Color>> names;
     for (auto run = session.pinned().rbegin(); run != session.pinned().rend(); ++run)
         if (run->shown) names.emplace_back(run->name, run_color(session.theme(), run->place));
@@ -139,19 +139,19 @@ void show_runs(const Session& session, PanelState& state, Commands& commands) {
     ImGui::Dummy({width, ImGui::GetTextLineHeight()});
     for (const PinnedRun& run : session.pinned()) show_run(run, session, state, commands);
     for (const int place : waiting) show_waiting(place, session, state, commands);
-    ImGui::Dummy({1.0F, 0.0F});  // what stands last must have been laid out
+    ImGui::Dummy({1.0F, 0.0F});  // an item must follow the last one for the layout
 }
 
-// ---- beside the list of events: in a table, a column each; what differs stands out ----
+// ---- table beside the event list, one column per run, differences highlighted ----
 
 namespace {
 
 constexpr float run_name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, table_sign_width = 15.0F;
 
-// The columns of a table as wide as the panel.
+// Columns as wide as the panel allows.
 struct Columns {
     float first = 0.0F, each = 0.0F;
-    std::size_t count = 0;  // runs, and behind them the change where there is one
+    std::size_t count = 0;  // number of runs, plus one if there is a column of changes
     float at(std::size_t i) const { return first + each * static_cast<float>(i); }
 };
 
@@ -170,7 +170,7 @@ void paint_table_sign(const ImVec2& at, const Color& color) {
     ImGui::GetWindowDrawList()->AddLine({at.x, middle}, {at.x + units(10.0F), middle}, packed(color), units(3.0F));
 }
 
-// Names and colours of the runs; the line stays while the table scrolls.
+// Names and colors of the runs; this line does not scroll.
 void show_head(const Session& session, const Columns& columns) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const auto title = [&](std::size_t i, const std::string& name, const Color* color) {
@@ -190,7 +190,7 @@ void show_head(const Session& session, const Columns& columns) {
     ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
 }
 
-// Strong where it is another than the present run's, which is strong where any differs.
+// Bright where the value differs from the current run's; that one is bright if any differs.
 void show_row(const RunTable::Row& row, const Columns& columns) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool any = std::find(row.differs.begin(), row.differs.end(), true) != row.differs.end();
@@ -203,7 +203,7 @@ void show_row(const RunTable::Row& row, const Columns& columns) {
     ImGui::Dummy({columns.at(columns.count), ImGui::GetTextLineHeight()});
 }
 
-// The colour of the run, then what it does.
+// A run's marker, then how it differs.
 void show_parting(const PinnedRun& run, const std::string& sentence, float width, const Session& session) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     paint_table_sign(at, run_color(session.theme(), run.place));
@@ -226,14 +226,14 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
         commands.emplace_back(command::Show{"runs", false});
     const Columns columns = columns_of(session);
     show_head(session, columns);
-    const float line = ImGui::GetTextLineHeightWithSpacing();  // none is cut at the bottom
+    const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole lines
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0F, 0.0F});
     ImGui::BeginChild("table", {0.0F, room}, false);
     const float width = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
     bool was_cause = false;
     for (const RunTable::Row& row : table.rows) {
-        // A line between what differs and what follows.
+        // A line between inputs and results.
         if (was_cause && !row.is_cause) {
             const ImVec2 at = ImGui::GetCursorScreenPos();
             const float y = std::floor(at.y - 0.5F * ImGui::GetStyle().ItemSpacing.y) + 0.5F;

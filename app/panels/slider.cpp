@@ -23,7 +23,7 @@ bool is_logarithmic(const Slider& slider) { return goes_by_ratios(slider.low, sl
 
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 
-// Where a value, in the unit that is shown, stands on the track, and what stands there.
+// Conversion of a value in the displayed unit to its share of the track, and back.
 double share_of(const Slider& slider, double value) {
     const double low = slider.low * slider.factor, high = slider.high * slider.factor;
     return is_logarithmic(slider) ? std::log(value / low) / std::log(high / low) : (value - low) / (high - low);
@@ -33,19 +33,19 @@ double value_at(const Slider& slider, double share) {
     return is_logarithmic(slider) ? low * std::pow(high / low, at) : low + at * (high - low);
 }
 
-// As ImGui places the grab: how much of the track it moves along.
+// The same geometry as ImGui's grab: the usable part of the track.
 constexpr float grab_padding = 2.0F;
 float usable(float width) { return std::max(1.0F, width - ImGui::GetStyle().GrabMinSize - 2.0F * grab_padding); }
 float grab_at(float left, float width, double share) {
     return left + grab_padding + 0.5F * ImGui::GetStyle().GrabMinSize + static_cast<float>(share) * usable(width);
 }
 
-// "30°", "2 m", with so many digits.
+// "30°", "2 m", with this many digits.
 std::string shown(const Slider& slider, double value, int digits = 6) {
     return number_with_unit(number(rounded(value * slider.factor, std::min(digits, slider.digits + 2))), slider.unit);
 }
 
-// With as many digits as there is room for.
+// With as many digits as fit.
 std::string shown_in(float width, const Slider& slider, double value) {
     for (int digits = 6; digits > 2; --digits)
         if (const std::string text = shown(slider, value, digits); ImGui::CalcTextSize(text.c_str()).x <= width)
@@ -65,7 +65,7 @@ std::string explanation(const Slider& slider) {
            (slider.bar_about.empty() ? "" : "\n" + slider.bar_about);
 }
 
-// A thin track behind a slider whose own frame is invisible, with a mark where the file's value is.
+// A thin track behind a slider with invisible frame, with a mark at the file's value.
 void paint_track(const Slider& slider, float width) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float y = std::floor(at.y + 0.5F * ImGui::GetFrameHeight()), half = units(2.0F);
@@ -76,7 +76,7 @@ void paint_track(const Slider& slider, float width) {
     list->AddRectFilled({x - units(1.0F), y - units(6.0F)}, {x + units(1.0F), y + units(6.0F)}, packed(faint_color()));
 }
 
-// Under the track what the slider does to a quantity: from its middle to the left or the right.
+// The sensitivity bar below the track: from its middle to the left or right.
 void paint_bar(const Slider& slider, const ImVec2& at, float width) {
     if (!slider.bar) return;
     const float middle = std::floor(at.x + 0.5F * width), low = at.y + ImGui::GetFrameHeight() - units(1.0F);
@@ -87,10 +87,10 @@ void paint_bar(const Slider& slider, const ImVec2& at, float width) {
     list->AddRectFilled({middle, low - units(1.0F)}, {middle + units(1.0F), low + units(3.0F)}, packed(faint_color()));
 }
 
-// What a press does to the value under it, where the hand is at `target`: true when that is to be the value now. A press
-// that stays where it is may be the first of a double click, so waits as long as one may take.
+// Handles a press with the mouse at value `target`; returns true if the slider takes this value now. A press without
+// motion may start a double click, so it waits for the double-click time.
 bool takes_effect(const Slider& slider, double target, PressedSlider& pressed) {
-    constexpr float slip = 3.0F;  // pixels that a hand may slip and still click
+    constexpr float slip = 3.0F;  // click tolerance, pixels
     const ImGuiIO& io = ImGui::GetIO();
     const double now = ImGui::GetTime();
     const auto is_late = [&](double since) { return now - since > double{io.MouseDoubleClickTime}; };
@@ -114,7 +114,7 @@ bool takes_effect(const Slider& slider, double target, PressedSlider& pressed) {
     return false;
 }
 
-// A click that was alone, after all.
+// True if a click was not followed by a second one.
 bool was_clicked(Slider& slider, PressedSlider& pressed) {
     if (pressed.clicked != slider.id) return false;
     const ImGuiIO& io = ImGui::GetIO();
@@ -126,7 +126,7 @@ bool was_clicked(Slider& slider, PressedSlider& pressed) {
 
 constexpr double fine_gain = 1.0 / 20.0;
 
-// Where the hand has brought the grab to: where it is, and with Shift on from there by little steps.
+// The share of the track that the mouse selects; after Shift was pressed, relative to that point and slower.
 double held_share(const Slider& slider, double absolute, float width, PressedSlider& pressed) {
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActivated()) {
@@ -145,8 +145,8 @@ double held_share(const Slider& slider, double absolute, float width, PressedSli
     return pressed.share;
 }
 
-// What the hand means, in the file's units: what there is, or the file's value, where that is within half a pixel, else the
-// roundest number that is.
+// The value selected by the mouse, in the file's units: the current value or the file's value if within half a pixel,
+// else the roundest number within it.
 double meant_at(const Slider& slider, double share, float width, bool is_fine) {
     const double half = 0.5 / usable(width) * (is_fine ? fine_gain : 1.0);
     for (const double sticky : {slider.value, slider.original})
@@ -154,12 +154,12 @@ double meant_at(const Slider& slider, double share, float width, bool is_fine) {
     return roundest(value_at(slider, share - half), value_at(slider, share + half)) / slider.factor;
 }
 
-// ImGui would write the value over the grab; ours stands beside it, so its text is hidden. Fifteen digits: ImGui takes
-// the precision of a logarithmic scale from here.
+// The slider itself. ImGui's value text is hidden, since it is shown beside the slider. The format has 15 digits, since
+// ImGui derives the precision of a logarithmic scale from it.
 bool dragged(Slider& slider, float width, PressedSlider& pressed) {
     paint_track(slider, width);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    // ImGui's grab is under the mouse, which a fine hand leaves behind.
+    // ImGui's grab follows the mouse, while ours lags behind with Shift: draw our own.
     const bool is_ours = pressed.id == slider.id && pressed.is_relative && ImGui::IsMouseDown(ImGuiMouseButton_Left);
     for (const ImGuiCol color : {ImGuiCol_FrameBg, ImGuiCol_FrameBgActive, ImGuiCol_FrameBgHovered, ImGuiCol_Text})
         ImGui::PushStyleColor(color, 0U);
@@ -192,8 +192,8 @@ bool dragged(Slider& slider, float width, PressedSlider& pressed) {
 
 void begin_typing(const Slider& slider, TypedValue& typed);
 
-// Left and Right go a hundredth of the track, to a round number; with Shift a twentieth of that. Enter types, Delete puts
-// the file's value back.
+// Left and Right move by a hundredth of the track, to a round number; with Shift by a twentieth of that. Enter opens
+// the text field, Delete restores the file's value.
 bool moved_by_keys(Slider& slider, PanelState& state) {
     if (!owns_keys(state, slider.id)) return false;
     const double before = slider.value;
@@ -208,7 +208,7 @@ bool moved_by_keys(Slider& slider, PanelState& state) {
     }
     if (is_pressed(key::remove, false) || is_pressed(key::backspace, false)) slider.value = slider.original;
     if (is_pressed(key::enter, false)) begin_typing(slider, state.typed);
-    // Up and down lead away.
+    // Up and down move the focus.
     if (is_pressed(key::up) || is_pressed(key::down)) state.focus.is_owned = false;
     return slider.value != before;
 }
@@ -221,7 +221,7 @@ void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.is_new = true;
 }
 
-// A double click types; a right click puts the file's value back.
+// A double click opens the text field; a right click restores the file's value.
 bool clicked(Slider& slider, PanelState& state) {
     if (!ImGui::IsItemHovered()) return false;
     const double now = slider.value;
@@ -241,7 +241,7 @@ double meant(const Slider& slider, const std::string& text) {
     return typed_number(text, is_rate ? "rad/s" : is_angle ? "rad" : slider.unit, slider.factor);
 }
 
-// The field in place of the slider; red where the last text was none to take.
+// The text field in place of the slider; red if the last text was refused.
 void show_field(const Slider& slider, PanelState& state, float width) {
     TypedValue& typed = state.typed;
     if (typed.is_new) ImGui::SetKeyboardFocusHere();
@@ -256,7 +256,8 @@ void show_field(const Slider& slider, PanelState& state, float width) {
     remember(state, slider.id);
 }
 
-// A text that is no number changes nothing: it stays, with the reason below it, until it is one or is given up.
+// Handles the text field. A text that is not a valid number changes nothing; it stays with an error message until it is
+// corrected or cancelled.
 bool typed_over(Slider& slider, PanelState& state, float width) {
     TypedValue& typed = state.typed;
     show_field(slider, state, width);
@@ -280,7 +281,7 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
     return value != std::exchange(slider.value, value);
 }
 
-// The row is lit while its name is pointed at in the equations, and the other way round.
+// Highlights the row if its name is pointed at in the equations, and vice versa.
 void point_at(const Slider& slider, PanelState& state) {
     if (!slider.id.starts_with("set ")) return;
     const std::string name = slider.id.substr(4);

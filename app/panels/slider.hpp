@@ -1,5 +1,5 @@
-// One value under the hand: dragged, typed after a double click, put back by a right click. A drag takes the roundest number
-// that lies within a pixel of the hand; with Shift within a twentieth of one, and goes so much slower.
+// Slider for one value: drag it, double-click to type, right-click to restore the file's value. A drag selects the
+// roundest number within one pixel of the mouse. With Shift the mouse is 20 times less sensitive.
 #pragma once
 
 #include <optional>
@@ -12,30 +12,31 @@ namespace achilles {
 struct Slider {
     std::string label, id, unit, about;
     double value = 0.0, low = 0.0, high = 1.0;  // in the file's units
-    double original = 0.0;                      // as the file has it
-    double factor = 1.0;                        // to the unit that is shown: 180/pi for an angle
-    int digits = 4;                             // that are shown of it, and two more
-    std::string varies{};                       // its name along an axis of the sweep; empty: it cannot be there
-    // Under it, -1 to 1: what it does to a quantity, beside all others; nothing: nobody asks, or there is no derivative.
+    double original = 0.0;                      // value in the file
+    double factor = 1.0;                        // from the file's unit to the displayed unit: 180/pi for an angle
+    int digits = 4;                             // digits of a dragged value; two more are displayed
+    std::string varies{};                       // its name as a sweep axis; empty: it cannot be one
+    // Bar below the slider, -1 to 1: the sensitivity of a quantity, relative to the largest; empty: not shown or no
+    // derivative.
     std::optional<float> bar{};
-    bool bar_is_old = false;  // it is of the run before
+    bool bar_is_old = false;  // it belongs to an earlier run
     std::string bar_about{};
 };
 
-// The number between two that is written with the fewest digits: 0, else a multiple of the largest 1, 2 or 5 times a power of
-// ten, of several the one nearest to the middle.
+// The number in [low, high] with the fewest digits: 0 if possible, else a multiple of the largest possible 1, 2 or 5
+// times a power of ten; of several, the one nearest the middle.
 double roundest(double low, double high);
 
-// Widths of a row's columns at scale 1: what it is, its value. The slider has the rest.
+// Widths of a row's name and value columns at scale 1. The slider takes the rest.
 constexpr float row_name_width = 78.0F, value_width = 84.0F;
 
-// The number that is typed where this factor shows what is in the file's unit: one with neither unit nor pi is as it is shown,
-// 30 for 30 degrees. Throws ParseError.
+// Parses a typed number and returns it in the file's unit. A number without unit or pi is in the displayed unit: 30
+// means 30 degrees if `factor` is 180/pi. Throws ParseError.
 double typed_number(const std::string& text, const std::string& unit, double factor);
 
-// The sign beside the name of a row whose value is not the file's.
+// The marker beside a row whose value differs from the file's.
 void mark_changed();
-// Shows a row; true where the hand has changed the value, which then is in `value`.
+// Shows a row. Returns true if the user changed the value; `value` is then the new one.
 bool moved(Slider& slider, PanelState& state);
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// The state and the energy at this instant.
+// The state and the energies at the current time.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,17 +16,17 @@
 
 namespace achilles {
 
-// ---- above the mechanism: the phase and the coordinates in numbers, their rates below ----
+// ---- above the mechanism: phase, coordinates, and rates below them ----
 
 namespace {
 
 constexpr float edge_of_state = 12.0F, above_state = 8.0F, below_state = 8.0F, phase_width = 130.0F,
                 state_width = 130.0F;
 
-// Where there is little room each coordinate has a line, its rate beside it, below the phase.
+// In a narrow panel each coordinate has its own line, with its rate beside it.
 bool is_narrow(float width) { return width < units(390.0F); }
 
-// A coordinate or its rate, as it is shown.
+// A coordinate or rate in display form.
 struct StateValue {
     std::string name, value;
     float width = 0.0F;  // of the longest value that the run may need, with its name
@@ -49,7 +49,7 @@ StateValue value_of(const Session& session, std::size_t i, bool is_rate) {
     return shown;
 }
 
-// How wide the columns of a wide state are: as wide as the values need, where there is room for two.
+// Column width of the wide layout: as the values need, if at least two columns fit.
 float column_of_state(const Session& session, float width) {
     float wanted = units(state_width);
     for (std::size_t i = 0; i < session.description().coordinates.size(); ++i)
@@ -97,13 +97,13 @@ void show_state(const Session& session, const Rectangle& panel) {
     }
 }
 
-// Between the results and the player: where the energy is now and where it went, as a bar, in numbers, and over the run on the
-// player's axis. What moves has the colour of the velocity's arrow, what impacts took that of their signs.
+// The energy panel between results and player: current energies as a bar and in numbers, and their history on the time
+// axis of the player. Kinetic energy has the color of the velocity arrow, impact losses that of the impact markers.
 
-// The energies of the run that is shown, along it: made once for each run.
+// The energies along the run that is shown, computed once per run.
 class EnergyCourse {
  public:
-    // Of this run, and whether it still is.
+    // Computes the energies of the run. is_of() tells whether they still belong to it.
     explicit EnergyCourse(const Session& session)
         : model_(session.model()),
           run_(session.trajectory().run),
@@ -120,15 +120,15 @@ class EnergyCourse {
         return model_ == session.model() && end_ == session.trajectory().end_time && run_ == session.trajectory().run;
     }
     Energies at(const Sample& sample) { return balance_.at(sample); }
-    // At a time, as the curves have it: what the last sample before it had.
+    // The energies of the last sample before a time, as in the curves.
     const Energies& before(double t) const {
         const auto after = std::upper_bound(course_.begin(), course_.end(), t,
                                             [](double at, const auto& entry) { return at < entry.first; });
         return after == course_.begin() ? after->second : std::prev(after)->second;
     }
     bool empty() const { return course_.empty(); }
-    // The upper ends of what moves, what is stored above its least, what impacts took, what forces took: of the highest such
-    // stack in the run.
+    // Upper ends of the stacked parts: kinetic energy, potential energy above its minimum, impact losses, work of
+    // forces.
     using Stack = std::array<double, 4>;
     Stack stack(const Energies& now) const {
         Stack ends{};
@@ -159,7 +159,7 @@ struct Part {
     Color color;
     float alpha;
 };
-// The last is striped: of two quiet greys nobody can tell which is which.
+// The last part is striped, to distinguish its gray from the other.
 constexpr std::size_t striped = 3;
 
 std::array<Part, 4> parts(const Theme& theme) {
@@ -193,7 +193,7 @@ bool has_forces(const Session& session) { return session.model()->equations().ha
 
 std::array<double, 4> values(const Energies& now) { return {now.kinetic, now.potential, now.loss, now.work}; }
 
-// A name over its value, in as many columns as there are.
+// Each name above its value, in columns.
 void show_numbers(const Session& session, const Energies& now, const Rectangle& area) {
     const std::size_t count = has_forces(session) ? 4 : 3;
     const float width = area.width / static_cast<float>(count), line = ImGui::GetTextLineHeight();
@@ -214,7 +214,7 @@ void show_numbers(const Session& session, const Energies& now, const Rectangle& 
     }
 }
 
-// So much of the whole as a length.
+// Length of a value in proportion to the whole.
 float length(double value, double full, float whole) {
     return full > 0.0 && std::isfinite(value) ? static_cast<float>(std::clamp(value / full, 0.0, 1.0)) * whole : 0.0F;
 }
@@ -237,7 +237,7 @@ void show_bar_of(const Session& session, const EnergyCourse& course, const Energ
     list->AddLine({start, top - units(2.0F)}, {start, bottom + units(2.0F)}, packed(text_color()), units(1.5F));
 }
 
-// The same over the run, a column a pixel, upwards; with the present as a line.
+// The energies over the run, one pixel column at a time, with a line at the current time.
 void paint_course(const Session& session, const EnergyCourse& course, const Rectangle& area, double start, double end) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto all = parts(session.theme());
@@ -266,7 +266,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
     list->AddLine({now, top}, {now, bottom}, packed(text_color()), units(1.5F));
 }
 
-// What the instant under the mouse has, and what the last event before it has taken.
+// Tooltip: the energies at the time under the mouse, and the loss of the last event before it.
 std::string told(const Session& session, const EnergyCourse& course, double t) {
     const auto its = values(course.before(t));
     const auto all = parts(session.theme());

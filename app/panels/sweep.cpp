@@ -1,5 +1,5 @@
-// Under the plots: many runs beside the present one, which is a cross hair in them. A click or a drag makes the run under
-// the hand the present one.
+// The sweep panel below the plots. A cross hair marks the current run; a click or drag makes the run under the mouse
+// the current one.
 #include "panels/sweep.hpp"
 
 #include <fmt/format.h>
@@ -23,14 +23,14 @@
 
 namespace achilles {
 
-// ---- what a sweep varies and asks is chosen here ----
+// ---- choice of axes and printed quantities ----
 
 namespace {
 
 constexpr std::uint64_t finest_points = 512;
 constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
 
-// What most people ask of a run, and the derivative of the first by what varies along x.
+// Quantities offered in the menu, and the derivative of the first with respect to the x axis.
 std::vector<std::string> usual_prints(const SystemDescription& description, const Sweep& sweep) {
     const bool is_section = sweep.at.has_value();
     std::vector<std::string> prints;
@@ -48,7 +48,7 @@ std::vector<std::string> usual_prints(const SystemDescription& description, cons
     return prints;
 }
 
-// The limits of one axis, as they are typed, in the unit of its slider; true when they are entered.
+// Text fields for the limits of one axis, in the unit of its slider; true if they are submitted.
 bool limits_entered(const SystemDescription& description, SweepAxis& axis, SweepMenu& menu, std::size_t place,
                     PanelState& state) {
     const std::string unit = unit_of_axis(description, axis.name);
@@ -136,10 +136,10 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
         changed.at = std::move(at);
         if (!changed.at && changed.axes.empty())
             return commands.emplace_back(command::ShowSweep{default_sweep(session.description())}), void();
-        // What is known of a whole run is nothing of a moment.
+        // Quantities of a whole run do not apply to the points of a section, and vice versa.
         if (changed.at && !sweep.at) changed.prints = {session.description().coordinates.front().name};
         if (!changed.at && sweep.at) changed.prints = {"zeno_time(1)"};
-        if (changed.at && changed.axes.size() > 1) changed.axes.resize(1);  // sections of a map have no picture
+        if (changed.at && changed.axes.size() > 1) changed.axes.resize(1);  // sections of a map cannot be drawn
         commands.emplace_back(showing(changed, session.description()));
     };
     if (ImGui::RadioButton("at the end of the run", !sweep.at)) ask({});
@@ -161,7 +161,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
     const SystemDescription& description = session.description();
     const auto ask = [&](const std::string& print) {
         Sweep changed = sweep;
-        // Of one run alone what is asked stands over the first coordinate.
+        // For a single run the quantity is plotted over the first coordinate.
         const bool is_alone = sweep.axes.empty();
         changed.prints = {print};
         if (is_alone && sweep.prints.front() != print) changed.prints = {sweep.prints.front(), print};
@@ -228,11 +228,11 @@ void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& 
     }
 }
 
-// ---- the pictures ----
+// ---- pictures ----
 
 namespace {
 
-// What the session has along an axis, in the unit of the file.
+// The current run's value along an axis, in the file's unit.
 std::optional<double> present(const Session& session, const SweepAxis& axis) {
     if (const auto value = session.value(axis.name)) return value;
     const std::vector<const Option*> options = options_of_axis(axis.name);
@@ -243,7 +243,7 @@ std::optional<double> present(const Session& session, const SweepAxis& axis) {
     return std::nullopt;
 }
 
-// Composed once for each picture, not for each frame.
+// The panel, composed once per picture, not per frame.
 const Panel& composed(const Session& session, SweepState& state) {
     const auto& data = session.sweep_job().data();
     if (state.of == data && state.dark == session.theme().dark && state.panel) return *state.panel;
@@ -253,7 +253,7 @@ const Panel& composed(const Session& session, SweepState& state) {
     look.dark = state.dark;
     look.transparent = true;
     try {
-        // Of one run alone the second print stands over the first.
+        // For a single run the second quantity is plotted over the first.
         if (!data->columns.empty() && !data->sweep.axes.empty()) look.columns = {0};
         state.panel = std::make_shared<const Panel>(compose_sweep(*data, look).panels.front());
         state.problem.clear();
@@ -264,8 +264,7 @@ const Panel& composed(const Session& session, SweepState& state) {
     return *state.panel;
 }
 
-// The number, as it is shown, that the present run has for what a curve shows; nothing while it is under way, or where it has
-// none.
+// The current run's value of the plotted quantity, as displayed; empty while the run is under way or if undefined.
 std::optional<double> present_number(const Session& session, SweepState& state) {
     if (session.under_way() != nullptr || session.shows_start()) return std::nullopt;
     const Sweep sweep = session.sweep();
@@ -282,7 +281,7 @@ std::optional<double> present_number(const Session& session, SweepState& state) 
     return state.measure;
 }
 
-// At the cross hair the line that touches the curve: straight, as the picture's axes go as the line does.
+// The tangent to the curve at the cross hair. It is straight if the axes have the scale of the derivative.
 void show_tangent(const Session& session, const SweepData& data, const Rectangle& area, const PanelMap& map,
                   ImDrawList* list) {
     const std::optional<TangentLine> tangent = session.sweep_tangent();
@@ -333,7 +332,7 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
     list->PopClipRect();
 }
 
-// The commands that make another run of it: values together, as the run in between might be none.
+// Commands that move the current run to a point. All values are set at once: an intermediate state might be infeasible.
 void go_to(const SweepData& data, const std::vector<double>& values, Commands& commands) {
     command::Start start;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -351,8 +350,8 @@ void go_to(const SweepData& data, const std::vector<double>& values, Commands& c
     if (!start.values.empty()) commands.emplace_back(std::move(start));
 }
 
-// "3 impacts before the cut, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. What is told
-// beside a pointer must be there within the frame: of a long run the beginning.
+// "3 impacts before the cut, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. For a
+// tooltip within one frame, only the beginning of a long run is simulated.
 std::string events_of(const Session& session, const Run& run) {
     constexpr int most_impacts = 2000, most_steps = 20000, most_told = 6;
     Run shorter = run;
@@ -381,13 +380,13 @@ std::string events_of(const Session& session, const Run& run) {
     }
     if (told.empty()) return "no event";
     std::string text;
-    // Two a line: a line that ImGui had to break could end in the middle of a number.
+    // Two per line: if ImGui wrapped the line, it could break within a number.
     for (std::size_t i = 0; i < told.size() && i < most_told; ++i)
         text += (i == 0 ? "" : i % 2 == 0 ? ",\n" : ", ") + told[i];
     return told.size() > most_told ? text + ", \u2026" : text;
 }
 
-// The row of the point nearest to the pointer on each axis, where it is there.
+// The row of the grid point nearest to the mouse, if it is computed.
 std::optional<std::size_t> row_at(const SweepData& data, const std::vector<double>& values) {
     std::uint64_t point = 0;
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -448,7 +447,7 @@ void tell(const Session& session, const SweepData& data, const std::vector<doubl
     tooltip(state.told);
 }
 
-// A slider's name that is let go over an axis is what varies along it.
+// A slider's name dropped on an axis becomes the quantity along that axis.
 void take_dropped_name(const Session& session, std::size_t place, const Rectangle& area, Commands& commands) {
     if (area.width < 1.0F || area.height < 1.0F || ImGui::GetDragDropPayload() == nullptr) return;
     ImGui::SetCursorScreenPos({area.x, area.y});
@@ -462,7 +461,7 @@ void take_dropped_name(const Session& session, std::size_t place, const Rectangl
                                         [&](const SweepAxis& axis) { return axis.name == name; });
         if (const auto axis = axis_for(session, name)) {
             if (twice != sweep.axes.end() && at < sweep.axes.size())
-                std::iter_swap(twice, sweep.axes.begin() + static_cast<std::ptrdiff_t>(at));  // they change places
+                std::iter_swap(twice, sweep.axes.begin() + static_cast<std::ptrdiff_t>(at));  // swap the axes
             else if (twice == sweep.axes.end())
                 sweep.axes.resize(std::max(sweep.axes.size(), at + 1)), sweep.axes[at] = *axis;
             commands.emplace_back(showing(sweep, session.description()));
@@ -487,7 +486,7 @@ void use_mouse(const Session& session, const SweepData& data, const Rectangle& a
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) tell(session, data, values, state.sweep);
 }
 
-// How far it is, and the cross that hides the panel.
+// Progress, and the button that hides the panel.
 float show_progress(const Session& session, const Rectangle& row, PanelState& state, Commands& commands) {
     const float size = ImGui::GetFontSize(), cross = row.height;
     ImGui::SetCursorScreenPos({row.x + row.width - cross, row.y});
@@ -528,7 +527,7 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     const Panel& panel = composed(session, state.sweep);
     if (!state.sweep.problem.empty()) return message(state.sweep.problem);
     Rectangle below = inner;
-    if (panel.legend && panel.legend_above) {  // it ends at the right, where the cross is, and the menus may be as long
+    if (panel.legend && panel.legend_above) {  // it ends at the right, below the button; the menus may be as long
         const float clear = std::min(units(12.0F), inner.height);
         below.y += clear, below.height -= clear;
     }

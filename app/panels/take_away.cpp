@@ -1,4 +1,4 @@
-// What can be taken away from a session: the menus and the dialog; and the tours that can be taken.
+// Exports and tours: menus, the export dialog, and the caption of a tour.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -16,7 +16,7 @@
 
 namespace achilles {
 
-// ---- the upper part of the dialog: what is taken away, in which size, and what that comes to; and a film on its way ----
+// ---- export dialog: content, size, resulting file; progress of an animation ----
 
 namespace {
 
@@ -30,7 +30,7 @@ void row(const char* name) {
     ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width));
 }
 
-// One of several, side by side; the chosen one is down.
+// One of several choices side by side; the selected one is pressed.
 bool word(const std::string& name, bool is_down, PanelState& state, const std::string& about = {}) {
     ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetColorU32(is_down ? ImGuiCol_ButtonActive : ImGuiCol_FrameBg));
     const bool pressed = ImGui::Button(name.c_str());
@@ -41,7 +41,7 @@ bool word(const std::string& name, bool is_down, PanelState& state, const std::s
     return pressed;
 }
 
-// True when another number was typed.
+// Returns true if another number was typed.
 bool number_field(const char* name, double& value, const char* unit, PanelState& state) {
     ImGui::SetNextItemWidth(units(58.0F));
     const bool typed = ImGui::InputDouble((std::string("##") + name).c_str(), &value, 0.0, 0.0, "%.4g");
@@ -52,7 +52,7 @@ bool number_field(const char* name, double& value, const char* unit, PanelState&
     return typed;
 }
 
-// A second name in a row, at the same place in every row.
+// A second label in a row, aligned between rows.
 void column(const char* name) {
     ImGui::SameLine(ImGui::GetStyle().WindowPadding.x + units(names_width + 120.0F));
     ImGui::TextUnformatted(name);
@@ -65,14 +65,14 @@ std::string name_of(const Session& session, int plot) {
 
 bool is_data(const std::string& ending) { return ending == "json" || ending == "csv" || ending == "journal"; }
 
-// Whether what is chosen can be written with this ending.
+// Whether the selected content can be written with this extension.
 bool fits(const TakeAwayForm& form, const std::string& ending) {
     const std::string name = "a." + ending;
     if (form.what == What::film) return is_film(name);
     return !ending_of_picture(name).empty() || (form.what == What::plots && form.plot == 0 && is_data(ending));
 }
 
-// The path ends as what is chosen says, in place of an ending that a file may have.
+// Replaces the extension of the path if it does not fit the selected content.
 void end_in(PanelState& state, const std::string& ending) {
     std::filesystem::path path(state.editor.path);
     const std::string before = ending_of(state.editor.path), name = "a." + before;
@@ -131,7 +131,7 @@ void choose_kind(PanelState& state) {
     tooltip("light on dark, for a screen; paper is white");
 }
 
-// The width over the height of what is chosen.
+// Width over height of the selected content.
 double chosen_shape(const Session& session, const TakeAwayForm& form) {
     const Plots& plots = session.plotted();
     return form.what == What::mechanism ? shape_of(session.limits())
@@ -144,7 +144,7 @@ void choose_size(const Session& session, PanelState& state) {
     row("width");
     number_field("width", form.width, "mm", state);
     column("height");
-    // Until somebody types another: what fits.
+    // The automatic height until the user types one.
     double height =
         form.height == 0.0 ? height_of({form.width, 0.0, 0.0, 0.0}, chosen_shape(session, form)) : form.height;
     if (number_field("height", height, "mm", state)) form.height = height;
@@ -271,7 +271,7 @@ TakeAwayNote note_on_film(const Session& session, const TakeAwayForm& form) {
 TakeAwayNote note_on_page(const Session& session, const TakeAwayForm& form) {
     const bool has_dots = form.ending == "png";
     const PaperSize page{form.width, form.height, form.font, has_dots ? form.dpi : default_dpi};
-    // To a page 0 is what follows from the rest; here the fields of the others show that.
+    // A page treats 0 as default; in this form only the height does.
     for (const auto& [name, value] :
          {std::pair{"width", page.width}, std::pair{"text", page.font}, std::pair{"resolution", page.dpi}})
         if (!(value > 0.0)) return {fmt::format("{} must be above 0, not {:g}", name, value), true};
@@ -313,7 +313,7 @@ void show_film(PanelState& state) {
     ImGui::PopStyleColor();
 }
 
-// ---- menus: what can be taken away, and the tours; and what a tour says on the way ----
+// ---- menus for exports and tours; caption of a tour ----
 
 namespace {
 
@@ -326,13 +326,13 @@ bool item(const char* name, const char* about, PanelState& state, bool enabled =
 
 constexpr float tour_padding = 12.0F, accent_width = 4.0F, buttons_width = 76.0F, close_width = 26.0F;
 
-// The caption's text in its width, a little larger than the interface's.
+// Width of the caption text, which is slightly larger than the interface text.
 float text_width(const PanelState& state, float width) {
     return width - 2.0F * units(tour_padding) - units(accent_width) -
            units(state.on_tour ? buttons_width : close_width);
 }
 
-// A word to press in the caption's corner.
+// A text button in the corner of the caption.
 bool word_button(const char* word, const char* about, PanelState& state, bool enabled = true) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(word);
     const bool pressed = ImGui::InvisibleButton(word, size);
@@ -380,7 +380,7 @@ float caption_height(const Session& session, const PanelState& state, float widt
     if (caption.empty()) return 0.0F;
     const float room = text_width(state, width);
     const float text = ImGui::CalcTextSize(caption.c_str(), nullptr, false, room).y;
-    // Room for four lines: from caption to caption nothing jumps.
+    // At least four lines high, so that the layout does not jump between captions.
     return std::max(text, 4.0F * ImGui::GetTextLineHeight()) + 2.0F * units(tour_padding) - units(4.0F);
 }
 
@@ -409,7 +409,7 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); any other action also ends it", state) || take_escape(state))
         state.tour_wants = PanelState::OnTour::stop;
-    // Below the others: beside them the words would have less room.
+    // Below the other buttons, to leave the text more width.
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
     if (word_button("back", "previous step (Backspace)", state, has_before) ||
         (keys && has_before && !has_keys(state) && takes_key(state, key::backspace, false)))

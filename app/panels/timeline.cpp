@@ -1,4 +1,4 @@
-// Below the mechanism: the phases as bands, the events on them, and the player.
+// The timeline below the mechanism: phases as bands, event markers, and the player.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,10 +14,10 @@ namespace achilles {
 
 namespace {
 
-// The heights of the timeline's parts, from the top, at scale 1.
+// Heights of the timeline's parts, from the top, at scale 1.
 constexpr float marks = 18.0F, band = 12.0F, axis = 24.0F, space = 6.0F;
 
-// Time to pixels along the band.
+// Maps time to pixels.
 struct Track {
     float left, width, top;
     double start, end;
@@ -31,7 +31,7 @@ void paint_phases(const Session& session, const Track& track, ImDrawList* list) 
         list->AddRectFilled({track.x(phase.start), top},
                             {std::max(track.x(phase.end), track.x(phase.start) + 1.0F), bottom},
                             packed(phase_color(session.theme(), phase.kind), 0.85F));
-    // What an early stop left undone.
+    // The part after an early stop.
     const float done = track.x(session.trajectory().end_time);
     list->AddRect({done, top}, {track.left + track.width, bottom}, ImGui::GetColorU32(ImGuiCol_Border));
 }
@@ -40,7 +40,7 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
     const float top = track.top + units(marks);
     const double scale = units(1.0F);
     const ImU32 ink = packed(phase_color(session.theme(), Phase::Kind::hybrid));
-    // Impacts closer than a pixel are one tick, however many they are: from one pixel on to the next.
+    // Impacts closer than a pixel share one tick; skip to the next pixel.
     const auto& events = session.trajectory().events;
     for (auto event = events.begin(); event != events.end();) {
         if (!event->is_impact()) {
@@ -71,7 +71,7 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
         const float at = std::clamp(x - 0.5F * width, track.left - units(4.0F), track.left + track.width - width);
         list->AddText({std::floor(at), top + units(5.0F)}, packed(faint_color()), tick.label.c_str());
     }
-    // The present: a line through everything, with a head to hold.
+    // The current time: a vertical line with a handle.
     const float x = std::floor(track.x(session.time())) + 0.5F;
     const float head = units(5.0F);
     list->AddLine({x, track.top + units(1.0F)}, {x, top + units(4.0F)}, packed(text_color()), units(1.5F));
@@ -79,7 +79,7 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
                             {x, track.top + units(5.0F)}, packed(text_color()));
 }
 
-// Play or pause. A pause names its instant, so that a replayed journal stops at the same picture.
+// Play or pause. A pause also seeks to its time, so that a replayed journal stops at the same picture.
 void play_button(const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 size{units(40.0F), ImGui::GetFrameHeight()};
     const bool pressed = ImGui::Button("##play", size);
@@ -104,7 +104,7 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         commands.emplace_back(command::Play{});
 }
 
-// A small button with a picture: a triangle to this side with a bar before it.
+// A small button with a triangle and a bar.
 bool step_button(const char* name, float side, const char* about, PanelState& state) {
     const ImVec2 size{units(28.0F), ImGui::GetFrameHeight()};
     const bool pressed = ImGui::Button((std::string("##") + name).c_str(), size);
@@ -122,17 +122,17 @@ bool step_button(const char* name, float side, const char* about, PanelState& st
     return pressed;
 }
 
-// How fast time passes: 1/1000 to 10, logarithmic.
+// Playback speed, 1/1000 to 10, logarithmic.
 void speed_slider(const Session& session, PanelState& state, Commands& commands) {
     auto speed = static_cast<float>(session.scene().speed());
-    // The number that follows needs some room, too.
+    // Leave room for the number.
     const float room = ImGui::GetContentRegionAvail().x - units(56.0F);
     if (room < units(24.0F)) return ImGui::NewLine();
     ImGui::SetNextItemWidth(std::min(units(84.0F), room));
     const auto low = static_cast<float>(command::slowest), high = static_cast<float>(command::fastest);
     if (ImGui::SliderFloat("##speed", &speed, low, high, "",
                            ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp)) {
-        // Three digits, and 1 is easy to find again.
+        // Round to two digits, and snap to 1.
         const double unit = std::pow(10.0, std::floor(std::log10(double{speed})) - 1.0);
         double rounded = std::round(double{speed} / unit) * unit;
         if (std::abs(std::log(rounded)) < 0.12) rounded = 1.0;
@@ -141,7 +141,7 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
     remember(state, "speed");
     if (owns_keys(state, "speed")) {
         const int steps = (is_pressed(key::right) ? 1 : 0) - (is_pressed(key::left) ? 1 : 0);
-        state.focus.is_owned = steps != 0;  // the other keys lead on
+        state.focus.is_owned = steps != 0;  // other keys move the focus
         const double next = std::pow(10.0, 0.1 * std::round(10.0 * std::log10(session.scene().speed()) + steps));
         if (steps != 0) commands.emplace_back(command::Speed{std::clamp(next, command::slowest, command::fastest)});
     }
@@ -153,7 +153,7 @@ void speed_slider(const Session& session, PanelState& state, Commands& commands)
     ImGui::TextUnformatted(text.c_str());
 }
 
-// At the right end of the line, where it has room there.
+// At the right end of the line, if there is room.
 void loop_box(const Session& session, PanelState& state, Commands& commands) {
     const float width = ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("loop").x;
     ImGui::SameLine();
@@ -166,7 +166,7 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
     tooltip("start again at the end of the run");
 }
 
-// Left and right step from event to event, Home and End go to the ends.
+// Left and Right step between events, Home and End go to the ends.
 void use_keys(const Session& session, const PanelState& state, Commands& commands) {
     if (has_keys(state) || ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
     if (takes_key(state, key::left)) commands.emplace_back(command::Step{-1});
@@ -175,7 +175,7 @@ void use_keys(const Session& session, const PanelState& state, Commands& command
     if (takes_key(state, key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
 
-// The event whose sign is under the mouse.
+// The event whose marker is under the mouse.
 std::optional<int> event_at(const Session& session, const Track& track) {
     const auto& events = session.trajectory().events;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -185,7 +185,7 @@ std::optional<int> event_at(const Session& session, const Track& track) {
         return std::lower_bound(events.begin(), events.end(), track.time(x),
                                 [](const Event& event, double t) { return event.t < t; });
     };
-    // Of impacts, whose sign is a line, the nearest before and after the mouse.
+    // For impacts, whose marker is a tick, test the nearest ones.
     const float tick = std::clamp(mouse.y, top - units(7.0F), top - units(1.0F));
     const auto here = at(mouse.x);
     for (auto event = here, end = at(mouse.x + reach); event < end; ++event)
@@ -203,7 +203,7 @@ std::optional<int> event_at(const Session& session, const Track& track) {
     return nearest.found();
 }
 
-// A press on the sign of an event selects it; dragged from there the hand moves the time, as from anywhere else.
+// A press on an event marker selects the event; dragging moves the time, as elsewhere.
 void use_events(const Session& session, const Track& track, PanelState& state, Commands& commands) {
     constexpr float slip = 4.0F;
     const bool is_hovered = ImGui::IsItemHovered();
@@ -233,7 +233,7 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     if (step_button("step on", 1.0F, "next event (right arrow)", state)) commands.emplace_back(command::Step{1});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
-    // As wide as it ever gets, so that what follows stands still.
+    // Reserve the maximum width, so that the following items do not move.
     const float clock_at = ImGui::GetCursorPosX();
     ImGui::TextUnformatted(fmt::format("t = {:.3f} s", session.time()).c_str());
     ImGui::SameLine(

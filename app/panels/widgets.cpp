@@ -96,7 +96,7 @@ namespace {
 constexpr float tooltip_width = 360.0F;
 
 bool wants_tooltip(const std::string& text) {
-    // While the hand works, or letters are typed, it would cover what changes.
+    // During a drag or typing a tooltip would cover what changes.
     return !text.empty() && ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) && !ImGui::IsAnyMouseDown() &&
            !ImGui::IsItemActive() && !is_behind_dialog();
 }
@@ -111,12 +111,12 @@ void show_tooltip(const std::string& text) {
 
 ImVec2 tooltip_size(const std::string& text) {
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
-    // The position at which a window wraps counts from its edge.
+    // ImGui measures the wrap position from the window edge.
     const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(tooltip_width) - padding.x);
     return {words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
 }
 
-// The next tooltip's corner, as near to this as the surface has room.
+// Sets the corner of the next tooltip, moved to fit on the surface.
 void place_tooltip(const ImVec2& at, const ImVec2& size) {
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({std::floor(std::clamp(at.x, 0.0F, std::max(0.0F, all.x - size.x))),
@@ -138,9 +138,9 @@ void tooltip(const std::string& label) {
     if (!wants_tooltip(label)) return;
     const std::string text = upright(label);
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // where the mouse is
+    if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // at the mouse
     if (!is_covered()) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});
-    // Beside the menu: it covers no other line.
+    // Beside the menu, so that it covers no entry.
     const ImVec2 size = tooltip_size(text), window = ImGui::GetWindowPos();
     const float gap = units(4.0F), right = window.x + ImGui::GetWindowWidth() + gap;
     place_tooltip({right + size.x <= ImGui::GetIO().DisplaySize.x ? right : window.x - gap - size.x, low.y}, size);
@@ -239,7 +239,7 @@ std::string typeset_sentence(std::string text) {
           std::pair{" - ", " \u2212 "}, std::pair{" deg/s", "\u00b0/s"}})
         for (std::size_t at = text.find(plain); at != std::string::npos; at = text.find(plain, at + 1))
             text.replace(at, std::string_view(plain).size(), symbol);
-    // Of a power of ten, not of a compound word.
+    // Only in powers of ten, not in compound words.
     for (std::size_t at = text.find("e-"); at != std::string::npos; at = text.find("e-", at + 1))
         if (at + 2 < text.size() && std::isdigit(static_cast<unsigned char>(text[at + 2])) != 0)
             text.replace(at + 1, 1, "\u2212");
@@ -248,7 +248,7 @@ std::string typeset_sentence(std::string text) {
 
 std::string number(double value, const char* format) {
     std::string text = fmt::format(fmt::runtime(format), value + 0.0);
-    // What is rounded to zero has no sign.
+    // A value rounded to zero gets no sign.
     if (text.find_first_not_of("-0.") == std::string::npos && text[0] == '-') text.erase(0, 1);
     return with_minus(std::move(text));
 }
@@ -327,22 +327,22 @@ bool expression_fields(std::string& x, std::string& y, bool focuses_y, const std
 }
 
 std::string number_with_unit(const std::string& number, const std::string& unit) {
-    const bool is_joined = unit.empty() || unit[0] == '\xc2';  // a degree
+    const bool is_joined = unit.empty() || unit[0] == '\xc2';  // degree sign
     return is_joined ? number + unit : number + "\u00a0" + unit;
 }
 
-// ---- what is wrong with an input, as the command line says it: the sentence, the line it is about, a caret, a hint ----
+// ---- error messages as on the command line: sentence, source line, caret, hint ----
 
 namespace {
 
-// A line of a message. One that quotes a file may have a caret below one of its letters.
+// A line of a message. A quoted source line may have a caret below one of its letters.
 struct MessageLine {
     std::string text;
     bool quoted = false;
-    std::optional<std::size_t> caret;  // how many letters stand before it
+    std::optional<std::size_t> caret;  // number of letters before it
 };
 
-// "/home/me/a.toml:3:1: wrong" without the folder: a panel has no room for it, and knows which file is meant.
+// "/home/me/a.toml:3:1: wrong" without the folder, since a panel has little room and the file is known.
 std::string without_folder(const std::string& line) {
     const std::size_t end = line.find(':'), name = line.rfind('/', end);
     const bool has_path = end != std::string::npos && name != std::string::npos && line[0] == '/' && line[1] != ' ';
@@ -362,7 +362,7 @@ std::vector<MessageLine> lines_of(const std::string& message) {
     return lines;
 }
 
-// The letters of a text, each a few bytes.
+// The letters of a UTF-8 text.
 std::vector<std::string> letters_of(const std::string& text) {
     std::vector<std::string> letters;
     for (const char byte : text) {
@@ -374,7 +374,7 @@ std::vector<std::string> letters_of(const std::string& text) {
     return letters;
 }
 
-// As much of a quoted line as fits, with the caret well inside.
+// The part of a quoted line that fits, with the caret well inside.
 MessageLine fitted_line(const MessageLine& line, float width) {
     const auto room = static_cast<std::size_t>(std::max(width / ImGui::CalcTextSize("x").x, 8.0F));
     const std::vector<std::string> letters = letters_of(line.text);

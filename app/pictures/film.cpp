@@ -27,7 +27,7 @@
 #include "system/description.hpp"
 #include "system/input_error.hpp"
 
-extern char** environ;  // NOLINT: POSIX has it here
+extern char** environ;  // NOLINT: declared by POSIX
 
 namespace achilles {
 
@@ -36,14 +36,14 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* joiner = "ffmpeg";
-constexpr double most_gif_fps = 50.0;  // a GIF counts hundredths of a second, and players refuse one
+constexpr double most_gif_fps = 50.0;  // GIF delays are multiples of 1/100 s, and players do not support a delay of 1
 
 std::string content(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// Removed in any case.
+// Deleted on scope exit.
 struct Temporary {
     fs::path path;
     ~Temporary() {
@@ -52,8 +52,8 @@ struct Temporary {
     }
 };
 
-// The status of a program that reads nothing, and writes its output and its messages into these files; -1 where it cannot run or
-// is killed. `wait` is called while it runs, ten times a second.
+// Runs a program without input, with standard output and standard error sent to these files. Returns its exit status;
+// -1 if it cannot be started or is killed. Calls `wait` ten times a second while it runs.
 int run(const std::vector<std::string>& words, const fs::path& output, const fs::path& says,
         const std::function<void()>& wait) {
     std::vector<std::string> kept = words;
@@ -78,7 +78,7 @@ int run(const std::vector<std::string>& words, const fs::path& output, const fs:
     return ended == process && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-// The last N of "frame=N" in what ffmpeg tells of its progress.
+// The N of the last "frame=N" in ffmpeg's progress output.
 std::size_t frames_in(const std::string& text) {
     constexpr std::string_view key = "frame=";
     const std::size_t at = text.rfind(key);
@@ -125,7 +125,7 @@ std::vector<std::string> join_words(const FrameSeries& frames, const std::string
         const std::string rate = frames.fps > most_gif_fps ? fmt::format("fps={},", most_gif_fps) : "";
         add({"-filter_complex", rate + "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-loop", "0"});
     } else {
-        // Players want even numbers of pixels.
+        // Players need even numbers of pixels.
         if (frames.width % 2 != 0 || frames.height % 2 != 0) add({"-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2"});
         add({"-pix_fmt", "yuv420p"});
     }
@@ -136,11 +136,11 @@ std::vector<std::string> join_words(const FrameSeries& frames, const std::string
 std::string joined(const FrameSeries& frames, const std::string& film,
                    const std::function<void(std::size_t frames)>& done) {
     if (!has_film_joiner()) throw std::runtime_error("ffmpeg is not installed");
-    // In the folder, with its ending, by which ffmpeg knows what is wanted.
+    // The file is in the frame folder. ffmpeg takes the format from its extension.
     const Temporary made{frames.folder / ("joined." + ending_of(film))}, said{frames.folder / "joined.log"},
         told{frames.folder / "joined.progress"};
     std::vector<std::string> words = join_words(frames, made.path.string());
-    // No date and no version: the same frames give the same file.
+    // No date and no version in the file, so that the same frames give the same bytes.
     words.insert(words.end() - 1,
                  {"-y", "-nostats", "-progress", "pipe:1", "-map_metadata", "-1", "-fflags", "+bitexact"});
     const int status = run(words, told.path, said.path, [&] {
@@ -157,21 +157,21 @@ std::string joined(const FrameSeries& frames, const std::string& film,
 void remove_frames(const fs::path& frames, std::size_t count) {
     std::error_code ignored;
     for (std::size_t i = 0; i < count; ++i) fs::remove(frames / (frame_name(i) + ".png"), ignored);
-    fs::remove(frames, ignored);  // not where something else is in it
+    fs::remove(frames, ignored);  // fails if something else is in it
 }
 
-// ---- a film in the making ----
+// ---- an animation being made ----
 
 namespace {
 
-// The program that this is, or that stands beside it.
+// The path of this program, or of `achilles` beside it.
 std::string program() {
     std::error_code problem;
     const fs::path self = fs::read_symlink("/proc/self/exe", problem);
     return (problem ? fs::path("achilles") : self.parent_path() / "achilles").string();
 }
 
-// A file that holds the text, under the name by which the system is known, in a folder of its own.
+// Writes the text to a file named after the system, in a new temporary folder.
 fs::path put_text(const std::string& name, const std::string& text) {
     std::string pattern = (fs::temp_directory_path() / "achilles-XXXXXX").string();
     if (::mkdtemp(pattern.data()) == nullptr) throw InputError(name, {}, "a temporary folder cannot be created");
@@ -203,7 +203,7 @@ FilmJob::FilmJob(std::string film, std::vector<std::string> words, const std::st
     ::posix_spawn_file_actions_addopen(&actions, 0, "/dev/null", O_RDONLY, 0);
     ::posix_spawn_file_actions_adddup2(&actions, out[1], 1);
     ::posix_spawn_file_actions_adddup2(&actions, err[1], 2);
-    // A group of its own: those that draw are stopped with it.
+    // A process group, so that its drawing processes are stopped with it.
     posix_spawnattr_t attributes;
     ::posix_spawnattr_init(&attributes);
     ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -236,7 +236,7 @@ void FilmJob::read(int descriptor, std::string& into) {
         into.append(part.data(), static_cast<std::size_t>(n));
 }
 
-// Lines of progress begin with a bracket; all others are problems.
+// Progress lines start with a bracket; all others are error messages.
 void FilmJob::take_lines() {
     for (std::size_t end = 0; (end = unread_.find('\n')) != std::string::npos; unread_.erase(0, end + 1)) {
         const std::string line = unread_.substr(0, end);

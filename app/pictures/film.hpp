@@ -1,4 +1,4 @@
-// An animation as one file, MP4 or GIF: numbered pictures that ffmpeg joins, where that is installed.
+// Animations as one file, MP4 or GIF: numbered pictures, joined by ffmpeg if it is installed.
 #pragma once
 
 #include <sys/types.h>
@@ -11,23 +11,23 @@
 
 namespace achilles {
 
-// Whether a name's ending says so.
+// True if the file extension is that of an animation.
 bool is_film(const std::string& file);
 
-// Whether ffmpeg is there to join one. need_film_joiner() throws InputError about an option where it is not; the advice is the
-// command that draws the frames of this film of the system.
+// Whether ffmpeg is installed. If it is not, need_film_joiner() throws InputError about `option`; its hint is the
+// command that draws the frames of this animation.
 bool has_film_joiner();
 void need_film_joiner(const std::string& option, const std::string& system, const std::string& film);
 
-// What --out of `achilles frames` names: a film that can be joined, or a folder. Throws InputError for a film where there is no
-// ffmpeg, and for an ending of another kind of file, unless a folder of that name is there.
+// Checks the --out argument of `achilles frames`: an animation or a folder. Throws InputError for an animation without
+// ffmpeg, and for another file extension, unless a folder of that name exists.
 void check_frames_out(const std::string& out, const std::string& system);
 
-// Where the pictures of a film are drawn: "film.frames" beside film.mp4.
+// Where the frames of an animation are drawn: "film.frames" beside film.mp4.
 std::filesystem::path frames_folder(const std::string& film);
 
-// The words of the command that joins the frames of a folder. MP4: H.264 of an even number of pixels, which every player
-// shows. GIF: with a palette of its own, at most 50 pictures a second, played without end.
+// The ffmpeg command that joins the frames of a folder. MP4: H.264 with even numbers of pixels, which all players
+// support. GIF: its own palette, at most 50 frames per second, endless loop.
 struct FrameSeries {
     std::filesystem::path folder;
     double fps = 30.0;
@@ -35,21 +35,20 @@ struct FrameSeries {
 };
 std::vector<std::string> join_words(const FrameSeries& frames, const std::string& film);
 
-// Runs it and returns the file's bytes; nothing but the frames stays in the folder. `done` hears now and then how many frames are
-// joined. Throws std::runtime_error, with what
-// ffmpeg said, where it fails, and where there is none.
+// Runs the command and returns the bytes of the file; only the frames remain in the folder. Calls `done` repeatedly
+// with the number of frames joined so far. Throws std::runtime_error with ffmpeg's message if it fails or is missing.
 std::string joined(const FrameSeries& frames, const std::string& film,
                    const std::function<void(std::size_t frames)>& done = {});
 
-// Takes the frames of a film, and the folder where nothing else is in it.
+// Deletes the frames of an animation, and the folder if nothing else is in it.
 void remove_frames(const std::filesystem::path& frames, std::size_t count);
 
-// A film in the making: `achilles frames` in a process of its own, so that a window goes on meanwhile, and may stop it.
+// An animation being made by `achilles frames` in another process, so that the window stays responsive and can stop it.
 
 class FilmJob {
  public:
-    // Begins it. `words` follow the program's name; `system_text`, where it is not empty, is put into a file of the name
-    // `words[1]` in a folder of its own until the job ends. Throws InputError if no process can be had.
+    // Starts it. `words` are the arguments of the program. A nonempty `system_text` is written to a temporary file
+    // named `words[1]`, which lasts as long as the job. Throws InputError if the process cannot be started.
     FilmJob(std::string film, std::vector<std::string> words, const std::string& system_text);
     // Stops it.
     ~FilmJob();
@@ -57,20 +56,20 @@ class FilmJob {
     FilmJob& operator=(const FilmJob&) = delete;
 
     const std::string& film() const { return film_; }
-    // Takes in what the process has said. Whether it has ended.
+    // Reads the output of the process. Returns true if it has ended.
     bool update();
-    // Until it has ended.
+    // Waits for its end.
     void wait();
-    // It ends, with all that it began; frames that it drew go.
+    // Kills the process group and deletes the frames it drew.
     void cancel();
 
-    // "120/300 frames  11.3/s  0:16 left"; empty before the first, "joining" at the end.
+    // "120/300 frames  11.3/s  0:16 left"; empty before the first frame, "joining" at the end.
     const std::string& progress() const { return progress_; }
-    double share() const { return share_; }  // of the frames, 0 to 1
-    int status() const { return status_; }   // of the process; of one that was stopped -1
-    bool is_made() const;                    // the film, be it that the run stopped early
-    bool has_frames() const;                 // these alone: they could not be joined
-    // What it said besides: where the film is, or what went wrong.
+    double share() const { return share_; }  // fraction of the frames done, 0 to 1
+    int status() const { return status_; }   // exit status of the process; -1 if it was stopped
+    bool is_made() const;                    // the animation exists, even if the run stopped early
+    bool has_frames() const;                 // only frames exist: they could not be joined
+    // Its other output: where the animation is, or what went wrong.
     const std::string& said() const { return said_; }
 
  private:
@@ -79,8 +78,8 @@ class FilmJob {
     void finish(int status);
 
     std::string film_;
-    std::filesystem::path folder_;  // of the text; empty: none
-    bool had_frames_ = false;       // from an earlier attempt, by whoever made it
+    std::filesystem::path folder_;  // of the temporary system file; empty: none
+    bool had_frames_ = false;       // frames of an earlier attempt existed
     pid_t process_ = -1;            // -1: it has ended
     int out_ = -1, err_ = -1;
     std::string said_, unread_, progress_, problems_;

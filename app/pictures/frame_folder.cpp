@@ -31,7 +31,7 @@ OutputFolder::OutputFolder(fs::path folder) : path_(std::move(folder)) {
 
 OutputFolder::~OutputFolder() {
     std::error_code ignored;
-    if (made_) fs::remove(path_, ignored);  // only if it is empty
+    if (made_) fs::remove(path_, ignored);  // succeeds only if it is empty
 }
 
 namespace {
@@ -39,7 +39,7 @@ namespace {
 constexpr std::string_view prefix = "frame_", picture_ending = ".png", unfinished = ".png.part";
 constexpr std::size_t digits = 5, largest_frame = std::size_t{1} << 30;  // bytes
 
-// The number in "frame_00042.png" and what comes after the digits; nothing for another name.
+// The number in "frame_00042.png" and the text after the digits; empty for another name.
 std::optional<std::pair<std::size_t, std::string>> parsed(const std::string& name) {
     if (name.rfind(prefix, 0) != 0 || name.size() < prefix.size() + digits) return std::nullopt;
     std::size_t number = 0;
@@ -50,8 +50,8 @@ std::optional<std::pair<std::size_t, std::string>> parsed(const std::string& nam
     return std::pair{number, name.substr(prefix.size() + digits)};
 }
 
-// Whether a picture is the frame with these notes; false if it is cut off or damaged, as an interrupted copy is. Throws
-// InputError if it is something else.
+// True if the file is the frame with these notes; false if it is truncated or damaged, e.g. by an interrupted copy.
+// Throws InputError if it is a different picture.
 bool is_frame(const fs::path& file, const Notes& notes) {
     const std::string bytes = read_text(file, largest_frame);
     const auto refuse = [&](const std::string& why) {
@@ -84,7 +84,7 @@ std::string frame_name(std::size_t number) { return fmt::format("{}{:05}", prefi
 
 FrameFolder::FrameFolder(fs::path folder) : folder_(std::move(folder)) {
     lock_ = ::open(folder_.path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    // Some file systems know no locks: then nobody is kept out.
+    // Some file systems do not support locks; then other processes are not kept out.
     if (lock_ >= 0 && ::flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
         ::close(lock_);
         throw InputError(folder_.path().string(), {}, "another process is drawing into this folder");
@@ -107,7 +107,7 @@ std::vector<std::size_t> FrameFolder::missing(std::size_t count,
         if (name->second == picture_ending) frames.emplace_back(name->first, entry.path());
         if (name->second.rfind(unfinished, 0) == 0) waste.push_back(entry.path());
     }
-    std::sort(frames.begin(), frames.end());  // the first that is wrong is the one that is told
+    std::sort(frames.begin(), frames.end());  // so that the first bad file is the one reported
     for (const auto& [number, path] : frames) {
         try {
             const bool whole = is_frame(path, notes_of(frame_name(number)));

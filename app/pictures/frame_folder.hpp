@@ -1,4 +1,4 @@
-// Folders that pictures are written into.
+// Folders for pictures.
 #pragma once
 
 #include <filesystem>
@@ -10,11 +10,11 @@
 
 namespace achilles {
 
-// A folder for what a command writes: made where it is missing, and taken away again if nothing came into it.
+// An output folder: created if missing, and removed again if it stays empty.
 
 class OutputFolder {
  public:
-    // Throws InputError if it cannot be made.
+    // Throws InputError if it cannot be created.
     explicit OutputFolder(std::filesystem::path folder);
     ~OutputFolder();
     OutputFolder(const OutputFolder&) = delete;
@@ -27,31 +27,31 @@ class OutputFolder {
     bool made_ = false;
 };
 
-// The folder that numbered pictures of an animation are drawn into: what is there of the same run stays.
+// The folder for the numbered pictures of an animation. Valid pictures of the same animation are kept.
 
 // "frame_00042".
 std::string frame_name(std::size_t number);
-constexpr std::size_t most_frames = 100000;  // with five digits, as ffmpeg is told
+constexpr std::size_t most_frames = 100000;  // five digits, as in the file pattern for ffmpeg
 
 class FrameFolder {
  public:
-    // Makes the folder where it is missing, and keeps other processes of this program out while it lives. Throws
-    // InputError if it cannot be made or is in use.
+    // Creates the folder if missing and locks it against other processes of this program. Throws InputError if it
+    // cannot be created or is in use.
     explicit FrameFolder(std::filesystem::path folder);
     ~FrameFolder();
     FrameFolder(const FrameFolder&) = delete;
     FrameFolder& operator=(const FrameFolder&) = delete;
 
-    // Which of the frames 0 to count - 1 are still to be drawn: all but those that are there, whole, with these notes.
-    // What an interrupted run left half-written goes. A picture under such a name that is of another run is bad input
-    // (throws InputError), or with `overwrite` drawn anew, and taken away if its number is too high.
+    // Frames among 0 to count - 1 that must still be drawn: all except complete ones with the given notes. Removes
+    // partly written files of an interrupted run. If a picture with such a name belongs to another run, throws
+    // InputError, or with `overwrite` draws it again, and deletes it if its number is too high.
     std::vector<std::size_t> missing(std::size_t count, const std::function<Notes(const std::string& name)>& notes_of,
                                      bool overwrite) const;
 
     std::filesystem::path file(std::size_t number) const { return folder_.path() / (frame_name(number) + ".png"); }
-    // Puts a picture there, whole or not at all. Throws InputError if it cannot be written.
+    // Writes a picture atomically. Throws InputError if it cannot be written.
     void write(std::size_t number, std::string png) const;
-    // Tries whether that will be possible.
+    // Tests whether write() would succeed.
     void try_to_write(std::size_t number) const;
 
  private:

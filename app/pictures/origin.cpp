@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::string_view bare_letters = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%^";
 
-// Takes a word that shell_word() wrote off the text's front.
+// Removes the first word, as written by shell_word(), from the text.
 std::string take_word(std::string_view& text) {
     const auto refuse = [] { return std::runtime_error("the command stored in it is damaged: an incomplete word"); };
     std::string word;
@@ -41,7 +41,7 @@ std::string take_word(std::string_view& text) {
     }
 }
 
-constexpr std::string_view software_key = "Software", title_key = "Title";  // PNG's own
+constexpr std::string_view software_key = "Software", title_key = "Title";  // standard PNG keywords
 constexpr std::string_view command_key = "Achilles Command", picture_key = "Achilles Picture";
 
 std::string key_of(Source::Kind kind) {
@@ -54,7 +54,7 @@ std::string key_of(Source::Kind kind) {
     return {};
 }
 
-// "m = 1, g = 9.81, e = 0.5" in the shortest digits that read back the same.
+// "m = 1, g = 9.81, e = 0.5", in the shortest form that reads back to the same values.
 std::string parameters_text(const Trajectory& trajectory) {
     const SystemDescription& description = trajectory.model->description();
     const Run& run = trajectory.run;
@@ -98,7 +98,7 @@ std::string shell_word(const std::string& word) {
 
 namespace {
 
-// Where a picture goes and how it is worked at, rather than what it shows.
+// Options for output files and execution that do not change the picture.
 bool is_where(const std::string& option) {
     return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite" ||
            option == "--progress" || option == "--csv" || option == "--json" || option == "--hdf5" ||
@@ -134,7 +134,7 @@ std::string command_line(const std::vector<std::string>& words) {
         const std::string name = words[i].substr(0, words[i].find('='));
         options_end = options_end || words[i] == "--";
         if (!options_end && is_where(name)) {
-            if (name == words[i] && !is_flag(name)) ++i;  // its value is the next word
+            if (name == words[i] && !is_flag(name)) ++i;  // skip its value, the next word
             continue;
         }
         kept.push_back(words[i]);

@@ -48,11 +48,11 @@ Figure empty_page() {
     return page;
 }
 
-// The panels of the paper's figure; the first four are of the ball.
+// The panels of the paper's figure; the first four show the ball.
 std::vector<Panel> paper_panels(const Trajectory& ball, const Trajectory& pendulum) {
     const Theme theme = light_theme();
     Framing framing;
-    framing.for_print = true;  // the path with h = 0 in it, as `figure` draws it
+    framing.for_print = true;  // the path panel then includes h = 0, as in `figure`
     std::vector<Panel> panels;
     const std::vector<Sample> of_ball = plot_samples(ball), of_pendulum = plot_samples(pendulum);
     const auto add = [&](const Trajectory& run, std::span<const Sample> samples, const ViewDescription& what) {
@@ -71,7 +71,7 @@ Curve level(const Panel& panel, double y, const std::string& label, const Color&
     return {label, {color, 1.4, std::move(dash)}, {{panel.x.low, y}, {panel.x.high, y}}};
 }
 
-// A velocity threshold in place of a proof: the time of rest it leads to, for every threshold from 0 to 1.
+// Time of rest from a velocity threshold instead of a certificate, for thresholds from 0 to 1 m/s.
 Panel threshold_panel(const Trajectory& ball) {
     constexpr int parts = 200;
     const Theme theme = light_theme();
@@ -89,7 +89,7 @@ Panel threshold_panel(const Trajectory& ball) {
     for (int i = 1; i <= parts; ++i) {
         const double speed = static_cast<double>(i) / parts;
         const double t = rest_time_with_threshold(ball, speed);
-        // It jumps wherever one impact more is below the threshold.
+        // The curve jumps where one more impact falls below the threshold.
         if (!cut.points.empty() && std::isfinite(t) && std::abs(t - cut.points.back().y) > 1e-3)
             cut.points.push_back({speed - 0.5 / parts, cut.points.back().y}),
                 cut.points.push_back({speed - 0.5 / parts, t});
@@ -104,7 +104,7 @@ Panel threshold_panel(const Trajectory& ball) {
     return panel;
 }
 
-// The widths of all certified intervals against the speed of the impact at the cut.
+// Widths of all certified intervals over the impact speed at the cut.
 Panel widths_panel(const Trajectory& ball, const Trajectory& pendulum) {
     const Theme theme = light_theme();
     constexpr std::array names{"first", "second", "third"};
@@ -154,7 +154,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
         Figure single = empty_page();
         single.panels.push_back(panels[i]);
         dress_for_print(single, std::span(runs).subspan(i < 4 ? 0 : 1, 1));
-        // What is true to shape is long and low here: no page is left empty above it.
+        // Panels with equal axes are wide and low here: use a smaller height.
         const int height = panels[i].equal_axes ? 380 : 600;
         figures.push_back({"fig4" + panels[i].title.substr(1, 1), 900, height, single});
     }
@@ -198,7 +198,8 @@ std::vector<std::vector<CertifiedWidth>> certified_widths(const Trajectory& traj
 double rest_time_with_threshold(const Trajectory& ball, double speed) {
     Run run = ball.run;
     run.options.truncation.conditions =
-        Conditions::paper;  // the sharp ones would end the bouncing before the threshold
+        // The sharp conditions would end the impact sequence before the threshold.
+        Conditions::paper;
     double elapsed = 0.0;
     for (int zeno = 0; zeno < 2; ++zeno) {
         run.options.end_time = ball.run.options.end_time - elapsed;
@@ -223,10 +224,10 @@ double rest_time_with_threshold(const Trajectory& ball, double speed) {
 
 namespace {
 
-// A number of the paper's beside ours.
+// A number of the paper for comparison with ours.
 struct Stated {
     std::string what, paper, unit;
-    double stated;  // as a number; NaN where the paper has none
+    double stated;  // as a number; NaN if the paper gives none
     std::optional<double> ours;
     std::string why;
 };
@@ -239,7 +240,7 @@ std::string row(const std::string& what, const std::string& paper, const std::st
 
 std::string row(const Stated& s) {
     const std::string unit = s.unit.empty() ? "" : " " + s.unit;
-    const double zero = 0.0;  // no "-0"
+    const double zero = 0.0;  // avoids printing "-0"
     return row(s.what, s.paper, s.ours ? fmt::format("{:.9g}{}", *s.ours + zero, unit) : "none",
                s.ours && std::isfinite(s.stated) ? fmt::format("{:+.3g}{}", *s.ours - s.stated + zero, unit) : "",
                s.why);
@@ -254,7 +255,7 @@ std::optional<double> degrees_at(const Event* event) {
     return std::abs(angle) < 1e-9 ? 0.0 : angle;
 }
 
-// What is proved with the sharp conditions and the system's own tolerances.
+// The certified intervals for the sharp conditions and the system's own tolerances.
 std::string intervals_text(const std::string& name, const Trajectory& trajectory) {
     Run run = trajectory.run;
     run.options.truncation.conditions = Conditions::sharp;

@@ -23,14 +23,14 @@
 #include "system/description.hpp"
 #include "system/input_error.hpp"
 
-extern char** environ;  // NOLINT: POSIX has it here
+extern char** environ;  // NOLINT: declared by POSIX
 
 namespace achilles {
 
 namespace {
 
 constexpr std::string_view written_formats[] = {"png", "svg", "pdf"};
-// What a person may hope for: bytes of another kind in such a file would be a trap.
+// Formats that are not supported. They are rejected, since files with a misleading extension would be a trap.
 constexpr std::string_view other_formats[] = {"jpg", "jpeg", "gif", "mp4", "bmp", "webp", "tif", "tiff", "eps", "ps"};
 
 template <std::size_t count>
@@ -102,7 +102,7 @@ std::string content(std::FILE* file) {
     return text;
 }
 
-// The caller's environment, with the date that a PDF has: none that tells one run from another.
+// The caller's environment with a fixed PDF date, so that equal inputs give equal files.
 std::vector<char*> environment() {
     static std::string date = "SOURCE_DATE_EPOCH=0";
     std::vector<char*> all;
@@ -114,13 +114,13 @@ std::vector<char*> environment() {
 }
 
 struct Written {
-    std::string pdf, problems;  // the first is empty where there is none
+    std::string pdf, problems;  // `pdf` is empty on failure
 };
 
-// What the writer makes of an SVG in this format, so many points wide.
+// Converts an SVG to the given format, `points` wide.
 Written written(std::FILE* svg, const std::string& format, double points) {
     const File out = temporary(), problems = temporary();
-    ::lseek(::fileno(svg), 0, SEEK_SET);  // also after a writer that has read
+    ::lseek(::fileno(svg), 0, SEEK_SET);  // an earlier call may have moved the file position
     std::string wide = fmt::format("--width={:.3f}pt", points), kind = "--format=" + format;
     std::string name = writer, ratio = "--keep-aspect-ratio", unlimited = "--unlimited";
     std::array<char*, 6> words{name.data(), kind.data(), ratio.data(), unlimited.data(), wide.data(), nullptr};
@@ -153,7 +153,8 @@ std::string pdf_of_svg(const std::string& svg, double width_mm) {
     if (std::fwrite(svg.data(), 1, svg.size(), in.get()) != svg.size() || std::fflush(in.get()) != 0)
         throw std::runtime_error("a temporary file cannot be written");
     const double points = width_mm / 25.4 * 72.0;
-    // Cairo 1.18 compresses what notes are added to, but in PDF 1.4; where that cannot be asked for, cairo is older.
+    // Cairo 1.18 compresses the objects to which notes are appended, except in PDF 1.4. An rsvg-convert without that
+    // option uses an older cairo, which does not.
     std::string pdf = written(in.get(), "pdf1.4", points).pdf;
     if (!pdf.empty()) return pdf;
     Written last = written(in.get(), "pdf", points);
@@ -165,7 +166,7 @@ std::string pdf_of_svg(const std::string& svg, double width_mm) {
 namespace {
 
 constexpr double inch = 25.4, point = inch / 72.0;  // mm
-constexpr int most_pixels = 16384;                  // along a side, as --size has it
+constexpr int most_pixels = 16384;                  // per side, as for --size
 
 void need(bool is_good, const std::string& what, const char* name, double value, double low, double high,
           const char* unit) {
@@ -194,7 +195,7 @@ void check(const PaperSize& page, const std::string& what) {
         throw InputError(what, {}, "a height, a font size or a resolution needs a width in mm");
 }
 
-// No picture is a strip.
+// The shape is clamped to avoid very flat pictures.
 double height_of(const PaperSize& page, double shape) {
     return page.height > 0.0 ? page.height : page.width / std::clamp(shape, tallest_shape, 3.0);
 }

@@ -1,4 +1,4 @@
-// The formats of pictures: which one a file's name says, and PDF, which another program writes.
+// Picture formats and sizes: format from a file name, PDF output by an external program, and sizes on paper.
 #pragma once
 
 #include <span>
@@ -9,71 +9,71 @@
 
 namespace achilles {
 
-// The ending of a name in small letters, without its dot: "svg"; empty where it has none.
+// The file extension in lower case without the dot: "svg"; empty if there is none.
 std::string ending_of(const std::string& file);
 
-// "png", "svg" or "pdf", by the ending, in letters of either case; empty: the name says none of these.
+// "png", "svg" or "pdf", from the extension in any case; empty for other extensions.
 std::string ending_of_picture(const std::string& file);
 
-// What --out will hold: `wanted`, or where that is empty what its name says. Standard output, `-`, says nothing and is a PNG
-// then. Throws InputError where the name says another kind than is wanted, or none is wanted and it says none; `advice` is
-// added to what would be right.
+// The format of --out: `wanted` or, if that is empty, the format of the file extension; PNG for standard output, `-`.
+// Throws InputError if the extension contradicts `wanted`, or if neither determines a format. `advice` is appended to
+// the hint.
 std::string format_for(const std::string& out, const std::string& wanted, const std::string& advice = {});
 
-// Programs that others have written and that may be installed: asked for at run time, never needed.
+// Optional external programs, looked up at run time.
 
-// The path of a program of that name, in the folders of PATH; empty where there is none.
+// The path of a program in the folders of PATH; empty if it is not found.
 std::string find_program(const std::string& name);
 
-// A picture for print as PDF, by librsvg's program from the SVG that we write.
+// PDF output: librsvg's program converts our SVG.
 
-// Throws InputError for `file` where rsvg-convert is not installed: before the work.
+// Throws InputError for `file` if rsvg-convert is not installed. Call it before the work.
 void need_pdf_writer(const std::string& file);
 
-// How wide a picture of so many pixels is on paper: 1200 pixels are 170 mm, as on a page.
+// Width on paper of a picture with this many pixels, mm: 1200 pixels are 170 mm, a page width.
 constexpr double page_mm(int width) { return width * 170.0 / 1200.0; }
 
-// The PDF of an SVG file, so many millimetres wide. The same SVG gives the same bytes; notes of the SVG are not in them. It is PDF 1.4 where rsvg-convert can be asked for that. Throws
-// std::runtime_error if rsvg-convert cannot do it.
+// Converts an SVG file to a PDF of the given width. The same SVG gives the same bytes. Notes of the SVG are not kept.
+// The result is PDF 1.4 if rsvg-convert supports that. Throws std::runtime_error if the conversion fails.
 std::string pdf_of_svg(const std::string& svg, double width_mm);
 
-// How large a picture is on paper: millimetres and points in place of pixels.
+// Size of a picture on paper: millimeters and points instead of pixels.
 
-// What is 0 follows from the rest; a width of 0: the picture is measured in pixels, as ever.
+// A field of 0 gets its default. A width of 0: the picture is measured in pixels.
 struct PaperSize {
     double width = 0.0, height = 0.0;  // mm
-    double font = 0.0;                 // pt, of the text of axes; default_font
-    double dpi = 0.0;                  // pixels an inch, of a PNG; default_dpi
+    double font = 0.0;                 // pt, axis text; default_font
+    double dpi = 0.0;                  // pixels per inch of a PNG; default_dpi
 };
 constexpr double default_font = 8.0, default_dpi = 300.0;
-constexpr double least_width = 20.0, most_width = 1200.0;  // mm; A0 lies within
+constexpr double least_width = 20.0, most_width = 1200.0;  // mm; includes A0
 constexpr double least_font = 3.0, most_font = 72.0, least_dpi = 50.0, most_dpi = 1200.0;
 
-// Throws InputError, about `what`, for a number that no page has.
+// Throws InputError, about `what`, for a size outside these limits.
 void check(const PaperSize& page, const std::string& what);
 
-// The size in pixels of such a picture as "png", "svg" or "pdf"; its scale makes a text of `text_size` pixels as large as the
-// page's font. `shape`, width over height, makes a height where the page has none. What is drawn once for all sizes (SVG,
-// PDF) counts 1200 pixels for 170 mm. Throws InputError for more pixels than a PNG may have.
+// The size in pixels of a picture in format "png", "svg" or "pdf". Its scale draws text of `text_size` pixels in the
+// page's font size. `shape`, width over height, determines the height if the page has none. Vector formats (SVG, PDF)
+// use 1200 pixels per 170 mm. Throws InputError if a PNG would have too many pixels.
 PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape);
 
-// The page as such a picture has it: a resolution is for pixels alone.
+// The page settings that apply to this format: the resolution only to PNG.
 PaperSize page_for(PaperSize page, const std::string& format);
 
-// Width over height of the highest picture that gets its height from its plots.
+// Width over height of the tallest picture whose height follows from its plots.
 constexpr double tallest_shape = 0.7;
-// mm: the page's own, or where that is 0 what its width and this shape make.
+// Height in mm: the page's own or, if that is 0, the width divided by this shape.
 double height_of(const PaperSize& page, double shape);
 
 // "85 × 57 mm, 1004 × 669 px at 300 dpi".
 std::string told(const PaperSize& page, const std::string& format, double shape);
 
-// The shape of a figure whose plots are two thirds as high as wide, and of a mechanism.
+// Width over height of a figure whose plots have height/width = 2/3, and of a mechanism.
 double shape_of(const Figure& figure);
 double shape_of(int panels, int columns);
 double shape_of(const Drawing& world);
 
-// The widths of columns and pages that journals ask for.
+// Column and page widths that journals require.
 struct ColumnWidth {
     std::string_view name;
     double width, font;  // mm, pt

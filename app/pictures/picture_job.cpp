@@ -21,7 +21,7 @@ PictureJob::PictureJob(const Origin& origin)
     : inputs_(origin.sources, origin.command), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
 void PictureJob::check_size(int width, int height) const {
-    constexpr double most_pixels = 32e6;  // some seconds and 400 MB
+    constexpr double most_pixels = 32e6;  // takes a few seconds and 400 MB
     if (reproduces_ && double{1} * width * height > most_pixels)
         throw InputError({}, {}, fmt::format("a picture of {} x {} pixels is too large to reproduce", width, height),
                          fmt::format("at most {:.0f} million pixels are drawn for a picture of unknown source; to make "
@@ -91,7 +91,7 @@ std::string PictureSurface::png(const FrameFunction& draw, const Notes& notes) {
 
 namespace {
 
-// For print: curves twice as fine as a screen's.
+// Print quality: curves are sampled twice as finely as on a screen.
 SurfaceOptions surface_for(const PictureSize& size, double text_size, const Color& background) {
     SurfaceOptions options;
     options.width = size.width;
@@ -107,7 +107,7 @@ Rectangle area_of(const PictureSize& size) {
     return {0.0F, 0.0F, static_cast<float>(size.width), static_cast<float>(size.height)};
 }
 
-// A PNG for paper says how large its pixels are.
+// Stores the resolution in a PNG that has a size on paper.
 std::string on_paper(std::string png, const PictureSize& size) {
     return size.width_mm > 0.0 ? with_resolution(png, size.width / size.width_mm) : png;
 }

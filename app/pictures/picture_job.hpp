@@ -1,5 +1,5 @@
-// What the commands that make pictures share: where they read from and where pictures go. `reproduce` runs the same
-// commands in a job of its own, which reads from a picture and keeps the one that is asked for.
+// Input and output shared by the commands that make pictures. `reproduce` runs the same commands with a job that reads
+// its inputs from a picture and keeps only the requested output.
 #pragma once
 
 #include <functional>
@@ -19,37 +19,37 @@ struct Sweep;
 
 class PictureJob {
  public:
-    // For a command line: from the disk, into files.
+    // For a command line: reads from the disk and writes files.
     explicit PictureJob(const std::vector<std::string>& words);
-    // For a picture made before.
+    // For a picture made before: reads the sources stored in it.
     explicit PictureJob(const Origin& origin);
 
     Inputs& inputs() { return inputs_; }
     bool reproduces() const { return reproduces_; }
 
-    // What such a picture carries.
+    // The notes to store in a picture.
     Notes notes_of(const std::string& picture, const std::vector<Shown>& runs) const;
 
-    // A stranger's picture is made again up to a size. Throws InputError for so many pixels.
+    // Throws InputError if a reproduced picture would have too many pixels, since it may come from an untrusted source.
     void check_size(int width, int height) const;
-    // The same of a run, of a sweep, and of the rows that it has come to. Throw Forbidden.
+    // Budget checks for a run, a sweep, and the rows of a sweep so far. Throw Forbidden.
     void check(const Options& options) const;
     void check(const Sweep& sweep) const;
     void check_rows(std::uint64_t rows) const;
-    // Tried before the work: a path that cannot be written is bad input, not a loss at the end. Throws InputError.
+    // Registers an output and checks that it can be written, before the work starts. Throws InputError if not.
     void add(const std::string& path);
-    // What the file will hold. `make` is not called for a picture nobody asked for.
+    // Adds a picture to the output. `make` returns the content and is called only if this picture is wanted.
     using Make = std::function<std::string(const Notes&)>;
     void put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs, const Make& make);
-    // Of a command that writes its pictures itself: what `reproduce` wants.
+    // For a command that writes its pictures itself: the picture that `reproduce` wants.
     void keep(std::string picture) { made_ = std::move(picture); }
     void put_text(const std::string& path, const std::string& text);
-    // Throws InputError where a path is that of a file that was added: it cannot be written for another reason as well.
+    // Throws InputError if a registered output has this path, which is also written for another purpose.
     void refuse_output(const std::string& path) const;
-    // Writes all, or nothing. What was read is no output.
+    // Writes all outputs, or none. Outputs must not be inputs.
     void commit();
 
-    // What `reproduce` wants: nothing if the command made no such picture.
+    // The picture that `reproduce` wants; empty if the command did not make it.
     const std::optional<std::string>& made() const { return made_; }
 
  private:
@@ -60,7 +60,7 @@ class PictureJob {
     std::optional<std::string> made_;
 };
 
-// Pictures of one size, one after the other: whoever fills the frame draws into its background list.
+// An off-screen surface for pictures of one size. Each frame is drawn into ImGui's background draw list.
 class PictureSurface {
  public:
     explicit PictureSurface(const SurfaceOptions& options);
@@ -70,22 +70,22 @@ class PictureSurface {
     Offscreen surface_;
 };
 
-// A figure as a PNG or SVG file with these notes. Throws std::runtime_error where it cannot be drawn.
+// Size and rendering of a picture as PNG or SVG with notes. The functions throw std::runtime_error if drawing fails.
 struct PictureSize {
     int width = 1200, height = 800;  // pixels
     double scale = 1.0;
-    double width_mm = 0.0;  // on paper, which the file says; 0: as its format has it
+    double width_mm = 0.0;  // width on paper, stored in the file; 0: the default of the format
 };
 std::string png_of(const Figure& figure, const PictureSize& size, const Notes& notes);
 std::string svg_of(const Figure& figure, const PictureSize& size, const Notes& notes);
-// By the format's name: "png", "svg" or "pdf".
+// `format`: "png", "svg" or "pdf".
 std::string picture_of(const Figure& figure, const PictureSize& size, const Notes& notes, const std::string& format);
-// The same of a mechanism, over this colour; where that is clear there is no background.
+// The same for a mechanism on this background color; a transparent color means no background.
 std::string picture_of(const Drawing& world, const Color& background, const PictureSize& size, const Notes& notes,
                        const std::string& format);
 
-// The views of these names, in this order. If none is named all, those over time first: their panels share an axis.
-// Throws InputError for a name that is none.
+// The views of these names, in this order. Without names: all views, those over time first because their panels share
+// an axis. Throws InputError for an unknown name.
 std::vector<ViewDescription> views_of(const SystemDescription& description, const std::vector<std::string>& names);
 
 }  // namespace achilles

@@ -21,15 +21,15 @@ namespace achilles {
 
 namespace {
 
-// What a process says through its pipe: one `task_done` for each task; after `task_failed`, until the pipe's end, what kind of
-// problem it is, then the file and the message of what went wrong, each ended by a zero byte.
+// Protocol of the pipe from a worker: one `task_done` per task. After `task_failed`: the kind of error, then the file
+// and the message, each terminated by a zero byte, until the end of the pipe.
 constexpr char task_done = '.', task_failed = '!';
 constexpr char of_input = 'i', of_memory = 'm';
 
 using Counter = std::atomic<std::size_t>;
-static_assert(Counter::is_always_lock_free);  // it is shared by processes
+static_assert(Counter::is_always_lock_free);  // required, since processes share it
 
-// The number of the next task, in memory that all processes see.
+// The number of the next task, in memory shared by all processes.
 class SharedCounter {
  public:
     SharedCounter()
@@ -46,7 +46,7 @@ class SharedCounter {
     void* memory_;
 };
 
-// False if nobody listens any more.
+// Writes to the pipe. Returns false if the reader has closed it.
 bool say(int pipe, const char* text, std::size_t size) {
     while (size > 0) {
         const ssize_t count = ::write(pipe, text, size);
@@ -63,7 +63,7 @@ void say_problem(int pipe, char kind, const std::string& file, const std::string
     say(pipe, text.data(), text.size());
 }
 
-// The life of one of the processes.
+// Main function of a worker process.
 void work(std::size_t count, Counter& next, int pipe, const std::function<std::function<void(std::size_t)>()>& begin) {
     try {
         std::function<void(std::size_t)> task;
@@ -90,7 +90,7 @@ void work(std::size_t count, Counter& next, int pipe, const std::function<std::f
 struct Process {
     pid_t id = 0;
     int pipe = -1;
-    std::string said;  // after task_failed
+    std::string said;  // text after task_failed
     bool failed = false;
 };
 
@@ -98,13 +98,13 @@ Process fork_process(std::size_t count, Counter& next, const std::vector<Process
                      const std::function<std::function<void(std::size_t)>()>& begin) {
     int ends[2];
     if (::pipe(ends) != 0) throw std::bad_alloc();
-    std::fflush(nullptr);  // or what is waiting would be written by both
+    std::fflush(nullptr);  // otherwise both processes would write the buffered output
     const pid_t id = ::fork();
     if (id == 0) {
         ::close(ends[0]);
         for (const Process& other : others) ::close(other.pipe);
         work(count, next, ends[1], begin);
-        ::_exit(0);  // what the parent has opened is the parent's to close
+        ::_exit(0);  // skip cleanup: open resources belong to the parent
     }
     ::close(ends[1]);
     if (id < 0) {
@@ -114,7 +114,7 @@ Process fork_process(std::size_t count, Counter& next, const std::vector<Process
     return {id, ends[0], {}, false};
 }
 
-// Takes what a process says; counts the tasks. False at its end.
+// Reads the output of a worker and counts finished tasks. Returns false at its end.
 bool listen(Process& process, std::size_t& done) {
     char buffer[4096];
     const ssize_t count = ::read(process.pipe, buffer, sizeof buffer);
@@ -130,7 +130,7 @@ bool listen(Process& process, std::size_t& done) {
     return count > 0;
 }
 
-// Until all have ended.
+// Reads from all workers until they have ended.
 std::size_t listen_to(std::vector<Process>& processes, const std::function<void(std::size_t)>& told) {
     std::size_t done = 0;
     std::vector<pollfd> ears;
@@ -140,7 +140,7 @@ std::size_t listen_to(std::vector<Process>& processes, const std::function<void(
         const std::size_t before = done;
         for (std::size_t i = 0; i < ears.size(); ++i) {
             if (ears[i].fd < 0 || ears[i].revents == 0 || listen(processes[i], done)) continue;
-            ears[i].fd = -1;  // poll passes over it
+            ears[i].fd = -1;  // poll ignores it
             --talking;
         }
         if (done > before) told(done);
@@ -148,7 +148,7 @@ std::size_t listen_to(std::vector<Process>& processes, const std::function<void(
     return done;
 }
 
-// All of them, with the signal that ended one.
+// Waits for all workers. Returns the signal that killed one of them, or 0.
 int wait_for(const std::vector<Process>& processes) {
     int signal = 0;
     for (const Process& process : processes) {
@@ -171,7 +171,7 @@ CrewOutcome share_work(std::size_t count, int jobs, const std::function<std::fun
         for (int i = 0; i < jobs && static_cast<std::size_t>(i) < count; ++i)
             processes.push_back(fork_process(count, *next, processes, begin));
     } catch (const std::bad_alloc&) {
-        // With fewer than wished for it only takes longer.
+        // Fewer workers than requested only make it slower.
         if (processes.empty()) throw;
     }
     CrewOutcome outcome;

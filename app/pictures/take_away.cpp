@@ -32,7 +32,7 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
     for (const Command& step : steps) words.insert(words.end(), {"--do", to_text(step)});
 }
 
-// The plots as views of the system's file, where they are nothing else: no pinned run stands behind them, nor a proof.
+// The plots expressed as views of the system's file. Empty if that is not possible, e.g. with pinned runs or a proof.
 std::optional<Words> views_of(const Session& session, const Plots& plots) {
     if (!session.pinned().empty() || session.proof() != nullptr) return std::nullopt;
     const auto& views = session.description().views;
@@ -80,7 +80,7 @@ void add_page(Words& words, const command::Export& what) {
     if (what.dark) words.emplace_back("--dark");
 }
 
-// What a picture of this session carries, that was made by these words.
+// The notes of a picture that these words produce from this session.
 Notes notes_of(const Session& session, Words words, const command::Export& what) {
     add_page(words, what);
     const std::string& name = session.system();
@@ -109,7 +109,7 @@ std::string mechanism_bytes(const Session& session, const command::Export& what,
                       notes_of(session, mechanism_words(session, session.system()), what), format);
 }
 
-// Of what cannot be drawn here (a library that is missing) only the message matters.
+// If drawing is not possible here (e.g. a missing library), only the message of the exception is kept.
 std::string drawn(const Session& session, const command::Export& what, const std::string& format) {
     check(page_of(what), what.file);
     if (format == "pdf") need_pdf_writer(what.file);
@@ -137,7 +137,8 @@ std::string bytes_of(const Session& session, const command::Export& what) {
                      ".journal (the session)");
 }
 
-// Which run is which: the present one is in ink, the others in their hues; so a dash alone tells a phase.
+// Distinguishes the runs: the current one in ink, the others in their hues. Within a run only the dash pattern marks
+// the phase.
 void name_runs(Figure& figure, const Session& session, const std::vector<const PinnedRun*>& pinned) {
     const Theme theme = light_theme();
     const std::vector<std::string> phases{legend_text(Phase::Kind::hybrid), legend_text(Phase::Kind::constrained)};
@@ -179,7 +180,7 @@ Drawing mechanism_of(const Session& session, const Theme& theme) {
     const Scene& scene = session.scene();
     const Sample& now = session.now();
     Drawing seen = session.limits();
-    const double width = 1000.0, shape = shape_of(seen);  // of a picture as the camera is told
+    const double width = 1000.0, shape = shape_of(seen);  // pixels of the picture, for the camera
     if (const auto look = scene.look()) {
         seen.x_low = look->x - 0.5 * look->width, seen.x_high = look->x + 0.5 * look->width;
         seen.y_low = look->y - 0.5 * look->width / shape, seen.y_high = look->y + 0.5 * look->width / shape;
@@ -237,7 +238,7 @@ void check_file(const command::Export& what) {
                          "export under another name, or overwrite it: export FILE overwrite");
 }
 
-// What a file holds; nothing where there is none.
+// Contents of a file; empty if it cannot be read.
 std::string held_by(const std::string& file) {
     try {
         return read_text(file);
@@ -286,7 +287,7 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
                   "--size", fmt::format("{}x{}", extent.width, extent.height), "--out", what.file, "--progress"});
     if (what.dark) words.emplace_back("--dark");
     if (what.overwrite) words.emplace_back("--overwrite");
-    // A text that no file holds goes into one.
+    // A text that differs from its file is passed in a temporary file.
     const std::string& text = session.description().source_text;
     return std::make_unique<FilmJob>(what.file, std::move(words),
                                      held_by(session.description().file) == text ? "" : text);
@@ -296,7 +297,7 @@ void take_away(const Session& session, const command::Export& what) {
     const std::string& file = what.file;
     check_file(what);
     OutputFiles files;
-    files.add(file);  // before the work
+    files.add(file);  // checked before the work
     files.put(file, bytes_of(session, what));
     files.commit();
 }

@@ -1,5 +1,5 @@
-// What a session gives away: its plots as a figure, its run as data, itself as a journal, and the command lines that
-// make the same.
+// Export of a session: its plots as a figure, its run as data, the session as a journal, and the command lines that
+// produce the same.
 #pragma once
 
 #include <memory>
@@ -12,39 +12,40 @@
 
 namespace achilles {
 
-// Plots of a session (all, or those of them that `plots` has) for print, the pinned runs that are shown behind them.
+// The plots of a session (all, or those in `plots`) for print, with the visible pinned runs behind them.
 Figure figure_of(const Session& session, const PublicationStyle& style);
 Figure figure_of(const Session& session, const Plots& plots, const PublicationStyle& style);
 
-// The mechanism at the present time, as much of the world as is looked at, with its trail where that is shown. Throws
-// InputError where the system draws none.
+// The mechanism at the current time in the current view, with its trail if that is shown. Throws InputError if the
+// system has no drawing.
 Drawing mechanism_of(const Session& session, const Theme& theme);
 
-// As large as the page says; without a width there as many pixels as `in_pixels`, its scale times publication_scale.
+// The size of a picture on the page or, if the page has no width, `in_pixels` with its scale times publication_scale.
 PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Figure& figure, const std::string& format);
 PictureSize size_of(const PaperSize& page, PictureSize in_pixels, const Drawing& world, const std::string& format);
 
-// The size of a figure, pixels, by which its curves are sampled: PublicationStyle::size. A page without a
-// height counts as the highest one, since the plots that set the height are not made yet. A printer resolves more than the
-// points that a page in a vector format is measured in.
+// The figure size in pixels for which curves are sampled: PublicationStyle::size. A page without a height counts as the
+// tallest one, since the height depends on plots that do not exist yet. Vector formats are sampled more finely than
+// their units, since printers resolve more.
 Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, const std::string& format);
 
-// Writes what the file's ending asks for: .svg, .png or .pdf the plots, one of them or the mechanism; .json or .csv the run; .journal the
-// session. Whole or not at all; over another file only with `overwrite`. Throws InputError.
+// Exports what the file extension selects: .svg, .png or .pdf the plots, one plot or the mechanism; .json or .csv the
+// run; .journal the session. The write is atomic; it replaces an existing file only with `overwrite`. Throws
+// InputError.
 void take_away(const Session& session, const command::Export& what);
 
-// Begins what an export to .mp4 or .gif asks for, in a process of its own: the mechanism in motion beside the plots, at most
-// `most_film_frames`. Throws InputError before anything is drawn where it cannot be made.
+// Starts an export to .mp4 or .gif in another process: the mechanism in motion beside the plots, at most
+// `most_film_frames` frames. Throws InputError before drawing if it is not possible.
 std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Export& what);
 constexpr double most_film_frames = 20000.0;
-// How many pictures that are, and how large.
+// Number and size of the frames of an animation.
 struct FilmExtent {
     double frames = 0.0;
     int width = 0, height = 0;  // pixels
 };
 FilmExtent extent_of(const Session& session, const command::Export& what);
 
-// The line for a shell that makes it: "figure" the plots, "run" the data, "explorer" all that is seen.
+// The shell command that reproduces `what`: "figure" the plots, "run" the data, "explorer" the session as shown.
 std::string command_for(const Session& session, const std::string& what);
 
 }  // namespace achilles

@@ -13,9 +13,9 @@ namespace achilles {
 
 namespace {
 
-constexpr double thumbnail_shape = 2.3;  // width over height, as wide as a card may be: the ground goes on to its sides
+constexpr double thumbnail_shape = 2.3;  // width over height of the widest card; the ground extends to its sides
 
-// Where the first bouncing has come to rest; else a third of the run.
+// Time of the first Zeno point; else a third of the run.
 double telling_time(const Trajectory& trajectory) {
     const auto zeno = std::find_if(trajectory.events.begin(), trajectory.events.end(),
                                    [](const Event& event) { return event.is_zeno(); });
@@ -26,13 +26,13 @@ double telling_time(const Trajectory& trajectory) {
 Thumbnail drawn(const std::filesystem::path& system) {
     const auto model = std::make_shared<const Model>(read_system(system));
     Run run = model->default_run();
-    run.options.max_impacts = std::min(run.options.max_impacts, 2000);  // nobody waits for a small picture
+    run.options.max_impacts = std::min(run.options.max_impacts, 2000);  // limits the computing time
     const Trajectory trajectory = simulate(model, run);
     const Mechanism mechanism(*model);
     if (mechanism.is_empty()) return {};
     const std::vector<Sample> samples = plot_samples(trajectory);
     const Sample now = Sampler(trajectory).at(telling_time(trajectory));
-    // As much of the world as was met until then.
+    // View of the part of the world used so far.
     std::vector<Sample> past;
     for (const Sample& sample : samples)
         if (sample.t <= now.t || past.size() < 2) past.push_back(sample);
@@ -78,7 +78,7 @@ void Thumbnails::update() {
     }
     if (wanted_.empty()) return;
     making_ = wanted_.front();
-    wanted_.clear();  // who is still looked for is asked for again
+    wanted_.clear();  // systems still visible are requested again in the next frame
     std::filesystem::path file;
     try {
         file = find_(making_);

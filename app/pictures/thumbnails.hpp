@@ -1,4 +1,4 @@
-// Small pictures of systems, made one after the other on a thread of their own when somebody looks for them, and kept.
+// Small pictures of systems for the gallery, computed on another thread when needed, and cached.
 #pragma once
 
 #include <filesystem>
@@ -15,23 +15,25 @@
 
 namespace achilles {
 
-// The mechanism where the first bouncing comes to rest, or after a third of a run without one, with the way until then.
+// The mechanism at the first Zeno point or, without one, after a third of the run, with its trail until then.
 struct Thumbnail {
-    Drawing light, dark;  // nothing in them: the system draws no mechanism, or cannot run
+    Drawing light, dark;  // empty if the system has no drawing or cannot run
 };
-// The same file gives the same picture. Never throws: what is wrong with a system is told where it is opened.
+// Deterministic: the same file gives the same picture. Never throws; errors are reported when the system is opened.
 Thumbnail thumbnail_of(const std::filesystem::path& system);
 
 class Thumbnails {
  public:
-    // `find` leads from a name to a file. `waits`: each is made when it is asked for, as a picture of the explorer wants it.
+    // `find` returns the file of a system. With `waits`, find() below computes each thumbnail at once, as needed for a
+    // picture.
     Thumbnails(std::function<std::filesystem::path(const std::string&)> find, bool waits);
-    // Called on another thread when one is ready.
+    // `ready` is called on another thread when a thumbnail is finished.
     void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
 
-    // Null while it is being made. Only the systems asked for since the last frame are made, in the order of asking.
+    // Null while it is being computed. Only systems requested since the last update() are computed, in order of
+    // request.
     const Thumbnail* find(const std::string& system);
-    // Takes in what is ready and begins the next; once a frame.
+    // Receives a finished thumbnail and starts the next; call once per frame.
     void update();
     bool is_busy() const { return !making_.empty() || !wanted_.empty(); }
 

@@ -1,4 +1,4 @@
-// Figures as Python asks for them: how they look, and what they carry.
+// Figures for Python: their appearance and the notes stored in them.
 #include "module.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_format.hpp"

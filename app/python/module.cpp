@@ -60,7 +60,7 @@ void work_and_listen(const std::function<void()>& work, const std::function<void
 
 namespace {
 
-// What errors.InputError is made of: the text, and of each mistake where it stands, what is wrong and what would be right.
+// The parts of errors.InputError: the text, and for each error its text, file, line, column, message and hint.
 py::tuple parts_of(const InputError& error) {
     py::list mistakes;
     for (const InputError& each : each_of(error))

@@ -1,5 +1,5 @@
-// What the files of the Python module share. The compiled half, achilles._core, is thin: it takes and gives texts, numbers and
-// arrays; what a person sees of it is said in Python.
+// Shared declarations of the Python module. The compiled part, achilles._core, is thin: it exchanges texts, numbers and
+// arrays. The public interface is written in Python.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -21,51 +21,53 @@
 
 namespace achilles::python {
 
-// A system as runs are made of it. Never changes.
+// A system, ready for runs. Immutable.
 struct System {
     System(std::string text, std::string name);
-    std::string name;  // of the gallery, a path, or "<text>"
+    std::string name;  // name in the gallery, a path, or "<text>"
     std::shared_ptr<const Model> model;
 };
 
-// Of one run: what was asked for as --set says it, and the options by flag, as typed.
+// Arguments of one run: settings as for --set, and options by flag, as typed.
 struct Asked {
     std::vector<std::string> settings;
     std::map<std::string, std::string> options;
 };
 OptionOverrides overrides_of(const Asked& asked);
 Run run_of(const System& system, const Asked& asked);
-// What the command line warns of.
+// The warnings that the command line would print.
 std::vector<std::string> warnings_of(const System& system, const Run& run);
 
-// Works on a thread of its own while this one listens, without the interpreter's lock: for signals, of which the first to
-// raise an exception (Ctrl-C) calls `stop`, and is thrown when the work has ended. From time to time `tick` is called, with
-// the lock; what it throws counts as a signal.
+// Runs `work` on another thread while this thread, without the GIL, polls for signals. If a signal raises an exception
+// (Ctrl-C), calls `stop` and rethrows it when the work has ended. Calls `tick` at intervals, with the GIL; an exception
+// from it is treated like a signal.
 void work_and_listen(const std::function<void()>& work, const std::function<void()>& stop,
                      const std::function<void()>& tick);
 
-// How a figure looks: the views of these names, all if there are none.
+// Appearance of a figure: the views of these names, or all if there are none; size and style.
 struct Look {
     std::vector<std::string> views;
     PictureSize size;
     PaperSize page;
     PublicationStyle style;
 };
-// As Python says it: views, pixels, scale, millimetres (width, height, font in points, dots an inch), columns, dark, transparent.
+// The same as a Python tuple: views, size in pixels, scale, page (width and height in mm, font in pt, dpi), columns,
+// dark, transparent.
 using AskedLook =
     std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
-// Of a picture in this format. Throws InputError.
+// Converts it for a picture format. Throws InputError.
 Look look_of(const AskedLook& asked, const std::string& format);
-// Words of a command line that ask for it.
+// Appends the equivalent options of the command line.
 void add(std::vector<std::string>& words, const Look& look);
-// The picture as a file, which carries the command line that makes it again and the files that this reads, first the system's.
+// The picture as file content, with the command line that reproduces it and the files which that reads, the system
+// first.
 std::string picture_of(const Figure& figure, const Look& look, const std::string& format, const std::string& command,
                        const std::vector<Source>& sources, const Trajectory& shown);
-// What it makes, without the lock.
+// Calls `make` without the GIL and returns the result.
 pybind11::bytes unlocked(const std::function<std::string()>& make);
 
-// Of a class whose objects this module alone makes. __new__ would leave them without a value, and what is called on them then
-// reads memory that nobody has written: it raises TypeError instead, also for copies and pickles.
+// For classes whose objects only this module creates. The default __new__ would leave their value uninitialized, and
+// any method call would read invalid memory. Construction, copying and unpickling raise TypeError instead.
 inline pybind11::custom_type_setup made_here_alone() {
     return pybind11::custom_type_setup([](PyHeapTypeObject* type) {
         type->ht_type.tp_new = [](PyTypeObject* of, PyObject*, PyObject*) -> PyObject* {

@@ -12,11 +12,11 @@ namespace achilles::python {
 
 namespace {
 
-// What was asked about a periodic run, and the answer.
+// An orbit request and its result.
 struct Found {
     std::shared_ptr<const System> system;
-    std::vector<std::string> words;  // of a command line that asks the same, but for how a picture looks
-    std::vector<Source> sources;     // that this reads
+    std::vector<std::string> words;  // the equivalent command line, without options of a picture
+    std::vector<Source> sources;     // files that the command line reads
     OrbitAnswer answer;
     std::vector<std::string> warnings;
 
@@ -33,13 +33,13 @@ std::vector<std::string> words_of(const System& system, const AskedOrbit& asked,
     add("--period", asked.period);
     for (const std::string& shift : asked.shifts) add("--shift", shift);
     add("--continue", asked.along);
-    // As they were given: an option holds over an orbit's own even where it is that of the file.
+    // All given options, even those equal to the file's: they take precedence over the options of an orbit search.
     for (const std::string& setting : of_run.settings) add("--set", setting);
     for (const auto& [flag, value] : of_run.options) add(flag, value);
     return words;
 }
 
-// `json`: what a file of the name `from` holds, where the search begins at a state.
+// `json`: the content of the file named by `from`, if the search starts at a state.
 std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, AskedOrbit asked,
                                 const std::optional<std::string>& json, const Asked& of_run) {
     const Model& model = *system->model;
@@ -69,7 +69,7 @@ std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, Ask
     return found;
 }
 
-// As `achilles orbit --out` draws it.
+// The same picture as `achilles orbit --out`.
 std::string draw(const Found& found, const AskedLook& asked, const std::string& format) {
     const Look look = look_of(asked, format);
     const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
@@ -80,7 +80,7 @@ std::string draw(const Found& found, const AskedLook& asked, const std::string& 
     return picture_of(figure, look, format, shell_line(words), found.sources, found.orbit().run);
 }
 
-// What makes of the file's run one period of it.
+// The arguments that turn the file's run into one period of the orbit.
 Asked of_period(const Found& found) {
     const Model& model = *found.system->model;
     const std::vector<std::string> words = run_options(model.description(), model.default_run(), found.orbit().run.run);
@@ -100,7 +100,7 @@ void bind_orbits(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
     py::class_<Found, std::shared_ptr<Found>>(module, "Orbit", made_here_alone())
         .def_readonly("warnings", &Found::warnings)
-        // Where there is none: a sentence. Then nothing else may be asked.
+        // If no orbit was found: the reason. The other properties must not be used then.
         .def_property_readonly("why", [](const Found& f) { return f.answer.orbit ? "" : f.answer.why; })
         .def_property_readonly("command", [](const Found& f) { return shell_line(f.words); })
         .def("of_period",

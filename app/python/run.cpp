@@ -22,7 +22,7 @@ namespace achilles::python {
 
 namespace {
 
-// Where a run is at some instants, as arrays show it: they look into these, and keep them.
+// States of a run at given times. NumPy arrays refer to this memory and keep it alive.
 struct Table {
     std::vector<double> t, q, v;  // q and v row by row
     std::vector<int> j;
@@ -35,7 +35,7 @@ struct Made {
     Asked asked;
     Trajectory trajectory;
     std::vector<std::string> warnings;
-    // Made when it is needed: it takes longer than the run.
+    // Computed on first use: it takes longer than the run.
     const ErrorEstimate& estimate() const {
         std::call_once(estimated, [this] { made_estimate = estimate_error(trajectory); });
         return *made_estimate;
@@ -46,7 +46,7 @@ struct Made {
 
 using Times = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
-// Looks into `data` without a copy, for as long as anybody has it. Not to be written to: it is the run's.
+// A read-only array that refers to `data` without a copy and keeps its owner alive.
 template <class Number>
 py::array looking_at(const std::shared_ptr<const Table>& owner, const std::vector<Number>& data, py::ssize_t columns) {
     const py::capsule keeper(new std::shared_ptr<const Table>(owner),
@@ -71,7 +71,7 @@ std::shared_ptr<const Table> table_of(const Trajectory& trajectory, const std::v
     return table;
 }
 
-// The arrays of a run, t first; without instants at the rows of its CSV.
+// The arrays of a run, t first; by default at the rows of its CSV.
 py::dict arrays_of(const std::shared_ptr<Made>& made, const std::optional<Times>& times) {
     std::shared_ptr<const Table> table;
     {
@@ -91,7 +91,7 @@ py::dict arrays_of(const std::shared_ptr<Made>& made, const std::optional<Times>
     return arrays;
 }
 
-// An expression as a view may have it, at the rows of the CSV, or at these instants.
+// Values of a view expression, at the given times or at the rows of the CSV.
 py::array_t<double> values_of(const Made& made, const std::string& expression, const std::optional<Times>& times) {
     const std::vector<double> instants =
         times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
@@ -133,7 +133,7 @@ Instants instants_from(const std::optional<Times>& times) {
     return std::vector<double>(times->data(), times->data() + times->size());
 }
 
-// The command line that makes the same, which pictures carry.
+// The equivalent command line, which pictures store.
 std::string command_of(const Made& made, const Look& look) {
     const Model& model = *made.system->model;
     std::vector<std::string> words{"figure", made.system->name};
@@ -143,7 +143,7 @@ std::string command_of(const Made& made, const Look& look) {
     return shell_line(words);
 }
 
-// As `achilles figure` draws it.
+// The same picture as `achilles figure`.
 std::string draw(const Made& made, const AskedLook& asked, const std::string& format) {
     const Look look = look_of(asked, format);
     const SystemDescription& description = made.system->model->description();
@@ -194,7 +194,7 @@ void bind_runs(py::module_& module) {
                  const py::gil_scoped_release unlocked;
                  return to_json(m.trajectory, instants, nullptr, &m.estimate());
              })
-        // The same with derivatives, and those of expressions.
+        // The run repeated with derivatives, and the derivatives of expressions.
         .def(
             "dependence",
             [](const Made& m, std::vector<std::string> of) {

@@ -1,4 +1,4 @@
-"""Writes the stub of the module, for editors and type checkers: what the module says of itself, without how it does it.
+"""Writes the stub file of the module for editors and type checkers: public signatures and docstrings.
 
 usage: stub.py FILE
 """
@@ -29,7 +29,7 @@ def is_public(name: str) -> bool:
 
 
 def signature(live: object, name: str) -> ast.FunctionDef:
-    """Of a function as it is called: its signature is made of the table of options."""
+    """The signature of a function whose parameters were extended by with_options()."""
     words, is_keyword = [], False
     called = inspect.signature(live)
     for p in called.parameters.values():
@@ -44,7 +44,7 @@ def signature(live: object, name: str) -> ast.FunctionDef:
 def stripped(node: ast.FunctionDef, live: object) -> ast.FunctionDef:
     result = signature(live, node.name) if hasattr(live, "__signature__") else node
     text = inspect.cleandoc(live.__doc__) if getattr(live, "__doc__", None) else None
-    # Of a method that is called by none of its own words Python says something general.
+    # Without a docstring of its own, a special method has a generic one from Python: leave that out.
     if ast.get_docstring(node) is None:
         text = None
     result.body = [ast.Expr(ast.Constant(text))] if text else []
@@ -55,7 +55,7 @@ def stripped(node: ast.FunctionDef, live: object) -> ast.FunctionDef:
 
 
 def of_entry(part: ast.AnnAssign, text: str) -> ast.FunctionDef:
-    """A property that is an entry of a record."""
+    """The stub of a property made by entry()."""
     name, kind = part.target.id, ast.unparse(part.annotation)
     return ast.parse(f"@property\ndef {name}(self) -> {kind}:\n {inspect.cleandoc(text)!r}\n ...").body[0]
 

@@ -17,7 +17,7 @@ namespace achilles::python {
 
 namespace {
 
-// Texts that occur again and again, as numbers.
+// Codes for strings that occur repeatedly.
 class Words {
  public:
     std::uint32_t code(const std::string& word) {
@@ -32,12 +32,12 @@ class Words {
     std::vector<std::string> words_;
 };
 
-// All rows of a sweep, column by column.
+// All rows of a sweep, stored by column.
 struct Columns {
     std::vector<std::uint64_t> points;
     std::vector<double> numbers, times;
     std::vector<std::uint32_t> held, contacts, ends;
-    Words words;  // of the three
+    Words words;  // strings of the three columns above
 };
 
 void append(Columns& columns, const SweepTable& table, const Rows& rows) {
@@ -56,7 +56,7 @@ py::array_t<Number> array_of(const std::vector<Number>& numbers) {
     return py::array_t<Number>(static_cast<py::ssize_t>(numbers.size()), numbers.data());
 }
 
-// The numbers stay where they are: the array keeps them.
+// An array that takes over the memory of the numbers, without a copy.
 py::array owned(std::vector<double>&& numbers, py::ssize_t width) {
     auto* const kept = new std::vector<double>(std::move(numbers));
     const py::capsule keeper(kept, [](void* data) { delete static_cast<std::vector<double>*>(data); });
@@ -64,7 +64,7 @@ py::array owned(std::vector<double>&& numbers, py::ssize_t width) {
     return py::array_t<double>({rows, width}, kept->data(), keeper);
 }
 
-// What each axis is: along it, of a grid, and in every row.
+// Each axis: its values along the axis, on the grid, and in every row.
 py::list axes_of(const SweepTable& table, const Columns& columns) {
     const Sweep& sweep = table.sweep();
     py::list axes;

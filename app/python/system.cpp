@@ -42,12 +42,12 @@ std::vector<std::string> warnings_of(const System& system, const Run& run) {
 
 namespace {
 
-// A value of an option as Python has it.
+// The value of an option as a Python object.
 py::object value_of(const OptionValue& value) {
     return std::visit([](const auto& one) -> py::object { return py::cast(one); }, value);
 }
 
-// The table of options: one row each, and one for each flag that gives several.
+// The table of options: one row per option, and one per flag that sets several.
 py::list option_table() {
     py::list rows;
     const auto add = [&](std::string_view key, const std::string& flag, std::string_view about, const Option& option) {
@@ -91,7 +91,7 @@ py::dict units_of(const System& system) {
     return units;
 }
 
-// The name of a coordinate, its value and its rate at the start.
+// Each coordinate's name, and its initial value and rate.
 std::vector<std::tuple<std::string, double, double>> start_of(const System& system) {
     std::vector<std::tuple<std::string, double, double>> start;
     for (const CoordinateDescription& coordinate : system.model->description().coordinates)
@@ -106,7 +106,7 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
     return names;
 }
 
-// The derived equations as displayed formulas, each under what it is: (words, LaTeX).
+// The derived equations as displayed formulas, each with its description: (words, LaTeX).
 std::vector<std::pair<std::string, std::string>> equations_of(const System& system) {
     const EquationSheet sheet = equation_sheet(*system.model, system.model->default_run());
     std::vector<std::pair<std::string, std::string>> equations;

@@ -1,4 +1,4 @@
-// Commands as lines of a journal, and what undo makes of them: all from what each says of itself.
+// Reading and printing of commands, and the rule for merging undo steps, derived from the self-descriptions.
 #include "session/command.hpp"
 
 #include <fmt/format.h>
@@ -41,12 +41,12 @@ std::string filled(std::string_view text, const Values&... values) {
     return fmt::format(fmt::runtime(text), values...);
 }
 
-// ---- a value in a line ----
+// ---- one value of a line ----
 
 using Words = std::vector<std::string>;
 using Values = std::vector<std::pair<std::string, Given>>;
 
-// Where reading stands: at which word, and what is said where the line is wrong.
+// Parser position: the current word, and the error text for a malformed line.
 struct Reading {
     const Line& line;
     std::string usage;
@@ -74,7 +74,7 @@ void read(bool& value, const How& how, Reading& from) {
     if (!value && (from.word() != how.no || how.no.empty())) throw from.error(filled(how.complaint, from.word()));
     ++from.at;
 }
-// Whether the word that a number stands behind is there; it is read.
+// Whether the keyword before a number is present; consumes it.
 bool is_there(const How& how, Reading& from) {
     if (how.after.empty()) return true;
     if (from.at_end() || from.word() != how.after) return false;
@@ -94,7 +94,7 @@ void read(double& value, const How& how, Reading& from) {
     if (!is_zero && how.fits && !how.fits(value)) throw from.error(filled(how.complaint, value));
     ++from.at;
 }
-// In one word or, with its unit, in two.
+// One word or, with its unit, two.
 void read(Given& value, const How&, Reading& from) {
     const Reading begin = from;
     std::string text = from.word();
@@ -104,7 +104,7 @@ void read(Given& value, const How&, Reading& from) {
     };
     if (!from.at_end() && is_unit(from.word())) text += " " + from.line.word(from.at++).text;
     try {
-        const GivenNumber number = read_number(text, "rad/s");  // whose it is says Session
+        const GivenNumber number = read_number(text, "rad/s");  // Session checks whether the unit fits the name
         value = {number.value, number.has_unit ? text : ""};
     } catch (const ParseError& problem) {
         throw begin.error(problem.what());
@@ -122,7 +122,7 @@ void read(Values& values, const How& how, Reading& from) {
     }
 }
 
-// As read() takes it, with a space before every word.
+// The form that read() accepts, with a space before every word.
 std::string written(const std::string& word, const How& how) {
     return " " + (how.in_quotes ? quoted(word) : quoted_where_needed(word));
 }
@@ -152,7 +152,7 @@ std::string written(const Values& values, const How& how) {
     return text;
 }
 
-// How many words there may be.
+// Least and greatest number of words of a value.
 template <class Value>
 std::pair<std::size_t, std::size_t> count(const How& how) {
     if (how.is_name) return {0, 0};
@@ -166,8 +166,8 @@ std::pair<std::size_t, std::size_t> count(const How& how) {
 
 // ---- commands ----
 
-// The words that it begins with: its name, or one for each value of a field that the name says. A name of two words is
-// another's, which it is told from by the second.
+// The first words of the command: its name, or one name per value of a field that is part of the name. Names of two
+// words are excluded: they share the first word with another command.
 template <Spoken Kind>
 std::vector<std::string_view> names_of() {
     if (Kind::said.name.find(' ') != Kind::said.name.npos) return {};
@@ -178,7 +178,7 @@ std::vector<std::string_view> names_of() {
     return names;
 }
 
-// Reads a line whose name it is; nothing if it is not. A name of two words is the whole line.
+// Parses a line if its name matches; otherwise returns nothing. A two-word name must be the whole line.
 template <Spoken Kind>
 std::optional<Command> read_as(const Line& line) {
     const std::string& name = line.word(0).text;
@@ -216,7 +216,7 @@ void list_names(std::vector<std::string>& names) {
     for (const std::string_view name : names_of<Kind>()) names.emplace_back(name);
 }
 
-// "write: range NUMBER x LOW HIGH, or: ..." without what is said to somebody who wrote something else.
+// The usage without the leading "write: ": "range NUMBER x LOW HIGH, or: ...".
 std::string without_request(const std::string& usage) {
     constexpr std::string_view request = "write: ";
     return usage.starts_with(request) ? usage.substr(request.size()) : usage;
@@ -235,7 +235,7 @@ Change change_of(const Kind&) {
     return Kind::said.change;
 }
 
-// Whether two commands of a kind are about the same thing.
+// Whether two commands of one type concern the same thing: their first fields are equal.
 template <Spoken Kind>
 bool is_about_same(const Kind& a, const Kind& b) {
     if constexpr (std::tuple_size_v<decltype(Kind::said.fields)> < 2) {
@@ -246,7 +246,7 @@ bool is_about_same(const Kind& a, const Kind& b) {
     }
 }
 
-// ---- options: what the others say of themselves, their table says ----
+// ---- options: described by the option table ----
 
 OptionValue read_value(const Option& option, const Line& line, std::size_t i) {
     if (std::holds_alternative<double>(option.get({}))) return line.number(i);
@@ -257,7 +257,7 @@ OptionValue read_value(const Option& option, const Line& line, std::size_t i) {
     throw line.error(line.word(i).column, filled(option.wrong, text), std::string(option.usage));
 }
 
-// One value, for all options that the command sets, or one for each of them.
+// One value for all options that the command sets, or one for each of them.
 template <std::same_as<UseOption>>
 std::optional<Command> read_as(const Line& line) {
     const std::string& name = line.word(0).text;
@@ -290,7 +290,7 @@ void list_usages(std::vector<std::string>& lines) {
     for (const auto group : options_by_command()) lines.push_back(without_request(std::string(group[0].usage)));
 }
 
-// A number has a slider, which is dragged.
+// A number has a slider, so its edits are merged.
 Change change_of(const UseOption& use) {
     return std::holds_alternative<double>(use.values[0]) ? Change::together : Change::alone;
 }

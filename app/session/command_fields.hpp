@@ -1,5 +1,5 @@
-// What a command of the explorer says of itself, once: its name, how it is written, what it changes, its fields. The
-// reader, the printer, == and the history derive from it (command.cpp).
+// Self-description of an explorer command: its name, usage, effect on undo, and fields. Parser, printer, == and undo
+// history are derived from it (command.cpp).
 #pragma once
 
 #include <string>
@@ -10,15 +10,17 @@
 
 namespace achilles::command {
 
-// What a command changes, and so what undo makes of it.
+// What a command changes, which determines how undo treats it.
 enum class Change {
-    none,      // nothing but the present: what the last change complained about stays
-    view,      // how the run is looked at, a file: undo leaves it
-    alone,     // what undo takes back
-    together,  // the same, with the last change if that was of this kind and the same thing: the first of several fields
+    none,   // only the playback state; the error of the last change stays visible
+    view,   // the view, or a file: not undone
+    alone,  // the system or the run: one undo step
+    // As `alone`, but merged with the previous step if that set the same thing (the same first field).
+    together,
 };
 
-// The value of a name. What says its own unit (30 deg) keeps its text: whether that fits, the system tells.
+// The value of a named quantity. A value typed with a unit (30 deg) keeps its text; the system checks whether the unit
+// fits.
 struct Given {
     double value = 0.0;
     std::string text = {};
@@ -29,19 +31,22 @@ struct Given {
     friend bool operator==(const Given&, const Given&) = default;
 };
 
-// How a field is written. Nothing said: a text, a finite number, a whole number is one word; a list is the rest.
+// Text format of a field. Default: strings, finite numbers and integers are one word; a list takes the rest of the
+// line.
 struct How {
-    std::string_view yes = {}, no = {};                // the words for a bool; where one is empty, it is left out
-    bool is_name = false;                              // these are names of the command, not words after it
-    bool in_quotes = false;                            // a text, always
-    const std::vector<std::string>* one_of = nullptr;  // a text
-    std::string_view known = {};     // what is said, with {} for them, where it is none of these; else the usage
-    bool (*fits)(double) = nullptr;  // a number
-    std::string_view zero = {};      // the word for 0
-    std::string_view after = {};     // a number above 0, behind this word; 0 where both are left out
-    // A bool of one word: another one is the next field's. A whole number from 1: 0 where it is left out. A list: of none.
+    // Words for a bool; if one is empty, that value is written by leaving the word out.
+    std::string_view yes = {}, no = {};
+    bool is_name = false;                              // the two words are names of the command itself, not arguments
+    bool in_quotes = false;                            // string, always quoted
+    const std::vector<std::string>* one_of = nullptr;  // string, one of these
+    std::string_view known = {};                       // error if it is none of them, {} lists them; default: the usage
+    bool (*fits)(double) = nullptr;                    // number, validity check
+    std::string_view zero = {};                        // word for the number 0
+    std::string_view after = {};                       // keyword before a positive number; 0 if both are absent
+    // Optional. A bool with one word: any other word belongs to the next field. An integer from 1: 0 if absent. A list:
+    // may be empty.
     bool may_lack = false;
-    std::string_view complaint = {};  // {}: what stands there instead, and for a text what was probably meant
+    std::string_view complaint = {};  // error message; {} is the offending word and, for a string, the suggestion
 };
 constexpr How in_quotes{.in_quotes = true};
 constexpr How on_off{.yes = "on", .no = "off", .complaint = "'{}' is neither on nor off"};
@@ -63,9 +68,9 @@ struct Field {
 template <class... Fields>
 struct Said {
     std::string_view name;
-    std::string_view usage;  // what is said where a line is wrong; {} is the name
+    std::string_view usage;  // error text for a malformed line; {} is the name
     Change change;
-    std::tuple<Fields...> fields;  // members, or Fields where there is more to say
+    std::tuple<Fields...> fields;  // members, or Fields if they need a format
 
     constexpr Said(std::string_view called, std::string_view written, Change changed, Fields... of_it)
         : name(called), usage(written), change(changed), fields(of_it...) {}
@@ -77,7 +82,7 @@ concept Spoken = requires {
     Kind::said;
 };
 
-// Calls what(Field) for every field of a kind, in order.
+// Calls what(Field) for every field of a command type, in order.
 template <Spoken Kind, class What>
 constexpr void for_each_field(const What& what) {
     std::apply([&](const auto&... field) { (what(Field(field)), ...); }, Kind::said.fields);

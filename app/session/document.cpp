@@ -49,7 +49,7 @@ view = [
 ]
 )toml";
 
-// The same file, whatever it is called.
+// Canonical path, to compare files.
 fs::path place_of(const std::string& file) {
     std::error_code problem;
     const fs::path place = fs::weakly_canonical(fs::absolute(file), problem);

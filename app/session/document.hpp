@@ -1,4 +1,4 @@
-// The text of a system while a person writes it, and the file it belongs to.
+// The text of a system being edited, and its file.
 #pragma once
 
 #include <filesystem>
@@ -10,32 +10,32 @@
 namespace achilles {
 
 struct Document {
-    std::string name;                  // of the system, as opened; "untitled" for a new one
-    std::string file;                  // where the user opened or saved it; empty: nowhere yet
-    std::string source;                // what messages call it
-    std::string text;                  // as it stands in the editor
-    std::string saved;                 // as it stands in the file
-    std::vector<InputError> problems;  // why the text is not the system that runs; none: it is
+    std::string name;                  // name of the system, as opened; "untitled" for a new one
+    std::string file;                  // where the user opened or saved it; empty: not saved yet
+    std::string source;                // source name in error messages
+    std::string text;                  // as in the editor
+    std::string saved;                 // as in the file
+    std::vector<InputError> problems;  // errors of the text; empty: the text is the system that runs
 
     bool is_changed() const { return text != saved; }
 };
 
-// A short system to start from.
+// A template for a new system.
 Document new_document();
 
-// What a file holds, whether or not it is a system. `name` is how the user called it: where that is no path but the
-// name of an asset, the document has no file, so that nothing is saved over the asset unasked. Throws InputError if
-// there is nothing to read.
+// Loads a file, whether or not it is a valid system. `name` is what the user typed. If it is the name of an asset, not
+// a path, the document has no file, so that saving cannot overwrite the asset. Throws InputError if the file cannot be
+// read.
 Document open_document(const std::string& name, const std::filesystem::path& file);
 
-// Writes the text to a file, whole or not at all, which then is the document's. Another file than the document's own is
-// written over only with `overwrite`. Throws InputError.
+// Writes the text to a file, which becomes the document's file. The write is atomic. Replaces an existing file other
+// than the document's own only with `overwrite`. Throws InputError.
 void save(Document& document, const std::string& file, bool overwrite);
-// As after save(), which did not happen here.
+// Puts the document in the state after save() without writing: for callers that write the file elsewhere.
 void mark_saved(Document& document, const std::string& file);
 
-// The run of a model derived from an edited text: what the text says, but where a value stands in the text as before,
-// what a slider or the command line made of it. `run` is one of `before`.
+// The run for a model derived from an edited text. It uses the values of the new text, except where a value is the same
+// in both texts: there it keeps the value of `run` (a run of `before`), as set by a slider or the command line.
 Run carried_over(const SystemDescription& before, const Run& run, const Model& after);
 
 }  // namespace achilles

@@ -21,7 +21,7 @@ bool begins_word(const std::string& text, std::size_t at) {
 
 std::string first_word(const std::string& line) { return line.substr(0, line.find(' ')); }
 
-// Sorted by how well they fit, those that do not left out.
+// Matches sorted by rank; non-matches are left out.
 class Best {
  public:
     void offer(int misfit, Found found) {
@@ -38,14 +38,13 @@ class Best {
     std::vector<std::pair<int, Found>> all_;
 };
 
-// By its name; else, and after all of these, by words around it. Letters apart in those would mean anything.
 int misfit(const std::string& typed, const std::string& name, const std::string& more) {
     constexpr int apart = 4, around = 1000;
     const int in_name = achilles::misfit(typed, name), in_more = achilles::misfit(typed, more);
     return in_name >= 0 ? in_name : in_more >= 0 && in_more < apart ? around + in_more : -1;
 }
 
-// Whether a line can be run without anything else.
+// Whether a line is a complete command.
 bool is_command(const std::string& line) {
     try {
         parse_command(line);
@@ -82,7 +81,7 @@ std::vector<Found> find_commands(const std::string& typed, const std::vector<Com
     if (space == std::string::npos) {
         for (const std::string& usage : command_usages()) {
             const std::string its_name = first_word(usage);
-            // Whatever may follow: what can stand alone does.
+            // Whether or not arguments are possible: a command that needs none is complete.
             const std::string line = is_command(usage) ? usage : its_name;
             const bool alone = is_command(line);
             best.offer(typed.empty() ? 0 : misfit(typed, its_name, usage), {usage, alone ? line : line + " ", alone});

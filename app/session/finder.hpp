@@ -1,4 +1,4 @@
-// Which commands a few letters mean: what the command palette lists.
+// Fuzzy search for commands: the list in the command palette.
 #pragma once
 
 #include <string>
@@ -7,27 +7,27 @@
 
 namespace achilles {
 
-// How well the letters of `typed` fit a text, less is better; negative where they do not stand in it in this order. Without
-// regard to case: the text itself, its beginning, the beginning of a word in it, a part of it, letters apart.
+// How well `typed` matches a text, ignoring case: smaller is better, negative if it is not a subsequence. In order of
+// rank: the text itself, a prefix, the start of a word, a substring, separate letters.
 int misfit(const std::string& typed, const std::string& text);
 
-// The values that may follow a command's name, each with what else it may be found by: "open" of {"ball_on_sine", its title}.
+// Possible arguments of a command, each with additional search text, e.g. "open" with {"ball_on_sine", its title}.
 struct Completions {
     std::string command;
     std::vector<std::pair<std::string, std::string>> values;
-    bool is_last = true;  // nothing need follow the value
+    bool is_last = true;  // true if no further argument is required
 };
 
 struct Found {
-    std::string usage;  // how the command is written
-    std::string line;   // what the line becomes when it is taken
-    bool runs = false;  // and it can be run like this
+    std::string usage;  // usage of the command
+    std::string line;   // the command line after this match is chosen
+    bool runs = false;  // the line is complete and can be executed
 };
-// The best first. While the name is typed: the commands, by their usage. After it: values to complete the line with, where
-// there are some. Empty: the line is to be run as it is.
+// Matches, best first. While the name is being typed: commands, matched by their usage. After the name: arguments that
+// complete the line, if there are any. Empty: execute the line as it is.
 std::vector<Found> find_commands(const std::string& typed, const std::vector<Completions>& completions);
 
-// How the command that the line begins with is written; empty where there is none.
+// Usage of the command at the start of the line; empty if it is unknown.
 std::string usage_of(const std::string& line);
 
 }  // namespace achilles

@@ -1,5 +1,4 @@
-// What the explorer says, what its keys do and which systems it offers, as tables: the help card (F1), the menus, the gallery and
-// the manual show these.
+// Tables of terms, shortcuts and example systems, shown by the help card (F1), the menus, the gallery and the manual.
 #pragma once
 
 #include <cstddef>
@@ -9,39 +8,39 @@
 
 namespace achilles {
 
-// A word of the field.
+// A technical term.
 struct Term {
     std::string_view word;
-    std::string_view
-        formula;  // in the notation of a system file, for typeset(); v is the velocity, n the impulse's direction
+    // In the notation of a system file, for typeset(). v is the velocity, n the direction of the impulse.
+    std::string_view formula;
     std::string_view meaning;  // one sentence
-    std::string_view source;   // in the paper, or in the theory of core for what goes beyond it
+    std::string_view source;   // where it is defined: the paper, or the theory files of core for extensions
 };
-// In the order in which a run meets them.
+// In the order in which they occur in a run.
 std::span<const Term> glossary();
 
-// What a key, or the mouse, does.
+// A keyboard or mouse shortcut.
 struct Shortcut {
     std::string_view keys;
     std::string_view does;
-    std::string_view menu = {};  // the line of a menu that does the same; empty: none
+    std::string_view menu = {};  // the menu entry with the same effect; empty: none
 };
-// By what they are about: files, changes, the view, time; then the mouse.
+// Grouped by subject: files, changes, view, time, mouse.
 std::span<const Shortcut> shortcuts();
-// Of a line of a menu; empty where it has none.
+// The shortcut of a menu entry; empty if it has none.
 std::string_view shortcut_of(std::string_view menu);
 
-// The gallery in groups: which of the systems that come with the program are about the same.
+// Groups of example systems in the gallery.
 
 struct GalleryGroup {
     std::string_view title;
-    std::vector<std::string_view> systems;  // by name, in the order in which they are shown
+    std::vector<std::string_view> systems;  // names, in display order
 };
 std::span<const GalleryGroup> gallery();
 
-// The title of a system's group; "others" for one that is in none.
+// Title of the group of a system; "others" if it is in no group.
 std::string_view group_of(std::string_view system);
-// Where it stands in the gallery, from 0; behind all of them where it does not.
+// Index in the gallery, from 0; the total count if the system is not in it.
 std::size_t place_in_gallery(std::string_view system);
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// What undo takes back: the moments before each change. A drag's many commands are one change.
+// Undo history: the states before each change. The many commands of one slider drag form one step.
 #pragma once
 
 #include <optional>
@@ -15,12 +15,12 @@ class History {
     bool can_undo() const { return !undone_to_.empty(); }
     bool can_redo() const { return !redone_to_.empty(); }
 
-    // A command has been done, which led from one moment to another. What changed nothing, or in the end brought back
-    // what was there, is nothing to undo.
+    // Records a command that led from state `before` to `now`. Commands without an effect are not recorded, and a step
+    // is dropped again if later commands of it restore the original state.
     void remember(const Command& command, const Moment& before, const Moment& now) {
         constexpr std::size_t most = 200;
         if (change_of(command) < command::Change::alone) {
-            // Something else was done in between: the next change is one of its own. (Seeking is part of dragging.)
+            // Any other command ends the merging of changes. Seek does not, since it is part of dragging.
             if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
             return;
         }
@@ -34,7 +34,7 @@ class History {
         changed_by_.reset();
     }
 
-    // The moment to go to, from the present one. There must be one.
+    // Returns the state to go to; `now` is the current state. Requires can_undo() or can_redo().
     Moment undo(Moment now) { return go(undone_to_, redone_to_, std::move(now)); }
     Moment redo(Moment now) { return go(redone_to_, undone_to_, std::move(now)); }
 
@@ -48,7 +48,7 @@ class History {
     }
 
     std::vector<Moment> undone_to_, redone_to_;
-    std::optional<Command> changed_by_;  // the last change, which more of its kind go on with
+    std::optional<Command> changed_by_;  // the last change, which the next command may continue
 };
 
 }  // namespace achilles

@@ -28,8 +28,7 @@ bool same_expressions(const ViewDescription& a, const ViewDescription& b) {
                                               [](const Text& p, const Text& q) { return p.text == q.text; });
 }
 
-// What any system can be looked at by: every coordinate and rate over time, the phase planes, the planes of two
-// coordinates, and the gap.
+// Generic views: every coordinate and rate over time, the phase planes, the planes of two coordinates, and the gap.
 std::vector<ViewDescription> more_views(const Model& model) {
     std::vector<ViewDescription> views;
     const auto add = [&](const std::string& x, const std::string& y) {
@@ -59,7 +58,7 @@ std::vector<ViewDescription> more_views(const Model& model) {
 }  // namespace
 
 Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), choices_(model_->description().views) {
-    // Of each contact: "gap", and where there are several "gap knee".
+    // One view per contact: "gap" or, with several contacts, "gap knee".
     const bool is_one = model_->contacts() == 1;
     for (const auto& [name, quantity] : {std::pair{"gap", "gap"}, {"contact force", "lambda"}}) {
         const std::vector<std::string> expressions = output_names(model_->description(), quantity);
@@ -68,7 +67,7 @@ Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), cho
                           {expressions[i]}));
     }
     offer(view_of("energy", "t", {"energy"}));
-    // As many as the largest grid has places, each another one.
+    // Enough distinct views for the largest grid.
     for (const ViewDescription& view : more_views(*model_))
         if (choices_.size() < most_columns * most_rows) offer(view);
     const std::size_t own = model_->description().views.size();
@@ -77,13 +76,13 @@ Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), cho
     fill();
 }
 
-// To choose from, unless it is there already.
+// Adds a choice unless it is already present.
 void Plots::offer(const ViewDescription& view) {
     if (std::none_of(choices_.begin(), choices_.end(), [&](const auto& c) { return same_expressions(c, view); }))
         choices_.push_back(view);
 }
 
-// As many plots as the grid has places, by the order of the choices, none twice.
+// Fills the grid with distinct plots, in the order of the choices.
 void Plots::fill() {
     const auto places = static_cast<std::size_t>(columns_ * rows_);
     if (list_.size() > places) list_.resize(places);
@@ -111,7 +110,7 @@ Plots Plots::carried_over(const std::shared_ptr<const Model>& model) const {
     Plots result(model);
     const auto& before = model_->description().views;
     const auto& after = model->description().views;
-    // Views that the text itself has changed are shown as the text has them.
+    // If the text itself has changed the views, show those of the text.
     if (!std::equal(before.begin(), before.end(), after.begin(), after.end(), same_expressions)) return result;
     result.columns_ = columns_;
     result.rows_ = rows_;
@@ -123,7 +122,7 @@ Plots Plots::carried_over(const std::shared_ptr<const Model>& model) const {
             result.list_.push_back(result.prepared(plot.view));
             result.list_.back().framing = plot.framing;
         }
-    } catch (const InputError&) {  // a name is gone
+    } catch (const InputError&) {  // the text no longer has a name that is used
         return Plots(model);
     }
     return result;
@@ -235,11 +234,11 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
     std::vector<Panel> panels;
     for (const Plot& plot : list_) {
         Framing framing = plot.framing;
-        // What belongs to the differences is none of the quantities' own.
+        // Axis settings of the quantities do not apply to their differences.
         if (framing.difference) framing.x.reset(), framing.y.reset();
         framing.legend = false;
         framing.for_print = page.has_value();
-        // On a large screen the grid is about as wide as a page; a plot has its part of it.
+        // On a large screen the grid is about as wide as a page; each plot gets its part of it.
         framing.size.width /= std::sqrt(columns_);
         framing.size.height /= std::sqrt(rows_);
         if (page) framing.size = *page;
@@ -274,7 +273,7 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
             curve.stroke.color.a = alpha;
             panel.beyond.curves.push_back(std::move(curve));
         }
-        // Each knows what it cannot cross as far as its own limits.
+        // Each boundary reaches only to the limits of its own panel: join both.
         if (!panel.boundary.points.empty() && !other.boundary.points.empty()) {
             panel.boundary.points.push_back({gap, gap});
             panel.boundary.points.insert(panel.boundary.points.end(), other.boundary.points.begin(),
@@ -291,7 +290,7 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
 
 namespace {
 
-// Does the steps as it notes them, so that it knows what is still missing.
+// Applies each step as it records it, to know what is still missing.
 struct Steps {
     explicit Steps(const Plots& plots) : now(plots.model()) {}
     template <class Kind>
@@ -336,7 +335,7 @@ std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_
     if (steps.now.linked() != plots.linked()) steps.take(command::Link{plots.linked()});
     const bool done = std::equal(plots.list().begin(), plots.list().end(), steps.now.list().begin(),
                                  [](const Plot& a, const Plot& b) { return a.framing == b.framing; });
-    // Where time was not always shared, axis by axis.
+    // Time axes that were not always linked need separate commands for each axis.
     return done || one_by_one ? steps.all : steps_to(plots, always_grid, true);
 }
 

@@ -1,4 +1,4 @@
-// The plots of the explorer: a grid of views, and how each is looked at. A value: it knows no run.
+// The plots of the explorer: a grid of views with their axes. A plain value, independent of any run.
 #pragma once
 
 #include <memory>
@@ -20,22 +20,23 @@ struct Plot {
 
 class Plots {
  public:
-    // As many of the file's views as a grid of four holds, the rest to choose from.
+    // Starts with the file's views, as many as fit a grid of four; the others are offered as choices.
     explicit Plots(std::shared_ptr<const Model> model);
-    // The same choice for another text of the system, as far as its expressions mean something there.
+    // The same selection for an edited text of the system. Views with names that no longer exist are dropped.
     Plots carried_over(const std::shared_ptr<const Model>& model) const;
 
-    // One of them, from 1, alone. Throws InputError if there is none of this number.
+    // Plot `number` (from 1) alone. Throws InputError if there is no such plot.
     Plots only(int number) const;
 
-    const std::vector<Plot>& list() const { return list_; }  // row by row: columns() * rows() of them
+    const std::vector<Plot>& list() const { return list_; }  // row by row, columns() * rows() plots
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    bool linked() const { return linked_; }  // plots over time show the same time
-    // The file's views, then those that any system has: gap, contact force, energy, and enough others to fill a large grid.
+    bool linked() const { return linked_; }  // plots over time share one time axis
+    // The file's views, then generic ones: gap, contact force, energy, and enough others to fill the largest grid.
     const std::vector<ViewDescription>& choices() const { return choices_; }
 
-    // Each throws InputError and changes nothing where it makes no sense. Returns nothing; counts revision() up.
+    // Each applies a command and increments revision(). Throws InputError and changes nothing if the command is
+    // invalid.
     void perform(const command::Grid& command);
     void perform(const command::PlotView& command);
     void perform(const command::Zoom& command);
@@ -46,14 +47,15 @@ class Plots {
     void perform(const command::Link& command);
     void perform(const command::PlotDifference& command);
 
-    // The panels of one run; `samples` are plot_samples() of the whole. On the screen titles and legends are widgets beside the
-    // panels. In print, where `page` is the size of the picture, they are in the panels, and curves are as fine as that size
-    // needs. Pale after the horizon of the run, where that comes before its end.
+    // Builds the panels of one run from `samples`, which are plot_samples() of the whole run. On the screen, titles and
+    // legends are widgets beside the panels. In print, `page` is the picture size: titles and legends are in the
+    // panels, and curves are sampled for that size. Curves are pale after `horizon`, where the estimated error is too
+    // large.
     std::vector<Panel> compose(const Trajectory& trajectory, std::span<const Sample> samples, const Theme& theme,
                                std::optional<double> horizon = {}, const std::optional<Resolution>& page = {}) const;
     int revision() const { return revision_; }
     const std::shared_ptr<const Model>& model() const { return model_; }
-    // Whether they show the same, whatever led there.
+    // True if both show the same, regardless of their histories.
     friend bool operator==(const Plots& a, const Plots& b);
 
  private:
@@ -69,20 +71,21 @@ class Plots {
     bool linked_ = true;
 };
 
-// A plot of a pinned run, its name and its place.
+// A plot of a pinned run, with the name and place of the run.
 struct PinnedPanel {
     const Panel* panel = nullptr;
     std::string name;
     int place = 1;
 };
-// A plot with the curves of pinned runs under the present one's, each in its hue and wide enough to be seen beside what lies
-// over it; then a single present curve is in ink. Where nothing else is asked for the limits hold all.
+// Draws the curves of pinned runs below those of the current run, each in its own hue and wider, so that both are
+// visible. A single current curve is then drawn in the ink color. Limits that are not set by the user cover all curves.
 Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framing& framing, const Theme& theme);
 
-// What leads to these plots from those that their model begins with; `grid` always, or only where it is another.
+// Commands that lead from the initial plots of the model to these. With `always_grid` the `grid` command is always
+// included, otherwise only if the grid differs.
 std::vector<Command> steps_to(const Plots& plots, bool always_grid = false);
 
-// The plots as text, for the session's.
+// Text form of the plots, part of to_text(Session).
 std::string to_text(const Plots& plots);
 
 }  // namespace achilles

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Every value that differs, by name: a parameter, a start x, a rate x'.
+// All values that differ, by name: a parameter, an initial coordinate x or rate x'.
 std::vector<std::pair<std::string, command::Given>> changed_values(const SystemDescription& description,
                                                                    const Run& from, const Run& to) {
     std::vector<std::pair<std::string, command::Given>> changed;
@@ -38,10 +38,10 @@ std::vector<std::pair<std::string, command::Given>> changed_values(const SystemD
     return changed;
 }
 
-// From one run of a system to another.
+// Commands that turn run `from` of a system into run `to`.
 std::vector<Command> steps_between(const SystemDescription& description, const Run& from, const Run& to) {
     std::vector<Command> steps;
-    // All at once: the run in between might be none.
+    // Set all values at once: an intermediate state might be infeasible.
     const auto values = changed_values(description, from, to);
     if (values.size() == 1) steps.emplace_back(command::Set{values[0].first, values[0].second});
     if (values.size() > 1) steps.emplace_back(command::Start{values});
@@ -63,7 +63,7 @@ void append(std::vector<Command>& steps, const std::vector<Command>& more) {
     steps.insert(steps.end(), more.begin(), more.end());
 }
 
-// Opens a system that runs this text.
+// Commands that open a system with this text.
 std::vector<Command> steps_to_text(const std::string& name, bool is_new, const std::string& saved,
                                    const std::string& text) {
     std::vector<Command> steps;
@@ -75,7 +75,7 @@ std::vector<Command> steps_to_text(const std::string& name, bool is_new, const s
     return steps;
 }
 
-// What a file holds; nothing where there is none.
+// Contents of a file; empty if it cannot be read.
 std::string held_by(const std::string& file) {
     try {
         return read_text(file);
@@ -89,10 +89,10 @@ bool is_untitled(const std::string& name) { return name == new_document().name; 
 std::string saved_text(const Session& session) {
     const Document& document = session.document();
     if (document.name == session.system()) return document.saved;
-    return held_by(session.description().file);  // another text stands in the editor, which is no system
+    return held_by(session.description().file);  // the editor then holds another text, which is not a valid system
 }
 
-// To the present run, by way of those that are pinned.
+// Commands to the current run, including those that pin the pinned runs on the way.
 std::vector<Command> run_steps(const Session& session, Run from) {
     std::vector<Command> steps, hidden;
     std::set<int> taken;
@@ -110,19 +110,19 @@ std::vector<Command> run_steps(const Session& session, Run from) {
     return steps;
 }
 
-// To its proof, be it under way.
+// Commands to its proof, finished or under way.
 std::vector<Command> proof_steps(const Session& session) {
     const auto proof = session.proof_command();
     return proof ? std::vector<Command>{*proof} : std::vector<Command>();
 }
 
-// To the periodic run that it is on, or was to be.
+// Commands to the periodic orbit that it is on or that is being searched for.
 std::vector<Command> orbit_steps(const Session& session) {
     const auto orbit = session.orbit_command();
     return orbit ? std::vector<Command>{*orbit} : std::vector<Command>();
 }
 
-// Where the present is.
+// Commands to the playback position.
 std::vector<Command> time_steps(const Session& session) {
     std::vector<Command> steps;
     const int selected = session.selected();
@@ -136,7 +136,7 @@ std::vector<Command> time_steps(const Session& session) {
     return steps;
 }
 
-// How the session is looked at, and when.
+// Commands to the view state and the playback position.
 std::vector<Command> sight_steps(const Session& session) {
     std::vector<Command> steps = steps_to(session.plotted());
     if (session.theme().dark) steps.emplace_back(command::UseTheme{true});
@@ -150,7 +150,7 @@ std::vector<Command> sight_steps(const Session& session) {
 }  // namespace
 
 std::string name_anywhere(const std::string& system) {
-    if (!is_system_path(system)) return system;  // one of the assets
+    if (!is_system_path(system)) return system;  // an asset
     std::error_code problem;
     const fs::path absolute = fs::absolute(system, problem);
     return problem ? system : absolute.lexically_normal().string();
@@ -165,7 +165,7 @@ std::vector<Command> recipe(const Session& session) {
     append(steps, proof_steps(session));
     append(steps, orbit_steps(session));
     append(steps, sight_steps(session));
-    // A text that is no system yet stands over one that runs.
+    // A text that is not a valid system yet, edited over one that runs.
     const Document& document = session.document();
     if (document.name != session.system()) steps.emplace_back(command::Open{name_anywhere(document.name)});
     if (document.text != description.source_text && document.is_changed())
@@ -218,7 +218,7 @@ std::vector<Difference> differences(const SystemDescription& description, const 
 
 std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
     std::vector<Command> steps = run_steps(session, session.run());
-    if (session.proof() != nullptr) append(steps, proof_steps(session));  // a figure has none that is not there yet
+    if (session.proof() != nullptr) append(steps, proof_steps(session));  // a figure does not wait for a proof
     append(steps, steps_to(plots, true));
     return steps;
 }
@@ -231,7 +231,7 @@ std::vector<Command> explorer_steps(const Session& session) {
     return steps;
 }
 
-// ---- the session that a command line asks for ----
+// ---- the session of a command line ----
 
 std::string first_system() {
     const std::vector<std::string> names = system_names();

@@ -1,4 +1,4 @@
-// From files and a command line to a session, and back: as short a journal, as few words as will do.
+// From files and a command line to a session, and back to the shortest journal or command line that reproduces it.
 #pragma once
 
 #include <string>
@@ -8,49 +8,49 @@
 
 namespace achilles {
 
-// What leads from files to what a session shows.
+// From a session to commands.
 
-// Replayed anywhere, these commands lead to a session of the same text. What was done and undone on the way is not in
-// it (`--record` keeps that).
+// Commands that lead to a session with the same text form when replayed. Undone changes are not included (`--record`
+// keeps them).
 std::vector<Command> recipe(const Session& session);
 
-// The options that make of a system's file the run that was asked for: --set e=0.3 --end 30.
+// Command line options that turn the file's run into the session's run: --set e=0.3 --end 30.
 std::vector<std::string> run_options(const Session& session);
 std::vector<std::string> run_options(const SystemDescription& description, const Run& file, const Run& run);
-// One value or option of a run that is another in another run of the same system, as a person reads it.
+// One value or option that differs between two runs of a system, in display form.
 struct Difference {
     std::string name, now, other;  // "x(0)", "2 m", "1 m"
-    bool is_option = false;        // the name is the command that sets it
-    Command back;                  // gives it the other's value
+    bool is_option = false;        // `name` is then the command that sets it
+    Command back;                  // sets the value of the other run
     std::string told() const { return name + (is_option ? " " : " = ") + now; }
 };
 std::vector<Difference> differences(const SystemDescription& description, const Run& run, const Run& other);
-// After these options: what puts the pinned runs beside it, and leads to the plots.
+// Commands, after these options, that pin the pinned runs and restore the plots.
 std::vector<Command> figure_steps(const Session& session, const Plots& plots);
-// The same, and everything else that is seen.
+// The same, plus everything else that is visible.
 std::vector<Command> explorer_steps(const Session& session);
 
-// A system's name for somebody who may stand in another folder: a path is made absolute.
+// The name of a system, valid in any working directory: a path is made absolute.
 std::string name_anywhere(const std::string& system);
 
-// The session that a command line asks for.
+// From a command line to a session.
 
 class PictureJob;
 struct OptionOverrides;
 
-// Where none is asked for: the paper's first example, or whatever there is.
+// The system opened by default: the paper's first example or, if that is missing, the first available one.
 std::string first_system();
 
-// A session on a system, its run as the command line changes it: `settings` for this one, `overrides` for every one that is
-// opened. Throws InputError.
+// Opens a session on a system. `settings` apply to the run of this system, `overrides` to every system opened later
+// too. Throws InputError.
 Session open_session(const std::string& name, const SystemDescription& first, const std::vector<std::string>& settings,
                      const OptionOverrides& overrides, SystemSource library, Patience patience);
 
-// What a journal or a command line asks for, in this order, where no window tells what became of it: what the session
-// refuses is bad input, what it warns of stands on standard error, each once. Throws InputError.
+// Applies the commands of a journal or command line in order, without a window. A refused command throws InputError;
+// warnings are printed to standard error, each once.
 void apply_all(Session& session, const std::vector<Command>& commands);
 
-// A picture's systems and journals. What its journal writes is written only when it is made for the first time.
+// Source of systems and journals for a picture. What its journal writes is written only on the first rendering.
 SystemSource source_of(PictureJob& job);
 
 }  // namespace achilles

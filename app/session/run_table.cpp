@@ -21,7 +21,7 @@ namespace achilles {
 std::vector<VaryingInput> varying_inputs(std::span<const Run* const> runs, const SystemDescription& description) {
     std::vector<VaryingInput> all;
     for (std::size_t i = 1; i < runs.size(); ++i) {
-        // Every list is in the same order: what is new stands behind what was found last.
+        // Every list has the same order: a new name is inserted after the last match.
         std::size_t at = 0;
         for (const Difference& difference : differences(description, *runs[i], *runs[0])) {
             auto found = std::find_if(all.begin(), all.end(),
@@ -77,7 +77,7 @@ std::string told(double value, double error, int digits) {
 
 const std::string nothing = "\u2013";
 
-// What a table says of a run's course: contacts that come to rest, are released, or are thrown open.
+// An event in the table: a contact comes to rest, is released, or is opened by an impact.
 struct Step {
     std::string name;
     double t = 0.0, error = 0.0;  // s
@@ -98,10 +98,10 @@ std::vector<Step> steps_of(const Trajectory& run, const Precision& precision) {
     return steps;
 }
 
-// Where two runs go different ways.
+// Where the event sequences of two runs begin to differ.
 struct Parting {
-    std::string after;     // the event that both have still: "release 2"; empty: they part at the start
-    std::string sentence;  // what each has then
+    std::string after;     // the last common event: "release 2"; empty: they differ from the start
+    std::string sentence;  // the next event of each run
 };
 std::optional<Parting> parting(const std::vector<Step>& present, double present_end, const std::vector<Step>& other,
                                double other_end) {
@@ -168,7 +168,7 @@ class Table {
     }
 
     struct Value {
-        double x = std::nan(""), error = 0.0;  // no number: there is none
+        double x = std::nan(""), error = 0.0;  // NaN: no value
     };
     void numbers(const std::string& name, const std::vector<Value>& values) {
         RunTable::Row& row = table_.rows.emplace_back();
@@ -192,12 +192,13 @@ class Table {
         if (!table_.partings.empty()) table_.rows.push_back(std::move(row));
     }
 
-    // Step by step as the present run takes them, behind them what only others have; beyond so many steps a table says nothing.
+    // Event by event in the order of the current run, then those that only other runs have. No rows beyond `most`
+    // events.
     void courses() {
         constexpr std::size_t most = 60;
         const std::vector<std::vector<Step>>& all = courses_;
-        std::map<std::string, std::vector<std::vector<Value>>> times;  // of every name, run by run
-        std::vector<std::pair<std::string, std::size_t>> order;        // the n-th of a name
+        std::map<std::string, std::vector<std::vector<Value>>> times;  // per name and run: times of its occurrences
+        std::vector<std::pair<std::string, std::size_t>> order;        // rows: name and number of the occurrence
         for (std::size_t i = 0; i < all.size(); ++i)
             for (const Step& step : all[i]) {
                 auto& of_runs = times[step.name];

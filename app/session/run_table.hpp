@@ -1,4 +1,4 @@
-// The runs of one system side by side: those that stay beside the present one, and all of them in a table.
+// Comparison of several runs of one system: pinned runs and the table of all runs.
 #pragma once
 
 #include <memory>
@@ -16,72 +16,73 @@
 
 namespace achilles {
 
-// A run that stays beside the present one, as it was when it was pinned.
+// A run kept beside the current one, as it was when pinned.
 
 struct PinnedRun {
-    int place = 1;   // from 1 to most_pinned: its colour
-    int number = 0;  // of those that were asked for, so many before it: whichever run is there first
+    int place = 1;   // from 1 to most_pinned; determines its color
+    int number = 0;  // order of the pin requests, from 0, whichever run finishes first
     bool shown = true;
     std::shared_ptr<const Trajectory> trajectory;
     std::shared_ptr<Sampler> sampler;
     std::shared_ptr<const std::vector<Sample>> samples;  // for plots
-    std::shared_ptr<const std::optional<ErrorEstimate>>
-        estimate;  // nothing where another run was made before it was there
+    // Empty if another run was started before the estimate was finished.
+    std::shared_ptr<const std::optional<ErrorEstimate>> estimate;
     std::optional<double> horizon() const {
         return *estimate ? horizon_before_end(*trajectory, **estimate) : std::nullopt;
     }
-    std::shared_ptr<const Touch> touch;        // how its discs rest in the present drawing,
-    std::shared_ptr<const Mechanism> touched;  // of this mechanism,
-    double touched_size = 0.0;                 // in a world of this size
-    std::string name;                          // how it differs from the others and the present one; empty: not at all
-    std::vector<Panel> plots;                  // of what is plotted now
-    int revision = -1;                         // of that,
-    bool dark = false;                         // and in which theme
+    // Contact geometry of its disks in the drawing of `touched`, for a world of size `touched_size`.
+    std::shared_ptr<const Touch> touch;
+    std::shared_ptr<const Mechanism> touched;
+    double touched_size = 0.0;
+    std::string name;          // how it differs from the other runs; empty: no difference
+    std::vector<Panel> plots;  // panels of the selected plots
+    int revision = -1;         // revision of the selection in `plots`
+    bool dark = false;         // theme of `plots`
 };
 
-// Whether two descriptions are of one system: the same coordinates, parameters, energies, forces and contacts, whatever the
-// values, ranges, views and drawings. Then a run of one is a run of the other.
+// True if both descriptions have the same coordinates, parameters, energies, forces and contacts; values, ranges, views
+// and drawings may differ. A run of one is then a run of the other.
 bool same_system(const SystemDescription& a, const SystemDescription& b);
 
-// What differs between several runs, and what follows from it.
+// Differences between several runs and their consequences.
 
-// A value or an option that not all of some runs have alike, as a person reads it: "e", "0.5", "0.3".
+// A value or an option that is not the same in all runs, in display form: "e", "0.5", "0.3".
 struct VaryingInput {
     std::string name;
     bool is_option = false;
-    std::vector<std::string> values;  // run by run
+    std::vector<std::string> values;  // one per run
 };
 std::vector<VaryingInput> varying_inputs(std::span<const Run* const> runs, const SystemDescription& description);
 
-// What tells each run from the others: "e = 0.3, x(0) = 1 m", a few words at most. Empty where nothing differs; runs whose
-// values differ by less than these words show are numbered, but those that are the present one, which is the first.
+// Short names that distinguish the runs: "e = 0.3, x(0) = 1 m". Empty if nothing differs. Runs whose displayed values
+// coincide get a number, except those equal to the current run, which is the first.
 std::vector<std::string> names_of_runs(std::span<const Run* const> runs, const SystemDescription& description);
 
 struct RunTable {
     struct Row {
         std::string name;
-        std::vector<std::string> values;  // run by run
-        std::vector<bool> differs;        // from the first, the present run
-        std::string change;               // of two runs: how much more the first has; may be empty
-        bool is_cause = false;            // a value or option, which others follow from
+        std::vector<std::string> values;  // one per run
+        std::vector<bool> differs;        // true where it differs from the first run, the current one
+        std::string change;               // for two runs: value of the first minus that of the second; may be empty
+        bool is_cause = false;            // an input (value or option), not a result
     };
     std::vector<Row> rows;
-    // Where a run goes another way than the present one: its number among the runs, and the sentence.
+    // For each run whose sequence of events differs from the current run's: its index and the explanation.
     std::vector<std::pair<std::size_t, std::string>> partings;
 };
 
-// A run, and the estimate of its error; null: there is none, or not yet.
+// A run and the estimate of its error; null: not available (yet).
 struct ShownRun {
     const Trajectory* run = nullptr;
     const ErrorEstimate* estimate = nullptr;
 };
 
-// Of the present run and the pinned ones: the inputs that vary; after which event the course is another one; when contacts come to rest and are released, as far as the
-// runs go, the number of impacts, the end and the state there. Coordinates of angles are in degrees. Numbers have the digits that
-// the estimated errors leave.
+// Compares the current run with the pinned ones: inputs that vary; the event after which the sequences of events
+// differ; times of contacts coming to rest and being released, as far as the runs go; number of impacts; end time and
+// final state. Angles are in degrees. Digits that the estimated errors do not justify are left out.
 RunTable run_table(std::span<const ShownRun> runs);
 
-// The table as text, for tests.
+// Text form for tests.
 std::string to_text(const RunTable& table);
 
 }  // namespace achilles

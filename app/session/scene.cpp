@@ -68,7 +68,7 @@ void Scene::perform(const command::Show& command) {
     const auto& things = command::shown_things;
     if (std::find(things.begin(), things.end(), command.what) == things.end())
         throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
-    // One card in front of everything is enough.
+    // Only one card at a time covers the window.
     const auto is_card = [](const std::string& what) {
         return what == "help" || what == "palette" || what == "gallery" || what == "export";
     };
@@ -119,7 +119,7 @@ void Scene::perform(const command::Size& command) {
     shares_[command.panel] = command.share;
 }
 
-// What is framed goes with the words about it.
+// A highlight ends with its caption.
 void Scene::perform(const command::Say& command) { caption_ = command.text, highlight_.clear(); }
 
 void Scene::perform(const command::Highlight& command) {
@@ -175,7 +175,7 @@ std::string to_text(const Scene& scene) {
         text += fmt::format("look {:.9g} {:.9g} {:.9g}\n", look->x, look->y, look->width);
     if (scene.camera() == CameraMode::follow || scene.camera() == CameraMode::zeno)
         text += fmt::format("camera {}\n", to_text(scene.camera()));
-    // The editor stands in the session's text as what it does to it.
+    // The session's text has the edited text itself instead.
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);

@@ -1,4 +1,4 @@
-// How the mechanism is looked at and how time passes. A value: it knows no run.
+// View state: camera, playback, visible panels and layers. A plain value, independent of any run.
 #pragma once
 
 #include <map>
@@ -15,47 +15,45 @@ namespace achilles {
 class Scene {
  public:
     CameraMode camera() const { return camera_; }
-    // Of a fixed camera the part of the world in the middle of the picture; nothing: all that the run needs, or what another
-    // camera chooses.
+    // View of a fixed camera. Empty: the whole extent of the run, or the view that another camera mode computes.
     std::optional<command::Look> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
-    // "trail", "velocity" and "force" of the body, the panels "controls", "plots", "events", "editor", "equations" and
-    // "energy", the Zeno "lens" in place of the plots, the table of the pinned "runs" beside the events, where there are any.
+    // True if `what`, one of command::shown_things, is visible.
     bool shows(const std::string& what) const { return shown_.contains(what); }
-    // What stands at the place of the events: one of command::shown_below, else "events"; empty: nothing.
+    // The panel at the place of the events: one of command::shown_below, or "events"; empty: none.
     std::string below() const;
-    double speed() const { return speed_; }  // seconds of the run in one of the player's
+    double speed() const { return speed_; }  // simulated seconds per second of playback
     bool loops() const { return loops_; }
-    // What the configuration plane shows; nothing: what it has by default.
+    // The axes of the configuration plane; empty: the default.
     const std::optional<command::ShowPlane>& plane() const { return plane_; }
-    // The sweep that is shown, as its command has it; nothing: what it is by default.
+    // The arguments of the sweep command; empty: the default sweep.
     const std::optional<std::string>& sweep() const { return sweep_; }
-    // The quantity whose derivatives are shown, as its command has it; nothing: what it is by default.
+    // The quantity whose derivatives are shown; empty: the default quantity.
     const std::optional<std::string>& depends() const { return depends_; }
-    // The left edge of the Zeno lens; nothing: where the row begins.
+    // The left edge of the Zeno lens; empty: the start of the impact sequence.
     const std::optional<double>& lens() const { return lens_; }
-    const std::string& finds() const { return finds_; }      // letters that the palette opens with
-    const std::string& caption() const { return caption_; }  // what a tour says; empty: nothing
+    const std::string& finds() const { return finds_; }      // initial search text of the palette
+    const std::string& caption() const { return caption_; }  // caption of a tour; empty: none
 
-    const std::string& highlight() const { return highlight_; }  // the panel that it is about; empty: none
+    const std::string& highlight() const { return highlight_; }  // framed panel; empty: none
 
-    // The share of the window that the user gave a panel; 0: as it fits.
+    // The share of the window set by the user for a panel; 0: automatic.
     double share(const std::string& panel) const;
 
-    double enlarged() const { return enlarged_; }  // as the user wants it
+    double enlarged() const { return enlarged_; }  // interface scale set by the user
     bool presents() const { return presents_; }
-    // What the scale of a surface so wide and high (pixels at that scale) is multiplied by: so large, and larger for a class,
-    // the more so the larger the surface: from the last row it is as small as any.
+    // Scale factor for a surface of this width and height (pixels at that scale). Includes the user's factor. In
+    // presentation mode it grows with the surface, so that text stays readable from the last row.
     double text_scale(double width, double height) const;
 
-    // Each throws InputError and changes nothing where it makes no sense.
+    // Each applies a command. Throws InputError and changes nothing if the command is invalid.
     void perform(const command::Look& command);
     void perform(const command::LookAll& command);
     void perform(const command::Camera& command);
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
-    void perform(const command::ShowPlane& command);       // of a system that has what it names
-    void perform(const command::ShowSweep& command);       // that can be one of the system
-    void perform(const command::ShowDependence& command);  // that can be one of the system
+    void perform(const command::ShowPlane& command);       // the caller has checked the names it uses
+    void perform(const command::ShowSweep& command);       // the caller has checked that the system allows it
+    void perform(const command::ShowDependence& command);  // the caller has checked that the system allows it
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
@@ -66,16 +64,16 @@ class Scene {
     void perform(const command::Enlarge& command);
     void perform(const command::Present& command);
 
-    // Another system: another world, but the same taste.
+    // Resets what depends on the world of a system, such as the view, and keeps preferences.
     void forget_place();
-    // Another text, which has not what they name.
+    // Reset settings that use names missing from an edited text.
     void forget_plane() { plane_.reset(); }
     void forget_sweep() { sweep_.reset(); }
     void forget_dependence() { depends_.reset(); }
 
  private:
     CameraMode camera_ = CameraMode::fit;
-    std::optional<command::Look> look_;  // where a fixed camera looked last
+    std::optional<command::Look> look_;  // the last view of a fixed camera
     friend std::vector<Command> steps_to(const Scene& scene);
     std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
     double speed_ = 1.0;
@@ -89,10 +87,10 @@ class Scene {
     bool presents_ = false;
 };
 
-// What leads from a new scene to this one, but for the lens, which needs a Zeno point to look at.
+// Commands that lead from a new scene to this one, except the lens, which needs a Zeno point.
 std::vector<Command> steps_to(const Scene& scene);
 
-// What is not as at the beginning, for the session's text.
+// Text form of everything that differs from a new scene, part of to_text(Session).
 std::string to_text(const Scene& scene);
 
 }  // namespace achilles

@@ -70,14 +70,14 @@ bool Session::apply(const Command& command) {
     warnings_.clear();
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
-        // Playing on, or letting go, must not wipe away what the last change of the run complained about.
+        // Playback commands and the end of an edit must not clear the error of the last change.
         const bool changes_nothing = change_of(command) == command::Change::none;
         if (!changes_nothing) error_.clear();
         if (changes_nothing && notice_.empty()) notice_ = noticed;
         history_.remember(command, before, moment());
         follow_sweep();
         follow_proof(0.0);
-        // Who waits for runs as long as they take waits for this, too: no clock may tell what a journal leads to.
+        // Batch replay waits for this, too: the result of a journal must not depend on timing.
         follow_dependence(patience_ ? Patience(0.0) : patience_);
         return true;
     } catch (const Forbidden&) {
@@ -88,7 +88,7 @@ bool Session::apply(const Command& command) {
     }
 }
 
-// As it was at another moment.
+// Restores an earlier state.
 void Session::restore(Moment back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
@@ -103,7 +103,7 @@ void Session::restore(Moment back) {
 
 void Session::perform(const command::Undo&) {
     if (!can_undo()) throw refusal("there is nothing to undo");
-    // To the last system there was: texts on the way to a mistake are only to be done again.
+    // Back to the last valid system; invalid texts in between can only be redone.
     Moment back = history_.undo(moment());
     while (!back.document.problems.empty() && can_undo()) back = history_.undo(std::move(back));
     restore(std::move(back));
@@ -128,7 +128,7 @@ void Session::perform(const command::Open& command) {
 
 void Session::perform(const command::New&) { begin_document(new_document()); }
 
-// Another text. Where it is no system the editor shows why, and the last system goes on.
+// Takes a new text. If it is not a valid system, the editor shows the errors and the last system stays.
 void Session::begin_document(Document document) {
     document_ = std::move(document);
     try {
@@ -168,10 +168,10 @@ void Session::perform(const command::Save& command) {
         library_.save(document_, command.file, command.overwrite);
     else
         save(document_, command.file, command.overwrite);
-    if (document_.source != before) read_document();  // under its new name
+    if (document_.source != before) read_document();  // with its new name in messages
 }
 
-// The edited text takes effect if it is a system.
+// Applies the edited text if it is a valid system.
 void Session::read_document() {
     document_.problems.clear();
     try {
@@ -180,7 +180,7 @@ void Session::read_document() {
         Run run = carried_over(this->description(), asked_, *system->model);
         try {
             system->model->check(run);
-        } catch (const InputError&) {  // what the sliders changed does not fit the new text: the text alone
+        } catch (const InputError&) {  // values set by the sliders do not fit the new text: use the text alone
             run = system->model->default_run();
             system->model->check(run);
         }
@@ -205,9 +205,9 @@ void Session::keep_plane() {
     if (scene_.plane() && !passes([&] { check_plane(*scene_.plane()); })) scene_.forget_plane();
 }
 
-// Shows the start of the system until its run is there. The run must be one that can start.
+// Shows the start of the system until its run is finished. The run must have a valid start.
 void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
-    if (library_.budget) library_.budget->check(run.options);  // before anything has changed
+    if (library_.budget) library_.budget->check(run.options);  // before any change
     put_aside_pin();
     system_ = system;
     plots_ = plots;
@@ -229,7 +229,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
 
 namespace {
 
-// Throws where a value says a unit that its name has not.
+// Throws if a value is given in a unit that does not fit the name.
 void check_unit(const SystemDescription& description, const std::string& name, const command::Given& given) {
     if (given.text.empty()) return;
     try {
@@ -246,7 +246,7 @@ void Session::perform(const command::Set& command) {
     for (const std::string& told : warnings_) notice_ += (notice_.empty() ? "" : "; ") + told;
 }
 
-// A hand that drags makes many of these: a notice would come and go over what it holds.
+// Sends no notice: a drag makes many of these commands, and notices would flicker over the mechanism.
 void Session::perform(const command::Start& command) {
     Run changed = run();
     for (const auto& [name, given] : command.values) {
@@ -258,7 +258,7 @@ void Session::perform(const command::Start& command) {
     }
     try {
         system_->model->check(changed);
-    } catch (const InputError& problem) {  // of these values, not of the file, which runs
+    } catch (const InputError& problem) {  // the values are wrong, not the file, which runs
         std::string names;
         for (const auto& [name, given] : command.values)
             names += fmt::format("{}{} = {}", names.empty() ? "" : ", ", name, given.value);
@@ -291,7 +291,7 @@ void Session::perform(const command::UseOption& command) {
         if (std::find(before.begin(), before.end(), told) == before.end()) warn(told);
 }
 
-// The same model with another run: nothing is read or derived again.
+// Starts another run of the same model, without reading or deriving again.
 void Session::rerun(const Run& run) {
     system_->model->check(run);
     if (library_.budget) library_.budget->check(run.options);
@@ -303,7 +303,7 @@ void Session::rerun(const Run& run) {
     worker_->start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
         Trajectory trajectory = simulate(system->model, run, watch.get());
-        // Plots of a long run that was stopped would keep the next run, and a window that closes, waiting.
+        // Do not build plots of a long run that was stopped: the next run, or a closing window, would wait for them.
         if (stop.stop_requested()) return std::shared_ptr<Simulated>();
         return std::make_shared<Simulated>(system, std::move(trajectory), plots, theme);
     });
@@ -315,8 +315,9 @@ double Session::seconds_under_way() const {
     return watch_ == nullptr ? 0.0 : std::chrono::duration<double>(std::chrono::steady_clock::now() - began_).count();
 }
 
-// Of the run that has just come, on a thread beside that of runs: the next of these waits for nothing. While a hand drags each
-// run puts an end to the estimate of the one before it; at rest there always is one, so that no picture depends on the clock.
+// Starts the error estimate of the newest run on a second thread, so that the next run does not wait. During a drag
+// each run cancels the estimate of the one before it. At rest the estimate always finishes, so no picture depends on
+// timing.
 void Session::estimate() {
     estimator_->start(
         [run = simulated_](const std::stop_token& stop) { return estimate_error(run->trajectory, stop); });
@@ -333,7 +334,7 @@ void Session::receive_estimate(Patience patience) {
     if (simulated_->estimate) use_horizon();
 }
 
-// What is shown of the run has the digits that its estimate leaves, and is pale after its horizon.
+// Applies the error estimate: numbers get the digits it justifies, and curves are pale after the horizon.
 void Session::use_horizon() {
     simulated_->sentences.take(*simulated_->estimate);
     for (PinnedRun& run : pinned_)
@@ -352,7 +353,7 @@ void Session::receive(Patience patience) {
     std::optional<std::shared_ptr<Simulated>> motion;
     try {
         motion = worker_->take(patience);
-    } catch (const std::bad_alloc&) {  // where there is no run to go on with, there is no session
+    } catch (const std::bad_alloc&) {  // without a previous run the session cannot continue
         if (simulated_ == nullptr) throw;
         watch_.reset();
         asked_ = simulated_->trajectory.run;
@@ -367,12 +368,12 @@ void Session::receive(Patience patience) {
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
-    compose_plots();  // they may have been changed meanwhile
+    compose_plots();  // the plots may have changed meanwhile
     compose_pinned();
     if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
     move_to(time_);
     if (!placed_) return;
-    // A time that was asked for while this run was not known lies in it as nearly as can be; nobody is to be told.
+    // A time requested before this run was known is clamped to it, without a warning.
     Command placed = *std::exchange(placed_, std::nullopt);
     if (auto* const seek = std::get_if<command::Seek>(&placed))
         seek->time = std::clamp(seek->time, run().options.start_time, trajectory().end_time);
@@ -410,7 +411,7 @@ void Session::compose_plots() {
     compose_pinned();
 }
 
-// ---- where the player stands: its time, the event it has chosen, and the lens on that ----
+// ---- playback position, selected event, and the lens on it ----
 
 void Session::perform(const command::Seek& command) {
     move_to(command.time);
@@ -422,7 +423,7 @@ void Session::perform(const command::Seek& command) {
 }
 
 void Session::perform(const command::Play&) {
-    // Play at the end means: once more.
+    // Play at the end restarts from the beginning.
     if (time_ >= trajectory().end_time) move_to(run().options.start_time);
     playing_ = true;
 }
@@ -444,7 +445,7 @@ const Event* Session::selected_zeno() const {
     return event.is_zeno() ? &event : nullptr;
 }
 
-// The lens looks at a Zeno point: without one nothing would be seen of it.
+// The lens needs a Zeno point to look at.
 void Session::perform(const command::Lens& command) {
     if (selected_zeno() == nullptr) {
         const auto& events = trajectory().events;
@@ -457,7 +458,7 @@ void Session::perform(const command::Lens& command) {
     scene_.perform(command);
 }
 
-// While a run is under way: what is to be done again on its result.
+// While a run is under way: remember what to repeat on its result.
 void Session::place(const Command& command) {
     if (watch_ != nullptr) placed_ = command;
 }
@@ -467,7 +468,7 @@ void Session::move_to(double time) {
     now_ = simulated_->sampler.at(time_);
 }
 
-// The next event after the present, or the last before it; beyond them the end and the start.
+// Goes to the next event or the last one before the current time; beyond those, to the end or the start.
 void Session::perform(const command::Step& command) {
     const auto& events = trajectory().events;
     const double start = run().options.start_time;
@@ -493,7 +494,7 @@ void play_on(Session& session, double seconds) {
         command::Seek{std::min(session.time() + seconds * session.scene().speed(), session.trajectory().end_time)});
     if (session.time() < session.trajectory().end_time || session.under_way() != nullptr) return;
     if (session.scene().loops())
-        session.apply(command::Play{});  // at the end: once more
+        session.apply(command::Play{});  // restart at the end
     else
         session.apply(command::Pause{});
 }

@@ -1,4 +1,4 @@
-// What a session gives away, the journals that it replays, and all of it as text.
+// Export, copying of command lines, replay of journals, and the session as text.
 #include <fmt/format.h>
 
 #include "model/model.hpp"
@@ -14,7 +14,7 @@ namespace achilles {
 
 namespace {
 
-// The text that a command line finds under a system's name; nothing where there is no such file.
+// The text that a command line would find under a system's name; empty if there is no such file.
 std::optional<std::string> held_by_file(const SystemSource& library, const std::string& system) {
     try {
         return (library.open ? library.open(system) : open_document(system, library.find(system))).text;
@@ -23,12 +23,12 @@ std::optional<std::string> held_by_file(const SystemSource& library, const std::
     }
 }
 
-constexpr int deepest = 8;  // journals in journals: one that names itself comes to an end
+constexpr int deepest = 8;  // maximum nesting of journals, which stops a journal that replays itself
 
 }  // namespace
 
 void Session::perform(const command::Export& command) {
-    // Until then the result on the screen is of another run than the sliders say, or of none.
+    // Until then the result on the screen belongs to other values than the sliders show, or there is none.
     if (under_way() != nullptr || trajectory().outcome.kind == Outcome::Kind::cancelled)
         throw refusal("the run is still under way", "export again when it has finished");
     if (library_.before_writing) library_.before_writing(command.file);
@@ -49,7 +49,7 @@ void Session::perform(const command::Export& command) {
 }
 
 void Session::perform(const command::Copy& command) {
-    // The line names a file: it must hold what runs here.
+    // The command line names a file, which must contain the system that runs here.
     if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
         throw refusal("this text is not saved in a file, and a command line needs a file", "save it first, then copy");
     copied_ = command_for(*this, command.what);
@@ -80,7 +80,7 @@ void Session::perform(const command::Replay& command) {
 
 namespace {
 
-// "zeno_time(1) = 2.7, by g -0.4, ...", as far as it is known of the present run.
+// "zeno_time(1) = 2.7, by g -0.4, ...", for the current run.
 std::string to_text(const Influences& known) {
     std::string text = fmt::format("{} = {:.9g}", known.quantity.expression, known.quantity.value);
     for (const Influences::Of& by : known.all)

@@ -1,4 +1,4 @@
-// The runs that stay beside the present one, and what a session says of all of them.
+// The pinned runs and the comparison of all runs.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -72,7 +72,7 @@ void Session::perform(const command::Pin& command) {
         for (place = 1; is_taken(place);) ++place;
     scene_.perform(command::Show{"runs", true});
     ++pins_asked_;
-    if (watch_ != nullptr) {  // nothing is said of a run that is not there
+    if (watch_ != nullptr) {  // the current run is not finished
         pin_waits_ = place;
         return;
     }
@@ -80,7 +80,7 @@ void Session::perform(const command::Pin& command) {
     compose_pinned();
 }
 
-// Throws InputError where all of them would need more memory than one run may.
+// Throws InputError if all runs together would need more memory than one run may use.
 void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) {
     double bytes = bytes_of(all->trajectory);
     for (const PinnedRun& run : pinned_) bytes += bytes_of(*run.trajectory);
@@ -123,7 +123,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
 }
 
-// Another run is to be made while one that is to be pinned is under way: that goes on beside it, and nobody waits.
+// Another run is about to start while one to be pinned is under way: that one continues on a worker of its own.
 void Session::put_aside_pin() {
     if (!pin_waits_) return;
     if (!patience_) receive(patience_);
@@ -134,7 +134,7 @@ void Session::put_aside_pin() {
     watch_.reset();
 }
 
-// In the order in which they were asked for.
+// Receives finished runs in the order of their requests.
 void Session::receive_pins(Patience patience) {
     std::erase_if(stopped_, [](const auto& worker) { return worker->take(0.0).has_value(); });
     while (!pins_.empty()) {
@@ -152,7 +152,7 @@ void Session::receive_pins(Patience patience) {
     }
 }
 
-// A long run takes a while to forget, and nobody shall wait for that.
+// Cancels a pin. Its worker is kept until it has released the run, which may take time for a long one.
 void Session::stop_pin(std::size_t i) {
     pins_[i].worker->start([](const std::stop_token&) { return std::shared_ptr<Simulated>(); });
     stopped_.push_back(std::move(pins_[i].worker));
@@ -164,7 +164,7 @@ void Session::let_pins_go() {
     while (!pins_.empty()) stop_pin(0);
 }
 
-// A run of another system is nothing to compare with.
+// Drops the pinned runs when the system changes, since they cannot be compared.
 void Session::let_go() {
     let_pins_go();
     if (pinned_.empty()) return;
@@ -176,7 +176,7 @@ void Session::let_go() {
 }
 
 void Session::perform(const command::Unpin& command) {
-    // One that waits is the last that was pinned.
+    // A run still to be pinned counts as the one pinned last.
     if (const std::vector<int> waiting = pins_under_way();
         command.place > 0 ? waits_at(command.place) : !waiting.empty()) {
         const int place = command.place > 0 ? command.place : waiting.back();
@@ -212,7 +212,7 @@ void Session::perform(const command::Recall& command) {
     rerun(Run(pinned->trajectory->run));
 }
 
-// What follows from the runs, the proof, the plots and the theme, once for each change of them.
+// Recomputes everything that depends on runs, proof, plots and theme, once per change.
 void Session::compose_pinned() {
     drawn_.clear();
     run_table_ = {};
@@ -247,7 +247,7 @@ void Session::compose_pinned() {
         run.dark = theme_.dark;
         compared.push_back({run.trajectory.get(), run.name, run_color(theme_, run.place), run.horizon()});
     }
-    // Of a run that was told to stop there is nothing to compare.
+    // A run that was stopped has no results to compare.
     if (!pinned_.empty() && !shows_start()) run_table_ = achilles::run_table(shown);
     for (std::size_t i = 0; i < plots_.list().size() && i < plots().size(); ++i) {
         const Plot& plot = plots_.list()[i];

@@ -1,4 +1,4 @@
-// What a session finds out besides its run.
+// Studies of a session: sweep, proof, sensitivities, periodic orbit.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,13 +14,13 @@
 
 namespace achilles {
 
-// ---- many runs beside the present one ----
+// ---- sweep ----
 
 namespace {
 
-constexpr std::uint64_t points = 512;  // along an axis, of the finest picture
+constexpr std::uint64_t points = 512;  // along an axis, at the finest level
 
-// What varies is not what the values and options of the present run are for.
+// The text may not set values or options: those come from the current run.
 Sweep sweep_of(const std::string& text, const SystemDescription& description) {
     Sweep sweep = read_sweep(text, description);
     if (sweep.base != default_run(description))
@@ -66,7 +66,7 @@ Sweep Session::sweep() const {
     return sweep;
 }
 
-// Throws InputError where it could not be made of runs that end as the present one does.
+// Throws InputError if the sweep cannot be made with the options of the current run.
 void Session::check_sweep(const std::string& text) const {
     Sweep sweep = sweep_of(text, description());
     sweep.base.options = asked_.options;
@@ -101,7 +101,7 @@ void Session::settle() {
     receive_orbit({});
 }
 
-// ---- a proof of the present run ----
+// ---- proof of the current run ----
 
 const Proof* Session::proof() const {
     const Proof* const proof = proof_job_->result().get();
@@ -143,8 +143,8 @@ void Session::perform(const command::StopProof&) {
     compose_pinned();
 }
 
-// What was asked of another run is not to be proved any more; of a run that is there it begins. Throws InputError for a system
-// that no proof covers.
+// Drops a request for another run than the current one; starts the proof once its run is finished. Throws InputError if
+// proofs do not cover the system.
 void Session::follow_proof(Patience patience) {
     if (proof_asked_ && (proof_asked_->system != system_ || !same_to_a_proof(proof_asked_->run, asked_))) {
         proof_asked_.reset();
@@ -173,7 +173,7 @@ void Session::receive_proof(Patience patience) {
     }
 }
 
-// ---- on what a quantity of the present run depends ----
+// ---- sensitivities of a quantity of the current run ----
 
 std::string Session::depend_text() const { return scene_.depends().value_or(simulated_->quantity); }
 
@@ -197,7 +197,7 @@ void Session::keep_dependence() {
     if (scene_.depends() && !passes([&] { check_quantity(*scene_.depends()); })) scene_.forget_dependence();
 }
 
-// Of the run that is shown. What takes less than half a frame is there in the same one.
+// Follows the run that is shown. What takes less than half a frame is available in the same frame.
 void Session::follow_dependence(Patience patience) {
     constexpr double glance = 0.008;
     if (!scene_.shows("depend") || shows_start()) return influences_job_->forget();
@@ -216,7 +216,7 @@ std::optional<TangentLine> Session::sweep_tangent() const {
     return TangentLine{*value(axis.name), influences()->quantity.value, by->derivative, axis.logarithmic};
 }
 
-// ---- a periodic run near the present one, and its branch ----
+// ---- periodic orbit near the current run, and its branch ----
 
 namespace {
 

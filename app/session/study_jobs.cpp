@@ -22,7 +22,7 @@ namespace achilles {
 
 namespace {
 
-// Of one that the sliders set, with the range of its slider and where it stands.
+// The derivative of one slider's input, scaled by the range and position of the slider.
 Influences::Of influence(const std::string& name, const std::array<double, 2>& range, double value,
                          const Quantity& quantity, const Derivatives& derivatives) {
     const auto at = std::find(derivatives.directions.begin(), derivatives.directions.end(), name);
@@ -71,7 +71,7 @@ Influences influences_on(const std::string& quantity, const std::shared_ptr<cons
         add(c.name, c.range, run->run.q[static_cast<Eigen::Index>(i)]);
         add(c.name + "'", c.rate_range, run->run.v[static_cast<Eigen::Index>(i)]);
     }
-    // What is rounding beside the others is none.
+    // Derivatives that are rounding noise beside the others become 0.
     const double size = std::max(result.largest(), std::abs(result.quantity.value));
     for (Influences::Of& one : result.all)
         if (std::abs(one.over_slider) < 1e-12 * size) one.derivative = one.over_slider = 0.0;
@@ -132,7 +132,7 @@ void InfluencesJob::update(Patience patience) {
         if (!is_wanted || !problem.empty()) job_.drop();
         if (of == *asked_) return;
         begin();
-        if (left() == 0.0) return;  // each is seen, however soon the next is made
+        if (left() == 0.0) return;  // show each result, even if the next one is soon ready
     }
 }
 
@@ -166,18 +166,18 @@ bool same_to_a_proof(const Run& a, const Run& b) {
 
 namespace {
 
-// Points along one axis, of one level and the next: a first picture that comes at once, and each finer one costs so much
-// more that those before it do not count.
+// Points along one axis, per level. The first level appears at once; each finer one costs so much more that the levels
+// before it do not matter.
 constexpr std::uint64_t map_steps[] = {16, 64, 160}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
-constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // of one run
+constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // for a single run
 
-struct Stopped {};  // thrown to the Job, which drops it
+struct Stopped {};  // thrown to the Job, which discards it
 
 SweepData table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep, const std::stop_token& stop) {
     const SweepTable table(model, sweep);
     SweepData data(table);
     std::mutex mutex;
-    std::map<std::uint64_t, SweepData> waiting;  // chunks that are made, by their first points
+    std::map<std::uint64_t, SweepData> waiting;  // finished chunks, by their first point
     const std::atomic<bool> never{false};
     const auto go_on = [&] {
         if (stop.stop_requested()) throw Stopped();
@@ -290,7 +290,7 @@ Run run_on(const OrbitPoint& point, Run run) {
     run.parameters = point.parameters;
     run.q = point.flight.q;
     run.v = point.flight.v;
-    // A drive has a clock; without one the run begins when it did.
+    // A driven system keeps the phase of its drive. An autonomous one starts at the start time of the given run.
     if (!point.has_flow) run.options.start_time = point.flight.t;
     run.options.end_time = run.options.start_time + length;
     return run;
@@ -303,7 +303,7 @@ void OrbitJob::begin(const std::shared_ptr<const Model>& model, const std::strin
         FoundOrbit found{text, base, {}};
         try {
             found.answer = answer_to(question, model, &watch);
-        } catch (const InputError& problem) {  // of a start that was tried
+        } catch (const InputError& problem) {  // of an attempted start
             found.answer.why = problem.message;
         }
         return found;

@@ -1,5 +1,5 @@
-// What a window asks of the present run that takes longer than a frame, each on threads of its own: the derivatives of a
-// quantity, a proof, a sweep, a periodic run.
+// Studies of the current run that take longer than a frame, each on its own thread: sensitivities, proof, sweep,
+// periodic orbit.
 #pragma once
 
 #include <functional>
@@ -17,58 +17,58 @@
 
 namespace achilles {
 
-// On what a quantity of a run depends: its derivatives as a person compares them.
+// Sensitivities of a quantity.
 
-// Whether a slider over this range goes by ratios, not by differences.
+// True if a slider over this range has a logarithmic scale.
 bool goes_by_ratios(double low, double high);
 
-// A quantity of one run and what each parameter and start does to it, all in the file's units.
+// A quantity of one run and its derivatives with respect to all parameters and initial values, in the file's units.
 struct Influences {
     std::shared_ptr<const Trajectory> run;
     Quantity quantity;
-    std::string unit;  // of the quantity; "" where it is not known
+    std::string unit;  // unit of the quantity; "" if unknown
     struct Of {
-        std::string name;         // of the parameter, of the coordinate x or the rate x' at the start
-        double derivative = 0.0;  // of the quantity by it; not a number where there is none
-        // What the quantity would change by from one end of its slider to the other, at the slope of the derivative; along a
-        // slider that goes by ratios at the slope over its track.
+        std::string name;         // of a parameter, or of the initial coordinate x or rate x'
+        double derivative = 0.0;  // of the quantity; NaN if it does not exist
+        // Linear estimate of the change of the quantity over the whole slider range. For a logarithmic slider the
+        // derivative is that with respect to the logarithm.
         double over_slider = 0.0;
-        std::string reason;  // why there is none; else empty
+        std::string reason;  // why there is no derivative; else empty
     };
-    std::vector<Of> all;  // as their sliders stand below one another
+    std::vector<Of> all;  // in the order of the sliders
 
     const Of* find(const std::string& name) const;
-    // The largest of |over_slider|; 0 where there is no derivative.
+    // The largest |over_slider|; 0 if no derivative exists.
     double largest() const;
 };
 
-// Throws InputError for an expression that is none, and for a run that has no derivatives at all.
+// Throws InputError if the expression is invalid, or if the run has no derivatives at all.
 Influences influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run);
-// What is asked of a run at first: its last Zeno time or, where it has none, where its first coordinate ends.
+// The initial choice: the last Zeno time or, without one, the final value of the first coordinate.
 std::string default_quantity(const Trajectory& run);
 
-// A line that touches the curve of a sweep where the present run is.
+// Tangent to the curve of a sweep at the current run.
 struct TangentLine {
     double x = 0.0, y = 0.0, slope = 0.0;  // dy/dx, in the file's units
-    bool logarithmic = false;              // the axis of x: it is a line over ln x
+    bool logarithmic = false;              // the line is straight over ln x
     double at(double other_x) const;
 };
 
 class InfluencesJob {
  public:
-    // What is to be known; true where that is something else than before. What is under way is finished first, so that a hand
-    // that never rests sees something.
+    // Sets what to compute. Returns true if the request differs from the last one. Work under way is finished first, so
+    // that results still appear while a slider is being dragged.
     bool ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity);
     void forget();
-    // Takes in what is ready and begins what was asked for meanwhile. Without patience: until that is there.
+    // Receives a finished result and starts the pending request. Without a timeout: waits until that is finished, too.
     void update(Patience patience);
-    // Called on another thread when update() would take something in.
+    // `ready` is called on another thread when update() would receive a result.
     void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
-    // The last that are known: of the quantity that was asked for last, but maybe of a run before. Null: there are none yet.
+    // The last result: for the quantity requested last, but possibly for an earlier run. Null: none yet.
     const Influences* influences() const { return job_.result().get(); }
     bool is_busy() const { return begun_.has_value(); }
-    const std::string& problem() const { return problem_; }  // why there are none; else empty
+    const std::string& problem() const { return problem_; }  // why there is no result; else empty
 
  private:
     struct Asked {
@@ -77,7 +77,7 @@ class InfluencesJob {
         friend bool operator==(const Asked&, const Asked&) = default;
     };
     void begin();
-    std::optional<Asked> asked_, begun_;  // last; and what is under way
+    std::optional<Asked> asked_, begun_;  // the last request, and the one under way
     std::string problem_;
     Job<Influences> job_;
 };
@@ -85,45 +85,45 @@ class InfluencesJob {
 // A proof of a whole run.
 class ProofJob : public Job<Proof, ProofWatch> {
  public:
-    // A proof of a run of this model. The last proof is forgotten. update() throws InputError for a system that no
-    // proof covers.
+    // Starts a proof for a run of this model and drops the last one. update() throws InputError if proofs do not cover
+    // the system.
     void begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim);
-    // Of the last proof; null before the first.
+    // The model of the last proof; null before the first.
     const std::shared_ptr<const Model>& model() const { return model_; }
 
  private:
     std::shared_ptr<const Model> model_;
 };
 
-// What a person writes for it.
+// The command that requests a proof with this spread.
 command::Prove prove_command(const Spread& spread);
 
-// Of two runs of a model whether what is proved of one is proved of the other: how they are computed means nothing to it.
+// True if a proof for run `a` also holds for run `b`: integration options do not matter.
 bool same_to_a_proof(const Run& a, const Run& b);
 
-// The runs of a sweep as a window wants them: coarse to fine, and anew when something changes.
+// The sweep of the window, computed from coarse to fine and repeated after changes.
 
-// Its first picture comes from the first of these, which are the same sweep with fewer points; the last is the sweep. A
-// section of one run alone is that of shorter and shorter runs.
+// The sweep with increasing numbers of points; the first gives the first picture, the last is `sweep` itself. A section
+// of a single run uses increasing run lengths instead.
 std::vector<Sweep> coarse_to_fine(const Sweep& sweep);
 
 class SweepJob {
  public:
-    // What is to be computed of this model; nothing: no more. Goes on with what is under way, or is there, if it is the same: what
-    // the base has in place of an axis does not matter.
+    // Sets the sweep of this model to compute; empty: stop. Work and data of the same sweep are kept; the base's values
+    // of the swept inputs are ignored in this comparison.
     void ask(const std::shared_ptr<const Model>& model, std::optional<Sweep> sweep);
-    // Takes in what is ready and begins what is finer. Without patience: until the finest is there.
+    // Receives a finished level and starts the next finer one. Without a timeout: waits for the finest.
     void update(Patience patience);
-    // Called on another thread when update() would take something in.
+    // `ready` is called on another thread when update() would receive a result.
     void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
-    // Null: there is nothing to see yet. While it is made anew that of the sweep before it, if its columns are the same.
+    // Null: no data yet. While a new sweep is computed: the data of the previous one, if its columns are the same.
     const std::shared_ptr<const SweepData>& data() const { return job_.result(); }
     bool is_busy() const { return next_ < levels_.size(); }
-    // Whether the data are those of what was asked last, be they coarse.
+    // True if the data, even if coarse, belong to the sweep requested last.
     bool is_current() const { return is_current_; }
-    double share() const;                                    // of the work, that is done
-    const std::string& problem() const { return problem_; }  // why it cannot be; empty: it can
+    double share() const;                                    // finished fraction of the work
+    const std::string& problem() const { return problem_; }  // why the sweep failed; empty: it did not
 
  private:
     void begin();  // the next level
@@ -136,27 +136,27 @@ class SweepJob {
     Job<SweepData> job_;
 };
 
-// The search for a periodic run, and its branch, on a thread of their own.
+// The search for a periodic orbit and its branch, on its own thread.
 
-// What was found, and how it was asked for.
+// The result of an orbit search, and its request.
 struct FoundOrbit {
-    std::string text;  // of the command
-    Run base;          // of which that was asked
+    std::string text;  // arguments of the command
+    Run base;          // the run it started from
     OrbitAnswer answer;
 
-    // What is told as one after the other: the points of the branch or, without one, the orbit alone. Empty: there is none.
+    // The points to browse: those of the branch or, without one, the orbit alone. Empty: none found.
     std::size_t count() const { return answer.branch ? answer.branch->points.size() : answer.orbit ? 1 : 0; }
     const OrbitPoint& point(std::size_t i) const { return answer.branch ? answer.branch->points[i] : *answer.orbit; }
-    // Which of them the search had found, before a branch was followed.
+    // Index of the point that the search found, from which the branch was followed.
     std::size_t first() const;
 };
 
-// `run` on this periodic run: its start and parameters; no shorter than a period.
+// `run` on this periodic orbit: with its start and parameters, and at least one period long.
 Run run_on(const OrbitPoint& point, Run run);
 
 class OrbitJob : public Job<FoundOrbit, OrbitWatch> {
  public:
-    // The last orbit is forgotten, and a search under way stopped.
+    // Starts a search. Drops the last result and stops a search under way.
     void begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
                OrbitQuestion question);
 };

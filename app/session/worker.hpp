@@ -1,4 +1,4 @@
-// A thread of its own for what takes longer than a frame. Only the newest request counts.
+// Worker threads for computations that take longer than a frame. Only the newest request counts.
 #pragma once
 
 #include <chrono>
@@ -14,17 +14,17 @@
 
 namespace achilles {
 
-// How many seconds somebody waits; nothing: as long as it takes.
+// Timeout in seconds; nullopt waits indefinitely.
 using Patience = std::optional<double>;
 
 template <class Result>
 class Worker {
  public:
-    // Looks at the token now and then: once a stop is requested, nobody will see what it returns or throws.
+    // Must poll the token: after a stop request its result or exception is discarded.
     using Job = std::function<Result(std::stop_token)>;
 
     Worker() : thread_([this](const std::stop_token& end) { work(end); }) {}
-    // Stops what is under way and waits until it has.
+    // Requests a stop of the job under way and waits for it.
     ~Worker() {
         const std::lock_guard lock(mutex_);
         current_.request_stop();
@@ -38,7 +38,7 @@ class Worker {
         ready_ = std::move(ready);
     }
 
-    // Begins this; what is under way is told to stop, and a result nobody took is dropped.
+    // Starts a job. The job under way is asked to stop, and a result not taken yet is dropped.
     void start(Job job) {
         const std::lock_guard lock(mutex_);
         current_.request_stop();
@@ -49,8 +49,8 @@ class Worker {
         changed_.notify_all();
     }
 
-    // The result of the newest job, once; nothing if it is not ready in time, or was taken. Rethrows what the job
-    // threw.
+    // The result of the newest job. Empty if it is not ready in time, or was already taken. Rethrows an exception of
+    // the job.
     std::optional<Result> take(Patience patience) {
         std::unique_lock lock(mutex_);
         const auto ready = [this] { return !busy_; };
@@ -88,7 +88,7 @@ class Worker {
             lock.lock();
             if (stop.stop_requested()) {
                 lock.unlock();
-                answer = {};  // a long run takes a while to forget, and nobody shall wait for that
+                answer = {};  // releasing a long run takes time; do it without the lock
                 lock.lock();
                 continue;
             }
@@ -105,11 +105,11 @@ class Worker {
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::function<void()> ready_;
-    Job job_;                       // not begun yet
+    Job job_;                       // not started yet
     std::stop_source current_;      // of the newest job
     std::optional<Answer> answer_;  // of the newest job
     bool busy_ = false;             // the newest job has no answer yet
-    std::jthread thread_;           // the last: it uses all the others
+    std::jthread thread_;           // the last member, since the thread uses all others
 };
 
 // The monitor of work that reports no progress.
@@ -117,14 +117,14 @@ struct StopMonitor {
     std::stop_token stop;
 };
 
-// One study at a time, on a thread of its own, and the last result. A Monitor has a stop token, and what the work
-// reports while it goes on.
+// Runs one study at a time on its own thread and keeps the last result. A Monitor has a stop token and the progress of
+// the work.
 template <class Result, class Monitor = StopMonitor>
 class Job {
  public:
     using Work = std::function<Result(Monitor&)>;
 
-    // Begins this. Work under way is stopped, and what it returns or throws is dropped.
+    // Starts the work. Work under way is stopped, and its result or exception is dropped.
     void start(Work work, std::shared_ptr<Monitor> monitor = std::make_shared<Monitor>()) {
         monitor_ = monitor;
         worker_.start([work = std::move(work), monitor = std::move(monitor)](std::stop_token stop) {
@@ -144,7 +144,7 @@ class Job {
         stop();
         drop();
     }
-    // Takes a result that is ready: true if there was one. Rethrows what the work threw; the last result stays then.
+    // Receives a result: true if there was one. Rethrows an exception of the work; the last result is kept then.
     bool update(Patience patience) {
         if (monitor_ == nullptr) return false;
         try {
@@ -158,10 +158,10 @@ class Job {
         monitor_.reset();
         return true;
     }
-    // Called on another thread when update() would take a result.
+    // `ready` is called on another thread when update() would receive a result.
     void on_ready(std::function<void()> ready) { worker_.on_ready(std::move(ready)); }
 
-    // Of the work under way; null without any.
+    // Monitor of the work under way; null if there is none.
     const Monitor* under_way() const { return monitor_.get(); }
     // The last result; null before the first.
     const std::shared_ptr<const Result>& result() const { return result_; }

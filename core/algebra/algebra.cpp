@@ -14,7 +14,7 @@ using boost::multiprecision::denominator, boost::multiprecision::numerator;
 
 Multinomial square_of(std::size_t atom, Work& work) { return power(Multinomial::atom(atom), 2, work); }
 
-// The polynomial with every square of an atom replaced.
+// Replaces every square of the atom.
 Multinomial replaced(const Multinomial& polynomial, std::size_t atom, const Multinomial& square, Work& work) {
     const std::vector<Multinomial> parts = polynomial.coefficients(atom);
     Multinomial result, factor(1);
@@ -46,7 +46,7 @@ std::size_t Algebra::atom_of(Expression expression) {
 }
 
 Multinomial Algebra::reduced(Multinomial polynomial) {
-    // An atom's square is made of earlier atoms, or of ones whose squares stay.
+    // The square of an atom consists of earlier atoms, or of atoms whose squares are not replaced.
     for (std::size_t i = atoms_.size(); i-- > 0;)
         if (atoms_[i].square && polynomial.degree(i) > 1)
             polynomial = replaced(polynomial, i, *atoms_[i].square, work_);
@@ -98,7 +98,7 @@ Fraction Algebra::power(const Fraction& base, int exponent) {
     return result;
 }
 
-// sin and cos of an angle; of a sum by the addition theorems where that is wanted.
+// sin and cos of an angle. If expand_angles_, the angle addition formulas expand those of a sum.
 Algebra::Pair Algebra::sine_and_cosine(const Fraction& angle) {
     const auto& terms = angle.numerator.terms();
     if (expand_angles_ && terms.size() > 1) {
@@ -128,7 +128,7 @@ Fraction Algebra::function(Operation operation, const Fraction& argument) {
         return divide(pair.sine, pair.cosine);
     }
     const Expression value = apply(operation, expression(argument));
-    if (!is_function(Builder::node(value).operation)) return simplify(value);  // sqrt(1), atan(-u), ..
+    if (!is_function(Builder::node(value).operation)) return simplify(value);  // sqrt(1), atan(-u), ...
     const std::size_t index = atom_of(value);
     if (operation == Op::sqrt && argument.denominator.is_one()) atoms_[index].square = argument.numerator;
     if (operation == Op::cosh) {
@@ -163,7 +163,7 @@ Fraction Algebra::node(Expression e, const Fraction& a, const Fraction& b) {
             return power(a, node.exponent);
         case Op::real_power: {
             const Expression value = real_power(expression(a), expression(b));
-            if (!Builder::is(value, Op::real_power)) return simplify(value);  // an exponent that is a number after all
+            if (!Builder::is(value, Op::real_power)) return simplify(value);  // the exponent has become a number
             return {Multinomial::atom(atom_of(value))};
         }
         default:
@@ -221,7 +221,7 @@ class Splitter {
  public:
     Splitter(Algebra& algebra, Factored& result) : algebra_(algebra), work_(algebra.work()), result_(result) {}
 
-    // Puts the factors of a polynomial that is not 0.
+    // Adds the factors of a nonzero polynomial.
     void split(const Multinomial& polynomial, int exponent) {
         const Integer number = polynomial.terms().front().coefficient < 0 ? Integer(-polynomial.number_content())
                                                                           : polynomial.number_content();
@@ -272,7 +272,7 @@ Factored factor(const Fraction& fraction, Algebra& algebra) {
     Splitter splitter(algebra, result);
     splitter.split(fraction.numerator, 1);
     splitter.split(fraction.denominator, -1);
-    // sqrt(u) u is sqrt(u)^3.
+    // Rewrites sqrt(u) u as sqrt(u)^3.
     for (Factored::Factor& root : result.factors) {
         const auto atom = root.base.atoms();
         if (root.base.terms().size() != 1 || atom.size() != 1 || !algebra.square(atom[0])) continue;
@@ -320,7 +320,7 @@ bool Positivity::is_positive(const Multinomial& polynomial, bool not_zero) {
     for (const Term& term : polynomial.terms()) {
         Term low = term;
         bool signs_known = true, dropped = false;
-        Term largest = term;  // its absolute value at most, with sin and cos at most 1
+        Term largest = term;  // bound on its absolute value, by |sin|, |cos| <= 1
         bool bounded = true;
         for (std::size_t i = 0; i < most_atoms; ++i) {
             if (term.powers[i] == 0) continue;

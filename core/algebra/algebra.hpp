@@ -1,7 +1,7 @@
-// Expressions as quotients of polynomials without a common divisor, to simplify them as a person would.
+// Expressions as quotients of coprime polynomials, to simplify them.
 //
-// Atoms are symbols, pi, and functions of simplified arguments. sin^2 + cos^2 = 1, cosh^2 - sinh^2 = 1 and
-// sqrt(u)^2 = u are used as reductions. For the files of this library only: see multinomial.hpp.
+// Atoms are symbols, pi, and functions of simplified arguments. The reductions are sin^2 + cos^2 = 1, cosh^2 - sinh^2 =
+// 1 and sqrt(u)^2 = u. For the files of this library only: see multinomial.hpp.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -16,7 +16,7 @@
 
 namespace achilles {
 
-// numerator/denominator, coprime, the denominator's highest coefficient positive.
+// numerator/denominator, coprime; the leading coefficient of the denominator is positive.
 struct Fraction {
     Multinomial numerator, denominator{1};
     bool is_zero() const { return numerator.is_zero(); }
@@ -25,11 +25,11 @@ struct Fraction {
 
 class Algebra {
  public:
-    // Atoms and nodes are made in the graph. At most `work` products of terms are spent; what would take more throws
-    // TooLong, here as everywhere below. With `expand_angles` sines and cosines of sums become products.
+    // Creates atoms and nodes in the graph. `work` limits the number of products of terms; beyond it all functions
+    // throw TooLong. If `expand_angles`, sines and cosines of sums are expanded into products.
     Algebra(Graph& graph, Work work, bool expand_angles = false);
 
-    // Throws std::domain_error where a denominator is 0 everywhere.
+    // Throws std::domain_error if a denominator is identically 0.
     Fraction simplify(Expression expression);
     Expression expression(const Fraction& fraction);
     Expression expression(const Multinomial& polynomial);
@@ -38,17 +38,17 @@ class Algebra {
     Fraction multiply(const Fraction& a, const Fraction& b);
     Fraction divide(const Fraction& a, const Fraction& b);
 
-    // The polynomial after the reductions above, and the same with cos^2 replaced instead of sin^2 for one cosine.
+    // The polynomial after the reductions above.
     Multinomial reduced(Multinomial polynomial);
     Multinomial with_sines(const Multinomial& polynomial, std::size_t cosine);
 
     Expression atom(std::size_t index) const { return atoms_[index].expression; }
     std::size_t atom_count() const { return atoms_.size(); }
-    // The atom behind an expression, if there is one already.
+    // The atom of an expression, if it exists already.
     std::optional<std::size_t> find(Expression expression) const;
-    // What the square of an atom is replaced by.
+    // The polynomial that replaces the square of an atom, if there is one.
     const std::optional<Multinomial>& square(std::size_t index) const { return atoms_[index].square; }
-    // The sine with the same argument, for a cosine.
+    // For a cosine, the atom of the sine with the same argument.
     std::optional<std::size_t> sine_of(std::size_t index) const { return atoms_[index].sine; }
     Graph& graph() const { return graph_; }
     Work& work() { return work_; }
@@ -73,12 +73,11 @@ class Algebra {
     Work work_;
     bool expand_angles_;
     std::vector<Atom> atoms_;
-    std::unordered_map<std::uint32_t, std::size_t> index_;  // by node
+    std::unordered_map<std::uint32_t, std::size_t> index_;  // by id of the node
 };
 
-// Simplified expressions as products, and proofs that a factor is positive.
-
-// number times bases to integer powers. The bases are primitive: no number divides them; no two are alike.
+// number times bases to integer powers. The bases are primitive (their coefficients have no common divisor) and
+// distinct.
 struct Factored {
     struct Factor {
         Multinomial base;
@@ -88,36 +87,37 @@ struct Factored {
     std::vector<Factor> factors;
 };
 
-// The factors that greatest common divisors find: atoms, what some of the atoms share, what is repeated. A factor in
-// 1 - cos^2 is written as sin^2 where that is shorter.
+// Factors found by greatest common divisors: atoms, common contents, repeated factors. A factor with 1 - cos^2 is
+// written with sin^2 if that has fewer terms.
 Factored factor(const Fraction& fraction, Algebra& algebra);
 
 Factored operator*(Factored a, const Factored& b);
 Fraction expand(const Factored& factored, Algebra& algebra);
 
-// What is known of the sign of an atom that depends on parameters alone.
+// What is known about the sign of an atom.
 enum class Sign { unknown, not_negative, positive };
 
-// Proves that polynomials are positive at every real value of the symbols whose sign is not known, and remembers what
-// it took to be positive.
+// Proves that polynomials are positive for all real values of the symbols of unknown sign. Records the atoms whose
+// known sign was used.
 class Positivity {
  public:
-    // `sign_of` tells the sign of symbols and of functions of them, where it is known.
+    // `sign_of` returns the sign of a symbol, or of a function of symbols, if it is known.
     Positivity(const Algebra& algebra, std::function<Sign(Expression)> sign_of)
         : algebra_(algebra), sign_of_(std::move(sign_of)) {}
 
-    // Sums of products of what is not negative, one of them positive, after |sin|, |cos| <= 1 in what is subtracted. Of
-    // a polynomial that is known not to be 0 (a denominator) it is enough that it is not negative.
+    // True if a lower bound, in which |sin|, |cos| <= 1 bound the negative terms, is a sum of nonnegative products, at
+    // least one of them positive. With `not_zero`, for a polynomial known to be nonzero (a denominator), nonnegative is
+    // enough.
     bool is_positive(const Multinomial& polynomial, bool not_zero = false);
 
-    // The atoms whose sign was used.
+    // The atoms whose sign was used in a proof.
     const std::set<std::size_t>& used() const { return used_; }
 
  private:
     Sign sign(std::size_t atom);
     const Algebra& algebra_;
     std::function<Sign(Expression)> sign_of_;
-    std::vector<int> known_;  // by atom, -1: not asked yet
+    std::vector<int> known_;  // by atom; -1: not computed yet
     std::set<std::size_t> used_;
 };
 

@@ -92,7 +92,7 @@ std::vector<std::size_t> Multinomial::atoms() const {
 
 std::vector<Multinomial> Multinomial::coefficients(std::size_t atom) const {
     std::vector<Multinomial> result(static_cast<std::size_t>(degree(atom)) + 1);
-    // Terms without the atom's power keep their order.
+    // The order of terms is unchanged when the power of one atom is removed.
     for (const Term& term : terms_) {
         Term rest = term;
         rest.powers[atom] = 0;
@@ -163,7 +163,7 @@ std::optional<Multinomial> divide(const Multinomial& a, const Multinomial& b, Wo
     for (Multinomial rest = a; !rest.is_zero();) {
         const Term& top = rest.terms().front();
         const std::optional<Monomial> powers = ratio(top.powers, head.powers);
-        // The lowest terms must divide as well: most divisions that fail do so here.
+        // The lowest terms must divide as well; most inexact divisions are detected here.
         if (!powers || !ratio(rest.terms().back().powers, b.terms().back().powers)) return std::nullopt;
         const Integer coefficient = top.coefficient / head.coefficient;
         if (coefficient * head.coefficient != top.coefficient) return std::nullopt;
@@ -181,8 +181,8 @@ Multinomial quotient(const Multinomial& a, const Multinomial& b, Work& work) {
     return *result;
 }
 
-// The greatest common divisor of two polynomials: atoms that it cannot contain are found by images modulo a prime and
-// split off by contents; for the others primitive remainder sequences.
+// Greatest common divisor of two polynomials. Images modulo a prime find atoms that it cannot contain; these are
+// removed by taking contents. The other atoms are handled by primitive polynomial remainder sequences.
 
 namespace {
 
@@ -200,10 +200,10 @@ std::uint64_t power_mod(std::uint64_t base, std::uint64_t exponent) {
     return result;
 }
 
-// Where the other atoms are put: any fixed numbers that have no relation to each other.
+// The values at which the other atoms are evaluated: arbitrary fixed numbers.
 std::uint64_t value_of(std::size_t atom) { return (0x9E3779B97F4A7C15ULL * (atom + 3) >> 20) % prime; }
 
-// The polynomial in one atom alone, the others replaced by numbers, modulo the prime; ascending powers.
+// The polynomial in one atom modulo the prime, with the other atoms at fixed values; ascending powers.
 std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
     std::vector<std::uint64_t> result(static_cast<std::size_t>(a.degree(atom)) + 1, 0);
     for (const Term& term : a.terms()) {
@@ -218,14 +218,14 @@ std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
     return result;
 }
 
-// An upper bound on the degree of gcd(a, b) in an atom: that of the images' divisor, if their degrees are those of a,
-// b.
+// Upper bound on the degree of gcd(a, b) in an atom: that of the gcd of the images. If an image has a lower degree than
+// its polynomial, the bound is the smaller degree of a and b.
 int degree_bound(const Multinomial& a, const Multinomial& b, std::size_t atom) {
     std::vector<std::uint64_t> x = image(a, atom), y = image(b, atom);
     if (x.back() == 0 || y.back() == 0) return std::min(a.degree(atom), b.degree(atom));
     while (true) {
         if (x.size() < y.size()) std::swap(x, y);
-        // x -= x_top/y_top y^k until it is shorter
+        // Subtracts multiples of y until x is shorter than y.
         const std::uint64_t inverse = power_mod(y.back(), prime - 2);
         while (x.size() >= y.size()) {
             const std::uint64_t factor = x.back() * inverse % prime;
@@ -240,7 +240,7 @@ int degree_bound(const Multinomial& a, const Multinomial& b, std::size_t atom) {
 
 Multinomial positive(const Multinomial& a) { return !a.is_zero() && a.terms().front().coefficient < 0 ? -a : a; }
 
-// Without its numbers' and monomials' common divisor.
+// Divides by the common divisors of the coefficients and of the monomials.
 Multinomial stripped(const Multinomial& a) {
     const Integer number = a.number_content();
     const Monomial powers = a.monomial_content();
@@ -253,7 +253,8 @@ Multinomial stripped(const Multinomial& a) {
     return positive(Multinomial(std::move(terms)));
 }
 
-// The rest of a after division by b as polynomials in an atom, a first multiplied by what makes that possible.
+// Pseudo-remainder of a divided by b as polynomials in an atom: a is multiplied by the leading coefficient of b as
+// needed.
 Multinomial pseudo_remainder(Multinomial a, const Multinomial& b, std::size_t atom, Work& work) {
     const std::vector<Multinomial> divisor = b.coefficients(atom);
     const int degree = b.degree(atom);
@@ -266,7 +267,7 @@ Multinomial pseudo_remainder(Multinomial a, const Multinomial& b, std::size_t at
     return a;
 }
 
-// Of two polynomials that are primitive in an atom.
+// The gcd of two polynomials that are primitive in the atom.
 Multinomial primitive_gcd(Multinomial a, Multinomial b, std::size_t atom, Work& work) {
     if (a.degree(atom) < b.degree(atom)) std::swap(a, b);
     while (true) {
@@ -280,7 +281,7 @@ Multinomial primitive_gcd(Multinomial a, Multinomial b, std::size_t atom, Work& 
     }
 }
 
-// Of several, the shortest first.
+// The gcd of several polynomials, the shortest first.
 Multinomial gcd_of(std::vector<Multinomial> parts, Work& work) {
     std::sort(parts.begin(), parts.end(),
               [](const Multinomial& x, const Multinomial& y) { return x.terms().size() < y.terms().size(); });
@@ -293,7 +294,7 @@ Multinomial gcd_of(std::vector<Multinomial> parts, Work& work) {
     return result;
 }
 
-// Of stripped polynomials.
+// The gcd of two polynomials returned by stripped().
 Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     if (a.is_number() || b.is_number()) return Multinomial(1);
     work.spend(a.terms().size() + b.terms().size());
@@ -301,7 +302,7 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     std::size_t best = most_atoms;
     int least = 256;
     bool common = false;
-    std::size_t absent = most_atoms;  // an atom that the divisor does not contain
+    std::size_t absent = most_atoms;  // an atom that the gcd does not contain
     std::vector<std::size_t> atoms = a.atoms();
     for (const std::size_t atom : b.atoms())
         if (a.degree(atom) == 0) atoms.push_back(atom);
@@ -320,7 +321,7 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     }
     if (!common) return Multinomial(1);
     if (absent != most_atoms) {
-        // The divisor divides every coefficient of that atom's powers.
+        // The gcd divides every coefficient of the powers of that atom.
         std::vector<Multinomial> parts = a.coefficients(absent);
         const std::vector<Multinomial> more = b.coefficients(absent);
         parts.insert(parts.end(), more.begin(), more.end());

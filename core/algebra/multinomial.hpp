@@ -1,7 +1,7 @@
-// Polynomials in several atoms with exact integer coefficients: what simplification is made of. For the files of this
-// library only: it needs Boost.Multiprecision.
+// Polynomials in several atoms with exact integer coefficients, the basis of simplification. For the files of this
+// library only, because it needs Boost.Multiprecision.
 //
-// An atom is a number from 0 to most_atoms - 1; what stands behind it (a symbol, a sine) is the algebra's business.
+// An atom is an index from 0 to most_atoms - 1. Algebra knows what it stands for (a symbol, a sine).
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@ namespace achilles {
 
 using Integer = boost::multiprecision::cpp_int;
 
-// More work than a simplification may cost, more atoms, or powers and coefficients that are too large.
+// Thrown if a simplification takes too much work, too many atoms, or too large powers or coefficients.
 struct TooLong : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// What simplification may still cost, in products of two terms.
+// The work left for a simplification, in products of two terms.
 struct Work {
     long left = 0;
     void spend(std::size_t products);  // throws TooLong
@@ -28,7 +28,7 @@ struct Work {
 
 inline constexpr std::size_t most_atoms = 48;
 
-// The exponents of a product of powers of atoms.
+// The exponents of a product of powers, by atom.
 using Monomial = std::array<std::uint8_t, most_atoms>;
 
 class Multinomial {
@@ -42,19 +42,19 @@ class Multinomial {
     Multinomial() = default;
     explicit Multinomial(const Integer& value);
     static Multinomial atom(std::size_t index);
-    // The sum of any terms.
+    // The sum of the terms, which may repeat and be in any order.
     explicit Multinomial(std::vector<Term> terms);
 
-    const std::vector<Term>& terms() const { return terms_; }  // no two alike, none 0, the highest first
+    const std::vector<Term>& terms() const { return terms_; }  // distinct, nonzero, the highest first
     bool is_zero() const { return terms_.empty(); }
     bool is_number() const;
     bool is_one() const;
-    Integer number() const;  // of is_number()
+    Integer number() const;  // requires is_number()
     int degree(std::size_t atom) const;
-    std::vector<std::size_t> atoms() const;  // those it depends on
-    // The coefficients of the powers 0, 1, .. of an atom.
+    std::vector<std::size_t> atoms() const;  // the atoms that it depends on
+    // The coefficients of the powers 0, 1, ... of an atom.
     std::vector<Multinomial> coefficients(std::size_t atom) const;
-    // The greatest common divisor of its numbers, and of its monomials.
+    // The greatest common divisor of the coefficients, and that of the monomials.
     Integer number_content() const;
     Monomial monomial_content() const;
 
@@ -72,12 +72,12 @@ Multinomial times(const Multinomial& a, const Multinomial::Term& term);
 Multinomial power(const Multinomial& a, int exponent, Work& work);  // exponent >= 0
 Multinomial derivative(const Multinomial& a, std::size_t atom);
 
-// a/b where that is a polynomial with integer coefficients, else nothing.
+// a/b if that is a polynomial with integer coefficients, else nullopt.
 std::optional<Multinomial> divide(const Multinomial& a, const Multinomial& b, Work& work);
-// The quotient where the division is known to leave no rest.
+// The quotient of a division that is known to be exact.
 Multinomial quotient(const Multinomial& a, const Multinomial& b, Work& work);
 
-// The greatest common divisor over the integers, its highest coefficient positive; 0 of two zeros.
+// The greatest common divisor over the integers, with positive leading coefficient; gcd(0, 0) = 0.
 Multinomial gcd(const Multinomial& a, const Multinomial& b, Work& work);
 // The greatest common divisor of the coefficients of an atom's powers.
 Multinomial content(const Multinomial& a, std::size_t atom, Work& work);

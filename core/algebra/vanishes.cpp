@@ -13,7 +13,7 @@ namespace {
 
 constexpr long most_work = 400000;
 
-// number atom + rest = 0
+// Solution of number atom + rest = 0.
 struct Solved {
     std::size_t atom;
     Multinomial number, rest;
@@ -35,7 +35,7 @@ class Elimination {
             expression = replaced(expression);
             std::transform(zeros.begin(), zeros.end(), zeros.begin(), replaced);
         }
-        // What is left is solved for functions, which are replaced in the polynomial alone.
+        // The remaining zeros are solved for functions, which are substituted in the polynomial only.
         Multinomial left = algebra_.simplify(expression).numerator;
         for (const Expression zero : zeros) {
             if (left.is_zero()) return true;
@@ -45,7 +45,7 @@ class Elimination {
     }
 
  private:
-    // For an unknown symbol that no function depends on, or for a function.
+    // Solves for an unknown symbol that no function depends on, or for a function.
     std::optional<Solved> solve(const Multinomial& zero, bool for_a_symbol) const {
         const std::vector<std::size_t> atoms = zero.atoms();
         for (const std::size_t atom : atoms) {
@@ -74,7 +74,7 @@ class Elimination {
         });
     }
 
-    // number^d times the polynomial, of degree d in the atom, where the atom is -rest/number.
+    // Substitutes atom = -rest/number in a polynomial of degree d in the atom, and multiplies by number^d.
     Multinomial replaced(const Multinomial& polynomial, const Solved& solved) {
         const std::vector<Multinomial> parts = polynomial.coefficients(solved.atom);
         Multinomial result, power(1);
@@ -89,7 +89,7 @@ class Elimination {
     std::span<const std::uint32_t> unknowns_;
 };
 
-// Whether a proof is found, with the work that it may take.
+// True if the proof succeeds within its work limit.
 template <class Proof>
 bool is_proved(const Proof& proof) {
     try {

@@ -1,4 +1,4 @@
-// Whether an expression is 0 wherever it is defined, or wherever others are 0.
+// Tests whether an expression is identically 0, or 0 wherever given expressions are 0.
 #pragma once
 
 #include <span>
@@ -7,12 +7,13 @@
 
 namespace achilles {
 
-// True where it is, as g m1/m1 - g m2/m2, however it is written; false where it is not, or simplifying it takes too long.
+// True if the expression is proved to be identically 0, such as g m1/m1 - g m2/m2. False if it is not 0, or if
+// simplification takes too much work.
 bool vanishes(Expression expression);
 
-// The same wherever all of `zeros` are 0. Each of these is solved for one of the symbols `unknowns`, or else for a function,
-// that it has with a number for a coefficient and nowhere else; what is solved for is replaced. False also where that
-// proves nothing: a zero that cannot be solved is left out.
+// The same on the set where all of `zeros` are 0. Each of them is solved for one of the symbols `unknowns`, or else for
+// a function, that occurs linearly with a numeric coefficient and nowhere else. The solution is substituted. A zero
+// that cannot be solved is ignored, so false may also mean that no proof was found.
 bool vanishes_where(Expression expression, std::span<const Expression> zeros, std::span<const std::uint32_t> unknowns);
 
 }  // namespace achilles

@@ -67,7 +67,7 @@ Written Writer::product(const Rational& number, const Monomial& powers, const Wr
         factors.push_back(powers[i] == 1 ? written_[i] : write_power(written_[i], powers[i], notation_));
     }
     if (bracket != nullptr) factors.push_back(*bracket);
-    // Text divides at the end, LaTeX puts the fraction in front.
+    // Text divides at the end of a product; LaTeX puts the fraction in front.
     const bool divide = notation_ == Notation::text && !factors.empty();
     const Rational front = divide ? Rational(numerator(size)) : size;
     if (front != 1 || factors.empty()) factors.insert(factors.begin(), write_number(front, notation_));
@@ -78,7 +78,7 @@ Written Writer::product(const Rational& number, const Monomial& powers, const Wr
     return result;
 }
 
-// Several terms with a factor in common, as that times a bracket.
+// Several terms with a common factor, as that factor times a bracket.
 Writer::Piece Writer::collected(std::vector<Item> items, const Monomial& shared) const {
     bool alike = true, whole = true;
     boost::multiprecision::cpp_int divisor = 0;
@@ -97,8 +97,8 @@ Writer::Piece Writer::collected(std::vector<Item> items, const Monomial& shared)
     return {number < 0, product(number, shared, &bracket)};
 }
 
-// Terms that should stand in one bracket, among those left: with the same rates; where that is so for all, with the
-// atom that stands in most of them, always to the same power. None: each for itself.
+// The terms that share the next bracket: those with the same rates. If all terms have the same rates, those that
+// contain the most frequent atom to the same power. Empty if the remaining terms are written one by one.
 std::vector<std::size_t> Writer::next_group(const std::vector<Item>& items,
                                             const std::vector<std::size_t>& left) const {
     const auto rates = [&](std::size_t item) {
@@ -132,7 +132,7 @@ std::vector<std::size_t> Writer::next_group(const std::vector<Item>& items,
 
 Written Writer::sum(std::vector<Item> items) const {
     std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return before(a, b); });
-    std::vector<std::pair<std::size_t, Piece>> pieces;  // by the place of the first term
+    std::vector<std::pair<std::size_t, Piece>> pieces;  // by index of the first term
     std::vector<std::size_t> left(items.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     for (std::vector<std::size_t> group = next_group(items, left); !group.empty(); group = next_group(items, left)) {
@@ -146,7 +146,7 @@ Written Writer::sum(std::vector<Item> items) const {
     for (const std::size_t i : left)
         pieces.emplace_back(i, Piece{items[i].number < 0, product(items[i].number, items[i].powers, nullptr)});
     std::sort(pieces.begin(), pieces.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
-    // A sum does not start with a minus if it need not.
+    // If a sum has a positive term, it starts with one.
     const auto plus =
         std::find_if(pieces.begin(), pieces.end(), [](const auto& piece) { return !piece.second.negative; });
     if (plus != pieces.end()) std::rotate(pieces.begin(), plus, plus + 1);
@@ -158,7 +158,7 @@ Written Writer::sum(std::vector<Item> items) const {
     return result;
 }
 
-// c - c cos(u)^2 is c sin(u)^2, where sin(u) is at hand.
+// Writes c - c cos(u)^2 as c sin(u)^2, if sin(u) is an atom.
 void Writer::gather_sines(std::vector<Item>& items, const Algebra& algebra) const {
     for (std::size_t cosine = 0; cosine < written_.size(); ++cosine) {
         const std::optional<std::size_t> sine = algebra.sine_of(cosine);
@@ -193,7 +193,7 @@ Written Writer::write(const Fraction& fraction, Algebra& algebra) const {
 Written Writer::write(const Factored& given) const {
     Factored factored = given;
     if (factored.number < 0) {
-        // -(a - b) is b - a.
+        // Writes -(a - b) as b - a.
         for (auto& [base, exponent] : factored.factors) {
             const auto& all = base.terms();
             const auto sign = [](const Multinomial::Term& term) { return term.coefficient < 0; };

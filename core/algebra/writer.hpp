@@ -1,4 +1,4 @@
-// Simplified expressions as a person would write them: common factors before brackets, parameters before coordinates
+// Formats simplified expressions in the usual order: common factors before brackets, parameters before coordinates
 // before rates before functions. For the files of this library only: see multinomial.hpp.
 #pragma once
 
@@ -12,12 +12,12 @@ namespace achilles {
 
 class Writer {
  public:
-    // `names` and `ranks` are by slot: symbols of lower rank stand first in a product, and sums start with the terms of
-    // the highest degree in symbols of the highest rank.
+    // `names` and `ranks` are indexed by slot. Symbols of lower rank come first in a product. Sums start with the terms
+    // of the highest degree in symbols of the highest rank.
     Writer(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks, Notation notation);
 
     Written write(const Multinomial& polynomial) const;
-    // A polynomial over a number as a sum with fractions for coefficients; anything else as a quotient of products.
+    // A polynomial over a number becomes a sum with fractional coefficients, anything else a quotient of products.
     Written write(const Fraction& fraction, Algebra& algebra) const;
     Written write(const Factored& factored) const;
 
@@ -27,7 +27,7 @@ class Writer {
         Rational number;
         Monomial powers;
     };
-    struct Piece {  // a term, or several with a common factor, of a written sum
+    struct Piece {  // one term of a formatted sum, or several terms with their common factor
         bool negative = false;
         Written written;
     };
@@ -41,8 +41,8 @@ class Writer {
 
     Notation notation_;
     std::vector<Written> written_;    // by atom
-    std::vector<std::size_t> order_;  // of atoms in a product
-    std::vector<bool> highest_;       // is it a symbol of the highest rank?
+    std::vector<std::size_t> order_;  // atoms in the order of a product
+    std::vector<bool> highest_;       // by atom: is it a symbol of the highest rank?
 };
 
 }  // namespace achilles

@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double room = 1.5;  // in radii
+constexpr double room = 1.5;  // factor by which radii are enlarged
 
 // q, s, the two sigma and t.
 std::vector<std::uint32_t> variables_of_pair(const Layout& layout) {
@@ -20,29 +20,30 @@ std::vector<std::uint32_t> variables_of_pair(const Layout& layout) {
     return variables;
 }
 
-// x' W^-1 y of 2-vectors.
+// x' W^-1 y for 2-vectors.
 Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
                     const std::array<Interval, 2>& y) {
     const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
     return (W[1][1] * x[0] * y[0] - W[0][1] * (x[0] * y[1] + x[1] * y[0]) + W[0][0] * x[1] * y[1]) / det;
 }
 
-// Upper bounds, as points: rounded up by the interval operations.
+// The upper end of an interval, as a point.
 Interval top(const Interval& x) { return Interval(x.hi()); }
 
-// One choice of eta, in exact bounds.
+// The bounds for one choice of eta, in interval arithmetic.
 class Chatter {
  public:
     explicit Chatter(const PairAtCollision& pair) : p_(pair) {
         for (std::size_t i = 0; i < 2; ++i) {
             d_[i] = sqrt(p_.W[i][i]);
-            rest_[i] = p_.W[i][i] - square(p_.W[0][1]) / p_.W[1 - i][1 - i];  // W_i', the other one held
+            rest_[i] = p_.W[i][i] - square(p_.W[0][1]) / p_.W[1 - i][1 - i];  // W_i', while the other contact is held
             a_least_[i] = p_.a[i] - d_[i] * p_.Delta;
             slope_[i] = rest_[i] * p_.lambda[i] - sqrt(rest_[i]) * p_.Delta;
         }
         const Interval one(1.0), two(2.0), e = max(p_.e[0], p_.e[1]);
-        // An impact of i alone takes the part 1 - e_i^2 of hdot_i^2/(2 W_ii). One of both, p' W p/2 (1 - e)/(1 + e) at least,
-        // and p' W p >= (1 + e_i)^2 hdot_i^2/W_ii since W p >= (1 + e) |hdot|: the same where restitutions are equal.
+        // An impact of contact i alone dissipates the fraction 1 - e_i^2 of hdot_i^2/(2 W_ii). An impact of both
+        // dissipates at least p' W p/2 (1 - e)/(1 + e), and p' W p >= (1 + e_i)^2 hdot_i^2/W_ii because W p >= (1 + e)
+        // |hdot|. For equal restitutions, both fractions are the same.
         for (std::size_t i = 0; i < 2; ++i) taken_[i] = square(one + p_.e[i]) * (one - e) / (one + e);
         L_ = sqrt(square(p_.lambda[0]) * p_.W[0][0] + two * p_.lambda[0] * p_.lambda[1] * p_.W[0][1] +
                   square(p_.lambda[1]) * p_.W[1][1]);
@@ -78,7 +79,7 @@ class Chatter {
                     (one - kd_ * p_.omega));
             const Interval next_gam = top(p_.Delta * Ct + two * p_.omega * next_S / (one - p_.omega));
             if (!next_gam.is_defined() || !next_S.is_defined() || next_gam.hi() > 1.0) return std::nullopt;
-            stands = next_gam.hi() <= gam.hi() && next_S.hi() <= S.hi();  // what was assumed is what follows
+            stands = next_gam.hi() <= gam.hi() && next_S.hi() <= S.hi();  // the bounds confirm the assumption
             for (std::size_t i = 0; i < 2; ++i) stands = stands && next_wait[i].hi() <= wait[i].hi();
             if (!stands) {
                 for (std::size_t i = 0; i < 2; ++i) wait[i] = Interval(next_wait[i].hi() * (1.0 + 1e-9));
@@ -102,9 +103,9 @@ class Chatter {
     }
 
  private:
-    // How fast and how high contact i is at most, in units of r0 and r0^2, while all its impacts are weak (slower than hat) and
-    // until the other one lands, the time `wait` (in r0) later. It falls back; or, where nothing draws it back as long as the
-    // other is open (a_i <= 0), it has gone on since its last rebound.
+    // Maximum speed and height of contact i, in units of r0 and r0^2, while all its impacts are weak (slower than hat)
+    // and until the other contact closes, a time `wait` (in r0) later. If the acceleration does not pull contact i back
+    // while the other is open (a_i <= 0), it may have risen since its last rebound; otherwise it falls back.
     struct Most {
         Interval speed, height;
     };
@@ -139,18 +140,18 @@ PairConditions::PairConditions(const Model& model, const Run& run, const std::ar
       e_(e),
       terms_(model.evaluator<Interval>(model.pair(first, second, mode).terms, run.parameters)),
       point_(model.evaluator(model.pair(first, second, mode).terms, run.parameters)) {
-    truncation_.conditions = Conditions::sharp;  // there are no others for a pair
+    truncation_.conditions = Conditions::sharp;  // pairs have no other conditions
     truncation_.reinitialization = Reinitialization::kinetic;
 }
 
-// The terms over a box of q, s, the two sigma and t.
+// Evaluates the terms over a box of q, s, the two sigma and t.
 bool PairConditions::look(const std::vector<Interval>& box) {
     set_box(terms_, box);
     terms_.run();
     return certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
 }
 
-// What is known at the collision, at sigma = 0 there; nothing where the pair is not pressed.
+// The terms at the collision, with sigma = 0; nullopt if the pair is not pressed.
 std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision& collision, const State& tangential) {
     std::vector<Interval> here;
     for (const double q : tangential.q) here.emplace_back(q);
@@ -176,8 +177,8 @@ std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision&
     return pair;
 }
 
-// Is the motion until tau_inf proved to stay inside the box, with the shifted variables? If not it grows to what was asked
-// for. terms_ are those over the box.
+// Whether the motion until tau_inf and the shifted variables are proved to stay inside the box. If not, the box grows
+// to the required size. terms_ must be those over the box.
 bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtCollision& pair) {
     bool inside = fits(bound.T.hi(), box.duration, room) && bound.m.hi() <= box.growth;
     if (!(bound.m.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bound.m.hi() - 1.0);
@@ -202,7 +203,7 @@ bool PairConditions::contain(Box& box, const PairBound& bound, const PairAtColli
 
 Certificate PairConditions::certificate_of(const Box& box, const PairBound& bound, const PairAtCollision& pair,
                                            const PairCollision& collision) const {
-    // The integrals of h and of sigma_k sigma_l, in place of those of one contact.
+    // The integrals of h and of sigma_k sigma_l, in place of those of a single contact.
     const std::array<Interval, 2> gap{bound.J / pair.lambda[0], bound.J / pair.lambda[1]};
     const auto products = [&](std::size_t k, std::size_t l) {
         return Interval(2.0) * sqrt(pair.W[k][k]) * sqrt(pair.W[l][l]) * bound.J;
@@ -238,7 +239,7 @@ Certificate PairConditions::certificate_of(const Box& box, const PairBound& boun
         position = position + square(Interval(box.q_radius[i]));
         velocity = velocity + square(Interval(box.s_radius[i]));
     }
-    double wait = 0.0;  // as if each bounced alone with what it has now, drawn by what holds both
+    double wait = 0.0;  // as if each contact bounced alone, with the acceleration when both are held as a substitute
     for (std::size_t k = 0; k < 2; ++k) {
         const double e = mid(e_[k]), h = std::max(0.0, collision.h[k]);
         const double a = mid(pair.a[k]) > 0.0 ? mid(pair.a[k]) : mid(pair.lambda[k] * pair.W[k][k]);
@@ -301,7 +302,7 @@ std::optional<PairConditions::Completion> PairConditions::certify(const PairColl
         if (!look(box.all)) return std::nullopt;
         const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
         pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
-        // The Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, by K = W^-1 (W(q) - W).
+        // Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, computed from K = W^-1 (W(q) - W).
         const Interval det = pair->W[0][0] * pair->W[1][1] - square(pair->W[0][1]);
         const Interval d0 = terms_.W(0, 0) - pair->W[0][0], d1 = terms_.W(0, 1) - pair->W[0][1],
                        d2 = terms_.W(1, 1) - pair->W[1][1];

@@ -1,5 +1,5 @@
-// The time that two contacts which chatter together still need until both rest, and how far the motion that holds both is
-// from theirs (theory-gaps.md 3).
+// Proves how long two contacts that chatter together bounce on until both rest, and how far the motion that holds both
+// is from theirs (theory-gaps.md 3).
 #pragma once
 
 #include <array>
@@ -11,23 +11,23 @@
 
 namespace achilles {
 
-// What is known of the pair at a collision, in units of its energy E = sigma' W^-1 sigma/2 + lambda' h, r0 = sqrt(2 E).
+// Bounds on the pair at a collision, in units of its energy E = sigma' W^-1 sigma/2 + lambda' h, r0 = sqrt(2 E).
 struct PairAtCollision {
-    std::array<Interval, 2> a, lambda, e;  // -hddot, the forces that hold both, restitutions
+    std::array<Interval, 2> a, lambda, e;  // -hddot, the forces that hold both, the restitutions
     std::array<std::array<Interval, 2>, 2> W;
     Interval r0;
-    // Over the neighbourhood: |W^-1/2 (hddot + a)| and |W^-1/2 (W(q) - W) W^-1/2| are at most these.
+    // Upper bounds over the neighborhood: Delta of |W^-1/2 (hddot + a)|, omega of |W^-1/2 (W(q) - W) W^-1/2|.
     Interval Delta, omega;
 };
-// T, and J: tau_inf - tau_k <= T, integral of h_i <= J/lambda_i, of |sigma_i sigma_j| <= 2 d_i d_j J, d_i = sqrt(W_ii). m is
-// by how much sqrt(2 E) may grow on the way.
+// Bounds until both contacts rest: tau_inf - tau_k <= T, integral of h_i <= J/lambda_i, of |sigma_i sigma_j| <= 2 d_i
+// d_j J, with d_i = sqrt(W_ii). sqrt(2 E) grows at most by the factor m.
 struct PairBound {
     Interval T, J, m;
 };
-// Nothing where no eta is admissible, as with a restitution of 1.
+// Returns nullopt if no eta is admissible, for example if a restitution is 1.
 std::optional<PairBound> pair_bound(const PairAtCollision& pair);
 
-// A collision of the pair: the state before it, h and hdot of the two.
+// A collision of the pair: the state before it, and the gaps h and gap rates sigma = hdot of the two contacts.
 struct PairCollision {
     State before;
     std::array<double, 2> h, sigma;
@@ -35,19 +35,20 @@ struct PairCollision {
 
 class PairConditions : protected ConditionsBase {
  public:
-    // While others are held, of which `unpressed` need no force.
+    // For two contacts while others are held; those in `unpressed` need no contact force.
     PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
                    std::size_t second, Mode mode, ContactSet unpressed, const Ground& ground);
 
     struct Completion {
         Certificate certificate;
-        State restart;  // (q - N h, s - B h), to be projected onto all surfaces
+        State restart;  // (q - N h, s - B h), to be projected onto all contact surfaces
     };
-    // The certificate where it is within the run's tolerances, or, of a chatter that cannot be resolved any more, whatever it is.
+    // The certificate, if it is within the tolerances of the run; with `below_rounding` (the flights can no longer be
+    // resolved) whatever the tolerances.
     std::optional<Completion> certify(const PairCollision& collision, bool below_rounding);
 
  private:
-    // T and m as they are assumed: duration, growth.
+    // Neighborhood: `duration` and `growth` are assumed values of T and m.
     struct Box : CollisionBox {
         double growth = 1.0;
         std::vector<Interval> all;  // q, s, the two sigma, t

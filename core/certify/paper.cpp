@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-// Of a vector with n entries.
+// Euclidean norm of a vector with n entries.
 template <class Entry>
 double norm(std::size_t n, const Entry& entry) {
     double sum = 0.0;
@@ -22,11 +22,11 @@ Interval around(double centre, double radius) { return Interval(centre) + Interv
 
 }  // namespace
 
-// Proved over the neighbourhood: what Def. 7 needs, and its bounds on time, position and velocity.
+// Enclosures over the neighborhood: the quantities of Def. 7, and its bounds on time, position and velocity.
 struct PaperConditions::Bounds {
     Interval a_min, a_max, eta, zeta, beta, w, e1, e2;
     Interval time, position, velocity;  // per unit of w
-    std::vector<Interval> box, n;       // V, and the direction of impulses on it
+    std::vector<Interval> box, n;       // V, and the impulse directions over it
 };
 
 PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
@@ -39,8 +39,8 @@ PaperConditions::PaperConditions(const Model& model, const Run& run, const Inter
       box_(model.evaluator<Interval>(model.programs_of(contact, mode).definition7_terms, run.parameters)),
       rates_(model.evaluator<Interval>(model.bouncing(contact, mode).rates, run.parameters)) {}
 
-// The conditions with the maxima replaced by the values at the restart: never harder to meet than the real ones, so a
-// collision that fails here (with a margin for rounding) needs no proof to fail.
+// Evaluates the conditions with the values at the restart in place of the maxima. These are never stricter than the
+// real conditions, so a collision that fails here (with a margin for rounding) cannot be certified.
 bool PaperConditions::fails_at_point(const Collision& collision) {
     set_state(point_, collision.with(collision.restart));
     point_.run();
@@ -78,7 +78,7 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
         f.push_back(box_.acceleration(i));
         g.push_back(contact_.gradient(i));
     }
-    box.emplace_back(0.0);  // sigma: the box holds velocities themselves
+    box.emplace_back(0.0);  // sigma is 0, because the box contains the velocities themselves
     if (!autonomous_) box.push_back(while_bouncing);
     const Interval a = -hddot_.over(box), eta = norm(n), zeta = norm(f), one(1.0), two(2.0);
     if (!certainly_positive(a) || !eta.is_defined() || !zeta.is_defined()) return std::nullopt;
@@ -107,12 +107,12 @@ std::optional<PaperConditions::Bounds> PaperConditions::bounds_over(const Collis
     return b;
 }
 
-// Meets the least neighbourhood that satisfies its own conditions from below; see the header.
+// Finds the smallest neighborhood that satisfies its own conditions, from below; see the header.
 std::optional<Certificate> PaperConditions::prove(const Collision& collision, const Truncation& tolerances) {
     double q = 0.0, v = 0.0, t = 0.0;
     for (int round = 0; round < 40; ++round) {
         const auto bounds = bounds_over(collision, q, v, t);
-        if (!bounds) return std::nullopt;  // nor over any larger one
+        if (!bounds) return std::nullopt;  // then it fails for larger ones, too
         const double needed_q = (bounds->position * bounds->w).hi(), needed_v = (bounds->velocity * bounds->w).hi();
         const double needed_t = (bounds->time * bounds->w).hi();
         if (!(needed_t < tolerances.eps_t) || !(needed_q < tolerances.eps_q) || !(needed_v < tolerances.eps_v))
@@ -124,7 +124,7 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
             certificate.others = std::move(others);
             return certificate;
         }
-        // A little more than was asked for, so that the growth comes to an end.
+        // Slightly more than required, so that the iteration ends.
         const auto more = [](double needed, double eps) {
             return std::min(eps, 1.02 * needed + std::numeric_limits<double>::min());
         };
@@ -135,7 +135,7 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
     return std::nullopt;
 }
 
-// |s_k - v*| + T max |s'| over V; see the header. Relies on contact_ being at this collision.
+// |s_k - v*| + T max |s'| over V; see the header. contact_ must be evaluated at this collision.
 Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b, const Interval& wait) {
     const Interval speeds(-b.w.hi(), b.w.hi());
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -155,12 +155,12 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
 }
 
 Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) {
-    // The sharper interval for tau_inf (theory.md 4) holds wherever -hddot stays in [a_min, a_max]; here it does.
+    // The tighter interval for tau_inf (theory.md 4) is valid, because -hddot stays in [a_min, a_max].
     const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
     Certificate certificate =
         certificate_at(collision.before.t, wait, estimated_wait(trend_at(collision), mid(e_), collision.speed));
-    // The c_i are those of the run's tolerances: the bounds over V are below V's own radii, and those below the
-    // tolerances.
+    // The c_i use the tolerances of the run: the bounds over V are smaller than the radii of V, which are smaller than
+    // the tolerances.
     const auto condition = [&](const char* name, const Interval& factor, double eps) -> Inequality {
         const bool none = !(factor.hi() > 0.0);
         return {name, b.w.hi(),

@@ -1,8 +1,8 @@
-// The paper's reliable truncation (Def. 7, Thm. 3; theory.md 3), proved by interval evaluation.
+// The reliable truncation of the paper (Def. 7, Thm. 3; theory.md 3), proved by interval evaluation.
 //
-// Over a neighbourhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*), here the box around it
-// together with v-, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r), beta = |v*| +
-// eps_v', eta = max |n|, zeta = max |f|. With w = |hdot| at the collision,
+// The neighborhood V = {|q - q*| < eps_q', |v - v*| < eps_v'} of the restart (q*, v*) is here the smallest box that
+// contains it and v-. Over V, let -hddot lie in [a_min, a_max], r = a_max/a_min, e' = e r < 1, e'' = e sqrt(r),
+// beta = |v*| + eps_v', eta = max |n|, zeta = max |f|. With w = |hdot| at the collision,
 //
 //     c1 = a_min (1 - e')/(2 e) eps_t          c2 = a_min (1 - e')/(2 e beta) eps_q'
 //     c3 = eps_v' / ((1 + e) eta/(1 - e'') + 2 e zeta/(a_min (1 - e')) + 1/|g(q*)|)      Euclidean R*
@@ -10,18 +10,19 @@
 //
 // w < min(c1, c2, c3) proves tau_inf - tau_k < eps_t, |q_inf - q*| < eps_q', |v_inf - v*| < eps_v'.
 //
-// c3 adds up the jumps of every impact, though they cancel nearly. Where Thm. 3 holds, V is proved to contain the whole
-// bouncing, so the tangential velocity s, which impacts do not change (model/bouncing.hpp), gives a closer bound:
+// c3 adds up the velocity jumps of all impacts, although they nearly cancel. If Thm. 3 holds, V contains the whole
+// bouncing motion. The tangential velocity s, which impacts do not change (model/bouncing.hpp), then gives a closer
+// bound:
 //
 //     |v_inf - v*| <= |s_k - v*| + T max |s'|     T = A w (theory.md 4),  |hdot| <= w,  s in V - n [-w, w]
 //
-// The certificate's velocity bound is the smaller of the two; c3 and with it the decision remain the paper's.
+// The velocity bound of the certificate is the smaller of the two. The decision still uses c3, as in the paper.
 //
-// Which eps' <= eps? A smaller V makes every bound smaller (inclusion is monotone), so among all V that satisfy their
-// own conditions there is a least one, and it is met from below: V grows to what its own bounds ask for, until they
-// stand still inside it. So does the time, where anything depends on it: all maxima are then over V and the time from
-// tau_k to eps_t' later. Where a bound exceeds eps on the way, no eps' <= eps can succeed; where eps' = eps succeeds,
-// so does the least V, with smaller bounds.
+// Choice of eps' <= eps: a smaller V makes every bound smaller, because interval evaluation is monotone under
+// inclusion. Among all V that satisfy their own conditions there is therefore a smallest one. It is found from below: V
+// grows to the size of its own bounds until these lie inside V. The time grows in the same way if the system depends on
+// it; all maxima are then over V and the times from tau_k to tau_k + eps_t'. If a bound exceeds eps on the way, no
+// eps' <= eps can succeed. If eps' = eps succeeds, the smallest V succeeds too, with smaller bounds.
 #pragma once
 
 #include "certify/range.hpp"
@@ -38,7 +39,7 @@ class PaperConditions : public TruncationConditions {
 
  protected:
     std::optional<Certificate> do_certify(const Collision& collision) override;
-    // The same with tolerances that nothing exceeds.
+    // The same with tolerances so large that no bound exceeds them.
     std::optional<Certificate> do_prove_any(const Collision& collision) override;
 
  private:

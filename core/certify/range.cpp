@@ -13,9 +13,9 @@ Interval Range::evaluate(const std::vector<Interval>& box) {
     return value_.output(0);
 }
 
-// A range over the face of the box on which the least (or greatest) value lies; only its lower (upper) end is used.
-// Variables in which the expression is monotone are put at the end that gives it; over the rest, plain evaluation and the
-// mean-value form are intersected.
+// Encloses the expression over the face of the box that contains its minimum (or maximum); only the lower (upper) end
+// is used. Variables in which the expression is monotone are set to that face. Over the others, plain evaluation and
+// the mean-value form are intersected.
 Interval Range::bound(const std::vector<Interval>& box, bool upper) {
     rest_ = middle_ = box;
     Interval spread(0.0);
@@ -37,7 +37,7 @@ Interval Range::bound(const std::vector<Interval>& box, bool upper) {
     return {std::max(plain.lo(), mean_value.lo()), std::min(plain.hi(), mean_value.hi())};
 }
 
-// The mean-value form: from the centre, by the slopes over the whole box. One that is not defined makes it undefined.
+// Mean-value form from the center, with the slopes over the whole box. An undefined slope makes it undefined.
 Interval Range::over_part(const std::vector<Interval>& part) const {
     Interval sum = at_centre_;
     for (std::size_t i = 0; i < part.size(); ++i) sum = sum + slopes_[i] * (part[i] - centre_[i]);
@@ -53,7 +53,7 @@ Interval Range::over(const std::vector<Interval>& box) {
         slopes_[i] = gradient_.output(i);
         smooth = smooth && slopes_[i].is_defined();
     }
-    constexpr double hardly = 1.0 / 16.0;  // then monotony, a matter of second order, gains less than 1 percent
+    constexpr double hardly = 1.0 / 16.0;  // below this, using monotonicity gains less than 1 percent
     if (smooth) {
         centre_.resize(box.size());
         for (std::size_t i = 0; i < box.size(); ++i) centre_[i] = Interval(mid(box[i]));

@@ -8,9 +8,9 @@ namespace achilles {
 
 namespace {
 
-constexpr double doubt = 1.5;  // what a guess may be wrong by, where it says nothing of this collision itself
+constexpr double doubt = 1.5;  // accepted error factor of a guess that was made at another collision
 
-// max |x| times a nonnegative factor, rounded up; infinity where there is no bound.
+// max |x| times a nonnegative factor, rounded up; infinity if there is no bound.
 double times(const Interval& x, const Interval& factor) {
     const double product = (Interval(mag(x)) * factor).hi();
     return product <= std::numeric_limits<double>::max() ? product : std::numeric_limits<double>::infinity();
@@ -18,11 +18,11 @@ double times(const Interval& x, const Interval& factor) {
 
 }  // namespace
 
-// Over X: bounds of -hddot, what flights are at most high, and the time to the Zeno point.
+// Bounds over X: of -hddot, of the height of flights (h_m), and of the accumulation time.
 struct SharpConditions::Time {
     Interval a_min, a_max, r, height;
-    Interval longest;  // T: of the attained bounds
-    Wait wait;         // as it is certified
+    Interval longest;  // T, by the attained bounds
+    Wait wait;         // as certified
     double half_width() const {
         return (Interval(0.5) * (Interval(wait.latest.hi()) - Interval(wait.earliest.lo()))).hi();
     }
@@ -43,16 +43,16 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Inter
       need_s_(dof_),
       rising_(2 * dof_) {}
 
-// A guess of what a proof would find, in double. Where even that is too much, trying is put off to the next impact. It
-// never replaces a proof. The bounds fall with a power of w, so what the last proof or guess found tells.
+// Predicts, in double, whether a proof would fail, and skips it if so; the next impact is then tried. It never replaces
+// a proof. The bounds fall with a power of w, so the last proof or guess is extrapolated.
 bool SharpConditions::fails_by_speed(double speed) {
-    if (speed > last_speed_) too_wide_ = 0.0;  // another bouncing
+    if (speed > last_speed_) too_wide_ = 0.0;  // a new bouncing sequence
     last_speed_ = speed;
     const double slower = speed / wide_speed_;
     return slower < 1.0 && too_wide_ * slower * slower * (power_ == 3 ? slower : 1.0) > doubt;
 }
 
-// Else, to leading order, how far the first flight that would not be drawn goes from the surface.
+// If that does not decide: the maximum distance from the constrained motion in the next flight, to leading order.
 bool SharpConditions::fails_at_point(const Collision& collision) {
     if (fails_by_speed(collision.speed)) return true;
     const Trend trend = trend_at(collision);
@@ -63,7 +63,7 @@ bool SharpConditions::fails_at_point(const Collision& collision) {
     const double uniform = n * e * w * e * w / (2.0 * trend.a) / truncation_.eps_q;
     if (uniform <= 1.0) return false;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), varying = std::abs(trend.b) * T + std::abs(trend.c) * w;
-    if (varying < 0.25 * trend.a) remember(w, uniform, 2);  // the next impacts lie where a is about the same
+    if (varying < 0.25 * trend.a) remember(w, uniform, 2);  // a varies little, so the guess holds at the next impacts
     return true;
 }
 
@@ -73,7 +73,7 @@ void SharpConditions::remember(double speed, double too_wide, int power) {
     power_ = power;
 }
 
-// The attained bound of theory.md 4, if X allows it.
+// The attained bounds of theory.md 4; nullopt if X is too large for them.
 std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     box_.put_into(variables_);
     variables_[2 * dof_] = box_.sigma;
@@ -86,8 +86,9 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
 }
 
-// Narrows the enclosure of the time to the Zeno point by the one of third order in w (truncation.hpp). Needs
-// time_over_box() first: it uses the slopes of hddot over the box X, and encloses it at the collision, at sigma = 0.
+// Intersects the enclosure of the accumulation time with the one of third order in w (truncation.hpp). Call
+// time_over_box() first: this uses the slopes of hddot over the box X, and encloses hddot at the collision and
+// sigma = 0.
 void SharpConditions::sharpen(Time& time, const Trend& trend) {
     for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = box_.q0[i];
@@ -98,13 +99,13 @@ void SharpConditions::sharpen(Time& time, const Trend& trend) {
     const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
-    // Of `earliest` only the lower end counts, of `latest` only the upper one.
+    // Only the lower end of `earliest` and the upper end of `latest` are used.
     if (third.lo() > time.wait.earliest.lo()) time.wait.earliest = third;
     if (third.hi() < time.wait.latest.hi()) time.wait.latest = third;
 }
 
-// Is the motion until tau_inf proved to stay inside X, with the shifted variables of theory.md 5.2, and the
-// comparison motion where it starts from v*? If not, X grows to what was asked for, and a fifth more.
+// Whether X is proved to contain the motion until tau_inf, the shifted variables of theory.md 5.2, and the comparison
+// motion if it starts from v*. If not, X grows to the required size and a fifth more.
 bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
     bool inside = autonomous_ || T.hi() < box_.duration;
@@ -121,8 +122,8 @@ bool SharpConditions::contain(const Time& time) {
     return inside;
 }
 
-// (E_q, E_s) from the enclosures over X. Enclosures are multiplied, not expressions:
-// the mean value theorem takes dA at another point than n and B.
+// (E_q, E_s) from the enclosures over X. The factors are enclosed separately and then multiplied, because the mean
+// value theorem takes dA at another point than n and B.
 void SharpConditions::find_shadow(const Time& time) {
     const Interval e3 = e_ * square(e_), e2 = e_ * sqrt(time.r), one(1.0);
     const Interval gap_integral =
@@ -147,7 +148,7 @@ void SharpConditions::find_shadow(const Time& time) {
     }
 }
 
-// The box that the collision stands for.
+// Sets up X at the collision, without radii: the rounding of the computed state.
 void SharpConditions::begin_box(const Collision& collision) {
     if (!autonomous_) box_.t0 = instant_of(collision, contact_);
     set_state(contact_, collision.before);
@@ -168,7 +169,8 @@ void SharpConditions::begin_box(const Collision& collision) {
     }
 }
 
-// What the tests of a box will ask for, in double, so that the first box is the last: any radii may be tried.
+// Predicts in double the radii that the inclusion test will require, so that the first box usually succeeds. Any radii
+// may be tried.
 void SharpConditions::predict_radii(const Collision& collision, const Trend& trend) {
     const double e = mid(e_), w = collision.speed;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), h = e * w * e * w / (2.0 * trend.a);
@@ -179,7 +181,7 @@ void SharpConditions::predict_radii(const Collision& collision, const Trend& tre
         guess_.run();
         for (std::size_t i = 0; sigma > 0.0 && i < 2 * dof_; ++i) rising_[i] = guess_.rate(i);
     }
-    const auto need = [&](std::size_t i) {  // max |rate| T, and by how much h shifts it
+    const auto need = [&](std::size_t i) {  // max |rate| T, and the shift by h
         const double falling = guess_.rate(i);
         return std::max(std::abs(rising_[i]), std::abs(falling)) * T + std::abs(rising_[i] - falling) / (2.0 * w) * h;
     };
@@ -189,7 +191,7 @@ void SharpConditions::predict_radii(const Collision& collision, const Trend& tre
     }
 }
 
-// What can be proved of the collision.
+// The certificate of the collision, whatever the tolerances; nullopt if nothing can be proved.
 std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
     const Trend trend = trend_at(collision);
     if (!(trend.a > 0.0) || !(mid(e_) < 1.0)) return std::nullopt;
@@ -220,8 +222,8 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     c.position_bound = sqrt(q).hi();
     c.velocity_bound = sqrt(v).hi();
     const Interval position = norm(shadow_.E_q), velocity = norm(shadow_.E_s), uniform = norm(shadow_.uniform);
-    // A derivative without a value somewhere in X is in one of them, though the largest of several may have lost it:
-    // then nothing is claimed of the shadowing.
+    // If a derivative is undefined somewhere in X, one of the norms is undefined, although the maximum of several
+    // values may have dropped it. No shadowing bound is then certified.
     const bool shadowed = position.is_defined() && velocity.is_defined() && uniform.is_defined();
     if (shadowed) {
         c.shadowing_position = position.hi();

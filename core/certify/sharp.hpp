@@ -1,36 +1,39 @@
-// The truncation conditions that choose their own neighbourhood (theory.md 4 to 6, theory-truncation.md 2 to 4):
-// conditions = "sharp".
+// The truncation conditions `conditions = "sharp"`, which choose their own neighborhood (theory.md 4 to 6,
+// theory-truncation.md 2 to 4).
 //
 // In the coordinates (q, s) of model/bouncing.hpp the motion is continuous through impacts. X is a box around (q, s) at
-// the collision, sigma = hdot runs over [-w, w]. With -hddot in [a_min, a_max] on X, r = a_max/a_min and e^2 r < 1:
+// the collision; sigma = hdot ranges over [-w, w]. With -hddot in [a_min, a_max] on X, r = a_max/a_min and e^2 r < 1:
 //
-// time       A_lo w <= tau_inf - tau_k <= A w =: T (certify/truncation.hpp): the worst motion rises with a_min and falls
-//            first with a_min, then with a_max. The interval is cut with the one of third order.
+// time       A_lo w <= tau_inf - tau_k <= A w =: T (certify/truncation.hpp). In the motion that takes longest, -hddot
+//            is a_min while the contact opens; while it closes, -hddot is first a_min, then a_max. The interval is
+//            intersected with the one of third order.
 //
-// inclusion  rho_q = max |v| T and rho_s = max |s'| T inside X's radii prove that X contains the motion until tau_inf:
-//            at a first exit the time passed would be below T, so (q, s) would be strictly inside. Where anything
-//            depends on the time, X is a box in (q, s, t): t from tau_k, as far as that is known, to T and more later.
+// inclusion  If rho_q = max |v| T and rho_s = max |s'| T are below X's radii, X contains the motion until tau_inf: at a
+//            first exit, the time passed would be less than T, so (q, s) would be strictly inside. If the system
+//            depends on time, X is a box in (q, s, t), where t ranges from the enclosure of tau_k to T and a little
+//            more later.
 //
 // Zeno       |q_inf - q*| <= |max |v| T|,   |v_inf - s| <= |max |s'| T|
 //
-// shadowing  The constrained motion started at tau_k differs at tau_inf by at most E = O(w^3). By parts, with h = 0 at
-//            both ends, q^ = q - n h and s^ = s - B h obey the constrained equations up to terms in h and hdot^2, whose
-//            integrals are at most I_h = 2 e^3 w^3/(3 a_min^2 (1 - e''^3)) and a_max I_h; then Gronwall:
+// shadowing  The constrained motion started at tau_k differs at tau_inf by at most E = O(w^3). Integration by parts,
+//            with h = 0 at both ends, shows that q^ = q - n h and s^ = s - B h obey the constrained equations up to
+//            terms in h and hdot^2. Their integrals are at most I_h = 2 e^3 w^3/(3 a_min^2 (1 - e''^3)) and a_max I_h.
+//            By Gronwall:
 //                c_q = max |B - ndot| I_h,   c_s = max |dA/dq n + dA/ds B - Bdot| I_h + a_max max |D| I_h
 //                E_q = c_q + K max(c_q, c_s),  E_s = c_s + K max(c_q, c_s),  K = exp(kap T) - 1,
 //                kap = max(1, row sums of |dA/d(q,s)|)
-//            X must also contain the shifted variables: h <= h_m = (e w)^2/(2 a_min) moves them by max |n| h_m and by
+//            X must also contain the shifted variables: h <= h_m = (e w)^2/(2 a_min) shifts them by max |n| h_m and
 //            max |B| h_m. The comparison motion is the case sigma = 0, so it is inside X as well.
 //
-// uniform    At every instant from tau_k to tau_inf, with q~ the constrained motion:
+// uniform    At every instant from tau_k to tau_inf, where q~ is the constrained motion:
 //                |q_i - q~_i| <= E_q,i + max |n_i| h_m
-//            The integrals of h and hdot^2 up to any time are at most those up to tau_inf, since both only grow; so
-//            (q^, s^) is within E at all times, and q = q^ + n h.
+//            The integrals of h and hdot^2 up to any time are at most those up to tau_inf, because they increase.
+//            (q^, s^) is therefore within E at all times, and q = q^ + n h.
 //
 // Euclidean  v* = s + d, d_i = w |n_i - g_i/|g|^2|: |v_inf - v*| gains d, E_q gains K max d, E_s gains d + K max d, if
 //            d_i + max |A_i| T is inside X's radius of s_i.
 //
-// The bouncing is cut where half of the time interval is within eps_t, the uniform bound within eps_q, and the
+// The bouncing is truncated if half of the time interval is within eps_t, the uniform bound within eps_q, and the
 // shadowing bound on the velocity within eps_v.
 #pragma once
 
@@ -58,13 +61,13 @@ class SharpConditions : public TruncationConditions {
     struct Time;
     // X: a box in (q, s), sigma and t.
     struct Box : CollisionBox {
-        std::vector<Interval> d;  // v* - s where the restart is v*
+        std::vector<Interval> d;  // v* - s, if the restart velocity is v*
         Interval w, sigma;
         explicit Box(std::size_t dof) : CollisionBox(dof), d(dof) {}
     };
     struct Shadow {
         std::vector<Interval> E_q, E_s;  // at tau_inf
-        std::vector<Interval> uniform;   // of q, at all times
+        std::vector<Interval> uniform;   // bound on q at all times
     };
     std::optional<Certificate> prove(const Collision& collision);
     void begin_box(const Collision& collision);
@@ -78,16 +81,16 @@ class SharpConditions : public TruncationConditions {
 
     ShadowTerms<Range> hddot_;
     BouncingRates<Evaluator<double>> guess_;
-    // The last proof or guess that was too wide: at this impact speed, by this factor, which falls with this power of
-    // it.
+    // The last proof or guess that was too wide: its impact speed, the factor by which it was too wide, and the power
+    // of the speed with which that factor falls.
     double wide_speed_ = 0.0, too_wide_ = 0.0;
     int power_ = 3;
-    double last_speed_ = 0.0;  // of the last collision that was looked at
-    // Of the proof that is tried; vectors, so that no other needs memory of its own.
+    double last_speed_ = 0.0;  // speed of the last collision that was examined
+    // Data of the current proof, kept as members so that further proofs allocate no memory.
     Box box_;
     Shadow shadow_;
     std::vector<Interval> variables_;      // q, s, sigma, t over the box
-    std::vector<double> need_q_, need_s_;  // radii that the last test of the box asked for
+    std::vector<double> need_q_, need_s_;  // radii that the last inclusion test required
     std::vector<double> rising_;           // q', s' just before the impact
 };
 

@@ -87,7 +87,7 @@ Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>
     for (Eigen::Index i = 0; i < state.q.size(); ++i) contact.input(static_cast<std::size_t>(i)) = around(state.q[i]);
     contact.clock() = around(state.t);
     contact.run();
-    const double ulp = 0x1p-52 * std::abs(state.t);  // and that much at most
+    const double ulp = 0x1p-52 * std::abs(state.t);  // plus at most this
     const Interval d = Interval(4.0 * rad(contact.h())) / Interval(collision.speed) + Interval(ulp);
     return Interval(state.t) + Interval(-d.hi(), d.hi());
 }

@@ -91,7 +91,7 @@ class Report : EquationsOnPage {
         unwritten_conditions();
     }
 
-    // As the file has them.
+    // The quantities as given in the file.
     void given() {
         const Equations& e = model_.equations();
         const SystemDescription& system = model_.description();
@@ -114,7 +114,7 @@ class Report : EquationsOnPage {
             const ConstraintDescription& constraint = system.constraints[i];
             show({"h" + of(" {}", i), is_one() ? "h" : fmt::format("h_{{{}}}", name(constraint.name))}, e.gaps[i],
                  constraint.gap);
-            // The restitution is often a parameter e, and "e = e" says nothing.
+            // The restitution is often a parameter e, and "e = e" would say nothing.
             page_.sentence(
                 {fmt::format("restitution{} {}", of(" {}", i), constraint.restitution.text),
                  fmt::format("Restitution{} ${}$.", words(of(" {}", i)),
@@ -192,7 +192,7 @@ class Answer : EquationsOnPage {
 
     // "Impacts of knee end in a Zeno point where g*sin(theta1) < 0 (at theta2 = 0, theta2' = 0; restitution 0.5)".
     void condition(std::size_t contact, const std::optional<ZenoCondition>& found) {
-        constexpr std::size_t longest = 200;  // characters of an inequality: a longer one is not read here
+        constexpr std::size_t longest = 200;  // longest inequality, in characters, of this short report
         const std::string impacts = "Impacts" + of(" of {}", contact);
         const double e = model_.restitution(run_.parameters, contact);
         const auto say = [&](const std::string& rest) { page_.sentence({impacts + rest, {}}); };
@@ -242,7 +242,7 @@ std::string check_report(const Model& model, const Run& run, double deriving, No
 
 namespace {
 
-// What the run may end in stands first.
+// The Zeno conditions come first.
 class SheetWriter : EquationsOnPage {
  public:
     SheetWriter(const Model& model, const Run& run, const Simplified& simplified)
@@ -270,7 +270,7 @@ class SheetWriter : EquationsOnPage {
     }
 
  private:
-    static constexpr std::size_t no_limit = 1000000;  // who sets them breaks lines himself
+    static constexpr std::size_t no_limit = 1000000;  // lines are broken by the caller
 
     void condition(EquationSheet& sheet, std::size_t contact, Mode mode, const std::optional<ZenoCondition>& found) {
         std::string plain = "Zeno condition" + of(" of {}", contact), where = "$h = \\dot{h} = 0$";

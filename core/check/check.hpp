@@ -1,4 +1,4 @@
-// A system and its derived equations: what `achilles check` says, as text or as a LaTeX document, and the same as a sheet of
+// The derived equations of a system: the output of `achilles check` as text or LaTeX, and the same as a sheet of
 // formulas.
 #pragma once
 
@@ -15,46 +15,46 @@ namespace achilles {
 
 class Simplified;
 
-// Simplifies, compares with differences of L, and writes. `deriving` is what it took to derive the model, in seconds:
-// the only thing that differs from run to run. The largest disagreement goes to `disagreement`.
+// The full report: simplifies the equations, compares them with differences of L, and formats them. `deriving`, the
+// time to derive the model (s), is the only number that differs between runs. `disagreement` returns the largest
+// difference.
 std::string check_report(const Model& model, const Run& run, double deriving, Notation notation, double& disagreement);
 
-// The default output, at most a page for a small system: whether the derived equations agree with differences of L, when
-// impacts end in a Zeno point, and the equations of motion. check_report() has everything.
+// The default output, at most a page for a small system: whether the derived equations agree with differences of L,
+// when impacts end in a Zeno point, and the equations of motion. check_report() has all details.
 std::string check_answer(const Model& model, const Run& run, double& disagreement);
 std::string check_answer(const Model& model, const Run& run, const Simplified& simplified,
                          const Disagreement& disagreement);
 
-// More than this is a mistake in the derivation: 50 digits and steps of 1e-11 leave less than 1e-15 where the system is as
-// smooth as it should be.
+// A larger difference is an error in the derivation: with 50 digits and steps of 1e-11, less than 1e-15 remains for a
+// sufficiently smooth system.
 constexpr double most_disagreement = 1e-9;
 
-// The equations that `achilles check` says, for whoever sets them himself: the same formulas, in LaTeX, each under
-// words that name it, and the Zeno conditions as programs.
+// The equations of `achilles check` for callers with their own layout: the same formulas in LaTeX, each below words
+// that name it, and the Zeno conditions as programs.
 
-// A Zeno condition that was found: bouncing of the contact, while others are held, ends at a Zeno point where the value
-// is negative.
+// A Zeno condition: impacts of the contact in this mode end at a Zeno point where the value of `decisive` is negative.
 struct SheetCondition {
     std::size_t contact = 0;
     Mode mode;
     std::size_t first = 0, last = 0;  // its blocks: first <= i < last
-    Program decisive;                 // of hddot on the surface: what its sign depends on
-    bool depends = true;              // the sign is not the same everywhere
+    Program decisive;                 // factors of hddot on the surface that determine its sign
+    bool depends = true;              // false: the sign is the same everywhere
 };
 
 struct EquationSheet {
     std::vector<Block> blocks;
     std::vector<SheetCondition> conditions;
-    // How the formulas write each name that may stand in them: coordinates, rates, parameters, t.
+    // The LaTeX of each name in the formulas: coordinates, rates, parameters, t.
     struct Symbol {
         std::string latex, name;
     };
     std::vector<Symbol> symbols;
 };
 
-// M, bias and forces; of each contact h, dh, hdot, hddot, lambda and the conditions. Simplifies: a hundredth of a
-// second for two links, seconds for a robot with several contacts. Signs are taken over the parameters' ranges and the
-// run's values. Told to stop, it returns soon, whatever it has.
+// M, bias and forces; for each contact h, dh, hdot, hddot, lambda and the conditions. Simplification takes a hundredth
+// of a second for two links, and seconds for a robot with several contacts. Signs hold over the ranges of the
+// parameters and the values of the run. After a stop request it returns soon, with an incomplete result.
 EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop = {});
 
 }  // namespace achilles

@@ -17,9 +17,7 @@ namespace achilles {
 
 namespace {
 
-// Where dh vanishes with a gap, as of y^2 or y^3: there is no normal, and no impact can be computed.
-
-// A step of Newton's method for h = 0 along dh: |h| before it. Nothing where dh = 0.
+// A Newton step for h = 0 along dh. Returns |h| before the step; nullopt if dh = 0.
 std::optional<double> newton_step(ContactTerms<Evaluator<double>>& terms, State& state) {
     set_state(terms, state);
     terms.run();
@@ -32,15 +30,15 @@ std::optional<double> newton_step(ContactTerms<Evaluator<double>>& terms, State&
     return std::abs(terms.h());
 }
 
-// True if |h| has fallen, for the last few steps, by the factor (1 - 1/m)^m of a zero of order m > 1: 1/4 and a little more, short
-// of the 1/e of a gap that never closes. Where dh stays it falls faster and faster. Then the state is brought near to the zero:
-// steps shorten by 1 - 1/m.
+// True if the last few Newton steps reduced |h| as at a zero of order m > 1: by the factor (1 - 1/m)^m, which is
+// between 1/4 and 1/e, the factor of a gap that never closes. At a simple zero |h| decreases faster and faster. If
+// true, `state` is moved close to the zero; the steps shorten by 1 - 1/m.
 bool falls_to_flat(const Model& model, const Run& run, std::size_t contact, State& state) {
     constexpr int steps = 12, looked_at = 4, until_near = 60;
     constexpr double least = 0.2, most = 0.35;
     auto terms = model.evaluator(model.programs_of(contact).contact_terms, run.parameters);
     double before = 0.0;
-    State near = state;  // after `steps`
+    State near = state;  // the state after `steps` steps
     for (int round = 0; round <= steps; ++round) {
         near = state;
         const auto h = newton_step(terms, state);
@@ -55,8 +53,9 @@ bool falls_to_flat(const Model& model, const Run& run, std::size_t contact, Stat
     return true;
 }
 
-// A place with h = 0 and dh = 0 of a contact, found by Newton's method for h = 0 from the start and from some states in the ranges
-// of the coordinates: at such a place its steps stop doubling the digits. Nothing where none was found.
+// A state with h = 0 and dh = 0 of a contact, as for a gap y^2 or y^3. It has no normal, so no impact can be computed
+// there. Newton's method for h = 0 starts at the initial state and at some states in the ranges of the coordinates. At
+// such a state it converges linearly only. nullopt if none is found.
 std::optional<State> flat_place(const Model& model, const Run& run, std::size_t contact) {
     constexpr int tries = 8;
     std::mt19937_64 engine(4);
@@ -75,13 +74,13 @@ std::optional<State> flat_place(const Model& model, const Run& run, std::size_t 
 
 namespace {
 
-// A formula of more terms than this is no longer read.
+// Longer formulas, in terms, are not printed.
 constexpr std::size_t most_terms = 150;
 
-// An expression of more symbols than this, written as it was derived, neither.
+// Longer unsimplified expressions, in symbols, are not printed.
 constexpr double most_symbols = 400.0;
 
-// Of an expression written out, with every shared part as often as it stands there.
+// Number of symbols of an expression in full, where shared parts count repeatedly.
 double written_size(Expression expression) {
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
     std::vector<double> size(needed.size(), 0.0);
@@ -96,7 +95,7 @@ double written_size(Expression expression) {
     return size[expression.id()];
 }
 
-// Its numerator and its denominator as they stand.
+// The numerator and the denominator without factoring.
 Factored unfactored(const Fraction& fraction) {
     Factored result;
     const auto put = [&](const Multinomial& base, int exponent) {
@@ -145,7 +144,7 @@ void EquationsOnPage::contact(std::size_t index, bool forces, bool named) {
             {"-hddot/(dh M^-1 dh^T)", "-\\ddot{h} / (\\mathrm{d}h\\,M^{-1}\\,\\mathrm{d}h^{\\top})"});
 }
 
-// A gap that no run can land on.
+// Warns about a gap whose gradient vanishes at h = 0.
 void EquationsOnPage::flat(std::size_t index) {
     const std::optional<State> place = flat_place(model_, run_, index);
     if (!place) return;
@@ -189,7 +188,7 @@ void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<F
     }
 }
 
-// The left hand side and what was found; where nothing was, what was derived.
+// The simplified formula, or the derived expression if there is none.
 void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived,
                               const Both& definition) {
     if (!fraction) return unsimplified(left, derived, definition);
@@ -199,7 +198,7 @@ void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& f
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
 }
 
-// As it was derived, where that can be read; else what it is, where that has a name.
+// The derived expression if it is short enough, else the definition.
 void EquationsOnPage::unsimplified(const Both& left, Expression derived, const Both& definition) {
     const double size = written_size(derived);
     const bool short_enough = size <= most_symbols;
@@ -241,7 +240,7 @@ EquationsOnPage::Quotient EquationsOnPage::split(const Factored& factored, const
     return {whole, writer.write(top).text, writer.write(bottom).text};
 }
 
-// A quotient too wide for a line is written as N/D with N and D below.
+// A quotient too wide for one line is written as N/D, with N and D below.
 void EquationsOnPage::long_formula(Page& page, const Both& left, const Quotient& quotient) {
     const std::size_t length = visible_length(quotient.whole, page.notation()) + left.text.size() + 5;
     const bool tall = page.notation() == Notation::latex && !quotient.top.empty();
@@ -275,7 +274,7 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
             reason(zeno, writer);
         }
         page_.formula({}, fmt::format("{} < 0", writer.write(zeno.decisive).text));
-        const auto value = is_text() ? decisive_here(zeno) : std::nullopt;  // a sheet has sliders beside it
+        const auto value = is_text() ? decisive_here(zeno) : std::nullopt;  // a sheet has its own sliders
         if (!value) return;
         const std::string line =
             *value < 0.0
@@ -294,7 +293,7 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
 
 std::optional<double> EquationsOnPage::decisive_here(const ZenoCondition& zeno) const {
     const Layout& layout = model_.layout();
-    std::vector<std::uint32_t> varying(2 * layout.dof);  // the state
+    std::vector<std::uint32_t> varying(2 * layout.dof);  // slots of the state and the time
     std::iota(varying.begin(), varying.end(), 0U);
     varying.push_back(layout.t());
     const Expression decisive = expression_of(zeno.decisive, *zeno.algebra);
@@ -305,7 +304,7 @@ std::optional<double> EquationsOnPage::decisive_here(const ZenoCondition& zeno) 
     return evaluator.output(0);
 }
 
-// It knows what the algebra has met so far.
+// The writer covers the atoms that the algebra has created so far.
 Writer EquationsOnPage::writer_of(const ZenoCondition& zeno) const {
     return Writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
 }
@@ -339,7 +338,7 @@ void EquationsOnPage::zeno_restitution(std::size_t contact) {
     page_.sentence({line, Page::escaped(line)});
 }
 
-// What the proof of a sign rests on.
+// The assumptions of the proof of a sign.
 std::string EquationsOnPage::grounds(const ZenoCondition& zeno) const {
     std::vector<std::string> names, reasons;
     for (const Expression e : zeno.assumed)

@@ -1,5 +1,5 @@
-// The derived equations of a system on a page: what reports and sheets of equations have in common. For the files of
-// this library only: see algebra/multinomial.hpp.
+// Layout of the derived equations of a system, shared by reports and sheets of equations. For the files of this library
+// only: see algebra/multinomial.hpp.
 #pragma once
 
 #include <fmt/format.h>
@@ -30,27 +30,27 @@ class EquationsOnPage {
     std::string words(const std::string& plain) const { return is_text() ? plain : Page::escaped(plain); }
 
     bool is_one() const { return model_.contacts() == 1; }
-    // With the name of a contact, where there are several.
+    // Inserts the name of the contact into `words` if there are several contacts; else "".
     std::string of(const char* words, std::size_t contact) const {
         if (is_one()) return "";
         return fmt::format(fmt::runtime(words), model_.description().constraints[contact].name);
     }
 
-    // With `named` everything is said in words, too, and the gap stands there.
+    // The equations of a contact. If `named`, each formula has a caption, and the gap is included.
     void contact(std::size_t index, bool forces, bool named = false);
-    // In one piece if the page is wide enough, else entry by entry.
+    // As one matrix if the page is wide enough, else entry by entry.
     void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
                 std::span<const Expression> derived, std::size_t columns);
-    // What was found about hddot on the surface.
+    // The result for the sign of hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
-    // "theta2 = 0", "theta2' = 0": what h = 0 and hdot = 0 were solved for. Nothing where that takes too long.
+    // "theta2 = 0", "theta2' = 0": the solutions of h = 0 and hdot = 0. Empty if that takes too much work.
     std::vector<std::string> on_surface(const ZenoCondition& zeno) const;
-    // What must be negative, with the parameters of this run; nothing where it depends on more than parameters.
+    // The value that must be negative, with the parameters of this run; nullopt if it depends on more than parameters.
     std::optional<double> decisive_here(const ZenoCondition& zeno) const;
     Writer writer_of(const ZenoCondition& zeno) const;
-    // The other half of it: bounces pile up only if each impact leaves less of its speed, and some.
+    // The condition on the restitution: impacts accumulate only for 0 < e < 1.
     void zeno_restitution(std::size_t contact);
-    // Of more contacts than are looked at.
+    // Says which Zeno conditions with held contacts are not printed.
     void unwritten_conditions();
 
     const Model& model_;
@@ -64,7 +64,7 @@ class EquationsOnPage {
         std::string whole, top, bottom;
     };
     void flat(std::size_t index);
-    // In factors; as a quotient of sums where factoring takes too many operations.
+    // As a product of factors; as a quotient of sums if factoring takes too much work.
     std::string written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const;
     std::string written(const Fraction& fraction) const { return written(fraction, writer_, simplified_.algebra()); }
     void formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived, const Both& definition);

@@ -26,7 +26,7 @@ struct Point {
     Real t;
 };
 
-// Expressions of one graph as functions of the state.
+// Evaluates expressions of one graph as functions of the state.
 class Functions {
  public:
     Functions(const Model& model, const Run& run, const std::vector<Expression>& outputs)
@@ -56,7 +56,7 @@ class Functions {
 
 const Real step("1e-11");
 
-// d f/dx_i at a point, x one of its two vectors.
+// d f/dx_i at a point, where x is q or v of the point.
 Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals Point::*x, Eigen::Index i) {
     Point at = point;
     const Real middle = (at.*x)[i];
@@ -66,7 +66,7 @@ Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals
     return (up - f(at)) / (2 * step);
 }
 
-// What the equations should be, from L, the forces and the gaps alone: d/dt dL/dv = dL/dq + force - dR/dv along the motion.
+// The expected equations from L, the forces and the gaps: d/dt dL/dv = dL/dq + force - dR/dv along the motion.
 class Differences {
  public:
     Differences(const Model& model, const Run& run)
@@ -76,7 +76,7 @@ class Differences {
           forces_(model, run, given_forces(model, graph_)),
           gaps_(model, run, model.equations().gaps) {}
 
-    // M, bias, Q, then of each contact dh, hdot, hddot, lambda, then hddot of each contact while each other is held.
+    // M, bias, Q; for each contact dh, hdot, hddot, lambda; then hddot of each contact while one other is held.
     Reals operator()(const Point& at) {
         const auto L = [&](const Point& x) { return lagrangian_(x)[0]; };
         const auto R = [&](const Point& x) { return forces_(x)[dof_]; };
@@ -126,7 +126,7 @@ class Differences {
     Functions forces_, gaps_;
 };
 
-// Numbers in [low, high], the same ones everywhere.
+// Reproducible random numbers in [low, high].
 class Random {
  public:
     Real between(const std::array<double, 2>& range) {
@@ -149,13 +149,13 @@ bool is_finite(const Reals& values) {
     return true;
 }
 
-// Gaps, their rates, and their slopes dh, one row after the other.
+// Gaps, their rates, and their gradients dh as rows, for the projection to the contact surfaces.
 class Surface {
  public:
     Surface(const Model& model, const Run& run, const std::vector<std::size_t>& contacts)
         : count_(static_cast<Eigen::Index>(contacts.size())), functions_(model, run, outputs(model, contacts)) {}
 
-    // Moves a state to h = 0, hdot = 0, by Newton's method and a projection. False if it does not get there.
+    // Projects a state to h = 0 by Newton's method and its rates to hdot = 0. Returns false if that fails.
     bool hold(Point& at) {
         Reals values = functions_(at);
         for (int i = 0; i < 60 && is_finite(values); ++i, values = functions_(at)) {
@@ -184,14 +184,14 @@ class Surface {
     Functions functions_;
 };
 
-// A Zeno condition as it is printed, and the derived hddot that it should equal on the surfaces of these contacts.
+// A Zeno condition as printed, and the derived hddot that it should equal on the surfaces of these contacts.
 class InContact {
  public:
     InContact(const Model& model, const Run& run, const ZenoCondition& zeno, Expression hddot,
               const std::vector<std::size_t>& contacts)
         : surface_(model, run, contacts), hddot_(model, run, {hddot}), shown_(model, run, {as_expression(zeno)}) {}
 
-    // Nothing where no state on the surfaces is found from here.
+    // The relative difference; nullopt if no state on the surfaces is found from this point.
     std::optional<double> disagreement(Point at) {
         if (!surface_.hold(at)) return std::nullopt;
         const Reals there = hddot_(at);
@@ -214,13 +214,13 @@ class InContact {
     Functions hddot_, shown_;
 };
 
-// What Simplified prints, as expressions, and the derived equations that they should equal.
+// The printed equations as expressions, and the derived equations that they should equal.
 struct Printed {
     std::vector<Expression> written, derived;
     std::vector<std::string> names;
 };
 
-// "hddot", or "hddot knee" where there are several contacts.
+// "hddot", or "hddot knee" for a system with several contacts.
 std::string name_of(const Model& model, const std::string& quantity, std::size_t contact) {
     return model.contacts() == 1 ? quantity : quantity + " " + model.description().constraints[contact].name;
 }
@@ -273,9 +273,9 @@ Derived derived_equations(const Model& model) {
     return derived;
 }
 
-// Keeps the largest of each name, in the order of their first appearance.
+// Keeps the largest distance for each name, in order of first appearance.
 void note(std::vector<Disagreement::Quantity>& quantities, const std::string& name, double distance) {
-    if (name.empty()) return;  // it is nothing
+    if (name.empty()) return;  // a quantity that is not compared
     for (Disagreement::Quantity& quantity : quantities)
         if (quantity.name == name) {
             quantity.largest = std::max(quantity.largest, distance);

@@ -1,4 +1,5 @@
-// The derived equations against L, the forces and the gaps themselves: central differences in 50 digits at random states.
+// Compares the derived equations with L, the forces and the gaps, by central differences with 50 digits at random
+// states.
 #pragma once
 
 #include <array>
@@ -11,29 +12,30 @@ namespace achilles {
 
 class Simplified;
 
-// Whether there are any besides those that the potential gives.
+// True if the system has generalized forces other than those of the potential.
 bool has_forces(const Equations& equations);
 
-// The forces as the file gives them, coordinate by coordinate, and the dissipation; 0 where there is none. In `graph`, a
+// The forces given in the file, by coordinate (0 if none), then the dissipation function. Creates nodes in `graph`, a
 // copy of the model's.
 std::vector<Expression> given_forces(const Model& model, Graph& graph);
 
 // The largest |derived - difference| / max(1, |difference|) of M, bias, Q, and of dh, hdot, hddot and lambda of every
-// contact, over so many states.
+// contact, over all states.
 struct Disagreement {
     struct Quantity {
         std::string name;
         double largest = 0.0;
     };
-    std::vector<Quantity> derived;     // equations() against differences
-    std::vector<Quantity> simplified;  // what is printed against equations()
+    std::vector<Quantity> derived;     // equations() compared with differences
+    std::vector<Quantity> simplified;  // printed equations compared with equations()
     int states = 0;
     double largest() const;
 };
 
-// At `states` states with coordinates and rates in their ranges, the time in the run, the run's parameters and a fixed seed. States where
-// something is not defined or M is not positive definite do not count; so many more are tried, up to ten for each.
-// The simplified hddot on the contact surface is compared where Newton's method, from such a state, finds h = 0.
+// Compares at `states` random states: coordinates and rates in their ranges, the time within the run, the parameters of
+// the run, a fixed seed. States at which something is undefined or M is not positive definite are skipped; up to ten
+// states are tried for each. The simplified hddot on the contact surface is compared if Newton's method finds h = 0
+// from such a state.
 Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified,
                                       int states = 20);
 

@@ -13,7 +13,7 @@ constexpr long work_of_a_try = 1000000;
 
 using Solution = std::vector<std::pair<std::uint32_t, Expression>>;  // slot, value
 
-// The sign of an expression in parameters alone, over their ranges and values.
+// The sign of an expression in parameters only, over their ranges and the values of the run.
 class ParameterSigns {
  public:
     ParameterSigns(const Model& model, const Run& run) : model_(model), run_(run) {
@@ -22,7 +22,7 @@ class ParameterSigns {
             (slot < 2 * layout.dof || slot >= 2 * layout.dof + layout.p ? others_ : parameters_).push_back(slot);
     }
 
-    // Whether the sign is known and is not that of a number.
+    // True if the expression depends on parameters and its sign is known.
     bool of_parameters(Expression e) const { return depends_on(e, parameters_) && (*this)(e) != Sign::unknown; }
 
     Sign operator()(Expression e) const {
@@ -57,7 +57,7 @@ class Search {
           graph_(graph),
           signs_(model, run) {}
 
-    // Tries what can be solved for, with and without the addition theorems; the shortest hddot wins.
+    // Tries all solutions, with and without the angle addition formulas, and keeps the shortest hddot.
     std::optional<ZenoCondition> best() try {
         for (const Solution& coordinate : coordinates(on_held_surfaces()))
             for (const Solution& solution : with_rates(coordinate))
@@ -76,7 +76,7 @@ class Search {
         return result;
     }
 
-    // x = -f(0)/slope for a function f linear in x with a slope that is nowhere 0, if it is.
+    // x = -f(0)/f'(0), if f is linear in x with a derivative that is nowhere 0.
     std::optional<Expression> solve(Expression f, std::uint32_t slot) const {
         const Expression zero = graph_.number(0), slope = derivative(f, slot);
         try {
@@ -99,7 +99,7 @@ class Search {
                 positivity.is_positive(-fraction.denominator, true));
     }
 
-    // What h = 0 and hdot = 0 of the held contacts say, each in the first way that is found.
+    // Solutions of h = 0 and hdot = 0 of the held contacts, each for the first possible symbol.
     Solution on_held_surfaces() const {
         Solution solution;
         const auto use = [&](Expression zero, std::uint32_t first_slot) {
@@ -111,7 +111,7 @@ class Search {
         return solution;
     }
 
-    // The same with what h = 0 says, each way; first not to use it.
+    // These solutions extended by each solution of h = 0; the first result has no extension.
     std::vector<Solution> coordinates(const Solution& held) const {
         std::vector<Solution> result{held};
         const Expression gap = on(c_.gap, held), hddot = on(c_.hddot, held);
@@ -122,13 +122,13 @@ class Search {
             if (!value) continue;
             Solution solution = held;
             solution.emplace_back(slot, *value);
-            if (!depends_on(*value, all)) return {solution};  // a constant: nothing can be shorter
+            if (!depends_on(*value, all)) return {solution};  // a constant, which cannot be improved
             if (depends_on(hddot, std::span(&slot, 1))) result.push_back(solution);
         }
         return result;
     }
 
-    // The same with what hdot = 0 says.
+    // This solution, and its extensions by each solution of hdot = 0.
     std::vector<Solution> with_rates(const Solution& coordinate) const {
         std::vector<Solution> result{coordinate};
         const Expression hdot = on(c_.hdot, coordinate), hddot = on(c_.hddot, coordinate);
@@ -148,8 +148,8 @@ class Search {
         return fraction.numerator.terms().size() + fraction.denominator.terms().size();
     }
 
-    // What could not be solved for is used as it stands: multiples of h, hdot and hdot^2 are added to the numerator as
-    // long as that makes the whole shorter.
+    // Uses the constraints that could not be solved: adds multiples of h, hdot and hdot^2 to the numerator as long as
+    // that makes the result shorter.
     Fraction in_contact(Fraction hddot, const Solution& solution, Algebra& algebra) const {
         std::vector<Multinomial> zeros;
         for (const ContactEquations* contact : contacts_) {
@@ -192,7 +192,7 @@ class Search {
             best_->hddot = hddot;
             solution_ = solution;
             for (const auto& [slot, value] : solution) best_->solved.emplace_back(graph_.symbol(slot), value);
-        } catch (const std::domain_error&) {  // a step that is not defined there
+        } catch (const std::domain_error&) {  // a step is undefined at this solution
         } catch (const TooLong&) {
             work_ -= before;
         } catch (const TooLarge&) {
@@ -208,8 +208,8 @@ class Search {
         return 0;
     }
 
-    // Is this odd power of a factor positive where M is positive definite? Then its sign is that of a leading minor of
-    // M, up to what is positive. 0: not known.
+    // Sign of a factor with an odd power where M is positive definite: that of a leading minor of M in which the other
+    // factors are positive. 0: unknown.
     int sign_by_definiteness(const Multinomial& base, Algebra& algebra, Positivity& positivity) const {
         Expression minor = graph_.number(1);
         for (const Expression pivot : e_.pivots) {
@@ -227,11 +227,11 @@ class Search {
         return 0;
     }
 
-    // Sorts hddot's factors into those proved to be positive and the others.
+    // Separates the factors of hddot into those proved to be positive and the others.
     void decide(ZenoCondition& zeno) const {
         Algebra& algebra = *zeno.algebra;
         algebra.work() = Work{work_of_a_try};
-        std::set<std::size_t> dropped_for, known_for;  // atoms whose signs were used: for what is dropped, for the rest
+        std::set<std::size_t> dropped_for, known_for;  // atoms whose signs were used: for dropped factors, for others
         bool unknown = false;
         try {
             const Factored all = factor(zeno.hddot, algebra);
@@ -248,7 +248,7 @@ class Search {
                     definite = sign != 0;
                 }
                 unknown = unknown || sign == 0;
-                // A single symbol above stays where it says what drives the motion: g sin(theta).
+                // A single symbol in the numerator is kept, because it shows what drives the motion: g sin(theta).
                 const bool drop = sign != 0 && (below || !atom);
                 (drop ? zeno.positive : zeno.decisive).factors.push_back({base, exponent});
                 if (drop && sign < 0) {
@@ -259,7 +259,7 @@ class Search {
                     (drop ? dropped_for : known_for).insert(positivity.used().begin(), positivity.used().end());
                 zeno.definite = zeno.definite || definite;
             }
-        } catch (const TooLong&) {  // the condition stays as it is
+        } catch (const TooLong&) {  // the condition stays unfactored
             zeno.positive = Factored{};
             zeno.decisive = Factored{1, {{zeno.hddot.numerator, 1}, {zeno.hddot.denominator, -1}}};
             unknown = true;
@@ -276,7 +276,7 @@ class Search {
 
     const Layout& layout_;
     const Equations& e_;
-    std::vector<const ContactEquations*> contacts_;  // the one in question, then those that are held
+    std::vector<const ContactEquations*> contacts_;  // the contact of the condition, then the held contacts
     const ContactEquations& c_;
     Graph& graph_;
     ParameterSigns signs_;
@@ -304,13 +304,13 @@ std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
 
 namespace {
 
-// For one formula: a tenth of a second or so. A double pendulum takes a hundredth of it, the general hddot of a triple
-// one more.
+// Work for one formula, about a tenth of a second. A double pendulum takes a hundredth of it; the general hddot of a
+// triple pendulum exceeds it.
 constexpr long work_of_a_formula = 400000;
 
 bool holds_some(const Model& model) { return model.contacts() > 1 && model.contacts() <= Simplified::few_contacts; }
 
-// That hold one contact, where these are looked at and are not too large; else null.
+// The motions that hold one contact; null if there are too many contacts or the equations are too large.
 std::unique_ptr<ContactModes> derived_motions(const Model& model) {
     if (!holds_some(model)) return nullptr;
     try {
@@ -348,7 +348,7 @@ SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::
     result.hdot = simplify(c.hdot);
     result.W = simplify(c.W);
     result.hddot = simplify(c.hddot);
-    // lambda = -hddot/W: its own divisions, done before, would be done again.
+    // lambda = -hddot/W, from the simplified quotients to avoid repeating their divisions.
     if (result.hddot && result.W) {
         algebra_->work() = Work{work_of_a_formula};
         try {

@@ -12,10 +12,10 @@ using Eigen::Index;
 
 constexpr double tolerance = 5e-13;
 
-// The power of two nearest to 1/sqrt(w): scaled by it, numbers keep their bits.
+// The power of two nearest to 1/sqrt(w). Scaling by it is exact.
 double scale_for(double w) { return w > 0.0 ? std::exp2(-std::round(0.5 * std::log2(w))) : 1.0; }
 
-// The problem with every gap scaled such that W_jj is about 1: impulses p = scale p', y = y'/scale.
+// The problem scaled such that W_jj is about 1: impulses p = scale p', y = y'/scale.
 class Problem {
  public:
     Problem(const Matrix& W, const Vector& b) : scale_(b.size()), W_(W), b_(b) {
@@ -30,7 +30,7 @@ class Problem {
         }
     }
 
-    // An answer whose support is a set over which W is positive definite: there is one, if there is any.
+    // A solution on a set of contacts over which W is positive definite. One exists if there is any solution.
     std::optional<Vector> basic() const {
         for (const double least_pivot : {HeldBlock<double>::clear, 0x1p-46}) {
             if (const auto p = pivoted(least_pivot)) return p;
@@ -69,7 +69,7 @@ class Problem {
         return zero;
     }
 
-    // Never true with a NaN.
+    // Whether p >= 0, y >= 0 and p y = 0 hold within the bounds. False for a NaN.
     bool solves(const Vector& p) const {
         const Vector y = residual(p), bound = bounds(p);
         for (Index j = 0; j < size(); ++j) {
@@ -79,7 +79,7 @@ class Problem {
         return true;
     }
 
-    // p with y = 0 on a set, whatever its signs; once refined.
+    // p with y = 0 over a set, of any sign; after one step of iterative refinement.
     std::optional<Vector> on(ContactSet set, double least_pivot) const {
         const auto block = HeldBlock<double>::of(W_, set, least_pivot);
         if (!block) return std::nullopt;
@@ -88,7 +88,7 @@ class Problem {
         return p;
     }
 
-    // Every contact of the wrong sign changes sides, a few times: that finds nearly all answers.
+    // Block pivoting: every contact of the wrong sign changes sides, up to 8 times. This finds nearly all solutions.
     std::optional<Vector> pivoted(double least_pivot) const {
         constexpr int rounds = 8;
         ContactSet set;
@@ -127,9 +127,9 @@ class Problem {
         return set;
     }
 
-    // Of all answers, that of the least sum W_jj p_j^2. Over its own support it is the least solution of W p = -b whatever
-    // the signs, so it is found among those, one for each set. Who pulls is taken out and who would help is let in, a few
-    // times, until it is optimal: that finds nearly all; else every set is asked.
+    // The solution with the smallest sum W_jj p_j^2. Over its own support it is also the smallest solution of W p = -b
+    // of any sign. Active-set iteration: drop contacts with a negative impulse, add those that would lower the sum, up
+    // to 8 rounds. It nearly always succeeds; otherwise all sets are enumerated.
     std::optional<Vector> least_norm(ContactSet zero) const {
         constexpr int rounds = 8;
         for (Index j = 0; j < size(); ++j)
@@ -148,7 +148,7 @@ class Problem {
         return least_of_all(zero);
     }
 
-    // Optimal is p >= 0 with W_jj p_j = (W nu)_j on the support for some nu, and (W nu)_j <= 0 beside it.
+    // p is optimal if p >= 0, W_jj p_j = (W nu)_j on the support for some nu, and (W nu)_j <= 0 on the other contacts.
     ContactSet improved(ContactSet support, const Vector& p, ContactSet zero) const {
         const Vector weighted = W_.diagonal().cwiseProduct(p);
         const Vector pull = W_ * HeldBlock<double>::of(W_, basis_of(support))->solve(weighted);
@@ -185,7 +185,8 @@ class Problem {
 
     double weighted_norm(const Vector& p) const { return W_.diagonal().dot(p.cwiseAbs2()); }
 
-    // Of largest pivots: what the others then are in terms of these is of few roundings.
+    // A largest subset over which W is clearly positive definite. The largest pivot is taken first, which keeps
+    // rounding errors small in the kernel below.
     ContactSet basis_of(ContactSet set) const {
         ContactSet basis;
         for (;;) {
@@ -205,14 +206,15 @@ class Problem {
         }
     }
 
-    // The p of least norm, 0 outside of `set`, with b + W p = 0 over it, if it has one. From a basic solution,
-    // on a largest set over which W is clearly positive definite, along the kernel that the others span,
-    //     x_B = -W_BB^-1 W_Bk, x_k = 1 for each k in the rest.
+    // The p of least norm that is 0 outside of `set` and solves b + W p = 0 over it; nullopt if there is none. It
+    // starts from the solution on a basis B, a largest subset over which W is clearly positive definite. It then moves
+    // along the kernel, which the remaining contacts k of `set` span by
+    //     x_B = -W_BB^-1 W_Bk, x_k = 1.
     std::optional<Vector> least_of_any_sign(ContactSet set) const {
         const ContactSet basis = basis_of(set);
         const auto block = HeldBlock<double>::of(W_, basis);
         Vector p = block->solve(-b_);
-        Matrix kernel = Matrix::Zero(size(), size());  // column k, for k in the rest
+        Matrix kernel = Matrix::Zero(size(), size());  // column k for every remaining k
         ContactSet rest;
         for (Index k = 0; k < size(); ++k) {
             if (!contains(set, k) || contains(basis, k)) continue;

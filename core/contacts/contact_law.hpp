@@ -1,11 +1,11 @@
-// The contact laws: one table of what a contact does in each of its states. Derivation, events, proofs and derivatives
+// The contact laws: a table of what a contact does in each of its states. Derivation, events, proofs and derivatives
 // read it.
 //
 //     state   kept            force       watched until it falls to 0    then
 //     open    nothing         none        h                              impact: held or open, by the impact law
 //     held    h = hdot = 0    lambda g'   lambda                         release: open
 //
-// core/README.md says how a law is added.
+// core/README.md explains how to add a law.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace achilles {
 
-// What a contact keeps at zero. The gradient of each such function has a multiplier, the contact's force.
+// The function that a contact keeps at zero. Its gradient has a multiplier, the contact force.
 enum class Constraint : std::uint8_t { none, gap };
 
-// What ends a state when it falls to zero.
+// The function whose zero ends a state.
 enum class WatchedFunction : std::uint8_t {
     gap,          // h
     normal_force  // lambda, as -hddot/W of the mode in which the contact is open
@@ -40,8 +40,8 @@ inline constexpr std::array contact_laws{
 
 constexpr const ContactLaw& law_of(ContactState state) { return contact_laws[static_cast<std::size_t>(state)]; }
 
-// The contacts of a mode that keep this, or whose event is told by that. Contacts that a system does not have count as
-// open.
+// The contacts of a mode that keep this constraint, or that watch this function. Contacts that the system does not have
+// count as open.
 constexpr ContactSet contacts_keeping(Mode mode, Constraint kept) {
     ContactSet found;
     for (const ContactLaw& law : contact_laws)

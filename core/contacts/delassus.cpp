@@ -12,7 +12,8 @@ bool is_defined(const Interval& x) { return x.is_defined(); }
 bool is_clear(double pivot, double diagonal, double least) { return pivot > least * diagonal; }
 bool is_clear(const Interval& pivot, const Interval&, double) { return certainly_positive(pivot); }
 
-// An interval's product is widened even where a factor is 0: contacts that do not meet would seem to.
+// Exact zero times a number is exactly zero. An interval product would be widened by rounding, and uncoupled contacts
+// would appear coupled.
 template <class Number>
 Number product(const Number& a, const Number& b) {
     if ((is_zero(a) && is_defined(b)) || (is_zero(b) && is_defined(a))) return Number(0.0);

@@ -1,9 +1,10 @@
-// Newton's impact law and what follows from it, for doubles, intervals and numbers with derivatives.
+// Newton's impact law and its consequences, for doubles, intervals and numbers with derivatives.
 //
 //     v+ = v- - n (1 + e) hdot-,   n = M^-1 g'/W,   W = g M^-1 g',   g = dh     (paper (4))
 //     hdot+ = -e hdot-,   p = -(1 + e) hdot-/W,   loss = p (1 - e) |hdot-|/2,   work = -p dh/dt
 //
-// The kinetic energy never increases if 0 <= e <= 1. Impacts of several contacts follow Moreau's law (contacts/moreau.hpp).
+// The kinetic energy never increases if 0 <= e <= 1. Impacts of several contacts follow Moreau's law
+// (contacts/moreau.hpp).
 #pragma once
 
 #include <cstddef>
@@ -26,7 +27,7 @@ Number impulse(const Number& e, const Number& hdot, const Number& W) {
     return -removed_rate(e, hdot) / W;
 }
 
-// The energy that the impact dissipates, and the work of a surface that moves at dh/dt = gap_t.
+// The energy that the impact dissipates, and the work of a contact surface that moves with dh/dt = gap_t.
 template <class Number>
 Number loss(const Number& p, const Number& e, const Number& hdot) {
     return -(0.5 * p * (1.0 - e) * hdot);
@@ -36,8 +37,8 @@ Number work(const Number& p, const Number& gap_t) {
     return -(p * gap_t);
 }
 
-// x -= n amount. For a velocity, the amount hdot gives the tangential velocity s, and removed_rate() gives v+. For a position, the
-// amount h moves it onto the surface, to first order.
+// x -= n amount. For a velocity, the amount hdot gives the tangential velocity s, and removed_rate() gives v+. For a
+// position, the amount h moves it onto the contact surface, to first order.
 template <class Number, class Direction>
 void move_along(Number* x, std::size_t size, const Direction& n, const Number& amount) {
     for (std::size_t i = 0; i < size; ++i) x[i] = x[i] - n(i) * amount;

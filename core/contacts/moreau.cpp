@@ -14,7 +14,7 @@ using Matrix = ContactMatrix<double>;
 using Vector = ContactVector<double>;
 using Eigen::Index;
 
-// The one contact of `colliding` that moves; -1 where there is another number of them.
+// The only contact of `colliding` with hdot != 0; -1 if there is none or more than one.
 Index lonely_landing(const Vector& hdot, ContactSet colliding) {
     Index landing = -1;
     for (Index j = 0; j < hdot.size(); ++j) {
@@ -25,7 +25,7 @@ Index lonely_landing(const Vector& hdot, ContactSet colliding) {
     return landing;
 }
 
-// The impulses where contact i lands and all others stay, if they do.
+// The impulses if contact i impacts and all others stay held; nullopt if they do not.
 std::optional<Vector> passed_on(const Matrix& W, double e, double hdot, Index i, ContactSet others) {
     const auto block = HeldBlock<double>::of(W, others);
     if (!block) return std::nullopt;
@@ -38,7 +38,7 @@ std::optional<Vector> passed_on(const Matrix& W, double e, double hdot, Index i,
     return impulses;
 }
 
-// The problem of `colliding` alone: p, and hdot+ + e hdot- as y, both 0 elsewhere.
+// Solves the problem over `colliding` alone: p, and y = hdot+ + e hdot-, both 0 for the other contacts.
 std::optional<Complementarity> solve_among(const Matrix& W, const Vector& b, ContactSet colliding) {
     Matrix block(colliding.count(), colliding.count());
     Vector right(colliding.count());
@@ -103,7 +103,7 @@ std::optional<MoreauImpact> moreau_impact(const Matrix& W, const Vector& hdot_be
     return moreau_impact(W, hdot_before, e, held, colliding);
 }
 
-// ---- one after the other ----
+// ---- successive impacts ----
 
 namespace {
 
@@ -140,10 +140,10 @@ class Turns {
     }
 
  private:
-    // In the root of an energy; 0 for who does not approach.
+    // Closing speed |hdot|/sqrt(W_jj), the square root of twice an energy; 0 for a contact that does not close.
     double approach(Index j) const { return hdot_[j] < 0.0 ? -hdot_[j] / std::sqrt(W_(j, j)) : 0.0; }
 
-    // Who approaches most, unless that is rounding.
+    // The contacts with the largest closing speed (ties within rounding); empty if all are within rounding of zero.
     ContactSet foremost() const {
         double most = 0.0;
         for (Index j = 0; j < hdot_.size(); ++j) most = std::max(most, approach(j));
@@ -174,7 +174,7 @@ class Turns {
     const Vector& e_;
     ContactSet at_rest_;
     Vector hdot_, impulses_;
-    double start_ = 0.0;  // the greatest approach before all
+    double start_ = 0.0;  // the largest closing speed before the first impact
 };
 
 }  // namespace
@@ -192,14 +192,14 @@ std::vector<ImpactSequence> alternatives(const Matrix& W, const Vector& hdot_bef
     return result;
 }
 
-// ---- does their order matter? ----
+// ---- dependence on the order of impacts ----
 
 namespace {
 
-// Judges signs; what is 0 within its rounding is 0.
+// Decides signs; a number that is 0 within rounding becomes 0, and that is recorded.
 class Signs {
  public:
-    // `natural` is the number whose ulp is meant.
+    // `natural` is the size to which the rounding of x is compared (counts_as_zero).
     Interval judged(const Interval& x, double natural) {
         if (!(width(x) > 0.0) || !counts_as_zero(x, natural)) return x;
         rounded_ = true;

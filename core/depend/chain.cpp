@@ -10,7 +10,7 @@ using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-// Columns first .. first + Columns of the product. Much of J is zero.
+// Columns first .. first + Columns of the product. Skips zeros, because J is sparse.
 template <int Columns>
 void multiply(const RowMatrix& J, const RowMatrix& Z, Eigen::Index first, RowMatrix& product) {
     for (Eigen::Index i = 0; i < product.rows(); ++i) {
@@ -23,7 +23,7 @@ void multiply(const RowMatrix& J, const RowMatrix& Z, Eigen::Index first, RowMat
 
 }  // namespace
 
-// The matrices are small: a product by their entries is faster than one by blocks.
+// The matrices are small, so that a product by entries is faster than by blocks.
 void Link::apply(RowMatrix& Z) const {
     if (kind == Kind::crossing) {
         const RowVectorXd along = (G / G.dot(F)).lazyProduct(Z);
@@ -109,7 +109,7 @@ FlowSlope& Chain::slope(Mode mode) {
     return *known;
 }
 
-// ---- where the run stands ----
+// ---- state ----
 
 VectorXd Chain::rate() {
     auto& motion = model_->lazily(motions_, mode_, trajectory_->run.parameters);
@@ -129,7 +129,7 @@ VectorXd Chain::rate() {
     return F;
 }
 
-// From q and v.
+// Recomputes h_ and u_ from q and v.
 void Chain::set_gaps() {
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
         const Contact contact = surfaces_.of(i).at(state_);
@@ -204,7 +204,7 @@ void Chain::step() {
     if (options_.errors) set_gaps();
 }
 
-// The gaps along the step, in values: where one comes to a minimum that is no impact.
+// Finds minima of open gaps inside the step, by values.
 void Chain::watch_minima(const FlowSlope& slope, double span) {
     const int order = slope.order();
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
@@ -219,7 +219,7 @@ void Chain::watch_minima(const FlowSlope& slope, double span) {
             }
             return std::pair(h_[i] + (u_[i] + h * t) * t, u_[i] + u * t);
         };
-        // Where the rate falls all along the step, there is none.
+        // If the gap rate decreases along the whole step, there is no minimum.
         double rising = 2.0 * c[2], power = 1.0;
         for (int k = 3; k <= order; ++k) {
             power *= span;
@@ -244,8 +244,8 @@ void Chain::watch_minima(const FlowSlope& slope, double span) {
     }
 }
 
-// The rows of q and v of what lies on h = 0, hdot = 0 of all that a mode holds: dq -= n dh, then dv -= n dhdot. One
-// contact after the other, each while those before it are held, so that they stay there.
+// Projects the rows of q and v onto h = 0, hdot = 0 of the held contacts of a mode: dq -= n dh, then dv -= n dhdot. The
+// contacts are processed one by one, each while those before it are held, so that these stay satisfied.
 void Chain::retract(RowMatrix& J, Mode onto) {
     const auto each = [&](const auto& act) {
         ContactSet before;

@@ -1,15 +1,16 @@
-// A finished run as a chain of linear maps: what a small change of its start, or of a parameter, becomes of it, event by event
-// (theory-derivatives.md 1). It is made from what the run has recorded, so that every decision is the run's.
+// A finished run as a chain of linear maps, which carry a small change of its start or parameters through all steps and
+// events (theory-derivatives.md 1). The chain is made from the recorded trajectory, so all decisions are those of the
+// run.
 //
 //     Chain chain(trajectory);
-//     RowMatrix Z = ...;  chain.complete(Z);               one column a change, its rows as Tangent says
+//     RowMatrix Z = ...;  chain.complete(Z);               one column for each change, rows as in Tangent
 //     while (const Link* link = chain.next()) link->apply(Z);
 //
-// Z after a link is the change following the event, (t', X'): that of the state where the run stands then, which each member of
-// the change reaches at its own time. At a fixed time it is  X' - F t', F = chain.rate().
+// After a link, Z is the change (t', X') that follows the event: each perturbed run reaches this point at its own time.
+// The change at a fixed time is X' - F t', with F = chain.rate().
 //
-// Who carries something else through the run, the error that steps have made and its covariance (theory-enclosure.md 9), takes
-// the same links: e := J e + what the link has left out, P := J P J' + ...
+// The same links carry other quantities, such as the accumulated error and its covariance (theory-enclosure.md 9): e :=
+// J e + the terms omitted by the link, P := J P J' + ...
 #pragma once
 
 #include <algorithm>
@@ -29,30 +30,31 @@ namespace achilles {
 
 struct Link {
     enum class Kind {
-        step,      // a step of smooth motion, or a part of one, for a fixed time: Z := J Z
-        crossing,  // every member goes on, or back, to where the event is its own: Z := Z - F (G Z)/(G F)
-        jump       // what happens at the event at once: Z := J Z
+        step,      // a step of smooth motion, or a part of one, of fixed length: Z := J Z
+        crossing,  // moves every perturbed run to its own event: Z := Z - F (G Z)/(G F)
+        jump       // the jump at the event: Z := J Z
     };
     Kind kind = Kind::step;
-    std::optional<std::size_t> event;  // of the trajectory; a crossing and then a jump have it
-    double length = 0.0;               // s, of a step
+    std::optional<std::size_t> event;  // index in the trajectory; set for a crossing and the jump after it
+    double length = 0.0;               // s, for a step
 
-    RowMatrix J;               // of a step and a jump
-    Eigen::Index changed = 0;  // its first rows: those of parameters, behind them, are as they were
-    Eigen::VectorXd F;         // of a crossing: the rates of all components before the event,
-    Eigen::RowVectorXd G;      // the gradient of what vanishes there,
+    RowMatrix J;               // for a step or a jump
+    Eigen::Index changed = 0;  // number of leading rows that change; the rows of parameters, at the end, never do
+    Eigen::VectorXd F;         // for a crossing: the rates of all components before the event,
+    Eigen::RowVectorXd G;      // the gradient of the function that vanishes at the event,
     double residual = 0.0;     // and its value
-    // Where errors are followed, besides. Of a step, in the rows of q and v: the terms that the run's polynomials leave
-    // out, (c_{K+1} + c_{K+2} t + ...) t^(K+1). Of the crossing at an impact: the gradient of the gap by q and t, where the
-    // step, before it was moved onto the surface, had come to `residual`; G, the gap once more, is of the gap's own series.
+    // Only with Options::errors. For a step, left_out has in the rows of q and v the terms that the run's polynomials
+    // omit, (c_{K+1} + c_{K+2} t + ...) t^(K+1). For the crossing at an impact, by_place is the gradient of the gap by
+    // q and t. `residual` is then the gap that the step reached before the projection onto the surface, and G refers to
+    // the gap as a component of its own.
     Eigen::VectorXd left_out;
     Eigen::RowVectorXd by_place;
-    // Of the jump at which a bouncing is cut.
+    // Data of the jump at a truncation.
     struct Completion {
         std::size_t contact;
-        Mode others;       // in which the contact is open
+        Mode others;       // the mode in which the contact is open
         double speed;      // w
-        RowMatrix newton;  // the impact that is drawn there, in place of the J that the run goes on from
+        RowMatrix newton;  // J of the simulated impact, whereas the run continues with J above
     };
     std::optional<Completion> completion;
 
@@ -64,31 +66,32 @@ inline void take_least(std::optional<double>& least, double x) { least = least ?
 class Chain {
  public:
     struct Options {
-        // For errors in place of changes: links tell what steps leave out, follow the state where the run takes it for its
-        // gaps, and are no more exact than an estimate asks for; parameters do not change, there are no margins.
+        // Compute links for errors instead of changes. Links then contain the omitted terms of steps, use the gaps of
+        // the run's states, and are only as accurate as an estimate requires. Parameters do not change, and there are
+        // no margins.
         bool errors = false;
-        // The parameters that a change may have, if not all may: steps are cheaper for eight variables at a time.
+        // Marks the parameters that may change; empty: all. Steps are cheaper with fewer variables, in groups of eight.
         std::vector<bool> parameters{};
     };
-    // The trajectory, of which everything must have been kept, outlives this. Throws InputError where bouncings were restarted by
+    // The trajectory must be recorded in full and outlive this object. Throws InputError if bouncings were restarted by
     // the Euclidean projection: their derivatives converge no faster than O(w ln w).
     explicit Chain(const Trajectory& trajectory) : Chain(trajectory, Options{}) {}
     Chain(const Trajectory& trajectory, Options options);
     ~Chain();
-    // Throws the same of a run that has not been made yet.
+    // Throws the same InputError before the run is made.
     static void check(const Run& run);
 
     const Tangent& tangent() const { return tangent_; }
     // Fills the rows of h and u at the start from those of t, q, v and p.
     void complete(RowMatrix& Z);
-    // The contacts on which the run starts at rest: a change must leave their h and u at 0.
+    // The contacts that are closed at rest at the start: a change must not change their h and u.
     ContactSet resting_at_start() const { return resting_; }
 
-    // The next link, which stands until the next call; null at the end of the run, or where there is no derivative any more.
+    // The next link, valid until the next call; null at the end of the run, or once the chain is broken.
     const Link* next();
-    // Why there is none from where the run now stands; empty where the chain goes on.
+    // The reason why there are no derivatives from here on; empty if there are.
     const std::string& broken() const { return broken_; }
-    // Where the run stands after the last link, and F there.
+    // The state after the last link, and F there.
     const State& state() const { return state_; }
     Eigen::VectorXd rate();
     Mode mode() const { return mode_; }
@@ -124,16 +127,16 @@ class Chain {
     std::map<ContactInMode, std::unique_ptr<Gradient>> trends_, normals_;
     std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
     std::map<Mode, std::unique_ptr<FlowSlope>> slopes_;
-    std::map<Mode, std::unique_ptr<FlowDifference>> differences_;  // in their place, for errors
+    std::map<Mode, std::unique_ptr<FlowDifference>> differences_;  // used instead of slopes_ for errors
     Model::MotionEvaluators motions_;
 
     State state_;
     Mode mode_;
     ContactSet resting_;
     std::size_t next_piece_ = 0, next_event_ = 0;
-    bool waiting_ = false;       // between a cut and its Zeno point
-    std::vector<double> h_, u_;  // of every contact, at the state
-    std::deque<Link> links_;     // whose room is used again
+    bool waiting_ = false;       // between a truncation and its Zeno point
+    std::vector<double> h_, u_;  // of every contact, at state_
+    std::deque<Link> links_;     // reused storage
     std::size_t made_ = 0, given_ = 0;
     std::string broken_;
     DerivativeMargins margins_;

@@ -1,5 +1,5 @@
-// What events do to a small change: impacts, cuts and their Zeno points, releases (theory-derivatives.md 3 to 6). For
-// errors besides: where a run was at an impact, and where it was moved to.
+// The effect of events on a small change: impacts, truncations and their Zeno points, releases (theory-derivatives.md 3
+// to 6). For errors, also the gap left at an impact and the move onto the contact surface.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@ using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-// A number and its derivatives with respect to the components of a change, for the impact law.
+// A number and its derivatives by the components of a change, for the impact law.
 struct Changing {
     double value;
     RowVectorXd row;
@@ -64,7 +64,7 @@ void Chain::land(std::size_t event) {
         return break_off(
             "several contacts close at the same time: which is first depends on the direction of the perturbation");
     const std::size_t i = now.contacts.only();
-    // What of the others takes part.
+    // Find which of the other contacts are loaded by the impact.
     Mode others = mode_;
     if (now.joint) {
         if (now.joint->order_matters || now.joint->not_unique)
@@ -100,7 +100,7 @@ void Chain::land(std::size_t event) {
     ContactGradient& contact = surface(i, others);
     contact.at(state_);
     auto& restitution = restitutions_[i];
-    if (!restitution) {  // of parameters alone
+    if (!restitution) {  // it depends only on parameters
         restitution =
             std::make_unique<Gradient>(*model_, model_->restitution(i), tangent_, trajectory_->run.parameters);
         restitution->at(state_);
@@ -116,7 +116,7 @@ void Chain::land(std::size_t event) {
 
     Link& link = add(Link::Kind::jump, event);
     RowMatrix& J = link.J;
-    // Back onto the surface, which the components of q and v leave by what steps leave out.
+    // Back onto the surface: the rows of q leave it by the omitted terms of steps.
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * contact.h_row();
     J.row(tangent_.h(i)).setZero();
     const Changing before{u, J.row(tangent_.u(i))}, e{surfaces_.restitution(i).value, restitution->row(0)};
@@ -153,7 +153,7 @@ void Chain::land(std::size_t event) {
     }
 }
 
-// The contacts that come to rest after an impact, by a bouncing that is cut there. A reason where that has no derivative.
+// The contacts that come to rest after an impact by a truncation there. Returns a reason if that has no derivative.
 std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet& joins) const {
     const auto& events = trajectory_->events;
     const Event& now = events[event];
@@ -170,8 +170,8 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
     return std::nullopt;
 }
 
-// The derivatives of how long the bouncing still lasts, T(a, b, c, e, w) of theory-derivatives.md 4, by the components before the
-// jump; J is what q, v, t and p are of these at the restart, where the state stands.
+// The derivatives of the accumulation time T(a, b, c, e, w) of theory-derivatives.md 4 by the components before the
+// jump. J has the rows of q, v, t and p at the restart; state_ must be the restart.
 RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others, double speed) {
     auto& trend = trends_[{others, contact}];
     if (!trend)
@@ -180,7 +180,7 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others
     trend->at(state_);
     const double e = surfaces_.restitution(contact).value;
     const auto e_row = restitutions_[contact]->row(0);
-    if (e == 0.0 && e_row.isZero(0.0)) return RowVectorXd::Zero(J.cols());  // it ends at the impact
+    if (e == 0.0 && e_row.isZero(0.0)) return RowVectorXd::Zero(J.cols());  // no flight follows
     if (e == 0.0 && model_->is_carried(contact, others))
         break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
     using Number = Jet<double, 5>;
@@ -202,7 +202,7 @@ void Chain::reach_zeno_point(std::size_t event) {
     const double a = -surfaces_.of(i, mode_.without(i)).normal_acceleration(state_);
     const bool may_be_unpressed = is_plastic_landing(now) && now.certificate->a_max == 0.0;
     if (!may_be_unpressed || !model_->is_carried(i, mode_.without(i))) take_least(margins_.a_inf, a);
-    // The members that wait for longer go on for so long.
+    // Perturbed runs with a longer accumulation time continue for the difference.
     Link& link = add(Link::Kind::jump, event);
     link.J.col(tangent_.wait()) += rate();
     link.J.row(tangent_.wait()).setZero();
@@ -233,8 +233,8 @@ void Chain::release(std::size_t event) {
     h_[i] = u_[i] = 0.0;
 }
 
-// The gap where the last step came to by its own polynomials, before it was moved onto the surface: 0 where that is its rounding.
-// What was added to the first order of q is how far it was moved.
+// The gap at the end of the last step by its own polynomials, before the projection onto the surface; 0 if it is within
+// rounding. The correction of the linear coefficient of q is the distance of the projection.
 double Chain::residual_before(std::size_t contact) {
     if (next_piece_ == 0) return 0.0;
     const Piece& piece = trajectory_->pieces[next_piece_ - 1];
@@ -252,8 +252,8 @@ double Chain::residual_before(std::size_t contact) {
     return std::abs(at.h) > rounding ? at.h : 0.0;
 }
 
-// Errors at an impact. The run lands by the gap's own series, then moves q onto the surface and takes the rate of the gap from
-// there; so the error of q is moved, and that of the rate taken, too.
+// Errors at an impact. The run finds the impact by the series of the gap, then projects q onto the surface and takes
+// the gap rate there. The error of q is projected, and that of the rate recomputed, in the same way.
 void Chain::meet_surface(std::size_t contact, Mode others, Link& crossing) {
     crossing.residual = residual_before(contact);
     ContactGradient& surface = this->surface(contact, {});

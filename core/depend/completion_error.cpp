@@ -7,7 +7,7 @@ namespace achilles {
 
 namespace {
 
-// The outputs of a program that stand behind others.
+// The outputs of a program from index `first` on.
 struct Behind {
     const Evaluator<double>* all = nullptr;
     std::size_t first = 0;
@@ -69,11 +69,11 @@ CompletionError::Wait CompletionError::wait(const Cut& cut) {
     const auto n = static_cast<std::size_t>(model_->dof());
     State state = cut.restart;
     state.v += u * surfaces_.of(cut.contact, cut.others).at(state).impulse_direction;
-    constexpr int order = 12;  // a flight of so little height is nearly a parabola
+    constexpr int order = 12;  // so low a flight is nearly a parabola
     series.expand(state, order);
     const std::size_t gap = 2 * n + cut.contact;
     double span = 2.0 * u / at_cut.a;
-    for (int round = 0; round < 6; ++round) {  // of h/t = u + h_2 t + ...
+    for (int round = 0; round < 6; ++round) {  // Newton's method for h/t = u + h_2 t + ...
         double value = 0.0, slope = 0.0;
         for (int k = order; k >= 2; --k) {
             slope = slope * span + value;

@@ -1,5 +1,6 @@
-// What a cut leaves open, to leading order in the speed w at the cut: how far the state that the run restarts from lies from the
-// one that leads to the true motion, and by how much the formula for the wait is wrong. Both are O(w^3).
+// The error of a truncation, to leading order in the speed w at the truncation. It consists of the distance between the
+// restart state and the one that leads to the true motion, and of the error of the formula for the accumulation time.
+// Both are O(w^3).
 #pragma once
 
 #include <map>
@@ -15,7 +16,7 @@ class CompletionError {
  public:
     CompletionError(const Model& model, const Run& run) : model_(&model), run_(run), surfaces_(model, run) {}
 
-    // A cut: the bouncing of a contact while others are held, at the state that the run restarts from (v is s), with w.
+    // A truncation: a contact, the mode in which it is open, the restart state (v is s), and w.
     struct Cut {
         std::size_t contact;
         Mode others;
@@ -23,13 +24,13 @@ class CompletionError {
         double speed;
     };
 
-    // True less comparison motion at equal times after the Zeno point, (d_q, d_s) of theory-enclosure.md 6 at sigma = 0, with the
-    // integrals I of h and J of hdot^2 over what was cut (in v's place d_s):
+    // True minus comparison motion at equal times after the Zeno point: (d_q, d_s) of theory-enclosure.md 6 at
+    // sigma = 0, with d_s in place of v. I and J are the integrals of h and hdot^2 over the truncated bouncing:
     //     d_q = (B - ndot) I,   d_s = (dA/dq n + dA/ds B - Bdot) I + D J,   I = 2 e^3 w^3/(3 a^2 (1 - e^3)),   J = a I
     State shift(const Cut& cut);
 
-    // How long the bouncing lasts (s): the formula of theory-truncation.md 3, and how much longer than that it is. One more
-    // bounce, w to w', makes the formula's error (w'/w)^3 times as much, so that
+    // The accumulation time (s) by the formula of theory-truncation.md 3, and the error (s) to be added to it. One more
+    // bounce, from w to w', scales the error of the formula by (w'/w)^3, so that
     //     error = (flight + formula' - formula)/(1 - (w'/w)^3).
     struct Wait {
         double formula = 0.0, error = 0.0;

@@ -13,7 +13,8 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// Directions that leave a surface on which the run starts at rest: the run beside it would start in the air, or below it.
+// Refuses directions that leave the surface of a contact at rest at the start: the perturbed run would start in the air
+// or below the surface.
 void refuse(Chain& chain, const Model& model, const RowMatrix& Z, std::vector<std::string>& refused) {
     const Tangent& tangent = chain.tangent();
     constexpr double rounding = 1e-12;
@@ -79,12 +80,12 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
     while (const Link* link = chain.next()) {
         if (link->event && link->kind == Link::Kind::jump) {
             const Event& event = trajectory.events[*link->event];
-            // Before the jump, where a crossing has led.
+            // At the event, after the crossing and before the jump.
             if (event.is_impact()) {
                 take(*link->event);
                 result.events.back().impact_speed = -Z.row(tangent.u(event.contacts.only())).transpose();
             }
-            // The impact itself is drawn as Newton's law has it, whatever the run restarts from.
+            // v_after is that of Newton's impact law, also if the run continues from a restart.
             std::optional<MatrixXd> drawn;
             if (link->completion) drawn = (link->completion->newton * Z).middleRows(tangent.v(0), n);
             link->apply(Z);

@@ -3,10 +3,10 @@
 //     const Derivatives d = differentiate(trajectory);
 //     d.end->q(i, k)             of coordinate i at the end time, by direction k
 //     d.events[j].t[k]           of the time of event j
-//     d.events[j].q(i, k)        of where it happens, following the event
+//     d.events[j].q(i, k)        of coordinate i at event j, following the event
 //
-// What a search for periodic runs asks, the map from a start to the k-th release and its Jacobian, are the state and the entry of
-// that event, by directions of its own: differentiate(trajectory, directions).
+// A search for periodic orbits uses the map from a start to the k-th release. The state at that event and its entry
+// here are this map and its Jacobian, by user-defined directions: differentiate(trajectory, directions).
 #pragma once
 
 #include <Eigen/Core>
@@ -18,42 +18,44 @@
 
 namespace achilles {
 
-// How near a run comes to where it has no derivative (theory-derivatives.md 8).
+// Distances of a run from situations without derivative (theory-derivatives.md 8).
 struct DerivativeMargins {
-    std::optional<double> grazing_speed;  // the least speed of an impact with hddot > 0
-    std::optional<double> gap_minimum;    // the least minimum of a gap along a flight
-    std::optional<double> a_inf;          // the least -hddot at a Zeno point
-    std::optional<double> release_jerk;   // the least h''' at a release
+    std::optional<double> grazing_speed;  // smallest speed of an impact with hddot > 0
+    std::optional<double> gap_minimum;    // smallest minimum of a gap in flight
+    std::optional<double> a_inf;          // smallest -hddot at a Zeno point
+    std::optional<double> release_jerk;   // smallest h''' at a release
 };
 
 struct Derivatives {
-    // Names: starts, rates, parameters in the file's order; K of them. Of directions of one's own there are none.
+    // Names: initial coordinates, initial rates, parameters in the file's order; K of them. Empty for user-defined
+    // directions.
     std::vector<std::string> directions;
-    // Of each direction why it has none, or "": then its columns are no numbers. On a surface on which the run starts at rest
-    // only directions along it have.
+    // For each direction, the reason why it has no derivatives, or ""; if not "", its columns are NaN. If the run
+    // starts at rest on a contact surface, only directions along the surface have derivatives.
     std::vector<std::string> refused;
 
-    // Following the event: of its time, s, and of the state there, coordinate by direction.
+    // Following the event: derivatives of its time (s) and of the state there, coordinate by direction.
     struct AtEvent {
         Eigen::VectorXd t;
-        Eigen::MatrixXd q, v_before, v_after;  // before and after are the same where nothing jumps
-        Eigen::VectorXd impact_speed;          // of an impact, else empty
+        Eigen::MatrixXd q, v_before, v_after;  // equal unless the velocity jumps
+        Eigen::VectorXd impact_speed;          // for impacts, else empty
     };
-    std::vector<AtEvent> events;  // of the trajectory, as many of the first as have derivatives
-    // At fixed time.
+    std::vector<AtEvent> events;  // the first events of the trajectory, as far as they have derivatives
+    // At a fixed time.
     struct AtEnd {
         Eigen::MatrixXd q, v;
     };
     std::optional<AtEnd> end;
-    // Why there are none beyond the last of `events`, else empty; and from when on.
+    // The reason why there are none beyond the last of `events`, and the time from which on; else empty.
     std::string broken;
     double broken_from = 0.0;
     DerivativeMargins margins;
 };
 
-// By every start, rate and parameter. Throws InputError as Chain does; never for what happens on the way.
+// By all initial coordinates and rates and all parameters. Throws InputError as Chain does; problems during the run are
+// reported in `broken`.
 Derivatives differentiate(const Trajectory& trajectory);
-// By these directions, one a column: q, v, the parameters and the start time (s) are its rows.
+// By these directions, one per column; the rows are q, v, the parameters and the start time (s).
 Derivatives differentiate(const Trajectory& trajectory, const Eigen::MatrixXd& directions);
 
 }  // namespace achilles

@@ -17,35 +17,35 @@ namespace {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
-// What is no number is not known.
+// Replaces NaN by infinity (unknown).
 Vector known_or_infinite(Vector sizes) {
     for (double& x : sizes)
         if (!std::isfinite(x)) x = std::numeric_limits<double>::infinity();
     return sizes;
 }
 
-// The first size that is more than its share; -1: none.
+// The first size that exceeds its share of the range; -1 if there is none.
 Eigen::Index first_excess(const Vector& sizes, const Vector& range) {
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
         if (sizes[i] > ErrorCourse::largest_share * std::max(range[i], ErrorCourse::least_range)) return i;
     return -1;
 }
 
-// The error and the covariance of what rounding adds, of all components but the parameters.
+// The error, and the covariance of rounding, of all components except the parameters.
 struct Transport {
     explicit Transport(const Tangent& tangent)
         : size(tangent.p(0)), error(VectorXd::Zero(size)), covariance(MatrixXd::Zero(size, size)) {}
 
-    // Of the step  e := J e + delta  and the event  e := e - F (G e + g(y))/(G F);  P := J P J'.
+    // A step: e := J e + delta. An event: e := e - F (G e + g(y))/(G F). The covariance: P := J P J'.
     void follow(const Link& link) {
         if (link.kind == Link::Kind::crossing) {
             const auto F = link.F.head(size);
-            // At an impact that of the state, for what vanishes there is the gap of q and t: what rounding and steps have added
-            // to these is not in the components h and u.
+            // At an impact, use the gap as a function of q and t: the components h and u do not include the errors that
+            // rounding and steps have added to q and t.
             const auto G = (link.by_place.size() > 0 ? link.by_place : link.G).head(size);
             const double rate = link.G.head(size).dot(F);
             error -= F * ((G.dot(error) + link.residual) / rate);
-            const VectorXd cross = covariance * G.transpose() / rate;  // of each component with the time that it takes
+            const VectorXd cross = covariance * G.transpose() / rate;  // covariance with the event time
             const double variance = G.dot(cross) / rate;
             covariance += variance * F * F.transpose() - F * cross.transpose() - cross * F.transpose();
             return;
@@ -55,7 +55,7 @@ struct Transport {
         if (link.left_out.size() > 0) error += link.left_out.head(size);
         covariance = J * covariance * J.transpose();
     }
-    // What is stored of a state is rounded.
+    // Adds the rounding of the stored state.
     void round(const State& state, const Tangent& tangent) {
         constexpr double unit_roundoff = 0x1p-53;
         const auto add = [&](Index i, double z) { covariance(i, i) += std::pow(unit_roundoff * z, 2); };
@@ -76,12 +76,12 @@ struct Transport {
     MatrixXd covariance;
 };
 
-// Whether all that a link says are numbers.
+// Whether all entries of a link are finite.
 bool is_known(const Link& link) {
     return link.kind == Link::Kind::crossing || (link.J.allFinite() && link.left_out.allFinite());
 }
 
-// The sizes at fixed time, of e - F e_t with its rounding, of every coordinate and rate.
+// The sizes of e - F e_t at a fixed time, including rounding, for every coordinate and rate.
 State sizes_at_fixed_time(const Transport& carried, const Tangent& tangent, const VectorXd& rate) {
     const Index time = Tangent::t();
     const auto size_of = [&](Index k) {
@@ -105,7 +105,7 @@ ErrorEstimate none(std::string reason) {
     return result;
 }
 
-// At fixed time: e - F e_t.
+// e - F e_t, the error at a fixed time.
 ErrorEstimate::AtEnd at_end(const Transport& carried, const Tangent& tangent, const VectorXd& rate) {
     const auto n = static_cast<Index>(tangent.dof);
     MatrixXd fixed = MatrixXd::Identity(carried.size, carried.size);
@@ -154,7 +154,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         carried.follow(*link);
         if (link->kind == Link::Kind::crossing) continue;
         if (link->kind == Link::Kind::step || link->event) carried.round(chain.state(), tangent);
-        // What a step leaves out is given with its last part.
+        // The last link of a step contains its omitted terms.
         if (link->kind == Link::Kind::step && link->left_out.size() > 0)
             result.course.add(trajectory, trajectory.pieces[steps++],
                               sizes_at_fixed_time(carried, tangent, chain.rate()));
@@ -164,7 +164,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
             cut = {link->completion->contact, link->completion->others, chain.state(), link->completion->speed};
             carried.move(of_cuts.shift(*cut), tangent);
         } else if (event.is_zeno() && cut) {
-            // The time that the run has for it, and the true one.
+            // The error of the Zeno time of the run.
             const CompletionError::Wait wait = of_cuts.wait(*cut);
             const double error = wait.formula + wait.error - (event.t - cut->restart.t);
             if (!is_plastic_landing(event)) carried.error += chain.rate().head(carried.size) * error;
@@ -192,7 +192,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
 
 }  // namespace
 
-// ---- course
+// ---- error course ----
 
 void ErrorCourse::take(const Vector& q, const Vector& v) {
     low_ = {low_.q.cwiseMin(q), low_.v.cwiseMin(v)};
@@ -206,7 +206,7 @@ void ErrorCourse::begin(const Run& run) {
     horizon_.reset();
 }
 
-// Inside a step a coordinate may come to its highest.
+// A coordinate may have its extremes inside a step, so several points are taken.
 void ErrorCourse::add(const Trajectory& trajectory, const Piece& step, const State& sizes) {
     constexpr int parts = 8;
     for (int k = 1; k <= parts; ++k) {
@@ -258,7 +258,7 @@ std::optional<State> ErrorCourse::at(double t) const {
     return sizes;
 }
 
-// ---- estimate
+// ---- estimate ----
 
 std::optional<double> horizon_before_end(const Trajectory& trajectory, const ErrorEstimate& estimate) {
     if (!estimate.trusted_until || *estimate.trusted_until >= trajectory.end_time) return std::nullopt;
@@ -271,7 +271,7 @@ ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token
     const Ground ground;
     try {
         return estimate(trajectory, stop);
-    } catch (const InputError& too_large) {  // derivatives of what the run itself did not need
+    } catch (const InputError& too_large) {  // derivatives that the run itself did not need
         return none(too_large.message);
     }
 }

@@ -1,10 +1,10 @@
-// How wrong a run has become, estimated: what its steps leave out, what its roots miss and what its cuts leave open, carried
-// through all that follows (theory-enclosure.md 9). An estimate to first order, and not a proof.
+// Estimates the error of a run to first order: the omitted terms of steps, the errors of roots and of truncations,
+// carried through the rest of the run (theory-enclosure.md 9). This is not a proof.
 //
 //     const ErrorEstimate e = estimate_error(trajectory);
-//     e.end->norm       of the true end less the computed one, roughly;  e.end->reach: hardly ever exceeded
-//     e.events[j]       s, of the time of event j
-//     e.trusted_until   s: from there on some error is more than a thousandth of its coordinate's range
+//     e.end->norm       approximate norm of true minus computed end state;  e.end->reach: hardly ever exceeded
+//     e.events[j]       s, error of the time of event j
+//     e.trusted_until   s: from this time on some error exceeds a thousandth of its coordinate's range
 #pragma once
 
 #include <optional>
@@ -16,34 +16,36 @@
 
 namespace achilles {
 
-// The estimated error of every coordinate and rate along a run, and the run's horizon: from there on some error is too large for
-// the run to be trusted.
+// The estimated error of every coordinate and rate along a run, and the horizon of the run, the time from which on some
+// error is too large.
 class ErrorCourse {
  public:
-    // An error is trusted up to this share of the range so far: of the largest value less the smallest, at least `least_range`.
+    // An error is acceptable up to this share of the range so far, the largest minus the smallest value; the range
+    // counts as `least_range` or more.
     static constexpr double largest_share = 1e-3, least_range = 1e-9;
 
-    // Estimated sizes at a fixed time, of the error and of rounding's standard deviation together. Infinite: nothing is known.
+    // Estimated sizes at a fixed time, combining the error and the standard deviation of rounding. Infinite: unknown.
     struct Entry {
         double t = 0.0;  // s
         Vector q, v;
     };
 
-    // Begins at the start of the run, where there is no error.
+    // Starts at the beginning of the run, where the error is 0.
     void begin(const Run& run);
-    // Adds the end of a step, and an event with the sizes after it, both in time.
+    // Adds the end of a step, or an event with the sizes after it, in order of time.
     void add(const Trajectory& trajectory, const Piece& step, const State& sizes);
     void add(const Event& event, const State& sizes);
 
-    // The first step end or event where some size exceeds its share of the range (s). Nothing where that does not happen.
+    // The time (s) of the first step end or event where some size exceeds its share of the range; nullopt if there is
+    // none.
     std::optional<double> horizon() const { return horizon_; }
-    // Which one does there: its coordinate, and whether it is the rate.
+    // The coordinate whose error exceeds its share at the horizon, and whether it is its rate.
     Eigen::Index coordinate() const { return coordinate_; }
     bool is_rate() const { return is_rate_; }
-    // The larger sizes of those beside a time (s); after the horizon the largest so far, for it does not recover. Nothing where
-    // there is no estimate.
+    // The larger of the neighboring sizes at time t (s). After the horizon, the largest so far, because the error does
+    // not recover. nullopt if there is no estimate.
     std::optional<State> at(double t) const;
-    // The largest value less the smallest over the run.
+    // The largest minus the smallest value over the run.
     State range() const { return {high_.q - low_.q, high_.v - low_.v}; }
     const std::vector<Entry>& entries() const { return entries_; }
 
@@ -51,8 +53,8 @@ class ErrorCourse {
     void take(const Vector& q, const Vector& v);
     void add(double t, const State& sizes);
 
-    std::vector<Entry> entries_;  // step ends and events, in time
-    State low_, high_;            // of the values so far
+    std::vector<Entry> entries_;  // step ends and events, in order of time
+    State low_, high_;            // smallest and largest values so far
     std::optional<double> horizon_;
     Eigen::Index coordinate_ = 0;
     bool is_rate_ = false;
@@ -60,35 +62,36 @@ class ErrorCourse {
 
 struct ErrorEstimate {
     struct AtEnd {
-        Vector q, v;         // true less computed, at the end time
-        double norm = 0.0;   // Euclidean, of both together
-        double sigma = 0.0;  // what rounding makes of it, as a standard deviation
+        Vector q, v;         // true minus computed, at the end time
+        double norm = 0.0;   // Euclidean norm of both
+        double sigma = 0.0;  // standard deviation of the effect of rounding
         double reach() const { return 1.5 * norm + 3.0 * sigma; }
-        double size() const;  // of both: what is told a person
+        double size() const;  // of both; the value that is reported
     };
     std::optional<AtEnd> end;
-    // Of the times of events, s, rounding included: of the trajectory's, as many of the first as can be estimated.
+    // Errors of the times of events (s), including rounding, for the first events of the trajectory as far as they can
+    // be estimated.
     std::vector<double> events;
-    // Of every coordinate and rate along the run, as far as it can be estimated.
+    // Errors of all coordinates and rates along the run, as far as they can be estimated.
     ErrorCourse course;
-    // The horizon (s): the first step end or event where the error of some coordinate or rate exceeds its share of the range so
-    // far (ErrorCourse), the end of the run where that never happens. Nothing only where there is no estimate.
+    // The horizon (s): the first step end or event where the error of some coordinate or rate exceeds its share of the
+    // range so far (ErrorCourse). It is the end of the run if that never happens; nullopt only if there is no estimate.
     std::optional<double> trusted_until;
-    // Why there is none at the end, else empty.
+    // The reason why there is no estimate at the end; else empty.
     std::string none_since;
 };
 
-// Of a run of which everything was kept. Nothing where steps are not made by Taylor's method, cuts were restarted by the
-// Euclidean projection, or there are more steps than most_estimated_steps; nothing from where the run has no derivative; nothing
-// of the end where it lies between a cut and its Zeno point, or where another thread asks to stop.
+// Estimates the errors of a run that was recorded in full. There is no estimate if steps are not made by Taylor's
+// method, truncations were restarted by the Euclidean projection, or there are more than most_estimated_steps steps.
+// The estimate ends where the run has no derivative. There is none for an end between a truncation and its Zeno point,
+// or after a stop request.
 //
-// It takes up to eight times as long as the run (bench_estimate). So who makes many runs, or waits for one, asks for it when the
-// runs are there, if at all; and of a run of so many steps it is left out, which is counted in steps and not in seconds so that
-// the same run always has it or never.
+// An estimate takes up to eight times as long as the run (bench_estimate). Call it on demand, once the runs are
+// finished. The limit is a number of steps, not of seconds, so that a run either always has an estimate or never.
 ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token& stop = {});
 inline constexpr std::size_t most_estimated_steps = 100'000;
 
-// The horizon of a run where it comes before the end (s); else nothing.
+// The horizon of a run if it is before the end (s); else nullopt.
 std::optional<double> horizon_before_end(const Trajectory& trajectory, const ErrorEstimate& estimate);
 
 }  // namespace achilles

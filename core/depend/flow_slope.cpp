@@ -12,13 +12,13 @@ namespace achilles {
 
 namespace {
 
-using Number = Directed<16>;  // by so many variables of a motion at once
+using Number = Directed<16>;  // with slopes by this many variables at once
 constexpr std::size_t N = Number::directions;
 using Eights = Lanes<16>;
-constexpr int highest = 32, first_few = 4;  // orders: past the highest the step is shortened
+constexpr int highest = 32, first_few = 4;  // orders; beyond `highest` the step is shortened
 constexpr double nearly = 8.0;
 
-// The variables of a motion, as inputs of its program: q, v, then what it depends on of the parameters and the time.
+// The inputs of a mode's program used as variables: q, v, then the parameters and the time that it depends on.
 std::vector<std::uint32_t> variables_of(const SeriesProgram& program, const Tangent& tangent,
                                         const std::vector<bool>& varied) {
     const std::vector<bool> inputs = program.inputs();
@@ -60,7 +60,7 @@ class FlowSlopeBySeries : public FlowSlope {
             series_[group].begin(start_.data(), number(state.t, tangent_.variables() - 1, group * N));
         }
         order_ = 0;
-        // The last term is small beside the first few, and the one before nearly.
+        // Stop when the last term is small compared with the first few, and the one before nearly.
         const int least = std::clamp(least_order, first_few + 1, highest);
         raise_to_powers(length);
         bool before = false;
@@ -72,7 +72,8 @@ class FlowSlopeBySeries : public FlowSlope {
             if (before && is_small(order_, 1.0)) return length;
             before = is_small(order_, nearly);
         }
-        // Shorter, then: the last terms fall at least so fast. No shorter than steps of the run could be wrong by.
+        // Otherwise shorten the step, at which the last terms fall at least this fast; but not below the length where
+        // errors of the run's own steps dominate.
         const double least_length = 1e-3 * length;
         for (double excess = last_terms(); excess > 1.0 && length > least_length; excess = last_terms()) {
             length *= std::isfinite(excess) ? std::clamp(std::pow(excess, -1.0 / (highest - 1)), 0.05, 0.9) : 0.05;
@@ -93,7 +94,7 @@ class FlowSlopeBySeries : public FlowSlope {
                     S(row, tangent_.variable(variables_[group * N + d])) = slope[d];
             };
             for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) sum(i, powers_, 0, tangent_.q(i));
-            // The gap, of which order 0 and 1 are given apart, and its rate.
+            // h and u from order 2 on; the orders 0 and 1 are set below.
             for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
                 if (mode.is_held(contact)) continue;
                 sum(2 * tangent_.dof + contact, powers_, 2, tangent_.h(contact));
@@ -110,7 +111,7 @@ class FlowSlopeBySeries : public FlowSlope {
  private:
     using Powers = std::array<double, highest + 1>;
 
-    // An input of the program, where the series are by the variables from `first` on.
+    // An input of the program as a number with slopes by the variables from `first` on.
     Number number(double x, std::size_t input, std::size_t first) const {
         for (std::size_t d = 0; d < N && first + d < variables_.size(); ++d)
             if (variables_[first + d] == input) return Number::variable(x, d);
@@ -121,7 +122,7 @@ class FlowSlopeBySeries : public FlowSlope {
     const Eights& slope(std::size_t group, int k, std::size_t i) const {
         return series_[group].coefficient(k, i).slope;
     }
-    // The slopes of orders first .. order_, each times its weight; the even and the odd orders by themselves.
+    // The weighted sum of the slopes of orders first .. order_; even and odd orders are summed separately.
     Eights sum_of_slopes(std::size_t group, std::size_t i, const Powers& weights, int first) const {
         Eights even = 0.0, odd = 0.0;
         const auto term = [&](int k) { return weights[static_cast<std::size_t>(k)] * slope(group, k, i); };
@@ -133,21 +134,21 @@ class FlowSlopeBySeries : public FlowSlope {
         if (k == order_) even += term(k);
         return even + odd;
     }
-    // t^k; and k t^(k-1), from k = 2 on.
+    // t^k; and k t^(k-1) from k = 2 on.
     void raise_to_powers(double t) {
         powers_[0] = 1.0;
         for (std::size_t k = 1; k < powers_.size(); ++k) powers_[k] = powers_[k - 1] * t;
         for (std::size_t k = 2; k < rates_.size(); ++k) rates_[k] = static_cast<double>(k) * powers_[k - 1];
     }
 
-    // Row i of q, v and the gaps: order k of it, or of gaps of their rate, counts so much.
+    // The weight of order k in row i of q, v and the gaps; for a gap, that in its rate.
     double weight(std::size_t i, int k) const {
         return (i < 2 * tangent_.dof ? powers_ : rates_)[static_cast<std::size_t>(k)];
     }
     std::size_t rows() const { return 2 * tangent_.dof + tangent_.contacts; }
 
-    // The tolerance of each row's terms: of the largest of the first few. What is so much smaller than the other directions' is
-    // rounding, or comes late.
+    // The tolerance for the terms of each row, relative to the largest of the first few. Slopes far smaller than those
+    // of other directions are rounding, or become relevant only later.
     void set_limits() {
         for (std::size_t i = 0; i < rows(); ++i) {
             const bool is_held = i >= 2 * tangent_.dof && mode_.is_held(i - 2 * tangent_.dof);
@@ -164,7 +165,7 @@ class FlowSlopeBySeries : public FlowSlope {
             }
         }
     }
-    // Whether the terms of order k are within their limits, or so many times these.
+    // Whether the terms of order k are within `times` their limits.
     bool is_small(int k, double times) const {
         for (std::size_t i = 0; i < rows(); ++i) {
             const double share = weight(i, k) / times;
@@ -174,7 +175,7 @@ class FlowSlopeBySeries : public FlowSlope {
         }
         return true;
     }
-    // How large the last two terms are beside what they may be, at most.
+    // The largest ratio of the last two terms to their limits; 0 if all are within them.
     double last_terms() const {
         double largest = 0.0;
         const auto take = [&](double term, double limit) {
@@ -194,9 +195,9 @@ class FlowSlopeBySeries : public FlowSlope {
     Tangent tangent_;
     double tolerance_;
     std::vector<std::uint32_t> variables_;
-    std::vector<SeriesOver<Number>> series_;  // by N of the variables each
+    std::vector<SeriesOver<Number>> series_;  // each for N of the variables
     std::vector<Number> start_;               // q and v
-    Powers powers_{}, rates_{};               // of the step
+    Powers powers_{}, rates_{};               // for the current step
     std::vector<double> value_limits_;
     std::vector<Eights> limits_;
     int order_ = 0;
@@ -210,13 +211,13 @@ std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, Mode mode, const 
     return std::make_unique<FlowSlopeBySeries>(model.motion(mode).series, mode, tangent, parameters, varied, tolerance);
 }
 
-// ---- by differences
+// ---- by differences ----
 
 namespace {
 
-constexpr double digits = 1e-4;  // relative, of a derivative
+constexpr double digits = 1e-4;  // relative accuracy of a derivative
 constexpr int lowest = 4;
-constexpr double most_open = 0.03;  // relative, of what is left out
+constexpr double most_open = 0.03;  // relative uncertainty of the omitted part
 
 double size_of(const State& state) {
     return 1.0 + std::max(state.q.cwiseAbs().maxCoeff(), state.v.cwiseAbs().maxCoeff());
@@ -272,8 +273,8 @@ void FlowDifference::expand_beside(const State& state) {
     }
 }
 
-// How large the last two terms are after such a time beside the largest, at most. A start at another time alone changes nothing at
-// first: its terms are compared with what the motion does in that time, too. What they add to that may be rounding.
+// The largest ratio of the last two terms after this time to the largest term. A change of the start time alone has
+// little effect at first, so its terms are also compared with the motion in that time: they may be rounding.
 double FlowDifference::last_terms(double length) const {
     double most = 0.0, rate = 0.0;
     for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) rate = std::max(rate, std::abs(motion_.coefficient(1, i)));
@@ -290,7 +291,7 @@ double FlowDifference::last_terms(double length) const {
     return most;
 }
 
-// Of the motion and those beside it.
+// The minimum over the motion and the neighboring ones.
 int FlowDifference::finite_order() const {
     int order = motion_.finite_order();
     for (const Beside& beside : beside_) order = std::min(order, beside.motion.finite_order());
@@ -306,7 +307,7 @@ double FlowDifference::expand(const State& state, double length, int least_order
     for (;;) {
         expand_beside(state);
         if (const int finite = finite_order(); finite < slope_order_) {
-            if (finite < lowest) return length;  // the derivative is no number, which shows
+            if (finite < lowest) return length;  // the derivative is NaN, which is visible
             slope_order_ = finite;
             break;
         }
@@ -326,7 +327,7 @@ void FlowDifference::slope_after(double span, Mode mode, RowMatrix& S) {
             for (int k = slope_order_; k >= 0; --k) sum = sum * span + slope(beside, k, i);
             S(tangent_.q(i), beside.column) = sum;
         }
-        // The gap, of which order 0 and 1 are given apart, and its rate.
+        // h and u from order 2 on; the orders 0 and 1 are set below.
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
             if (mode.is_held(contact)) continue;
             double h = 0.0, u = 0.0;
@@ -351,20 +352,20 @@ void FlowDifference::left_out(int degree, double span, RowMatrix& delta) {
     delta.setZero(tangent_.size(), 1);
     if (first > last) return;
     if (motion_.finite_order() < order_) return by_parts(degree, span, delta);
-    double largest = 0.0, open = 0.0;  // of the sums; of what may follow
+    double largest = 0.0, open = 0.0;  // largest sum; estimate of the terms beyond
     for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
         const double sum = motion_.sum(first, last, i, span);
         delta(tangent_.q(i), 0) = sum;
         largest = std::max(largest, std::abs(sum));
         open = std::max(open, std::abs(motion_.sum(std::max(first, last - 1), last, i, span)));
     }
-    // Differences are known to a rounding of the state only, and so are the sums of the run.
+    // Differences, like the sums of the run, are accurate only to a rounding of the state.
     const double rounding = 0x1p-48 * size_of(state_);
     if (open > most_open * largest && largest > rounding && !by_halves(degree, span, delta))
         by_parts(degree, span, delta);
 }
 
-// The last two terms of q and v at a time, at most.
+// The largest sum of the last two terms of q and v after this time.
 double FlowDifference::open_terms(const MotionSeries& motion, double span) const {
     double open = 0.0;
     for (std::size_t i = 0; i < 2 * tangent_.dof; ++i)
@@ -373,7 +374,7 @@ double FlowDifference::open_terms(const MotionSeries& motion, double span) const
     return open;
 }
 
-// False where the terms of the halves fall too slowly, too.
+// Returns false if the terms of the halves fall too slowly, too.
 bool FlowDifference::by_halves(int degree, double span, RowMatrix& delta) {
     const double half = 0.5 * span;
     State middle = state_;
@@ -392,7 +393,7 @@ bool FlowDifference::by_halves(int degree, double span, RowMatrix& delta) {
     return std::max(open_terms(motion_, half), open_terms(part_, half)) <= most_open * largest;
 }
 
-// After this time the last four terms are rounding; symmetry may hide three in a row.
+// The time after which the last four terms are within rounding; symmetry may make three in a row 0.
 double FlowDifference::reach(const MotionSeries& motion, int order, std::size_t rows, double size) {
     constexpr double unit_roundoff = 0x1p-53;
     double reach = order < lowest ? 0.0 : std::numeric_limits<double>::infinity();
@@ -404,8 +405,9 @@ double FlowDifference::reach(const MotionSeries& motion, int order, std::size_t 
     return reach;
 }
 
-// A step may be longer than its series converges: behind a narrow pulse the force is nothing, to the run's tolerance, in the
-// terms that the run keeps, and the terms that follow grow beyond all bounds before they fall.
+// A step may be longer than the convergence radius of its series. Next to a narrow pulse, the force is negligible
+// within the tolerance in the terms that the run keeps. The terms that follow, however, grow without bound before they
+// fall.
 void FlowDifference::by_parts(int degree, double span, RowMatrix& delta) {
     constexpr int most_parts = 5000, least_order = 24;
     const std::size_t n = tangent_.dof;

@@ -1,4 +1,4 @@
-// The derivatives of one smooth motion after a time by the state where it starts, the parameters and the start's time.
+// The derivatives of a smooth motion after a time by its initial state, its start time and the parameters.
 #pragma once
 
 #include <memory>
@@ -15,45 +15,46 @@ class FlowSlope {
  public:
     virtual ~FlowSlope() = default;
 
-    // Expands at a state to at least this order, and so far that of the sum after `length` (s), values and derivatives, the last
-    // term is below the tolerance and the one before nearly; or after as much of it as is returned.
+    // Expands values and derivatives at a state, at least to this order. Orders are added until, after `length` (s),
+    // the last term is below the tolerance and the one before nearly. Returns the length for which this holds, which
+    // may be shorter.
     virtual double expand(const State& state, double length, int least_order) = 0;
-    // Of the last expansion.
+    // Order of the last expansion.
     virtual int order() const = 0;
     // Coefficient k of q and v, then of the gap of each open contact (from k = 2 on).
     virtual double coefficient(int k, std::size_t i) const = 0;
-    // The rows of q, v, and of the open contacts' h and u after a time, whatever the others are.
+    // Sets the rows of q, v, and of the open contacts' h and u after a time; other rows are unchanged.
     virtual void slope_after(double span, Mode mode, RowMatrix& S) = 0;
 };
 
-// By the Taylor series of runs over numbers with their slopes (theory-derivatives.md 2). Of the motion that holds these
-// contacts; by those parameters that may vary, or, if that is empty, by all.
+// Computes derivatives from the Taylor series of the motion over numbers with slopes (theory-derivatives.md 2).
+// `varied` marks the parameters that may vary; if it is empty, all may.
 std::unique_ptr<FlowSlope> make_flow_slope(const Model& model, Mode mode, const Tangent& tangent,
                                            std::span<const double> parameters, const std::vector<bool>& varied,
                                            double tolerance);
 
-// The Taylor coefficients of one motion at a state, to any order: what a run's steps are made of, and the terms that they
-// leave out. Rows: q and v, then each contact's event function, its gap where it is open, hddot where it is held.
+// The Taylor coefficients of one mode at a state, to any order: the series of the run's steps, and the terms that these
+// omit. Rows: q and v, then each contact's event function, its gap if it is open, hddot if it is held.
 class MotionSeries : public SeriesOver<double> {
  public:
-    // Of the motion that holds these contacts.
+    // The series of this mode.
     MotionSeries(const Model& model, Mode mode, std::span<const double> parameters);
 
     // Expands at a state; 1 <= order <= highest_order.
     void expand(const State& state, int order);
-    // The highest order up to which all coefficients are numbers: a function may overflow, as cosh(x)^2 does, in the
-    // terms of a series alone.
+    // The highest order up to which all coefficients are finite. The terms of a series may overflow even if the
+    // function does not, as for cosh(x)^2.
     int finite_order() const;
     // The sum of the terms of orders first .. last after a time.
     double sum(int first, int last, std::size_t i, double span) const;
 
  private:
     std::vector<double> start_;  // q and v of the last expansion
-    int order_ = 0;              // and its order
+    int order_ = 0;              // its order
 };
 
-// To a few digits: from the series of motions that start beside it, by the machine code of runs, which costs a fifth of
-// numbers with their slopes. Columns of parameters are 0.
+// Derivatives accurate to a few digits, from differences of series that start nearby. They use the machine code of
+// runs, at a fifth of the cost of numbers with slopes. Columns of parameters are 0.
 class FlowDifference : public FlowSlope {
  public:
     FlowDifference(const Model& model, Mode mode, const Tangent& tangent, std::span<const double> parameters);
@@ -64,11 +65,11 @@ class FlowDifference : public FlowSlope {
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }
     void slope_after(double span, Mode mode, RowMatrix& S) override;
 
-    // What polynomials of this degree leave out of q and v after a time, from the state of the last expansion on: the terms
-    // that follow; where these fall too slowly, the difference to two steps of half the length; and where the series of
-    // these does not reach so far either, to as many shorter ones as it takes. Not a number where those do not get there.
+    // The part of q and v after a time that polynomials of this degree omit, from the state of the last expansion on.
+    // It is the sum of the following terms. If these fall too slowly, it is the difference from two steps of half the
+    // length; if that is not enough, from as many shorter steps as needed. NaN if these do not succeed.
     void left_out(int degree, double span, RowMatrix& delta);
-    static constexpr int more_orders = 8;  // to which it must have been expanded
+    static constexpr int more_orders = 8;  // orders beyond `degree` to which the motion must be expanded
 
  private:
     struct Beside {
@@ -92,7 +93,7 @@ class FlowDifference : public FlowSlope {
     State state_;  // of the last expansion
     std::vector<Beside> beside_;
     int order_ = 0;        // of the motion
-    int slope_order_ = 6;  // of what is beside it: as the step before had it, or more
+    int slope_order_ = 6;  // of the neighboring motions; at least that of the step before minus 1
 };
 
 }  // namespace achilles

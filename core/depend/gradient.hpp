@@ -1,4 +1,4 @@
-// A small change of a state, and the outputs of a program with their derivatives by its components.
+// Small changes of a state, and the outputs of a program with their derivatives by the components of a change.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,15 +10,15 @@
 
 namespace achilles {
 
-// Of changes, one a column: events act on rows.
+// One change per column; row-major, because events act on rows.
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// Where the components of a small change of a state stand (theory-derivatives.md 1): as a set's coordinates in core/enclose, the
-// member's own time, q, v, of every contact the gap h and its rate u once more, and the parameters; besides, between the
-// collision at which a bouncing was cut and its Zeno point, how long it still is to wait.
+// Layout of the components of a small change of a state (theory-derivatives.md 1). As for the sets of core/enclose,
+// they are the time of the perturbed run, q, v, the gap h and gap rate u of every contact as independent components,
+// and the parameters. Between a truncation and its Zeno point, the remaining accumulation time is a further component.
 //
-// t is a component, so that a change follows its events and is never reduced to a fixed time on the way. h and u are, so
-// that after an impact h' is 0 exactly and u' keeps its relative accuracy, however small u is.
+// t is a component, so that a change follows its events and is never reduced to a fixed time on the way. h and u are
+// components, so that after an impact h' is exactly 0 and u' keeps its relative accuracy, however small u is.
 struct Tangent {
     std::size_t dof = 0, contacts = 0, parameters = 0;
 
@@ -31,7 +31,7 @@ struct Tangent {
     Eigen::Index p(std::size_t k) const { return index(2 + 2 * dof + 2 * contacts + k); }
     Eigen::Index size() const { return p(parameters); }
 
-    // What programs depend on: q, v, then the parameters, then the time, each as the component that it is.
+    // The inputs of programs as components of a change: q, v, then the parameters, then time.
     std::size_t variables() const { return 2 * dof + parameters + 1; }
     Eigen::Index variable(std::size_t k) const {
         return k < 2 * dof ? q(k) : k < 2 * dof + parameters ? p(k - 2 * dof) : t();
@@ -41,7 +41,7 @@ struct Tangent {
     static Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 };
 
-// The outputs of a program with their derivatives by q, v, the parameters and the time.
+// The outputs of a program with their derivatives by q, v, the parameters and time.
 class Gradient {
  public:
     Gradient(const Model& model, const Program& program, const Tangent& tangent, std::span<const double> parameters)
@@ -81,7 +81,7 @@ class Gradient {
         }
     }
     double value(std::size_t output) const { return values_[output]; }
-    // Its derivatives, component by component of a change.
+    // The derivatives of an output by the components of a change.
     auto row(std::size_t output) const { return rows_.row(static_cast<Eigen::Index>(output)); }
 
  private:
@@ -94,13 +94,13 @@ class Gradient {
     }
 
     Tangent tangent_;
-    std::vector<std::size_t> variables_;         // that the program depends on
-    std::vector<Evaluator<Number>> evaluators_;  // each of so many of them
+    std::vector<std::size_t> variables_;         // inputs that the program depends on
+    std::vector<Evaluator<Number>> evaluators_;  // one for every `lanes` variables
     std::vector<double> values_;
     RowMatrix rows_;
 };
 
-// A contact's quantities with their derivatives, by name.
+// The quantities of a contact with their derivatives, by name.
 class ContactGradient : public Gradient {
  public:
     ContactGradient(const Model& model, const ProgramOf<ContactTerms>& program, const Tangent& tangent,
@@ -114,7 +114,7 @@ class ContactGradient : public Gradient {
     auto n_row(std::size_t i) const { return row(places_.impulse_direction(i)); }
 
  private:
-    // What has outputs that are their own places.
+    // Returns the index of an output in place of its value, for the names of ContactTerms.
     struct Place {
         std::size_t output(std::size_t index) const { return index; }
     };

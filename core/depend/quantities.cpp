@@ -19,19 +19,19 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-// Where a run is asked: its end, or an event, so many events after its start.
+// The point where a run is evaluated: its end, or an event.
 struct Quantities::Place {
     State state;
     Mode mode;
     ContactSet carriers;
     double work = 0.0, loss = 0.0;
     std::size_t events = 0;
-    // Of the state, coordinate by direction, and of the time, by direction; nothing where there are none.
+    // Derivatives of the state, coordinate by direction, and of the time, by direction; empty if there are none.
     std::optional<Derivatives::AtEnd> slopes{};
     RowVectorXd time_slope{};
 };
 
-// What a program has as input there, by slot: values, and a row of derivatives where it has any.
+// The inputs of a program at this point, by slot: values, and a row of derivatives if there is one.
 class Quantities::Inputs {
  public:
     Inputs(const Trajectory& trajectory, const Derivatives& derivatives, const Model::MeasureProgram& measures,
@@ -80,7 +80,7 @@ class Quantities::Inputs {
         set_contacts(none);
     }
 
-    // hddot and lambda of each contact.
+    // Sets hddot and lambda of each contact.
     void set_contacts(const RowVectorXd& none) {
         const auto& slopes = place_.slopes;
         const std::vector<double>& parameters = trajectory_.run.parameters;
@@ -116,7 +116,7 @@ class Quantities::Inputs {
         }
     }
 
-    // Of the k-th event of a kind, or the last.
+    // Sets a quantity of the k-th event of a kind, or of the last one.
     void set_quantity(std::size_t slot, const RunQuantity& quantity) {
         using Kind = RunQuantity::Kind;
         const auto& events = trajectory_.events;
@@ -147,7 +147,7 @@ class Quantities::Inputs {
 
 namespace {
 
-// Why an expression has no derivatives.
+// The reason why an expression has no derivatives.
 std::string reason_of(const std::string& expression, const Derivatives& derivatives, double value) {
     if (!(value == value)) return "the quantity does not exist in this run";
     for (const std::string& name : names_in(expression))
@@ -220,7 +220,7 @@ std::vector<Quantity> Quantities::evaluated(const Inputs& inputs, const Derivati
         }
     }
     for (Quantity& quantity : result) {
-        // Those of a direction that is refused are none either.
+        // Refused directions have no derivatives.
         bool any = false;
         for (Index k = 0; k < K; ++k) {
             if (!derivatives.refused[static_cast<std::size_t>(k)].empty()) quantity.derivatives[k] = nothing;

@@ -1,4 +1,5 @@
-// Any quantity of a run, and on what it depends: an expression over its end, or an event of it, and its events.
+// Values and derivatives of user-defined quantities of a run: expressions over its events and its state at the end or
+// at an event.
 #pragma once
 
 #include <memory>
@@ -12,28 +13,28 @@ namespace achilles {
 
 struct Quantity {
     std::string expression;       // as typed
-    double value = 0.0;           // not a number where it does not exist
-    Eigen::VectorXd derivatives;  // by direction, at the end time; no numbers where there are none
-    std::string refused;          // why there are none at all; else empty
+    double value = 0.0;           // NaN if it does not exist
+    Eigen::VectorXd derivatives;  // by direction, at the end time; NaN if there are none
+    std::string refused;          // the reason if there are no derivatives; else empty
 };
 
-// On what a run depends: all that is told about it.
+// The derivatives of a run and of quantities of it.
 struct Dependence {
     Derivatives derivatives;
     std::vector<Quantity> quantities;
 };
 
-// Expressions, compiled: those of a view (t, coordinates, rates, parameters, gaps, lambda, energy, power, work, loss) at the end,
-// and zeno_time(k), impact_time(k), impact_speed(k), release_time(k) with k from 1, or the last one without it. Of work, loss and
-// least_gap there are no derivatives.
+// Compiled expressions. They may contain the names of a view (t, coordinates, rates, parameters, gaps, lambda, energy,
+// power, work, loss) at the end. Of events they may contain zeno_time(k), impact_time(k), impact_speed(k) and
+// release_time(k), with k from 1, or the last one without an argument. work, loss and least_gap have no derivatives.
 class Quantities {
  public:
-    // Throws InputError with the place in the expression, and the option that it stands behind.
+    // Throws InputError with the place in the expression and the name of the option.
     Quantities(std::shared_ptr<const Model> model, std::vector<std::string> expressions, const char* option = "--of");
-    // Of a run of that model, and what differentiate() says of it.
+    // Evaluates the quantities of a run of this model, with the result of differentiate().
     std::vector<Quantity> of(const Trajectory& trajectory, const Derivatives& derivatives) const;
-    // The same at an event, where `carriers` are the contacts that bear the motion after it: what has happened until then, and the
-    // state after it, whose derivatives follow the event as it moves in time.
+    // The same at an event: the events until then, and the state after it, whose derivatives follow the event in time.
+    // `carriers` are the load-bearing contacts after the event.
     std::vector<Quantity> at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
                              ContactSet carriers) const;
 

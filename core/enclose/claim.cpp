@@ -1,4 +1,4 @@
-// What is claimed: a run's numbers as boxes, the parts of a box, and what is impossible about one.
+// Claims: the numbers of a run as boxes, splitting a box into parts and joining their results, and checks.
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
@@ -40,7 +40,7 @@ Claim claim_as_written(const Run& run) {
 }
 
 void widen(Claim& claim, double half) {
-    if (half == 0.0) return;  // not even a rounding
+    if (half == 0.0) return;  // no change, not even by rounding
     const Ground ground;
     const Interval off = Interval(-1.0, 1.0) * as_written(half);
     for (Intervals* box : {&claim.q, &claim.v})
@@ -49,7 +49,7 @@ void widen(Claim& claim, double half) {
 
 namespace {
 
-// The sides of a claim that a part may be cut from.
+// The sides of a claim that are wide enough to be split.
 std::vector<Interval*> sides_of(Claim& claim) {
     std::vector<Interval*> sides;
     for (Intervals* box : {&claim.q, &claim.v, &claim.parameters})
@@ -63,7 +63,7 @@ Claim part_of(const Claim& claim, std::size_t which, int parts) {
     for (Interval* side : sides_of(result)) {
         const auto k = static_cast<double>(which % static_cast<std::size_t>(parts));
         which /= static_cast<std::size_t>(parts);
-        const auto at = [&, whole = *side](double i) {  // neighbours share an end, to the last bit
+        const auto at = [&, whole = *side](double i) {  // neighboring parts share an end exactly
             if (i == 0.0) return whole.lo();
             if (i == parts) return whole.hi();
             return std::clamp(whole.lo() + i / parts * (whole.hi() - whole.lo()), whole.lo(), whole.hi());
@@ -95,8 +95,8 @@ void join(EnclosedEvent& a, const EnclosedEvent& b) {
     a.most_impacts = std::max(a.most_impacts, b.most_impacts);
 }
 
-// The event of a part at `at`, or the same Zeno point as `zeno` where impacts of that bouncing alone come before it: the other
-// part has cut it earlier, and all members of both have them.
+// The index of `zeno` in the events of another part, if from `at` on only impacts of that bouncing precede it;
+// otherwise `at`. This part has truncated the bouncing earlier, and the members of both parts have these impacts.
 std::size_t skip_impacts_before(const EnclosedEvent& zeno, const std::vector<EnclosedEvent>& events, std::size_t at) {
     if (!zeno.is_zeno()) return at;
     std::size_t next = at;
@@ -106,8 +106,8 @@ std::size_t skip_impacts_before(const EnclosedEvent& zeno, const std::vector<Enc
     return next < events.size() && is_same(events[next], zeno) ? next : at;
 }
 
-// The events that two parts have in common from the start on. Where one of them has another one before the time until which the
-// other is proved, they differ.
+// Keeps the common first events of two parts. They differ if one of them has a further event before the time until
+// which the other is proved.
 void join_events(Enclosure& a, const Enclosure& b) {
     std::vector<EnclosedEvent> common;
     std::size_t i = 0, k = 0;
@@ -124,7 +124,7 @@ void join_events(Enclosure& a, const Enclosure& b) {
     a.events = std::move(common);
 }
 
-// What two parts say together.
+// Joins the results of two parts into a.
 void join(Enclosure& a, const Enclosure& b) {
     join_events(a, b);
     std::vector<EnclosedState> samples;
@@ -188,7 +188,7 @@ void check(const Model& model, const Claim& claim) {
         Evaluator<Interval> gap(model.gap(contact));
         for (std::size_t i = 0; i < claim.parameters.size(); ++i)
             gap.input(model.layout().parameter(i)) = claim.parameters[i];
-        // At the corners: one that is below the surface by all parameters is no start.
+        // Checks the corners of the box. A corner where the gap is negative for all parameters is not a valid start.
         gap.fix();
         gap.clock() = Interval(claim.run.options.start_time);
         const std::size_t n = claim.q.size();

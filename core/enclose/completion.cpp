@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-// A program with the parameters' intervals, or their middles.
+// A program with the intervals of the parameters, or with their midpoints.
 template <class Scalar>
 Evaluator<Scalar> with_parameters(const Program& program, const Layout& layout, const Intervals& parameters) {
     Evaluator<Scalar> result(program);
@@ -26,7 +26,7 @@ Evaluator<Scalar> with_parameters(const Program& program, const Layout& layout, 
 
 }  // namespace
 
-// X: q, s and t; sigma in [-w, w].
+// The box X in q, s and t, and sigma in [-w, w].
 struct Completion::Box {
     Intervals q0, s0;
     std::vector<double> q_radius, s_radius;
@@ -51,13 +51,13 @@ Completion::Completion(const Model& model, const Coordinates& coordinates, std::
     neighbours_variables_ = bouncing.variables;
 }
 
-// Over a box of the variables of Bouncing.
+// Evaluates neighbours_program_ over a box of the variables of Bouncing.
 void Completion::look(const Intervals& box) {
     for (std::size_t i = 0; i < box.size(); ++i) neighbours_program_.input(neighbours_variables_[i]) = box[i];
     neighbours_program_.run();
 }
 
-// An impulse that may press a held contact no more, but by rounding, is no proof.
+// A kappa that is 0 only within rounding is not accepted as a proof.
 bool Completion::others_stay(const Intervals& box) {
     if (neighbours_ == nullptr) return true;
     look(box);
@@ -87,7 +87,7 @@ Intervals Completion::variables(const Box& box) const {
     return result;
 }
 
-// Do all motions stay inside X until T? If not it grows to what they ask for.
+// Whether all motions are proved to stay inside X until T. If not, X grows to the required size.
 bool Completion::contain(Box& box, const Interval& e) {
     const Intervals all = variables(box);
     const Interval sigma = all[2 * z_.dof], h = square(e * Interval(box.w.hi())) / (Interval(2.0) * box.a_min);
@@ -109,7 +109,7 @@ bool Completion::contain(Box& box, const Interval& e) {
     return inside;
 }
 
-// The wait as a function of the state at the collision: by the attained bounds A w, and to third order.
+// The accumulation time as a function of the state at the collision: by the attained bounds A w, and to third order.
 void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, const Interval& e) {
     const Interval one(1.0), two(2.0), c_w = -Interval(set.centre(u_));
     const Wait per_speed = wait_for_zeno(e, box.a_min, box.a_max, one);
@@ -152,7 +152,7 @@ void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, 
     proof.wait = {std::max(proof.wait.lo(), wait.lo()), std::min(proof.wait.hi(), wait.hi())};
 }
 
-// (E_q, E_s): the integrals of h and of hdot^2, bounded on both sides, times what they drive.
+// (E_q, E_s): the two-sided bounds on the integrals of h and of hdot^2, times their coefficients.
 void Completion::bound_error(Proof& proof, const Box& box, const Interval& e) {
     const Interval one(1.0), two(2.0), e3 = e * square(e), root = sqrt(box.r), r3 = box.r * root;
     const auto integral = [&](const Interval& w, const Interval& a, const Interval& kept) {

@@ -1,5 +1,5 @@
-// The completion of a set: all members bounce to their Zeno points and stay in contact, as a map with its error on both sides
-// (theory-enclosure.md 6).
+// Completion of a set: proves that all members bounce to their Zeno points and stay in contact, and gives this as a map
+// with two-sided error bounds (theory-enclosure.md 6).
 #pragma once
 
 #include <map>
@@ -14,27 +14,28 @@ namespace achilles {
 
 class Completion {
  public:
-    // Of a contact while others are held, of which `unpressed` need no force.
+    // For a contact while others are held; those in `unpressed` need no contact force.
     Completion(const Model& model, const Coordinates& coordinates, std::size_t contact = 0, Mode mode = {},
                ContactSet unpressed = {});
 
-    // What is proved of the bouncing of all members from a collision on.
+    // Bounds on the bouncing of all members after a collision.
     struct Proof {
-        // The wait until the Zeno point: in at_centre + by_u (u - c_u) for every member, and in `wait` (s).
+        // The accumulation time (s) of every member: in at_centre + by_u (u - c_u), and in `wait`.
         Interval wait, at_centre, by_u;
-        Interval time;      // tau_inf itself
-        double half = 0.0;  // by how much the bounds leave the wait open, s
-        double own = 0.0;   // by how much the set does
-        // No member waits as long, and none lets go before, nor in the 2^-42nd part of it that follows: so many roundings may
-        // be in what it is stepped through by.
+        Interval time;      // tau_inf
+        double half = 0.0;  // half width of the accumulation time that the bounds leave, s
+        double own = 0.0;   // half width of tau_inf by the size of the set, s
+        // Upper bound on the accumulation time of every member (s). No member is released before it, nor within a
+        // further 2^-42 of it, which leaves room for the rounding of step lengths.
         double window = 0.0;
-        Intervals error;               // true less comparison motion at tau_inf and until T: q, then v
-        Intervals position, velocity;  // on the way
+        Intervals error;               // true minus comparison motion, from tau_inf to T: q, then v
+        Intervals position, velocity;  // during the bouncing
     };
-    // Of a set whose v is the tangential velocity and whose u < 0 is the rate at the collision. Nothing where it cannot be
-    // proved that all of them bounce to the end.
+    // For a set whose v is the tangential velocity and whose u < 0 is the gap rate at the collision. Returns nullopt if
+    // it is not proved that all members bounce to the end.
     std::optional<Proof> prove(const Doubleton& set, const Interval& e);
-    // Of such a set: whether what an impact passes on to each held contact, by contact, presses it (theory-gaps.md 2.1): kappa.
+    // For such a set: kappa of each held contact, by which it receives the impulses of an impact (theory-gaps.md 2.1).
+    // It is pressed if kappa >= 0.
     std::map<std::size_t, Interval> passed_on(const Doubleton& set);
 
  private:
@@ -45,7 +46,7 @@ class Completion {
     Intervals variables(const Box& box) const;
 
     bool others_stay(const Intervals& box);
-    void look(const Intervals& box);  // at the others
+    void look(const Intervals& box);  // evaluates neighbours_program_
 
     Coordinates z_;
     Layout layout_;
@@ -54,7 +55,7 @@ class Completion {
     ShadowTerms<Range> hddot_;
     TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> rates_;
-    // What the other contacts do, of a system that has any.
+    // Conditions on the other contacts, if the system has any.
     const Neighbours* neighbours_ = nullptr;
     Evaluator<Interval> neighbours_program_;
     std::vector<std::uint32_t> neighbours_variables_;

@@ -15,7 +15,7 @@ using Matrix = Eigen::MatrixXd;
 
 Eigen::Index index(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-// The first rows of an interval matrix times one of doubles, which may lack rows of zeros at its end.
+// The first `rows` rows of a times b; if b has fewer rows than a has columns, the missing ones are 0.
 IntervalMatrix product(const IntervalMatrix& a, const Matrix& b, std::size_t rows) {
     const auto n = static_cast<std::size_t>(b.rows()), columns = static_cast<std::size_t>(b.cols());
     IntervalMatrix result(rows, columns);
@@ -32,7 +32,7 @@ Matrix middle(const IntervalMatrix& a, std::size_t rows) {
     return result;
 }
 
-// An orthogonal basis along the columns, those that reach farthest first; missing ones completed.
+// An orthogonal basis from the columns, in order of decreasing length times radius, completed if columns are missing.
 Matrix basis_along(const Matrix& columns, const Intervals& radii) {
     const auto n = static_cast<std::size_t>(columns.cols());
     std::vector<double> reach(n);
@@ -139,7 +139,7 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
     }
     const IntervalMatrix by_start = product(slope, start_, n), by_errors = product(slope, errors_, n);
     const Matrix start = middle(by_start, n);
-    Intervals rest(n);  // what is neither in the centre nor in C
+    Intervals rest(n);  // neither in the center nor in C
     for (std::size_t i = 0; i < n; ++i) {
         centre_[i] = mid(at_centre[i]);
         rest[i] = at_centre[i] - Interval(centre_[i]);

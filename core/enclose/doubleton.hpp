@@ -1,5 +1,5 @@
-// A set of states as Lohner's doubleton { c + C r0 + B r }: c, C and B are doubles, r0 is the box that the run starts from
-// less its middle, which never changes, r what errors have added (theory-enclosure.md 1).
+// A set of states as Lohner's doubleton { c + C r0 + B r } (theory-enclosure.md 1). c, C and B are doubles. r0 is the
+// initial box minus its center and never changes; r contains the accumulated errors.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,18 +29,18 @@ class IntervalMatrix {
     Intervals entries_;
 };
 
-// What ends a proof: nothing is claimed from there on.
+// Ends a proof: nothing is claimed beyond this point.
 struct Undecided {
     std::string reason;
 };
 
 class Doubleton {
  public:
-    // The last `constants` coordinates are the same before and after every map, and never gain errors.
+    // Every map leaves the last `constants` coordinates unchanged; they never acquire errors.
     explicit Doubleton(const Intervals& box, std::size_t constants = 0);
 
     std::size_t size() const { return centre_.size(); }
-    // A member of the hull: what a mean-value form starts from.
+    // A point of the hull, the center of mean-value forms.
     double centre(std::size_t i) const { return centre_[i]; }
     Intervals centre() const { return {centre_.begin(), centre_.end()}; }
     Interval hull(std::size_t i) const;
@@ -48,23 +48,25 @@ class Doubleton {
     // sum_j row_j (z_j - c_j) over all members z.
     Interval along(const Interval* row) const;
 
-    // The image under a map with F(z) in at_centre + slope (z - c): at_centre contains F(c), slope contains the derivatives over
-    // the hull, and what both add may hold what an error adds to F. Throws Undecided where something is not defined.
+    // The image of the set under a map with F(z) in at_centre + slope (z - c). at_centre must contain F(c), and slope
+    // the derivatives over the hull; both may include an error of F. Throws Undecided if an entry is undefined or
+    // unbounded.
     void map(const Intervals& at_centre, const IntervalMatrix& slope);
-    // Coordinate i is exactly this in every member.
+    // Sets coordinate i to exactly this value in every member.
     void set(std::size_t i, double value);
 
  private:
-    std::size_t moving_;  // coordinates that are no constants
+    std::size_t moving_;  // number of coordinates that are not constant
     std::vector<double> centre_;
-    Eigen::MatrixXd start_, errors_;  // C; B, of the moving ones
-    Intervals of_start_, of_errors_;  // r0, r: 0 lies in both
+    Eigen::MatrixXd start_, errors_;  // C; B, for the coordinates that are not constant
+    Intervals of_start_, of_errors_;  // r0, r: both contain 0
 };
 
-// B^-1 x over a box x, for a nearly orthogonal B: within B'x + delta |B'x| [-1, 1], delta = eps/(1 - eps), eps >= |B'B - 1|.
+// B^-1 x over a box x for a nearly orthogonal B: it lies in B'x + delta |B'x| [-1, 1], with delta = eps/(1 - eps),
+// eps >= |B'B - 1|.
 class NearlyOrthogonal {
  public:
-    // Throws Undecided where eps is not below 1/2.
+    // Throws Undecided if eps is not below 1/2.
     explicit NearlyOrthogonal(const Eigen::MatrixXd& matrix);
     Intervals solve(const Intervals& x) const;
 
@@ -73,10 +75,10 @@ class NearlyOrthogonal {
     Interval delta_;
 };
 
-// Where the coordinates of a set of states stand (theory-enclosure.md 1): the member's own time, q, v, of every contact its gap h
-// and the rate u of that once more, and the parameters that are intervals.
+// Layout of the coordinates of a set of states (theory-enclosure.md 1): the time of the member, q, v, the gap h and gap
+// rate u of every contact as independent coordinates, and the interval parameters.
 
-// A number with its derivatives by one direction at least: Jet<Number, 0> has none.
+// Whether a number has derivatives in at least one direction; Jet<Number, 0> has none.
 template <class Number>
 inline constexpr bool has_directions = [] {
     if constexpr (HasDerivatives<Number>)
@@ -88,8 +90,8 @@ inline constexpr bool has_directions = [] {
 struct Coordinates {
     std::size_t dof = 0;
     bool autonomous = true;
-    Intervals parameters;             // all of the system's: those that are no coordinates are the same for all members
-    std::vector<std::size_t> varied;  // of them, which are coordinates
+    Intervals parameters;             // of the whole system; those that are not coordinates are enclosed as intervals
+    std::vector<std::size_t> varied;  // indices of the parameters that are coordinates
     std::size_t contacts = 1;
 
     static constexpr std::size_t t() { return 0; }
@@ -100,7 +102,7 @@ struct Coordinates {
     std::size_t parameter(std::size_t k) const { return 1 + 2 * dof + 2 * contacts + k; }
     std::size_t size() const { return parameter(varied.size()); }
 
-    // The coordinates that the accelerations depend on, and those that maps do: h and u besides.
+    // The coordinates on which the accelerations depend. Maps depend on h and u as well (of_maps).
     std::vector<std::size_t> of_motion() const {
         std::vector<std::size_t> result;
         for (std::size_t i = 0; i < 2 * dof; ++i) result.push_back(q(i));
@@ -113,7 +115,8 @@ struct Coordinates {
         for (std::size_t i = 0; i < contacts; ++i) result.insert(result.end(), {h(i), u(i)});
         return result;
     }
-    // The coordinates of a box as numbers with derivatives by these variables; all of the system's parameters likewise.
+    // The coordinates of a box as numbers with derivatives by these variables; parameter_numbers() does the same for
+    // all parameters.
     template <class Number>
     std::vector<Number> numbers(const Intervals& box, const std::vector<std::size_t>& variables) const {
         std::vector<Number> result;
@@ -138,7 +141,8 @@ struct Coordinates {
     }
 };
 
-// Makes maker.template operator()<N>() for the least N that holds so many directions. Throws Undecided for too many.
+// Calls maker.template operator()<N>() for the smallest supported N >= count. Throws Undecided if there are too many
+// directions.
 template <class Maker>
 auto with_directions(std::size_t count, const Maker& maker) {
     if (count <= 4) return maker.template operator()<4>();

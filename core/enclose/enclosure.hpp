@@ -1,5 +1,5 @@
-// A whole run as a theorem (theory-enclosure.md 1 to 8): boxes that contain the completed execution of every member of a set of
-// starts and parameters, until the end time or until something cannot be decided.
+// Proof of a whole run (theory-enclosure.md 1 to 8): boxes that contain the completed execution of every member of a
+// set of initial states and parameters. They reach to the end time, or until something cannot be decided.
 #pragma once
 
 #include <atomic>
@@ -15,26 +15,27 @@
 
 namespace achilles {
 
-// What is to be proved: the run from every start and with all parameters in these boxes. Of `run` the options count, and what
-// it says of the start is not looked at.
+// Input of prove(): boxes of initial states and parameters. Only the options of `run` are used; its initial state is
+// ignored.
 struct Claim {
     Run run;
-    Intervals q, v, parameters;  // parameters in the order of the description, the derived ones left out
-    std::vector<double> times;   // at which the state is asked for, besides the end; s
-    // A bouncing is cut where a Zeno time is known within this (s), or nearly as well as the set itself lets it be known.
+    Intervals q, v, parameters;  // parameters in the order of the description, without derived ones
+    std::vector<double> times;   // at which the state is reported, in addition to the end; s
+    // A bouncing is truncated if the half width of its Zeno time is within this (s), or nearly as small as the set
+    // allows.
     double eps_t = 0.0;
-    // The cut is not put off until its error is small beside the set's own width: for tests of that error.
+    // Truncate even if the error of the truncation is not small compared with the set; for tests of that error.
     bool cut_early = false;
 };
 
 struct EnclosedEvent : EventBase {
     std::size_t contact = 0;
     Mode mode;          // after it
-    ContactSet opened;  // by it
+    ContactSet opened;  // held contacts that the event opened
     Interval t;
-    Intervals q, v_before, v_after;  // v_after = v_before but at impacts
-    // zeno: impacts of its contact before the proof's cut of the bouncing, and of parts the fewest of any part and the most.
-    // 0 is a landing without a bounce.
+    Intervals q, v_before, v_after;  // v_after = v_before except at impacts
+    // For a Zeno point: the number of impacts of its contact before the truncation; with parts, the minimum and maximum
+    // over the parts. 0: a plastic impact without a bounce.
     int impacts = 0, most_impacts = 0;
 };
 
@@ -49,46 +50,48 @@ struct Enclosure {
         Kind kind = Kind::undecided;
         std::string message;
     };
-    double proved_until = 0.0;  // s: until then everything here holds of every member
-    // In time: every member has these, and no others until then, but for the impacts of a bouncing after its last one here.
+    double proved_until = 0.0;  // s: up to here everything in this result holds for every member
+    // In order of time. Every member has these events and no others until proved_until, except the impacts of a
+    // bouncing after the last one listed.
     std::vector<EnclosedEvent> events;
-    bool events_differ = false;          // of parts: their lists begin with these, and go on differently
-    std::vector<EnclosedState> samples;  // at the claim's times, those before proved_until
-    std::optional<EnclosedState> end;    // nothing where it is undecided
+    bool events_differ = false;          // with parts: their lists start with these events and then differ
+    std::vector<EnclosedState> samples;  // at the times of the claim before proved_until
+    std::optional<EnclosedState> end;    // empty if the run is undecided
     Outcome outcome;
     struct Statistics {
         long steps = 0, impacts = 0;
         double seconds = 0.0;
     } statistics;
-    std::string assumptions;  // what the proof stands on
+    std::string assumptions;  // assumptions of the proof
 };
 
-// A proof as another thread sees it.
+// Progress and cancellation of a proof, shared with another thread.
 struct ProofWatch {
-    std::stop_token stop;           // once asked for, it ends at its next step, as "cancelled"
-    std::atomic<double> time{0.0};  // s, proved so far; of parts only once all are
+    std::stop_token stop;           // ends the proof at its next step, as "cancelled"
+    std::atomic<double> time{0.0};  // s, proved so far; with parts, set at the end
 };
 
-// Throws InputError for a system or a claim that is not covered, which the message says.
+// Proves a claim. Throws InputError for a system or a claim that is not covered, with the reason.
 Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch = nullptr);
 
-// The same of the box cut into so many parts along each of its sides that has a width, on all cores: each part is a theorem, and
-// this is what they say together. Parts may cut a bouncing after different numbers of impacts: of these the first are kept, which
-// all have, and then the Zeno point. Throws InputError for more than a million parts.
+// Splits the box into `parts` intervals along each side that has a width, proves each part, on all cores, and joins the
+// results. Parts may truncate a bouncing after different numbers of impacts; the common first ones are kept, then the
+// Zeno point. Throws InputError for more than a million parts.
 Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts,
                          ProofWatch* watch = nullptr);
 
-// The doubles of a run by themselves.
+// The exact doubles of a run, as boxes of zero width.
 Claim claim_of(const Run& run);
-// What a person wrote: a double that no decimal is stands for those around it, 4 ulp either way, which hold pi/6 or 0.1.
+// Intervals of the decimal numbers as typed: +-4 ulp around a double that is not exactly representable, which covers
+// 0.1 and pi/6.
 Claim claim_as_written(const Run& run);
 Interval as_written(double x);
-// All coordinates and rates of the start by so much either way.
+// Widens all initial coordinates and rates by +-half.
 void widen(Claim& claim, double half);
-// The enclosure of the restitution of a contact over a claim. Throws InputError if it may lie outside of [0, 1].
+// The enclosure of a contact's restitution over a claim. Throws InputError if it may lie outside of [0, 1].
 Interval restitution_over(const Model& model, const Claim& claim, std::size_t contact);
-// What is impossible about a part of a claim's starts and parameters, where that is proved: a gap below zero, a restitution
-// outside [0, 1]. Throws InputErrors.
+// Throws InputErrors if part of a claim is proved to be impossible: a negative gap at a corner of the initial box, or a
+// restitution outside [0, 1].
 void check(const Model& model, const Claim& claim);
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// What becomes of all members at an impact, at the cut of a bouncing and at a release (theory-enclosure.md 5 to 7, 10).
+// Events of all members: impact, truncation of a bouncing, and release (theory-enclosure.md 5 to 7, 10).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -31,8 +31,9 @@ void Prover::retract(Mode onto) {
     mode_ = before;
 }
 
-// The held contacts that an impact opens in every member: Moreau's law has one answer, which is proved to be this
-// (theory-gaps.md 2.1). Those that stay are pressed by what is passed on to them; that the others leave is seen after it.
+// The held contacts that an impact opens in every member. Moreau's law has a unique solution, which is proved to be
+// this one (theory-gaps.md 2.1): transmitted impulses press the contacts that stay. check_opened() checks afterwards
+// that the others leave.
 ContactSet Prover::opened_by(std::size_t contact) {
     ContactSet opened;
     const Mode before = mode_;
@@ -55,7 +56,7 @@ ContactSet Prover::opened_by(std::size_t contact) {
     return opened;
 }
 
-// By the event that was noted last.
+// Checks that the last recorded event opened these contacts.
 void Prover::check_opened(ContactSet opened) {
     result_.events.back().opened = opened;
     for (std::size_t i = 0; i < z_.contacts; ++i)
@@ -63,7 +64,7 @@ void Prover::check_opened(ContactSet opened) {
             throw Undecided{"cannot decide whether an impact opens a held contact"};
 }
 
-// All members are on the surface.
+// Impact of all members, which must be on the surface.
 void Prover::land(std::size_t contact, const Interval& time) {
     const std::size_t h = z_.h(contact), u = z_.u(contact);
     if (!certainly_negative(set_.hull(u)))
@@ -98,8 +99,8 @@ void Prover::land(std::size_t contact, const Interval& time) {
     motion().forget();
 }
 
-// What the set has gained where no member is goes, unless the map's own bending costs more: it is of second order, but a wide
-// set pays it at once, and what goes would have grown later only.
+// Removes the part of the set where no member is, unless the curvature of the map widens the set more. That effect is
+// of second order, but acts at once on a wide set, whereas the removed part would only have grown later.
 void Prover::project(std::size_t contact) {
     const auto size = [&](const Doubleton& set) {
         double sum = 0.0;
@@ -112,7 +113,7 @@ void Prover::project(std::size_t contact) {
     if (size(projected) <= hardly * size(set_)) set_ = projected;
 }
 
-// A landing with e = 0 of every member.
+// Plastic impact (e = 0) of every member.
 void Prover::capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened) {
     maps(contact).take_rate_out(set_);
     set_.set(z_.h(contact), 0.0);
@@ -136,8 +137,8 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
     motion().forget();
 }
 
-// The states at the Zeno points of members that all reach them in this step, each after its own wait, without the error of the
-// comparison.
+// The states at the Zeno points if all members reach them in this step, each after its own accumulation time. The error
+// of the comparison motion is not included.
 Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval& tau,
                            const Completion::Proof& proof) const {
     const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
@@ -152,8 +153,8 @@ Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval
     return box;
 }
 
-// All members bounce to their Zeno points, if that is proved well enough. Then the set is that of the members in contact, so
-// much later than their collisions that all have reached them.
+// Completes the motion of all members if this is proved accurately enough. The set then consists of the members in
+// contact, at a time after their collisions when all have reached their Zeno points.
 bool Prover::complete(std::size_t contact, const Interval& time, const Interval& e, double radius) {
     const std::size_t u = z_.u(contact);
     maps(contact).take_rate_out(set_);
@@ -175,7 +176,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
 
     cover(Interval(time.lo(), (Interval(time.hi()) + Interval(proof->window)).hi()), proof->position, proof->velocity);
     enter(mode_.with(contact, ContactState::held));
-    retract(mode_);  // u is kept beside: the wait depends on it
+    retract(mode_);  // u is kept, because the accumulation time depends on it
     Interval passed(0.0);
     std::optional<Intervals> zeno;
     for (double left = proof->window; left > 0x1p-43 * proof->window;) {

@@ -7,7 +7,7 @@ namespace achilles {
 
 namespace {
 
-// The programs of a contact while others are held, over one number.
+// The programs of a contact while others are held, for one number type.
 template <class Number>
 class Programs {
  public:
@@ -84,19 +84,19 @@ class Programs {
         terms.clock() = z[Coordinates::t()];
         terms.run();
     }
-    // q -= n times that much, and the terms are those there.
+    // q -= n h; the terms are then evaluated at the new position.
     void shift(std::vector<Number>& z, const Number& h) {
         move_along(z[z_.q(0)], h);
         look(terms_, z);
     }
-    // v -= n times that much.
+    // v -= n rate.
     void push(std::vector<Number>& z, const Number& rate) { move_along(z[z_.v(0)], rate); }
     void move_along(Number& first, const Number& amount) {
         newton::move_along(
             &first, z_.dof, [&](std::size_t i) -> const Number& { return terms_.impulse_direction(i); }, amount);
     }
 
-    // v -= n times that much, and what that does to the rates of the other open gaps.
+    // v -= n rate, and updates the rates of the other open gaps.
     void strike(std::vector<Number>& z, const Number& rate) {
         push(z, rate);
         for (Other& other : others_) {
@@ -108,7 +108,7 @@ class Programs {
         }
     }
 
-    // Of another contact that is open.
+    // Another open contact.
     struct Other {
         std::size_t u;
         ContactTerms<Evaluator<Number>> terms;
@@ -169,7 +169,7 @@ class MapsOver : public Maps {
     }
 
  private:
-    // What the map leaves alone has derivative 1 by itself.
+    // A coordinate that the map leaves unchanged has derivative 1 by itself.
     template <class Map>
     void apply(Doubleton& set, const Map& map) {
         std::vector<Value> centre = values_.numbers(set.centre());

@@ -1,5 +1,5 @@
-// What happens to a set between steps, as maps with their derivatives over the hull (theory-enclosure.md 5), and what a
-// contact is over a box of states.
+// Maps of a set at events, with their derivatives over the hull (theory-enclosure.md 5), and contact quantities over a
+// box of states.
 #pragma once
 
 #include <memory>
@@ -14,17 +14,18 @@ class Maps {
     virtual ~Maps() = default;
     // h := h(q), u := hdot(q, v).
     virtual void measure_gap(Doubleton& set) = 0;
-    // v -= n u; this contact's u is kept.
+    // v -= n u; u of this contact is unchanged.
     virtual void take_rate_out(Doubleton& set) = 0;
-    // Newton's law for members with h = 0: v -= (1 + e) n u, u := -e u, and the rates of other open gaps follow.
+    // Newton's impact law for members with h = 0: v -= (1 + e) n u, u := -e u; the rates of other open gaps are
+    // updated.
     virtual void impact(Doubleton& set) = 0;
-    // q -= n (h(q) - h), then v -= n (hdot(q, v) - u), the identity on all members. It forgets what the set has gained away from
-    // where h and u are the gap of (q, v).
+    // q -= n (h(q) - h), then v -= n (hdot(q, v) - u), the identity on all members. It removes the part of the set
+    // where h and u are not the gap and gap rate of (q, v), which no member occupies.
     virtual void project(Doubleton& set) = 0;
     // The same for members with h = hdot = 0, whatever u is: q -= n h(q), v -= n hdot(q, v).
     virtual void retract(Doubleton& set) = 0;
 
-    // Over a box of all coordinates: hddot and its derivatives by them; h''' along the constrained motion.
+    // Over a box of all coordinates: hddot and its derivatives; h''' along the constrained motion.
     struct Normal {
         Interval hddot, jerk;
         Intervals slope;
@@ -37,7 +38,7 @@ class Maps {
     virtual Surface surface(const Intervals& box) = 0;
 };
 
-// Of a contact while others are held: n leaves these held.
+// The maps of a contact while others are held; n keeps these held.
 std::unique_ptr<Maps> make_maps(const Model& model, const Coordinates& coordinates, std::size_t contact = 0,
                                 Mode mode = {});
 

@@ -61,20 +61,20 @@ double Prover::largest_radius() const {
     return result;
 }
 
-// ---- times that are asked for
+// ---- requested times ----
 
 bool Prover::is_over() const {
     return std::all_of(asked_.begin(), asked_.end(), [](const Asked& asked) { return asked.is_known; });
 }
 
-// A little beyond the end for every member.
+// The remaining time (s), a little beyond the end for every member.
 double Prover::longest() const {
     const double left = claim_.run.options.end_time - std::max(now(), proved_until_);
     return 1.001 * left + 0x1p-40 * std::abs(claim_.run.options.end_time);
 }
 
-// The state at times that members reach after elapsed times in [0, elapsed] of a step: of every member at once, where all
-// reach it before any has come to the step's end; else a part of a hull.
+// Covers the requested times that members reach within elapsed times [0, elapsed] of a step. If all members reach the
+// time before any reaches the end of the step, the set is mapped to that time. Otherwise the hull there is extended.
 void Prover::cover(const Step& step, const Interval& elapsed) {
     const Interval now = set_.hull(Coordinates::t());
     for (Asked& asked : asked_) {
@@ -97,7 +97,7 @@ void Prover::cover(const Step& step, const Interval& elapsed) {
     }
 }
 
-// The members that reach a time that is asked for in `times` are in this box then.
+// Extends the hulls of the requested times in `times` by a box that contains the members at those times.
 void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v) {
     for (Asked& asked : asked_) {
         if (asked.is_known || !times.contains(asked.time)) continue;
@@ -112,7 +112,7 @@ void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v
     }
 }
 
-// A hull is complete once every member has passed its time.
+// Updates proved_until_. A hull is complete once every member has passed its time.
 void Prover::settle() {
     proved_until_ = std::max(proved_until_, now());
     if (watch_ != nullptr) watch_->time.store(proved_until_, std::memory_order_relaxed);
@@ -120,7 +120,7 @@ void Prover::settle() {
         if (!asked.is_known && asked.state && proved_until_ > asked.time) asked.is_known = true;
 }
 
-// ---- motion
+// ---- motion ----
 
 void Prover::count_step() {
     if (++result_.statistics.steps > claim_.run.options.max_steps)
@@ -155,7 +155,7 @@ void Prover::enter(Mode mode) {
     motion().forget();
 }
 
-// To the end, and after impacts not much farther than the flights.
+// The remaining time; after impacts, a little more than the next flight.
 double Prover::longest_step() {
     double most = longest();
     for (std::size_t i = 0; i < z_.contacts; ++i) {
@@ -181,7 +181,7 @@ const char* doubt_of(Transition transition) {
 
 }  // namespace
 
-// The one event that comes before all others in every member, if there is any.
+// The event that precedes all others in every member, if there is one.
 Prover::Next Prover::next_in(const Step& step) const {
     std::vector<FirstRoot> roots;
     Next next{{}, {}, step.length(), {}};
@@ -206,7 +206,7 @@ Prover::Next Prover::next_in(const Step& step) const {
     return next;
 }
 
-// What is known of the open gaps after a step that ends without an event of theirs.
+// Updates the bounds on the open gaps after a step without an event of theirs.
 void Prover::pass(const Step& step, const Interval& elapsed) {
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (mode_.is_held(i)) continue;
@@ -215,7 +215,7 @@ void Prover::pass(const Step& step, const Interval& elapsed) {
     }
 }
 
-// Where what is watched of a contact vanishes.
+// The surface where the watched function of a contact vanishes.
 Section Prover::section_of(std::size_t contact, WatchedFunction watched) {
     switch (watched) {
         case WatchedFunction::gap:
@@ -276,9 +276,9 @@ void Prover::move() {
     settle();
 }
 
-// How a proof begins: in flight, in contact, or taking off; and what no proof covers.
+// ---- start: in free flight, in contact, or leaving the surface; and systems that are not covered ----
 
-// Every gap and its rate become coordinates.
+// Adds every gap and its rate as coordinates.
 void Prover::begin() {
     const Intervals start = set_.hull();
     measure_others({});
@@ -299,22 +299,23 @@ void Prover::measure_others(ContactSet but) {
     }
 }
 
-// A start that is on the surface to within rounding: the theorem is about the members with h = 0, and those with hdot = 0
-// where that is not told from 0. That there are such members is proved by a change of sign of h along n.
+// A start on the contact surface within rounding: the theorem holds for the members with h = 0 and, if hdot is 0 within
+// rounding, hdot = 0. A sign change of h along n proves that such members exist.
 void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     Maps& maps = this->maps(contact);
     const std::size_t h = z_.h(contact), u_place = z_.u(contact);
     const Maps::Surface surface = maps.surface(start);
     const Undecided doubt{
         "cannot decide between contact and flight at the start: the gap is not bounded away from zero over the set"};
-    // What roundings of the coordinates make of the gap; g n = 1, so that a way along n is as long as the gap it makes.
+    // The effect of rounding of the coordinates on the gap. Because g n = 1, a displacement along n changes the gap by
+    // its own length.
     Intervals near = start;
     for (std::size_t i = 0; i < z_.dof; ++i) {
         const double ulps = 0x1p-48 * mag(near[z_.q(i)]);
         near[z_.q(i)] = Interval(mid(near[z_.q(i)])) + Interval(-ulps, ulps);
     }
     const double error = rad(maps.surface(near).h), off = mag(surface.h);
-    const double reach = 4.0 * error + 0x1p-200;  // where all are 0 to the last bit, too
+    const double reach = 4.0 * error + 0x1p-200;  // also if all are exactly 0
     if (!(off <= reach)) throw doubt;
     Intervals below = start, above = start;
     for (std::size_t i = 0; i < z_.dof; ++i) {
@@ -323,7 +324,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
         above[z_.q(i)] = Interval(mid(above[z_.q(i)])) + Interval(n) * Interval(reach);
     }
     if (!certainly_negative(maps.surface(below).h) || !certainly_positive(maps.surface(above).h)) throw doubt;
-    // The members that are meant lie within reach of these.
+    // The members with h = 0 lie within this distance.
     Intervals box = start;
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.q(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * reach);
     box[h] = Interval(0.0);
@@ -362,7 +363,8 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
 
 namespace {
 
-// An interval that rounding alone may have made is no coordinate: what depends on it is enclosed for all of it at once.
+// An interval no wider than rounding does not become a coordinate; terms that depend on it are enclosed over the whole
+// interval.
 bool is_wide(const Interval& x) { return width(x) > 0x1p-47 * mag(x); }
 
 InputError refusal(const Model& model, const std::string& why) {

@@ -1,5 +1,5 @@
-// A completed execution of all members of a set at once: what simulate/execution.hpp is for one, with proofs in place of
-// decisions. Where members would do different things, or nothing is proved, it throws Undecided.
+// Proves the completed execution of all members of a set at once: like simulate/execution.hpp, with proofs in place of
+// decisions. Throws Undecided if members would behave differently, or if nothing can be proved.
 #pragma once
 
 #include <map>
@@ -21,13 +21,13 @@ class Prover {
     Enclosure run();
 
  private:
-    // What is known of the state at a time that was asked for: a hull, which holds once all members have passed it.
+    // The state at a requested time: a hull, which is complete once all members have passed that time.
     struct Asked {
         double time;
         std::optional<EnclosedState> state;
         bool is_known = false;
     };
-    // What happens next to one of the contacts, and until when nothing does.
+    // The next event, and the elapsed time until which there is none.
     struct Next {
         std::optional<std::size_t> contact;
         Interval elapsed;
@@ -58,7 +58,7 @@ class Prover {
     void note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
                     const Intervals& v_after);
 
-    // Of the mode, and of a contact in the mode in which it is open.
+    // The programs of the current mode, and those of a contact in the mode in which it is open.
     Stepper& motion();
     Maps& maps(std::size_t contact);
     Completion& completion(std::size_t contact);
@@ -81,16 +81,16 @@ class Prover {
     Intervals restitutions_;  // of each contact, over the claim
     std::map<Mode, std::unique_ptr<Stepper>> motions_;
     std::map<ContactInMode, std::unique_ptr<Maps>> maps_;
-    std::map<std::pair<ContactSet, ContactInMode>, std::unique_ptr<Completion>> completions_;  // by the unpressed ones
+    std::map<std::pair<ContactSet, ContactInMode>, std::unique_ptr<Completion>> completions_;  // and by unpressed_
     Doubleton set_;
     Mode mode_;
-    ContactSet unpressed_;           // of the held ones, those that need no force (theory-gaps.md 2.7)
+    ContactSet unpressed_;           // held contacts that need no force (theory-gaps.md 2.7)
     std::vector<Opening> openings_;  // by contact
-    std::size_t last_ = 0;           // contact of which there was an event
-    int doubts_ = 0;                 // steps in a row that ended before what is not decided
+    std::size_t last_ = 0;           // contact of the last event
+    int doubts_ = 0;                 // consecutive steps shortened to before an undecided event
     std::vector<int> bounces_;       // of each contact since its flight began
     std::vector<Asked> asked_;
-    double proved_until_;  // the latest time that no member's was below
+    double proved_until_;  // s; all members have reached this time
     Enclosure result_;
 };
 

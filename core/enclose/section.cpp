@@ -84,7 +84,7 @@ Interval slope_over(const Intervals& c, const Interval& t) {
     return sum;
 }
 
-// Horner's scheme, or from the middle by the derivative.
+// The intersection of Horner's scheme and the mean-value form.
 Interval value_over(const Intervals& c, const Interval& t) {
     const Interval plain = plain_value(c, t), middle(mid(t));
     const Interval sharp = plain_value(c, middle) + times(slope_over(c, t), t - middle);
@@ -93,7 +93,7 @@ Interval value_over(const Intervals& c, const Interval& t) {
 }
 
 FirstRoot first_root(const Intervals& c, double length) {
-    constexpr double finest = 0x1p-32;  // of the length: next to a graze a gap is narrow
+    constexpr double finest = 0x1p-32;  // fraction of the length; near a graze the zeros are close together
     double a = 0.0, piece = length;
     while (a < length) {
         const double b = std::min(a + piece, length);
@@ -106,8 +106,8 @@ FirstRoot first_root(const Intervals& c, double length) {
         if (piece < finest * length) break;
     }
     if (a >= length) return {FirstRoot::Kind::none, {}};
-    // From a on: p > 0 at a and p' < 0 on [a, b], so that there is one zero at most, and Newton's image before b says that
-    // there is one.
+    // Starting at a: p > 0 at a and p' < 0 on [a, b], so there is at most one zero. If the Newton image lies below b,
+    // there is exactly one.
     for (double reach = finest * length; a > 0.0 || c.front().lo() > 0.0; reach *= 2.0) {
         const double b = std::min(a + reach, length);
         const Interval slope = slope_over(c, {a, b}), middle(0.5 * a + 0.5 * b);

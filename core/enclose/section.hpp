@@ -11,31 +11,31 @@
 namespace achilles {
 
 struct Section {
-    // g over a box that contains T at one instant, its derivatives by all coordinates over one that contains the crossings
-    // too.
+    // g over a box that contains the set at one time; and its derivatives by all coordinates, over a box that also
+    // contains the crossings.
     std::function<Interval(const Intervals&)> value;
     std::function<Intervals(const Intervals&)> slope;
-    // A coordinate that every member has exactly this value of on the surface; its rate is that of g.
+    // A coordinate that has exactly this value for every member on the surface; its derivative by time is that of g.
     std::optional<std::pair<std::size_t, double>> exact;
-    bool rises = false;  // g along the motion; else it falls
+    bool rises = false;  // g increases along the motion; otherwise it decreases
 
     static Section of_gap(const Coordinates& coordinates, std::size_t contact);
     static Section of_time(const Coordinates& coordinates, double time);
 };
 
-// Takes the set to the surface, which every member is known to cross in tau, and narrows tau. Throws Undecided where the
-// crossing is not transversal.
+// Maps the set to the surface. Every member must be known to cross it in tau, which is narrowed. Throws Undecided if
+// the crossing is not transversal.
 void cross(Doubleton& set, const Step& step, const Section& section, Interval& tau);
 
-// Where a quantity that is positive first becomes zero, proved for every member of a set at once (theory-enclosure.md 3).
+// ---- first zero of a positive quantity, proved for every member of a set (theory-enclosure.md 3) ----
 
-// The quantity lies in sum_k c_k t^k at every t in [0, length], the last coefficient that of a remainder, and so does its
-// derivative in the sum's (the lemma there).
+// The quantity lies in sum_k c_k t^k for every t in [0, length], where the last coefficient is that of the remainder.
+// Its derivative lies in the derivative of the sum (by the lemma there).
 struct FirstRoot {
     enum class Kind {
-        none,  // it is positive on [0, length]
-        one,   // exactly one zero in `at` in every member, its derivative negative there, and positive before
-        doubt  // positive before at.lo(); nothing is known from there on
+        none,  // positive on [0, length]
+        one,   // each member has exactly one zero, in `at`, with negative derivative, and is positive before
+        doubt  // positive before at.lo(); unknown from there on
     };
     Kind kind = Kind::doubt;
     Interval at;

@@ -14,7 +14,7 @@ namespace achilles {
 
 namespace {
 
-// Where a claim keeps the interval of a name that a run has a value of.
+// The interval of a claim for a name of the run.
 Interval& place_of(Claim& claim, const SystemDescription& description, const std::string& name) {
     Run marked = claim.run;
     for (auto* values : {&marked.q, &marked.v}) values->setZero();
@@ -33,7 +33,8 @@ Interval& place_of(Claim& claim, const SystemDescription& description, const std
 
 namespace {
 
-// An interval in another notation, as LOW..HIGH: 0.4:0.6, [0.4, 0.6], 0.5±0.1, 0.5+-0.1, 0.4...0.6; "" where it is none.
+// Converts other notations of an interval to LOW..HIGH: 0.4:0.6, [0.4, 0.6], 0.5±0.1, 0.5+-0.1, 0.4...0.6; "" if it is
+// not an interval.
 std::string other_interval(std::string text) {
     std::erase(text, ' ');
     const auto between = [&](std::string_view sign) -> std::optional<std::pair<std::string, std::string>> {
@@ -50,7 +51,7 @@ std::string other_interval(std::string text) {
                 return "";
             }
         }
-    const bool is_list = text.starts_with("[") && text.ends_with("]");  // else a comma is a decimal's
+    const bool is_list = text.starts_with("[") && text.ends_with("]");  // otherwise a comma is a decimal comma
     if (is_list) text = text.substr(1, text.size() - 2);
     for (const char* sign : {"...", ":", ",", "\u2026"})
         if (const auto parts = between(sign);

@@ -15,7 +15,7 @@ constexpr int K = Stepper::order;
 
 Interval power(const Interval& x, int n) { return integer_power(x, n); }
 
-// What lies in both; the first where rounding has parted them.
+// The intersection; the first interval if rounding has made the intersection empty.
 Interval both(const Interval& a, const Interval& b) {
     const double lo = std::max(a.lo(), b.lo()), hi = std::min(a.hi(), b.hi());
     return lo <= hi ? Interval(lo, hi) : a;
@@ -23,7 +23,7 @@ Interval both(const Interval& a, const Interval& b) {
 
 }  // namespace
 
-// sum_k table_k tau^k, of every coordinate.
+// sum_k table_k tau^k, for every coordinate.
 Intervals Step::along(const Intervals& table, const Interval& tau) const {
     Intervals result(table.end() - static_cast<std::ptrdiff_t>(size_), table.end());
     for (int k = K - 1; k >= 0; --k) {
@@ -88,8 +88,8 @@ Stepper::Stepper(const Model& model, const Coordinates& coordinates, Mode mode)
       over_hull_(make_expansion(model.hddot_series(mode), coordinates, Expanded::with_derivatives)),
       over_box_(make_expansion(model.hddot_series(mode), coordinates, Expanded::over_a_box)) {}
 
-// The size of each coordinate along a step: errors are measured by it. Of h and u that of the flight, since after an impact
-// they are as exact as they are small.
+// The scale of each coordinate along a step, for error tolerances. For h and u it is the scale of the flight, because
+// after an impact their relative accuracy is kept.
 std::vector<double> Stepper::scales(const Intervals& hull, double length) const {
     const std::size_t n = coordinates_.dof;
     std::vector<double> result(coordinates_.size(), 0.0);
@@ -111,7 +111,7 @@ std::vector<double> Stepper::scales(const Intervals& hull, double length) const 
     return result;
 }
 
-// To where the last two terms at the centre are small beside what is known anyway.
+// The length at which the last two terms at the center are small compared with the present uncertainty.
 double Stepper::first_length(const Doubleton&, const Intervals& hull, double longest) const {
     const std::size_t n = coordinates_.dof;
     double length = longest;
@@ -134,7 +134,8 @@ double Stepper::first_length(const Doubleton&, const Intervals& hull, double lon
     return length;
 }
 
-// The a-priori box: the polynomial over [0, length] and +-eps, where the remainder over it is strictly inside that.
+// Finds the a-priori box: the polynomial over [0, length] plus +-eps. It is accepted if the remainder over it is
+// strictly less than eps.
 bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
     const std::size_t n = coordinates_.dof;
     const Interval span(0.0, length), middle(0.5 * length), whole = power(Interval(length), K + 1);
@@ -180,7 +181,7 @@ bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
     return false;
 }
 
-// The coefficients of all coordinates: h'' = hddot of an open contact; of a held one h and u stay.
+// The Taylor coefficients of all coordinates: h'' = hddot for an open contact; h and u of a held contact are constant.
 void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings) {
     const Coordinates& z = coordinates_;
     const std::size_t size = z.size(), n = z.dof;

@@ -11,31 +11,31 @@
 
 namespace achilles {
 
-// The Taylor coefficients of a motion at a point, over a box of states, or with their derivatives.
+// The Taylor coefficients of a motion at a point, or over a box of states with or without derivatives.
 class Expansion {
  public:
     virtual ~Expansion() = default;
-    // Of hddot the orders 0 .. last, of q and v 0 .. last + 1, over a box of all coordinates.
+    // Expands over a box of all coordinates: hddot to the orders 0 .. last, q and v to 0 .. last + 1.
     virtual void expand(const Intervals& box, int last) = 0;
-    // Order k of row i: q and v, then hddot of each contact.
+    // Coefficient k of row i: q and v, then hddot of each contact.
     virtual Interval value(int k, std::size_t i) const = 0;
     // Its derivative by variable j of Coordinates::of_motion().
     virtual Interval slope(int k, std::size_t i, std::size_t j) const = 0;
-    // M is positive definite all over the box.
+    // Whether M is proved positive definite on the box.
     virtual bool has_mass() = 0;
 };
 
-// At a point the numbers are Fine, so that what a step loses there is the rounding of its end alone.
+// At a point, the numbers are Fine: a step then loses only the rounding of its end there.
 enum class Expanded { at_a_point, over_a_box, with_derivatives };
-// `series` is that of Model::hddot_series() and outlives the result.
+// `series` is that of Model::hddot_series() and must outlive the result.
 std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates, Expanded what);
 
-// Which of the orders of h that lead are exactly 0 in every member: h and hdot after an impact or a take-off, hddot besides
-// after a release.
+// Number of leading coefficients of h that are exactly 0 in every member: h after an impact; h and hdot after contact
+// with hddot > 0; h, hdot and hddot after a release.
 enum class KnownRoot { none = 0, landed = 1, at_rest = 2, released = 3 };
 
-// What is known of an open contact's gap where a step starts, besides the set: its root, or where it has none a bound, which may
-// be narrower than what the set says.
+// Information about an open contact's gap at the start of a step, in addition to the set: its known root, or a bound
+// that may be narrower than the set's.
 struct Opening {
     KnownRoot known = KnownRoot::none;
     Interval gap = Interval::everything();
@@ -44,18 +44,18 @@ struct Opening {
 class Step {
  public:
     double length() const { return length_; }
-    // T, its derivative, S and rho of all coordinates; 0 <= tau <= length.
+    // T, its derivative, S and rho for all coordinates; 0 <= tau <= length.
     Intervals centre_at(const Interval& tau) const;
     Intervals rate_at(const Interval& tau) const;
     IntervalMatrix slope_at(const Interval& tau) const;
     Intervals remainder_at(const Interval& tau) const;
-    // A box around all members at all these times.
+    // A box that contains all members at all these times.
     Intervals box_over(const Doubleton& set, const Interval& tau) const;
-    // The members after exactly this time.
+    // Advances all members by exactly this time (s).
     void advance(Doubleton& set, double tau) const;
-    // What the law of a contact watches: it must stay positive until the next event, over all members, the last
-    // coefficient the remainder's. The gap with the known root divided out, or, for the force, -hddot of the mode in
-    // which it is open.
+    // Coefficients of the function that the law of a contact watches, over all members; the last one is that of the
+    // remainder. It is positive until the next event: the gap divided by its known root, or for the force -hddot in the
+    // mode in which the contact is open.
     const Intervals& watched(std::size_t contact) const { return watched_[contact]; }
 
  private:
@@ -67,7 +67,7 @@ class Step {
 
     std::size_t size_ = 0;
     double length_ = 0.0;
-    // By order: a row of each coordinate; at the centre, over the hull, and its derivatives by all coordinates over the hull.
+    // By order, a row with all coordinates: at the center, over the hull, and the derivatives over the hull.
     Intervals centre_, hull_;
     std::vector<IntervalMatrix> slopes_;
     Intervals remainder_;             // R
@@ -81,9 +81,10 @@ class Stepper {
     // Of the motion in this mode.
     Stepper(const Model& model, const Coordinates& coordinates, Mode mode);
 
-    // A step that is at most so long; `openings` by contact. Throws Undecided where no a-priori box is found.
+    // Makes a step of at most `longest` (s); `openings` has an entry for each contact. Throws Undecided if no a-priori
+    // box is found.
     Step make(const Doubleton& set, double longest, const std::vector<Opening>& openings);
-    // The next step may be as long as it likes.
+    // Removes the limit that the last step sets to the length of the next.
     void forget() { last_ = 0.0; }
 
  private:

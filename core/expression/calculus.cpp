@@ -1,4 +1,4 @@
-// Derivatives and substitution: one pass over the nodes below an expression, in the order of their ids.
+// Derivatives and substitution, each in one pass over the nodes below an expression, by ascending id.
 #include <algorithm>
 #include <limits>
 #include <numbers>

@@ -1,9 +1,10 @@
 // An expression graph: immutable, shared nodes with exact rational constants.
 //
 // Nodes live in a Graph and are hash-consed: equal expressions are the same node, so equality is a comparison of ids
-// and every common subexpression is stored once. A node's operands always have smaller ids than the node, so every pass
-// over a graph (derivative, substitution, compilation) is a loop, never a recursion: nesting depth cannot overflow the
-// stack.
+// Nodes live in a Graph and are hash-consed: equal expressions are the same node. Equality is therefore a comparison of
+// ids, and every common subexpression is stored once. Operands always have smaller ids than their node, so every pass
+// over a graph (derivative, substitution, compilation) is a loop without recursion, and deep nesting cannot overflow
+// the stack.
 #pragma once
 
 #include <array>
@@ -21,7 +22,7 @@ namespace achilles {
 enum class Operation : std::uint8_t {
     number,  // exact rational constant
     pi,      // the circle constant
-    symbol,  // an input, known by its slot
+    symbol,  // an input variable, identified by its slot
     add,
     subtract,
     multiply,
@@ -63,13 +64,14 @@ class Expression {
     std::uint32_t id_ = 0;
 };
 
-// More nodes, or more digits of exact numbers, than a graph may hold; what() is "it takes more than ...". Whatever
-// makes a node may throw it.
+// Thrown by every function that creates nodes if a graph would hold too many nodes, or too many digits of exact
+// numbers. what() is "it takes more than ...".
 struct TooLarge : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// Arithmetic builds nodes and simplifies locally: constants fold, 0 and 1 vanish, x - x = 0, like factors gather.
+// Arithmetic creates nodes and simplifies locally: constants are folded, 0 and 1 vanish, x - x = 0, equal factors are
+// merged.
 Expression operator+(Expression a, Expression b);
 Expression operator-(Expression a, Expression b);
 Expression operator*(Expression a, Expression b);
@@ -79,7 +81,7 @@ Expression power(Expression base, int exponent);
 Expression real_power(Expression base, Expression exponent);  // base > 0; integers and 1/2 become power and sqrt
 Expression apply(Operation function, Expression argument);    // one of sqrt ... log
 
-// A rational constant as every scalar type may want to read it.
+// A rational constant in the forms that the scalar types need.
 struct Constant {
     double nearest;         // rounded to nearest
     double low, high;       // low <= exact value <= high, equal where a double is exact
@@ -90,16 +92,17 @@ struct Constant {
 class Graph {
  public:
     Graph();
-    Graph(const Graph&);  // ids stay valid in the copy: see adopt()
+    Graph(const Graph&);  // ids are valid in the copy: see adopt()
     Graph& operator=(const Graph&) = delete;
     ~Graph();
 
     Expression number(long numerator, long denominator = 1);
-    // A decimal literal such as 12, 0.5 or 1e-3, exactly. Throws std::out_of_range beyond +-400 in the exponent.
+    // The exact value of a decimal literal such as 12, 0.5 or 1e-3. Throws std::out_of_range if the exponent exceeds
+    // +-400.
     Expression decimal(std::string_view digits);
     Expression pi();
     Expression symbol(std::uint32_t slot);
-    // The same node of another graph that was copied to or from this one.
+    // The node with the same id, for an expression of a graph that was copied to or from this one.
     Expression adopt(Expression other) { return {this, other.id()}; }
 
     struct Node {
@@ -110,7 +113,7 @@ class Graph {
     };
     const Node& node(std::uint32_t id) const;
     std::uint32_t size() const;
-    Constant constant(std::uint32_t id) const;  // of a number node
+    Constant constant(std::uint32_t id) const;  // requires a number node
 
  private:
     friend class Expression;
@@ -119,29 +122,29 @@ class Graph {
     std::unique_ptr<Table> table_;
 };
 
-// d(expression)/d(symbol of that slot): one pass over the graph for all expressions of a list.
+// d(expression)/d(symbol `slot`). For a list, all derivatives are taken in one pass over the graph.
 Expression derivative(Expression expression, std::uint32_t slot);
 std::vector<Expression> derivative(std::span<const Expression> expressions, std::uint32_t slot);
-// The same for each slot of a list: one row an expression, one column a slot.
+// The same for each slot of a list. Each row of a Jacobian belongs to an expression, each column to a slot.
 std::vector<Expression> gradient(Expression expression, std::span<const std::uint32_t> slots);
 std::vector<std::vector<Expression>> jacobian(std::span<const Expression> expressions,
                                               std::span<const std::uint32_t> slots);
 
-// The expression with symbols replaced: slots[i] becomes values[i].
+// Substitutes values[i] for the symbol of slots[i].
 Expression substitute(Expression expression, std::span<const std::uint32_t> slots, std::span<const Expression> values);
 
-// True if the value depends on any of these symbols.
+// True if the expression depends on any of these symbols.
 bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
 
-// True if the value depends on no symbol at all.
+// True if the expression depends on no symbol.
 bool is_constant(Expression expression);
-// The value of such an expression in doubles, not a number for any other.
+// The value of a constant expression in double arithmetic; NaN for any other expression.
 double value_of_constant(Expression expression);
 
-// The expression as text that parse() reads back; symbols print as names[slot].
+// The expression as text that parse() can read; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);
 
-// The functions of the language: names, for reading and printing, and values. One table.
+// The functions of the input language: name, operation and value in double arithmetic.
 struct Function {
     std::string_view name;
     Operation operation;

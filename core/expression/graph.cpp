@@ -28,17 +28,18 @@ bool same(const Graph::Node& x, const Graph::Node& y) {
 }
 
 std::uint64_t hash(const Rational& value) {
-    return std::hash<Rational>()(value) * 0x9E3779B97F4A7C15ULL;  // its low bits decide the place
+    return std::hash<Rational>()(value) * 0x9E3779B97F4A7C15ULL;  // the low bits select the entry
 }
 
-// Bits of numerator and denominator together.
+// Size in bits of the numerator and the denominator together.
 std::size_t bits(const Rational& value) {
     return value.is_zero() ? 0 : msb(abs(numerator(value))) + msb(denominator(value)) + 2;
 }
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// The largest double that is not above the value. The library's conversion is near; exact comparison settles the rest.
+// The largest double that is not above the value. Starts from the library's conversion and corrects it by exact
+// comparisons.
 double round_down(const Rational& value) {
     constexpr double largest = std::numeric_limits<double>::max();
     if (value >= Rational(largest)) return largest;
@@ -96,7 +97,7 @@ Expression Graph::number(long numerator, long denominator) {
 }
 
 Expression Graph::decimal(std::string_view digits) {
-    // Bounded, so that a hostile literal cannot ask for gigabytes: see the error below.
+    // Limits the length and the exponent: a huge exponent would need gigabytes of digits.
     constexpr std::size_t longest = 400;
     boost::multiprecision::cpp_int mantissa = 0;
     long exponent = 0;
@@ -119,7 +120,7 @@ Expression Graph::decimal(std::string_view digits) {
         exponent += negative ? -written : written;
     }
     if (std::abs(exponent) > 400 + static_cast<long>(longest)) throw std::out_of_range("an exponent beyond 400");
-    // Not auto: the expression template would refer to a temporary that is gone.
+    // Not auto, because the expression template would refer to a destroyed temporary.
     const boost::multiprecision::cpp_int scale =
         boost::multiprecision::pow(boost::multiprecision::cpp_int(10), static_cast<unsigned>(std::abs(exponent)));
     return Builder::number(*this, exponent < 0 ? Rational(mantissa, scale) : Rational(mantissa * scale));
@@ -132,7 +133,8 @@ Constant Graph::constant(std::uint32_t id) const {
     const Rational& value = table_->numbers[table_->nodes[id].a];
     const auto p = numerator(value), q = denominator(value);
     if (constexpr std::int64_t exact = std::int64_t{1} << 53; abs(p) <= exact && q <= exact) {
-        // One correctly rounded division; the sign of its exact rest tells the side.
+        // One correctly rounded division. The sign of the exact remainder tells on which side of the quotient the value
+        // lies.
         const double top = p.convert_to<double>(), bottom = q.convert_to<double>();
         const double nearest = top / bottom, rest = std::fma(-nearest, bottom, top);
         return {nearest, rest < 0.0 ? std::nextafter(nearest, -infinity) : nearest,

@@ -1,4 +1,4 @@
-// Inside an expression graph: the tables behind Graph, for the files of this folder only.
+// The tables behind Graph, for the files of this folder only.
 #pragma once
 
 #include <boost/multiprecision/cpp_int.hpp>
@@ -10,23 +10,24 @@ namespace achilles {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-// What a graph may hold: far above what a chain of eight links takes (10 000 nodes), and low enough that what exceeds
-// it is refused in a second. An exact number's size is that of numerator and denominator together.
+// Limits of a graph. They are far above the needs of a chain of eight links (10 000 nodes), and low enough that a
+// larger input is rejected within a second. The size of an exact number is that of its numerator and denominator
+// together.
 inline constexpr std::size_t most_nodes = 200000;
 inline constexpr std::size_t most_bits = 1 << 14, most_bits_in_all = 1 << 26;
 
-// Ids of nodes, found by the hash of what they hold: open addressing, so that a copy of a graph is a copy of bytes.
+// Hash set of ids with open addressing: copying a graph then copies plain memory.
 class IdSet {
  public:
-    // The place of the id for which same(id) holds, among those of this hash; or the free place where it belongs, which
-    // holds `none`. The caller writes there what it adds, once room() was called.
+    // The entry with this hash for which same(id) holds. If there is none, the free entry, which holds `none`; the
+    // caller writes the new id there, after a call of room().
     template <class Same>
     std::uint32_t& find(std::uint64_t hash, const Same& same) {
         std::size_t at = hash & (places_.size() - 1);
         while (places_[at] != none && !same(places_[at])) at = (at + 1) & (places_.size() - 1);
         return places_[at];
     }
-    // Makes room for one more of `count` ids; hash_of(id) tells where each belongs.
+    // Makes room for one more id when there are `count`; hash_of(id) returns the hash of an id.
     template <class HashOf>
     void room(std::size_t count, const HashOf& hash_of) {
         if (2 * count < places_.size()) return;
@@ -44,16 +45,16 @@ class IdSet {
 struct Graph::Table {
     std::vector<Node> nodes;
     std::vector<Rational> numbers;
-    std::vector<std::uint32_t> number_nodes;  // the node of each of them
-    IdSet node_ids, number_ids;               // into nodes, into numbers
-    std::size_t bits_in_all = 0;              // of every number that was asked for: arithmetic costs in proportion
+    std::vector<std::uint32_t> number_nodes;  // the node of each number
+    IdSet node_ids, number_ids;               // ids of nodes, indices into numbers
+    std::size_t bits_in_all = 0;              // of all numbers requested so far: arithmetic costs in proportion
 
-    // The node with this content: the one that exists, or a new one. Throws TooLarge.
+    // The node with this content, created if it does not exist. Throws TooLarge.
     std::uint32_t intern(const Node& node);
     std::uint32_t intern(const Rational& value);
 };
 
-// Makes nodes without asking whether a simpler form exists, and reads what they are made of.
+// Creates nodes without simplification, and reads their contents.
 struct Builder {
     static Graph::Table& table(Graph& graph) { return *graph.table_; }
     static Expression make(Graph& graph, const Graph::Node& node) { return {&graph, graph.table_->intern(node)}; }
@@ -74,7 +75,7 @@ constexpr bool is_leaf(Operation operation) {
     return operation == Operation::number || operation == Operation::pi || operation == Operation::symbol;
 }
 
-// For every node up to the last output: is it needed for one of them?
+// For every node up to the last output: true if an output needs it.
 std::vector<bool> reachable(std::span<const Expression> outputs);
 
 }  // namespace achilles

@@ -4,12 +4,11 @@
 #include <iterator>
 #include <vector>
 
-
 namespace achilles {
 
 namespace {
 
-// Edits (insert, delete, replace, swap of neighbours) that turn a into b.
+// Edit distance from a to b: insert, delete, replace, swap adjacent letters.
 std::size_t distance(std::string_view a, std::string_view b) {
     std::vector<std::vector<std::size_t>> d(a.size() + 1, std::vector<std::size_t>(b.size() + 1));
     for (std::size_t i = 0; i <= a.size(); ++i) d[i][0] = i;
@@ -35,7 +34,7 @@ std::string lower(std::string_view word) {
 }  // namespace
 
 std::string nearest(std::string_view word, std::span<const std::string> candidates) {
-    constexpr std::size_t longest = 100;  // nobody's misspelling
+    constexpr std::size_t longest = 100;  // longer words get no suggestion
     constexpr std::size_t least_beginning = 3;
     if (word.size() > longest) return {};
     const std::string small = lower(word);

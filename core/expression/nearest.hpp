@@ -1,4 +1,4 @@
-// The name a person probably meant.
+// Spelling suggestions for error messages, and the Greek letters.
 #pragma once
 
 #include <array>
@@ -9,30 +9,30 @@
 
 namespace achilles {
 
-// The candidate nearest to `word` in edit distance (insert, delete, replace, swap of neighbours), or "" if none is near
-// enough to be a likely misspelling: at most one edit for words up to 3 letters, a third of the length beyond. Capital
-// letters count as small ones. Where no candidate is near, the only one that begins with the word (3 letters or more).
+// The candidate closest to `word` in edit distance (insert, delete, replace, swap adjacent letters), ignoring case.
+// Allows one edit for words of up to 3 letters, and a third of the length for longer ones. If none is close enough,
+// returns the only candidate that starts with the word (3 letters or more), or "".
 std::string nearest(std::string_view word, std::span<const std::string> candidates);
 
-// A name as messages show it: 'x', but x' without quotes, which look like primes.
+// A name in quotes for messages: 'x'. A rate x' gets no quotes, because they look like primes.
 std::string in_quotes(std::string_view name);
 
-// Greek letters by their names: theta1 for θ1, and 2*theta for 2*θ.
+// Replaces Greek letters by their names: θ1 becomes theta1, and 2*θ becomes 2*theta.
 std::string spelled_out(std::string_view text);
 
-// x' where a word stands for that rate as other programs write it: xdot, x_dot, dx, dxdt, vx, v_x, x_t of an x whose x' is
-// one of the names, or v alone; else "".
+// The rate x' that a word in another program's notation stands for: xdot, x_dot, dx, dxdt, vx, v_x, x_t, or v alone.
+// Here x' must be one of the names. Returns "" for any other word.
 std::string rate_meant(std::string_view word, std::span<const std::string> names);
-// "; rates are written x'" for such a word; else "".
+// For such a word "; rates are written x'", else "".
 std::string rates_are_written(std::string_view word, std::span<const std::string> names);
 
-// "; did you mean 'x'?", or how a rate is written, or "".
+// "; did you mean 'x'?", or the hint of rates_are_written(), or "".
 std::string did_you_mean(std::string_view word, std::span<const std::string> candidates);
 
-// Whether a word stands in a list of words with spaces between.
+// True if `list`, words separated by spaces, contains the word.
 bool has_word(std::string_view list, std::string_view word);
 
-// Greek letters: their names, which is how a person writes them in a system file, and how they are shown.
+// Greek letters: the name used in a system file, and the character shown.
 
 inline constexpr std::array<std::pair<std::string_view, std::string_view>, 33> greek_letters{
     {{"alpha", "α"}, {"beta", "β"},  {"gamma", "γ"}, {"delta", "δ"},   {"epsilon", "ε"}, {"zeta", "ζ"},   {"eta", "η"},

@@ -19,7 +19,7 @@ namespace achilles {
 
 namespace {
 
-// Deeper than any formula a person writes, shallow enough for every stack.
+// Nesting limit: far deeper than formulas written by hand, and safe for every stack.
 constexpr int deepest = 200;
 
 constexpr std::array<std::string_view, 9> reserved{"t",    "pi",   "gap",   "lambda", "energy",
@@ -29,7 +29,7 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return is_letter(c) || is_digit(c) || c == '_'; }
 
-// One character as a person sees it: a whole UTF-8 sequence, or a code for what cannot be printed.
+// The first character of `rest` for a message: a whole UTF-8 sequence, or "a control character".
 std::string first_character(std::string_view rest) {
     const auto byte = static_cast<unsigned char>(rest.front());
     if (byte < 0x20 || byte == 0x7f) return "a control character";
@@ -53,7 +53,7 @@ class Parser {
     Parser(std::string_view text, const Scope& scope, Graph& graph, TextParts* parts)
         : text_(text), scope_(scope), graph_(graph), parts_(parts) {}
 
-    std::size_t at() const { return at_; }  // how far it was read
+    std::size_t at() const { return at_; }  // bytes read so far
 
     Expression whole() {
         skip_space();
@@ -64,7 +64,7 @@ class Parser {
     }
 
  private:
-    // Counts nesting while a level of the grammar is open.
+    // Counts the nesting depth for the lifetime of the object.
     struct Level {
         explicit Level(Parser& parser) : parser_(parser) {
             if (++parser_.depth_ > deepest)
@@ -150,7 +150,7 @@ class Parser {
         return rest.starts_with(word) && (ends_there || !is_letter(word[0]));
     }
 
-    // The unit that follows a value; null where none does.
+    // The unit that follows a value; null if there is none.
     const Expression* take_unit() {
         for (auto unit = scope_.units.rbegin(); unit != scope_.units.rend(); ++unit) {  // deg/s before deg
             if (!begins_with(unit->first)) continue;
@@ -161,7 +161,7 @@ class Parser {
         return nullptr;
     }
 
-    // -x^2 is -(x^2): the sign binds less than the power.
+    // -x^2 is -(x^2): the sign binds less tightly than the power.
     Expression signed_factor() {
         const Level level(*this);
         if (take('-')) return -signed_factor();
@@ -199,7 +199,7 @@ class Parser {
                                   instead_of_sign(text_.substr(at_)));
     }
 
-    // θ, and θ1 as a whole.
+    // Rejects Greek letters: θ, and θ1 as one name.
     void refuse_greek() const {
         const std::string_view rest = text_.substr(at_);
         for (const auto& [name, letter] : greek_letters) {
@@ -212,7 +212,7 @@ class Parser {
         }
     }
 
-    // |x|
+    // Rejects |x|.
     void refuse_bar() const {
         if (peek() == '|')
             throw ParseError(at_, "|x| is not allowed: it is not smooth, and the equations of motion need derivatives",
@@ -245,7 +245,7 @@ class Parser {
         throw ParseError(at_, "unexpected " + first_character(text_.substr(at_)) + instead_of_sign(text_.substr(at_)));
     }
 
-    // Behind a name that stands for one value.
+    // True right after a name that stands for a single value.
     bool follows_name() const {
         std::size_t begin = text_.find_last_not_of(" \t\r\n", at_ - 1) + 1;
         const std::size_t end = begin;
@@ -254,7 +254,7 @@ class Parser {
         return scope_.allowed.find(name) != scope_.allowed.end() && scope_.listed.find(name) == scope_.listed.end();
     }
 
-    // 1.0 m, where m is no name.
+    // Rejects a unit after a number, as in 1.0 m, if m is not a name.
     void refuse_unit() const {
         const std::size_t last = text_.find_last_not_of(" \t\r\n", at_ - 1);
         if (!is_letter(peek()) || !(is_digit(text_[last]) || text_[last] == '.')) return;
@@ -312,7 +312,7 @@ class Parser {
         fail_at_unknown(begin, bare, full);
     }
 
-    // "(2)"
+    // Reads an index in parentheses, such as "(2)".
     int number_in_list(std::string_view word) {
         const std::size_t open = at_;
         take('(');
@@ -361,7 +361,7 @@ class Parser {
         }
         for (const auto& [word, symbol] : scope_.allowed) known.push_back(word);
         known.emplace_back("pi");
-        std::vector<std::string> rates;  // those that may not stand here, too
+        std::vector<std::string> rates;  // including rates that are not allowed here
         for (const auto& [word, reason] : scope_.forbidden)
             if (reason.starts_with("the rate ")) rates.push_back(word);
         if (const std::string hint = rates_are_written(full, rates); !hint.empty())
@@ -382,9 +382,9 @@ class Parser {
     int depth_ = 0;
 };
 
-// "write 0.5*x^2" for 0.5x²; "" where what it was meant to be is not known.
+// The suggested text, such as 0.5*x^2 for 0.5x²; "" if there is no suggestion that can be parsed.
 std::string suggestion(std::string_view text, const Scope& scope, Graph& graph) {
-    constexpr std::size_t longest = 200;  // what a person reads in a message
+    constexpr std::size_t longest = 200;  // longer texts do not fit into a message
     if (text.size() > longest) return "";
     const std::string right = repaired(text, scope);
     if (right == text) return "";
@@ -407,7 +407,7 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
     } catch (const ParseError& error) {
         const std::string right = error.hint.empty() ? suggestion(text, scope, graph) : "";
         if (right.empty()) throw;
-        // A guess at the name alone would contradict it.
+        // The guess at a single name is dropped, because it would contradict the suggestion.
         const std::string message = error.what();
         const std::size_t end = std::min(message.find("; did you mean"), message.find(functions_are));
         throw ParseError(error.offset, message.substr(0, end), error.name, right);
@@ -447,7 +447,7 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(spaces) + 1 - first);
 }
 
-// A decimal number, all of it; what is too large is infinite.
+// Parses the whole text as a decimal number. A number outside the range of double is infinite.
 std::optional<double> plain_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
     double value = 0.0;
@@ -456,20 +456,20 @@ std::optional<double> plain_number(std::string_view text) {
     return problem == std::errc() ? value : HUGE_VAL;
 }
 
-// "0.4" for 0,4; "" where the comma is not what is wrong.
+// The text with a decimal point, "0.4" for 0,4; "" if that is not a number.
 std::string with_a_point(std::string_view text) {
     std::string other(text);
     std::replace(other.begin(), other.end(), ',', '.');
     return other != text && plain_number(other) ? other : "";
 }
 
-// What a person sees of a text in a message.
+// A text as shown in a message: truncated, with control characters replaced.
 std::string shown(std::string_view text) {
     constexpr std::size_t most = 60;
     std::string result;
     for (const char c : text.substr(0, most)) result += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
     while (text.size() > most && !result.empty() && (static_cast<unsigned char>(result.back()) & 0x80) != 0)
-        result.pop_back();  // half a character
+        result.pop_back();  // possibly an incomplete UTF-8 sequence
     return "'" + result + (text.size() > most ? "...'" : "'");
 }
 
@@ -482,7 +482,7 @@ std::string shown(std::string_view text) {
 
 void allow_units(Scope& scope, std::string_view unit, Graph& graph) {
     const Expression degree = graph.pi() / graph.number(180);
-    const bool is_rate = unit == "rad/s" && scope.allowed.find("s") == scope.allowed.end();  // else it is divided by s
+    const bool is_rate = unit == "rad/s" && scope.allowed.find("s") == scope.allowed.end();  // else deg/s divides by s
     for (const std::string word : {"deg", "\u00b0", "rad"}) {
         const Expression factor = word == "rad" ? graph.number(1) : degree;
         if (unit == "rad" || unit == "rad/s")
@@ -524,14 +524,14 @@ GivenNumber read_number(std::string_view whole, std::string_view unit) {
         given.value = value_of_constant(parse(text, scope, graph));
     } catch (const ParseError& error) {
         const bool is_unknown = !error.name.empty() && !scope.forbidden.contains(error.name);
-        // No functions: a word without parentheses is none, and ten was not meant to be tan.
+        // Functions are not suggested: without parentheses, ten is not a misspelling of tan.
         const std::vector<std::string> known{"pi"};
         fail(text, begin + error.offset,
              is_unknown ? "pi is the only name allowed here" + did_you_mean(error.name, known) : error.what(),
              error.name, error.hint);
     }
     if (!std::isfinite(given.value)) fail(text, begin, "");
-    // No name of the language but theirs has these letters.
+    // No other name of the language contains these letters.
     given.has_pi = text.find("pi") != text.npos;
     for (const auto& [word, factor] : scope.units) given.has_unit = given.has_unit || text.find(word) != text.npos;
     return given;

@@ -1,4 +1,4 @@
-// An expression as text that parse() reads back, or as LaTeX.
+// Formats an expression as text that parse() can read, or as LaTeX.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,8 @@ constexpr std::array<std::string_view, 34> greek{
     "nu",    "xi",    "pi",     "rho",   "sigma",   "tau",   "upsilon", "phi",   "chi",  "psi",   "omega",  "Gamma",
     "Delta", "Theta", "Lambda", "Xi",    "Pi",      "Sigma", "Upsilon", "Phi",   "Psi",  "Omega"};
 
-// One run of letters or digits: a Greek letter by its name, one letter or a number as it is, a word in one piece.
+// A run of letters or digits in LaTeX: a Greek letter by its name, a single letter or a number unchanged, other words
+// in one \mathit.
 std::string latex_word(std::string_view word) {
     if (std::find(greek.begin(), greek.end(), word) != greek.end()) return fmt::format("\\{}", word);
     return word.size() <= 1 || is_digit(word.front()) ? std::string(word) : fmt::format("\\mathit{{{}}}", word);
@@ -92,7 +93,7 @@ Written write_negated(const Written& a, Notation notation) {
 
 Written write_product(const Written& a, const Written& b, Notation notation) {
     const std::string left = inside(a, 2, notation);
-    // Text keeps the order of evaluation: a*(b*c) reads back as it was.
+    // Text keeps the order of evaluation: a*(b*c) is read back unchanged.
     if (notation == Notation::text) return {fmt::format("{}*{}", left, inside(b, 3, notation)), 2, {}};
     const std::string right = inside(b, 2, notation);
     return {fmt::format("{}{}{}", left, starts_with_digit(right) ? " \\cdot " : " ", right), 2, {}};
@@ -127,7 +128,7 @@ Written write_function(Operation function, const Written& argument, Notation not
         if (notation == Notation::text) return {fmt::format("{}({})", name, argument.text), 5, {}};
         if (function == Op::sqrt) return {fmt::format("\\sqrt{{{}}}", argument.text), 5, {}};
         const std::string head = latex_function(function, name);
-        // A name stands alone: \sin x. It may not follow directly where it begins with a letter.
+        // A simple argument needs no parentheses: \sin x. The space ends the name of the function.
         const bool plain = argument.binding == 5 && argument.head.empty();
         const std::string rest =
             plain ? fmt::format(" {}", argument.text) : fmt::format("{}", inside({argument.text, 1, {}}, 5, notation));
@@ -138,8 +139,8 @@ Written write_function(Operation function, const Written& argument, Notation not
 
 namespace {
 
-// A product whose first factor may be an exact number: x/2 as text, where it reads back to (1/2)*x, and a sign in front
-// of all in LaTeX.
+// A product whose first factor may be an exact number. Text writes x/2 for (1/2)*x, if it is read back unchanged. LaTeX
+// puts a minus sign in front of the product.
 Written multiplied(Expression first, const Written& a, const Written& b, Notation notation) {
     if (!first.is_number()) return write_product(a, b, notation);
     const boost::multiprecision::cpp_rational& value = Builder::value(first);

@@ -26,7 +26,7 @@ bool is_function(std::string_view word) {
     return std::any_of(functions.begin(), functions.end(), [&](const Function& one) { return one.name == word; });
 }
 
-// The place of the bracket that closes the one at `open`; npos where none does.
+// Index of the bracket that closes the one at `open`; npos if there is none.
 std::size_t closing(std::string_view text, std::size_t open) {
     const char opens = text[open], closes = opens == '(' ? ')' : '}';
     int depth = 0;
@@ -39,7 +39,8 @@ std::size_t closing(std::string_view text, std::size_t open) {
 
 // ---- LaTeX ----
 
-// \frac{a}{b} is (a)/(b), \dot{x} and \dot x are x', x_{1} is x_1; other commands lose their backslash.
+// Removes LaTeX: \frac{a}{b} becomes (a)/(b), \dot{x} and \dot x become x', x_{1} becomes x_1. Other commands lose
+// their backslash.
 std::string without_latex(std::string text) {
     if (text.find('\\') == text.npos) return text;
     std::erase(text, '$');
@@ -78,7 +79,7 @@ std::string without_latex(std::string text) {
 constexpr std::array<std::string_view, 10> superscripts{"\u2070", "\u00b9", "\u00b2", "\u00b3", "\u2074",
                                                         "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
 
-// The digits of a run of superscripts at the start of a text, "-1" of ⁻¹, and its size in bytes.
+// The digits of the superscripts at the start of `rest`, such as "-1" for ⁻¹, and their size in bytes.
 std::pair<std::string, std::size_t> exponent_of(std::string_view rest) {
     std::string digits;
     std::size_t size = 0;
@@ -140,7 +141,7 @@ std::string with_plain_signs(std::string_view text) {
 struct Token {
     enum class Kind { number, name, sign } kind;
     std::string text;
-    bool has_space;  // before it
+    bool has_space;  // preceded by white space
 };
 
 std::vector<Token> tokens_of(std::string_view text) {
@@ -220,7 +221,7 @@ class Words {
         return name.ends_with('\'') && scope_.allowed.find(name) != scope_.allowed.end();
     }
 
-    // The place of the parenthesis that closes the one at `open`; the end where none does.
+    // Index of the parenthesis that closes the one at `open`; the number of tokens if there is none.
     std::size_t closing(std::size_t open) const {
         int depth = 0;
         for (std::size_t i = open; i < tokens_.size(); ++i) {
@@ -238,7 +239,7 @@ class Words {
         tokens_.insert(tokens_.begin() + static_cast<std::ptrdiff_t>(at), {Kind::sign, sign, false});
     }
 
-    // np.sin(x)
+    // np.sin(x) becomes sin(x).
     void drop_module(std::size_t i) {
         constexpr std::array<std::string_view, 7> modules{"np", "numpy", "math", "Math", "sympy", "sp", "cmath"};
         if (std::find(modules.begin(), modules.end(), tokens_[i].text) == modules.end() || !is(i + 1, ".")) return;
@@ -247,14 +248,14 @@ class Words {
         if (i < tokens_.size()) tokens_[i].has_space = has_space;
     }
 
-    // x(t), x(end)
+    // x(t) and x(end) become x.
     void drop_instant(std::size_t i) {
         const bool is_instant = is(i + 2, "t") || is(i + 2, "T") || is(i + 2, "end");
         if (scope_.allowed.contains(tokens_[i].text) && is(i + 1, "(") && is_instant && is(i + 3, ")"))
             erase(i + 1, i + 4);
     }
 
-    // zeno_time 1, zeno_time1 and zeno_time_1
+    // zeno_time 1, zeno_time1 and zeno_time_1 become zeno_time(1).
     void list(std::size_t i) {
         std::string& word = tokens_[i].text;
         if (is_listed(word) && i + 1 < tokens_.size() && tokens_[i + 1].kind == Kind::number) {
@@ -294,7 +295,7 @@ class Words {
             word = product;
     }
 
-    // der(x), diff(x, t) where x has a rate.
+    // True for der(x) and diff(x, t), if x has a rate.
     bool is_derivative(std::string_view word, std::size_t i) const {
         constexpr std::array<std::string_view, 6> words{"der", "diff", "dot", "d", "ddt", "derivative"};
         return std::find(words.begin(), words.end(), word) != words.end() && is(i + 1, "(") && i + 2 < tokens_.size() &&
@@ -302,7 +303,7 @@ class Words {
                (is(i + 3, ")") || (is(i + 3, ",") && is(i + 4, "t") && is(i + 5, ")")));
     }
 
-    // pow(a, b) as ((a)^(b)), a name or a number without parentheses.
+    // pow(a, b) becomes ((a)^(b)); names and numbers need no parentheses.
     void write_power(std::size_t i) {
         const std::size_t close = closing(i + 1);
         std::size_t comma = i + 2;
@@ -319,7 +320,7 @@ class Words {
         tokens_[i].has_space = has_space;
     }
 
-    // sin x, sin^2(x) and sin^2 x.
+    // sin x becomes sin(x), and sin^2(x) and sin^2 x become sin(x)^2.
     void call(std::size_t i) {
         std::string exponent;
         if (is(i + 1, "^") && i + 2 < tokens_.size() && tokens_[i + 2].kind == Kind::number) {
@@ -341,7 +342,7 @@ class Words {
         tokens_.insert(tokens_.begin() + static_cast<std::ptrdiff_t>(close + 2), {Kind::number, exponent, false});
     }
 
-    // m*g*y for mgy, where this is the only way to read it; no square.
+    // m*g*y for mgy, if this is the only way to split it into allowed names and all factors are different.
     std::string as_product(const std::string& word) const {
         constexpr std::size_t longest = 12;
         if (word.size() > longest) return "";
@@ -361,7 +362,7 @@ class Words {
         return counts.back() == 1 && !is_square ? ways.back() : "";
     }
 
-    // Two values side by side: the second begins at i.
+    // True if tokens i - 1 and i are adjacent values, which are meant as a product.
     bool is_product(std::size_t i) const {
         const Token &left = tokens_[i - 1], &right = tokens_[i];
         const bool ends = left.text == ")" || left.kind != Kind::sign;
@@ -377,7 +378,7 @@ class Words {
 
 // ---- statements ----
 
-// y for y[1], and x1 for x[1] where the scope has that.
+// y[1] becomes y, or x1 for x[1] if the scope has such a name.
 std::string without_index(std::string text, const Scope& scope) {
     for (std::size_t open = text.find('['); open != text.npos; open = text.find('[', open + 1)) {
         std::size_t begin = open, end = open + 1;
@@ -392,7 +393,8 @@ std::string without_index(std::string text, const Scope& scope) {
     return text;
 }
 
-// y - sin(x) for y >= sin(x) and for y = sin(x); what stands behind "V =" or "h(q) =" where the left side is no value.
+// y >= sin(x) and y = sin(x) become y - sin(x). If the left side is not a value, as in "V =" or "h(q) =", only the
+// right side is kept.
 std::string without_relation(const std::string& text, const Scope& scope) {
     struct Relation {
         std::string_view sign;
@@ -431,7 +433,7 @@ constexpr std::string_view product = "write '*' for a product", power = "write '
                            prime = "write the keyboard apostrophe, ' as in x'", round = "write parentheses, ( and )",
                            comparison = "write the expression alone: the contact is open where the gap is positive";
 
-// The longer ones first.
+// A sign that starts with another one comes before it.
 constexpr Habit signs[] = {
     {"**", power, "^"},
     {".*", "write '*'", "*"},
@@ -474,7 +476,7 @@ constexpr Habit signs[] = {
     {"\\", "expressions are not LaTeX", ""},
 };
 
-// What has corners or jumps.
+// Smooth approximations of functions with corners or jumps.
 constexpr std::string_view for_abs = "sqrt(x^2 + w^2) approximates |x| for small w";
 constexpr std::string_view for_step = "(1 + tanh(x/w))/2 approximates a step at x = 0 for small w";
 constexpr std::string_view for_mod = "write a periodic function with sin and cos";
@@ -496,7 +498,7 @@ struct OtherName {
     std::string_view written, known, told;
 };
 
-// Said where the second name has a meaning; where that is empty, always.
+// A hint is given if the scope has the name `known`; if `known` is empty, always.
 constexpr OtherName names[] = {
     {"h", "gap", "the gap is called gap"},
     {"hdot", "gap'", "the rate of the gap is called gap'"},

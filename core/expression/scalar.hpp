@@ -1,5 +1,5 @@
-// What a scalar type must offer to run a program: arithmetic, the functions, constants, integer powers.
-// double and Interval are given here; others (multiprecision in tests) fall to the generic definitions.
+// The operations that a scalar type needs to run a program: arithmetic, functions, constants, integer powers. double
+// and Interval have their own here; other types (multiprecision in tests) use the generic definitions.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace achilles {
 
-// A number with its derivatives, which a constant has not (number/jet.hpp).
+// Scalar types with derivatives (number/jet.hpp). The derivatives of a constant are zero.
 template <class Scalar>
 concept HasDerivatives = requires {
     typename Scalar::Component;
@@ -49,7 +49,7 @@ inline Interval scalar_pi<Interval>() {
     return Interval::pi();
 }
 
-// x^n by repeated squaring; Interval brings its own, tight for even n.
+// x^n by repeated squaring. Interval has its own overload, tight for even n.
 template <class Scalar>
 Scalar integer_power(const Scalar& x, int n) {
     unsigned m = n < 0 ? 0u - static_cast<unsigned>(n) : static_cast<unsigned>(n);

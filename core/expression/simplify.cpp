@@ -1,5 +1,6 @@
-// Local simplification: every operator looks one level down and returns the simplest equal node it can see. Signs and
-// numeric factors move outwards, so that like terms meet. Nothing here may change the value where it is defined.
+// Local simplification: every operator inspects its operands one level deep and returns the simplest equal node it
+// finds. Signs and numeric factors move outward, so that like terms meet. No rule may change the value where it is
+// defined.
 #include <stdexcept>
 #include <utility>
 
@@ -19,7 +20,7 @@ Expression unary(Op operation, Expression a) { return Builder::make(a.graph(), G
 
 Expression number(Expression like, const Rational& value) { return Builder::number(like.graph(), value); }
 
-// e = factor * rest, with the numeric factor that stands outermost.
+// e = factor * rest, where `factor` is the outermost numeric factor.
 struct Term {
     Rational factor;
     Expression rest;
@@ -46,7 +47,7 @@ std::pair<Expression, int> as_power(Expression e) {
     return {e, 1};
 }
 
-// Exact as long as it stays small: towers of powers must not fill the memory with digits.
+// Folds a power exactly only while the result is small; nested powers would otherwise fill the memory with digits.
 bool can_fold(const Rational& base, int exponent) {
     constexpr std::size_t most_bits = 4096;
     using boost::multiprecision::denominator, boost::multiprecision::numerator;
@@ -85,7 +86,7 @@ Expression operator-(Expression a, Expression b) {
     if (x.rest == y.rest) return scaled(Rational(x.factor - y.factor), x.rest);
     if (!b.is_number() && y.factor.sign() < 0) return a + scaled(Rational(-y.factor), y.rest);
     if (b.is_number() && Builder::value(b).sign() < 0) return a + number(b, Rational(-Builder::value(b)));
-    // (a + b) - b = a and (a - b) - a = -b: they appear in every derivative of a product.
+    // (a + b) - b = a and (a + b) - a = b: both occur in every derivative of a product.
     if (Builder::is(a, Op::add) && Builder::second(a) == b) return Builder::first(a);
     if (Builder::is(a, Op::add) && Builder::first(a) == b) return Builder::second(a);
     return binary(Op::subtract, a, b);

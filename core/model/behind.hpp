@@ -1,4 +1,4 @@
-// Expressions that stand behind an option of a command line.
+// Expressions typed as the value of a command-line option.
 #pragma once
 
 #include <fmt/format.h>
@@ -11,7 +11,8 @@
 
 namespace achilles {
 
-// What `compile` makes of the text; says of what is wrong with it behind which option it stands.
+// Calls `compile` on the text. An InputError in the text is rethrown with the option's name and the text in its
+// message.
 template <class Compile>
 auto behind(const char* flag, const std::string& text, const Compile& compile) {
     const Text given{text, {}};

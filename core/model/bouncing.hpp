@@ -1,13 +1,14 @@
-// The bouncing in coordinates that impacts do not disturb: (q, s) with s the tangential velocity (theory.md 5.1).
+// The motion of a bouncing contact in coordinates that impacts do not change: (q, s), where s is the tangential
+// velocity (theory.md 5.1).
 //
 //     q' = s + n sigma,   s' = F(q,s,sigma,t) = A + B sigma + D sigma^2,   sigma = hdot
 //
 // A is the constrained acceleration f_c(q, s, t), and
 //     F = f_c(q, s + n sigma, t) - (dn/dq (s + n sigma) + n_t) sigma
 //     B = df_c/dv n - dn/dq s - n_t,     D = 1/2 n' (d2f_c/dv2) n - dn/dq n
-// with v at s in B. Where f_c is of degree 2 in the velocity so it is in D, which is the same for all sigma. Where a
-// force makes it another function (theory-gaps.md 1), v is s + n sigma in D, so that D over all sigma' between 0 and sigma
-// holds what Lagrange's remainder needs.
+// In B, v = s. If f_c has degree 2 or less in the velocity, v = s in D as well, and D does not depend on sigma. If a
+// force makes f_c another function of the velocity (theory-gaps.md 1), v = s + n sigma in D. The values of D over all
+// sigma' between 0 and sigma then include Lagrange's form of the remainder.
 // In every program here the slots of v hold s, and the slot sigma holds hdot.
 #pragma once
 
@@ -17,7 +18,8 @@
 
 namespace achilles {
 
-// At sigma = 0: hddot, its rate along the constrained motion (P below), its derivative with respect to sigma.
+// At sigma = 0: hddot, its time derivative along the constrained motion (P below), and its derivative with respect to
+// sigma.
 template <class Base>
 class TrendTerms : public Terms<Base> {
  public:
@@ -34,11 +36,11 @@ class BouncingRates : public Terms<Base> {
  public:
     using Terms<Base>::Terms;
     static Expressions list(const Expressions& q_rate, const Expressions& s_rate) { return joined({q_rate, s_rate}); }
-    decltype(auto) rate(std::size_t i) const { return this->output(i); }  // of the variables (q, s)
+    decltype(auto) rate(std::size_t i) const { return this->output(i); }  // of variable i of (q, s)
     decltype(auto) s_rate(std::size_t i) const { return rate(this->dof_ + i); }
 };
 
-// What bounds the shadow of a bouncing, and how hddot(q, s) moves along it (theory-truncation.md 4):
+// The terms that bound the shadow of a bouncing motion, and the rate of hddot(q, s) along it (theory-truncation.md 4):
 //     d/dt = P + Phi sigma + Xi sigma^2
 //     P = hddot_q s + hddot_s A + hddot_t,   Phi = hddot_q n + hddot_s B,   Xi = hddot_s D
 template <class Base>
@@ -61,13 +63,13 @@ class ShadowTerms : public Terms<Base> {
     decltype(auto) P() const { return row(6 + 2 * this->dof_, 0); }
     decltype(auto) Phi() const { return row(6 + 2 * this->dof_, 1); }
     decltype(auto) Xi() const { return row(6 + 2 * this->dof_, 2); }
-    // dA/dq n + dA/ds B - Bdot: what the impulses change of the drift of s.
+    // dA/dq n + dA/ds B - Bdot: the effect of the impulses on the drift of s.
     auto drift(std::size_t i) const {
         auto sum = -Bdot(i);
         for (std::size_t j = 0; j < this->dof_; ++j) sum = sum + dA_dq(i, j) * n(j) + dA_ds(i, j) * B(j);
         return sum;
     }
-    // How fast A_i may vary with q and s: the sum of |dA_i/dq_j| and |dA_i/ds_j|.
+    // Bound on how fast A_i varies with q and s: the sum of |dA_i/dq_j| and |dA_i/ds_j|.
     auto steepness(std::size_t i) const {
         auto sum = abs(dA_dq(i, 0)) + abs(dA_ds(i, 0));
         for (std::size_t j = 1; j < this->dof_; ++j) sum = sum + abs(dA_dq(i, j)) + abs(dA_ds(i, j));
@@ -79,19 +81,21 @@ class ShadowTerms : public Terms<Base> {
 };
 
 struct Bouncing {
-    // What the programs vary with: q, s, sigma, and t where anything depends on it.
+    // The variables of the programs: q, s, sigma, and t if the system depends on time.
     std::vector<std::uint32_t> variables;
     Program hddot;                   // hddot(q, s + n sigma)
     Program gradient;                // its derivatives with respect to the variables
     ProgramOf<BouncingRates> rates;  // of q and s
     ProgramOf<TrendTerms> trend;
-    Program shadow;  // the gradient again (it shares most of its work with what follows), then ShadowTerms
+    Program shadow;  // the gradient again (it shares most of its work with the rest), then ShadowTerms
 };
 
-// What must stay as it is around contacts that bounce, one (theory-gaps.md 2.3) or two together (3), where all others but the
-// held ones are open, at this velocity, an expression for each slot of v. The program has W of every bouncing contact; of every
-// held one hddot of the motion that holds the others (negative: it is pressed), W of that motion, and for each bouncing contact
-// kappa, what an impulse on that is passed on by; of every open one its gap.
+// Conditions on the other contacts while one contact (theory-gaps.md 2.3) or two contacts (3) bounce. Every other
+// contact is held or open. `velocity` has an expression for each slot of v. The program returns:
+//   for every bouncing contact: W;
+//   for every held contact, in the mode that holds the other held ones: hddot (negative if pressed), W, and for each
+//       bouncing contact kappa, the factor by which it transmits an impulse;
+//   for every open contact: its gap.
 struct Neighbours {
     std::vector<std::size_t> bouncing, held, open;
     Program program;
@@ -103,15 +107,17 @@ Neighbours derive_neighbours(std::size_t contact, Mode mode, ContactModes& motio
 // Derives and compiles the programs of a contact, in a copy of its graph.
 Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);
 
-// Two contacts that bounce together, in coordinates that no impact of theirs disturbs (theory-gaps.md 3): N has a column for
-// each, N = M^-1 G_C' W_CC^-1 while others are held, and
+// Two contacts that bounce together, in coordinates that their impacts do not change (theory-gaps.md 3). N has a column
+// for each contact, N = M^-1 G_C' W_CC^-1 while others are held, and
 //     v = s + N sigma,   q' = s + N sigma,   s' = F(q,s,sigma,t) = A + B sigma + sum D_ij sigma_i sigma_j
-// with A the acceleration where both are held. The slots of v hold s; sigma and the second sigma are hdot of the two.
+// A is the acceleration while both are held. The slots of v hold s; sigma and the second sigma are hdot of the two
+// contacts.
 template <class Base>
 class PairTerms : public Terms<Base> {
  public:
     using Terms<Base>::Terms;
-    // Of contact k = 0, 1: hddot while both are open, N, B, their rates; W_00, W_01, W_11; D_00, 2 D_01, D_11.
+    // For the contacts k = 0, 1: hddot while both are open, N, B and their time derivatives; W_00, W_01, W_11; D_00,
+    // 2 D_01, D_11.
     static Expressions list(const Expressions& hddot, const Expressions& delassus, const Expressions& A,
                             const Expressions& N, const Expressions& B, const Expressions& Ndot,
                             const Expressions& Bdot, const Expressions& D, const Expressions& dA_dq,
@@ -138,7 +144,8 @@ struct PairPrograms {
     Neighbours others;
 };
 
-// Two contacts while others are held. Throws std::domain_error where the two cannot be held at once with these.
+// The programs of two contacts while others are held. Throws std::domain_error if the two cannot be held together with
+// these.
 PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
                          const Equations& equations, const Layout& layout);
 

@@ -15,8 +15,8 @@ namespace {
 
 using Row = std::vector<Expression>;
 
-// M = L D L' with unit lower triangular L. Square roots are not needed and zeros stay zeros; L D is kept beside L,
-// because it is there before the division.
+// M = L D L' with unit lower triangular L. It needs no square roots and keeps zeros. L D is stored beside L, because it
+// is computed before the division.
 class Factorisation {
  public:
     Factorisation(const Row& M, std::size_t n, Graph& graph) : dof_(n), lower_(n * n, graph.number(0)), pivots_(n) {
@@ -57,8 +57,8 @@ Expression dot(const Row& a, const Row& b, Graph& graph) {
     return sum;
 }
 
-// b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i, with the two terms of v_j v_k gathered: half the
-// products.
+// b_i = sum_jk (dM_ij/dq_k - 1/2 dM_jk/dq_i) v_j v_k + dV/dq_i. The two terms in v_j v_k are combined, which halves the
+// number of products.
 Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std::uint32_t>& q, Graph& graph) {
     const std::size_t n = v.size();
     const std::vector<Row> dM = jacobian(M, q);  // dM[i n + j][k] = dM_ij/dq_k
@@ -76,7 +76,8 @@ Row bias(const Row& M, Expression potential, const Row& v, const std::vector<std
     return b;
 }
 
-// Of degree 2 or less in these symbols, as far as a polynomial can be told.
+// Whether the expression is a polynomial of degree 2 or less in these symbols, by expand_in_rates(): false if it is not
+// recognized.
 bool is_quadratic(Expression expression, const std::vector<std::uint32_t>& slots) {
     Expression offender;
     const auto expanded = expand_in_rates(expression, slots, offender);
@@ -85,10 +86,10 @@ bool is_quadratic(Expression expression, const std::vector<std::uint32_t>& slots
                        [](const auto& term) { return std::accumulate(term.first.begin(), term.first.end(), 0) <= 2; });
 }
 
-// A quotient whose divisor is never zero: a factor that it shares with the dividend goes.
+// Cancels a factor common to dividend and divisor of a quotient. The divisor must never be zero.
 Expression cancelled(Expression quotient, Graph& graph) {
     const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
-    const Graph::Node node = graph.node(quotient.id());  // a copy: what follows makes nodes
+    const Graph::Node node = graph.node(quotient.id());  // a copy, because nodes are created below
     if (node.operation == Operation::multiply && at(node.a).is_number())
         return at(node.a) * cancelled(at(node.b), graph);
     if (node.operation == Operation::multiply && at(node.b).is_number())
@@ -100,7 +101,7 @@ Expression cancelled(Expression quotient, Graph& graph) {
     return dividend.b == node.b ? at(dividend.a) : quotient;
 }
 
-// What follows from the impulse, the Delassus matrix and hddot of a contact, along a motion with this f.
+// Sets the terms of a contact that follow from its impulse, Delassus matrix and hddot, in a mode with acceleration f.
 void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row& v, Graph& graph) {
     c.W = c.delassus[contact];
     c.direction.clear();
@@ -204,7 +205,7 @@ const ModeEquations& ContactModes::of(Mode mode) {
     return known != known_.end() ? known->second : known_.emplace(mode, derive(mode)).first->second;
 }
 
-// With the last of the contacts that keep their gap one more than a motion that is known, or will be.
+// Adds the last contact k that keeps its gap to the mode without it, which is derived first if necessary.
 ModeEquations ContactModes::derive(Mode mode) {
     const ContactSet kept = contacts_keeping(mode, Constraint::gap);
     std::size_t k = 0;
@@ -234,14 +235,14 @@ ModeEquations ContactModes::derive(Mode mode) {
 
 namespace {
 
-// The motion's acceleration as it was derived, and as it follows from the forces of what is held.
+// The acceleration of a mode as derived and, if exactly one contact is held, as f + impulse lambda.
 std::pair<Expressions, Expressions> accelerations(const ModeEquations& motion) {
     for (std::size_t i = 0; i < motion.contacts.size(); ++i)
         if (motion.mode.held() == ContactSet::of(i)) return {motion.f, motion.contacts[i].f_by_force};
     return {motion.f, {}};
 }
 
-// The event function of what the law of a contact watches.
+// The expression of the function that the law of a contact watches.
 Expression event_function(const ContactEquations& contact, WatchedFunction watched) {
     switch (watched) {
         case WatchedFunction::gap:
@@ -252,14 +253,15 @@ Expression event_function(const ContactEquations& contact, WatchedFunction watch
     return {};
 }
 
-// The pivots of M in a motion's graph.
+// The pivots of M, adopted into the mode's graph.
 Expressions pivots_of(const Equations& equations, Graph& graph) {
     Expressions pivots;
     for (const Expression pivot : equations.pivots) pivots.push_back(graph.adopt(pivot));
     return pivots;
 }
 
-// The motion with these event functions, in the way that takes fewer products.
+// The series of a mode with these event functions. Of the two forms of the acceleration, the one with fewer products is
+// used.
 SeriesProgram series_of(const ModeEquations& motion, const Expressions& event_functions, const Expressions& pivots,
                         const Layout& layout) {
     const auto with = [&](const Expressions& acceleration) {

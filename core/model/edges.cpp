@@ -10,13 +10,14 @@ namespace achilles {
 
 namespace {
 
-// A factor of a divisor, with the power that it stands in.
+// A factor of a divisor, with its exponent.
 struct Divisor {
     Expression factor;
     int power = 1;
 };
 
-// The factors of a divisor that may be 0: roots and real powers are edges of their own, exponentials and cosh never are.
+// The factors of a divisor that may be 0. Roots and real powers are edges of their own; exponentials and cosh are never
+// 0.
 std::vector<Divisor> factors_of(Expression divisor, int power) {
     const Graph::Node& node = Builder::node(divisor);
     Graph& graph = divisor.graph();
@@ -44,8 +45,8 @@ std::vector<Divisor> factors_of(Expression divisor, int power) {
     }
 }
 
-// Whether the quotient stays finite where a divisor that is linear in a variable vanishes, as sin(x)/x and (1 - cos(x))/x^2 do: a
-// zero of the numerator as often. What is not seen to be so is none.
+// Whether the quotient stays finite where a divisor that is linear in a variable vanishes, as in sin(x)/x and
+// (1 - cos(x))/x^2. True only if the numerator is seen to have a zero of at least the same order.
 bool is_removable(Expression numerator, const Divisor& divisor, std::span<const std::uint32_t> moving) {
     Graph& graph = numerator.graph();
     for (const std::uint32_t slot : moving) {
@@ -60,11 +61,11 @@ bool is_removable(Expression numerator, const Divisor& divisor, std::span<const 
     return false;
 }
 
-// A pole has a distance as an edge has: the square of what a quotient is divided by. A coefficient below the tolerance hides it
-// from the series of the motion, as 1e-10/(1 - t)^2, and a step leads past it.
+// The poles of a quotient. Their distance is the square of the divisor. A numerator below the tolerance, as in
+// 1e-10/(1 - t)^2, hides a pole from the series of the motion, and a step would jump over it.
 std::vector<Edge> poles_of(Expression function, const char* place, std::span<const std::uint32_t> moving) {
     Graph& graph = function.graph();
-    const Graph::Node node = Builder::node(function);  // a copy: what follows makes nodes
+    const Graph::Node node = Builder::node(function);  // a copy, because nodes are created below
     Expression numerator = graph.number(1), divisor = numerator;
     if (node.operation == Operation::divide) {
         numerator = {&graph, node.a};
@@ -81,10 +82,10 @@ std::vector<Edge> poles_of(Expression function, const char* place, std::span<con
     return poles;
 }
 
-// What is watched of a node; nothing of most. A power has an edge and may hide.
+// The edges of one node; most nodes have none. A power has an edge and an exponential growth.
 std::vector<Edge> edges_of(Expression function, const char* place) {
     Graph& graph = function.graph();
-    const Graph::Node node = Builder::node(function);  // a copy: what follows makes nodes
+    const Graph::Node node = Builder::node(function);  // a copy, because nodes are created below
     const Expression argument(&graph, node.a);
     const auto edge = [&](Expression d) { return Edge{function, argument, d, place, Edge::Kind::edge}; };
     switch (node.operation) {

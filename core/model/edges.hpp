@@ -1,22 +1,23 @@
-// Functions that end at an edge, where they are not smooth: roots, logarithms, arcsines. And those that hide.
+// Functions that are not smooth at the edge of their domain (roots, logarithms, arcsines), and functions that a
+// truncated series can miss.
 //
-// sqrt(u) is smooth as long as u > 0. Where u falls below zero it has no value, which shows. Where u touches zero it
-// has a kink that no formula shows: sqrt(x^2) is |x|, and the Taylor series of it at x = -1 is that of -x, which goes
-// on through x = 0 as if nothing was there. So the distance from the edge is watched along the motion, as a root
+// sqrt(u) is smooth as long as u > 0. If u falls below 0, sqrt(u) has no value, which is detected. If u touches 0,
+// sqrt(u) has a kink that no formula shows. For example, sqrt(x^2) is |x|, and its Taylor series at x = -1 is that of
+// -x, which is smooth at x = 0. The distance d from the edge is therefore monitored along the motion. It is a root
 // itself:
 //
-//     sqrt(u), u^a (a no integer), log(u)     d = sqrt(u)
-//     asin(u), acos(u)                        d = sqrt(1 - u^2)
+//     sqrt(u), u^a (a not an integer), log(u)     d = sqrt(u)
+//     asin(u), acos(u)                            d = sqrt(1 - u^2)
 //
-//     a/b, b^-n, tan(u)                       d = b^2 of each factor of the divisor, of cos(u)
+//     a/b, b^-n, tan(u)                           d = b^2 of each factor of the divisor, of cos(u)
 //
-// Quotients have poles there, which a coefficient below the tolerance hides from the series of the motion.
-// The series of d changes its sign where u touches the edge, and comes close to zero where u nearly does.
+// Quotients have poles where the divisor vanishes. A numerator below the tolerance hides such a pole from the series of
+// the motion. The series of d changes sign where u touches the edge, and comes close to zero where u nearly does.
 //
-// In the same way a function may hide: exp(-400 (x - 1)^2) is nothing at x = 0.6, in all the digits of the terms that a
-// series keeps, and one at x = 1. So its growth is watched: no step is longer than what lets u rise by `growth` (for
-// a^b it is u = b log a), or |u| fall by half of it where it is large in sinh(u), cosh(u), tanh(u), whose differences
-// from their asymptotes are exp(-2|u|).
+// A series can also miss a function: exp(-400 (x - 1)^2) is negligible at x = 0.6 in all terms that a series keeps, and
+// equals 1 at x = 1. The growth of such functions is therefore limited. In one step, u may rise by at most `growth`
+// (for a^b, u = b log a). In sinh(u), cosh(u) and tanh(u), a large |u| may fall by at most growth/2, because the
+// differences from the asymptotes are exp(-2|u|).
 #pragma once
 
 #include <vector>
@@ -28,15 +29,15 @@ namespace achilles {
 struct Edge {
     enum class Kind { edge, exponential, hyperbolic };
     static constexpr double growth = 4.0;
-    Expression function;  // as it stands in T, V, h or a force
+    Expression function;  // as written in T, V, h or a force
     Expression argument;
-    Expression event_function;  // d, above zero where the function is smooth; or u
-    const char* place;          // "the gap", for messages
+    Expression event_function;  // d, positive where the function is smooth; or u
+    const char* place;          // for messages, such as "the gap"
     Kind kind;
 };
 
-// Those of T, V, h and the forces whose argument moves; derivatives have no others. Each distance once. Makes nodes in the graph of
-// the equations.
+// The edges in T, V, h and the forces whose argument varies during a run, each distance once. Derivatives add no
+// further edges. Creates nodes in the graph of the equations.
 std::vector<Edge> edges_of(const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

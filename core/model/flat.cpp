@@ -11,7 +11,7 @@ namespace achilles {
 
 namespace {
 
-// The factors of a product, as text, that depend on coordinates or the time.
+// Appends, as text, the factors of a product that depend on coordinates or time.
 void add_factors(const Model& model, Expression product, std::vector<std::string>& factors) {
     const Graph::Node& node = Builder::node(product);
     if (node.operation == Operation::multiply) {
@@ -37,7 +37,7 @@ std::string product_hint(const Model& model, std::size_t contact) {
 bool is_flat(const Model& model, std::span<const double> parameters, const State& state, std::size_t contact) {
     const Layout& layout = model.layout();
     const Expression gap = model.equations().gaps[contact];
-    Graph graph(gap.graph());  // a copy: a model is shared between threads and never changes
+    Graph graph(gap.graph());  // a copy, because threads share the model
     std::vector<std::uint32_t> slots;
     for (std::size_t i = 0; i < layout.dof; ++i) slots.push_back(layout.q(i));
     std::vector<Expression> outputs = gradient(graph.adopt(gap), slots);
@@ -58,7 +58,8 @@ bool is_flat(const Model& model, std::span<const double> parameters, const State
     };
     if (!looks_flat(state)) return false;
     if (slope == 0.0) return true;
-    // A gap that bends much on the way, as a distance near its centre, is not flat where it closes: x^2 is nearer, too.
+    // A gap with high curvature, such as a distance near its center, is not flat where it closes. Unlike x^2, it no
+    // longer looks flat after a Newton step toward h = 0.
     State nearer = state;
     for (std::size_t i = 0; i < layout.dof; ++i)
         nearer.q[static_cast<Eigen::Index>(i)] -= gap_at() * value.output(i) / slope;

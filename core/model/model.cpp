@@ -19,7 +19,7 @@ Model::Model(SystemDescription description) : description_(std::move(description
                          "a system needs at least one coordinate and one constraint");
     layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
-    const Ground ground;  // constants become intervals, too
+    const Ground ground;  // constants are evaluated as intervals, too
     Mistakes mistakes;
     Names names;
     read_equations(description_, layout_, *graph_, names, equations_, mistakes);
@@ -43,14 +43,14 @@ Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const
         return parse(text.text, scope, graph);
     } catch (const ParseError& error) {
         if (text.at.line > 0) throw description_.error(place_in(text, error.offset), error.what(), error.hint);
-        // It stands in no file: it is shown itself.
+        // The text is in no file, so the message shows the text itself.
         throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), error.hint, text.text);
     }
 }
 
 namespace {
 
-// Evaluates over jets without directions, because their product with an exact 0 is 0, also if e is the factor 0.
+// Evaluates over jets without directions: their product with an exact 0 is 0, even if e is the factor 0.
 template <class Number>
 Interval enclosed(const Program& restitution, const Layout& layout, std::span<const Number> parameters) {
     Evaluator<Jet<Interval, 0>> e(restitution);
@@ -106,7 +106,7 @@ ContactModes& Model::contact_modes() const {
     return *modes_;
 }
 
-// An entry that stays where it is from the first question on. A model is shared between threads.
+// The entry of a key, created at first use; its address never changes. Thread-safe, because threads share a model.
 template <class Map, class Make>
 const auto& Model::derived(Map& map, const typename Map::key_type& key, const Make& make) const {
     const std::scoped_lock lock(modes_mutex_);
@@ -170,7 +170,7 @@ LanePrograms Model::lane_programs() const {
 }
 
 Program Model::compile_view(std::span<const Text> texts) const {
-    Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
+    Graph graph(*graph_);  // a copy, because threads share the model
     const Scope scope = view_scope(description_, layout_, graph, equations_);
     std::vector<Expression> outputs;
     for (const Text& text : texts) outputs.push_back(read(text, scope, graph));

@@ -1,11 +1,10 @@
-// What the machine evaluates: the equations of motion of one system, derived symbolically once (theory.md 1).
+// The equations of motion of one system, derived symbolically once (theory.md 1) and compiled into programs.
 //
 //     M(q) a + b(q,v,t) = Q(q,v,t)             free motion,  f = M^-1 (Q - b)
 //     g = dh,  W = g M^-1 g',  n = M^-1 g'/W    normal direction, g n = 1
 //     hdot = g v + h_t,  hddot                  rate of the gap, normal acceleration of the free motion
 //     lambda = -hddot/W,  f_c = f - n hddot     contact force, constrained acceleration
-//     s = v - n hdot                            tangential velocity: impacts do not change it
-//
+//     s = v - n hdot                            tangential velocity, unchanged by impacts
 #pragma once
 
 #include <map>
@@ -34,7 +33,7 @@ namespace achilles {
 
 class Model {
  public:
-    // Derives everything. Throws InputErrors (the file's) for T, V, h or e that is not what it should be.
+    // Derives and compiles the equations. Throws InputErrors, located in the file, if T, V, h or e is invalid.
     explicit Model(SystemDescription description);
 
     const SystemDescription& description() const { return description_; }
@@ -44,13 +43,13 @@ class Model {
     const Equations& equations() const { return equations_; }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
-    // The motion in a mode, compiled when it is first asked for. Lives as long as the model.
+    // The equations of motion in a mode, compiled at first use. The reference stays valid as long as the model.
     const Motion& motion(Mode mode) const;
     LanePrograms lane_programs() const;
-    // The same motion with hddot of every contact as event functions, for proofs (make_hddot_series).
+    // The same mode with hddot of every contact as event functions, for proofs (make_hddot_series).
     const SeriesProgram& hddot_series(Mode mode) const;
 
-    // What is asked of one contact in a mode in which it is open, compiled when it is first asked for.
+    // The programs of one contact in a mode in which it is open, compiled at first use.
     struct ContactPrograms {
         Program gap;                  // h
         Program normal_acceleration;  // hddot
@@ -60,41 +59,42 @@ class Model {
         ProgramOf<Definition7Terms> definition7_terms;
     };
     const ContactPrograms& programs_of(std::size_t contact, Mode mode = {}) const;
-    // Whether hddot of a contact, along the motion in a mode, is proved to be 0 wherever h = hdot = 0 of it and of what
-    // is held, whatever the parameters: its gap stays 0 with theirs, and nothing presses it (theory-gaps.md 2.7).
+    // Whether hddot of a contact in a mode is proved to be 0 wherever h = hdot = 0 for this contact and the held ones,
+    // for all parameters. Its gap then stays 0 while theirs do, and its force is 0 (theory-gaps.md 2.7).
     bool is_carried(std::size_t contact, Mode mode) const;
 
-    // Programs, compiled once.
+    // Programs of the free motion; compiled once.
     const Program& gap(std::size_t contact = 0) const { return programs_of(contact).gap; }
     const Program& normal_acceleration() const { return programs_of(0).normal_acceleration; }
     const Program& force() const { return programs_of(0).force; }
     const Program& restitution(std::size_t contact = 0) const { return restitutions_[contact]; }
-    // The restitution of a contact at these parameters, moved into [0, 1] if rounding took it out; its enclosure over intervals.
+    // The restitution of a contact at these parameters, clamped to [0, 1] if it is outside by rounding; below, its
+    // interval enclosure.
     double restitution(std::span<const double> parameters, std::size_t contact) const {
         return without_rounding(evaluator(restitutions_[contact], parameters).output(0));
     }
     Interval restitution(std::span<const Interval> parameters, std::size_t contact) const;
-    // Value and enclosure for every contact, to be evaluated once per run.
+    // Value and enclosure for every contact, evaluated once per run.
     std::vector<Restitution> restitutions(std::span<const double> parameters) const;
     const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
     const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
     const ProgramOf<EnergyTerms>& energy() const { return energy_; }
-    // dE/dt along the motion in a mode: v'Q + dV/dt, less lambda dh/dt of each that is held.
+    // dE/dt in a mode: v'Q + dV/dt - sum lambda dh/dt over the held contacts (W).
     const Program& power(Mode mode) const;
 
-    // Functions with an edge that the motion may come to; of each, as a series, the distance from it.
+    // Functions whose edge the motion may reach, and the series of their distances from the edge.
     const std::vector<Edge>& edges() const { return edges_; }
     const SeriesProgram& edge_series() const { return edge_series_; }
 
-    // The programs of the truncation conditions of a contact in a mode in which it is open, derived when they are first
-    // asked for. Throws InputError if they are too large.
+    // The programs of the truncation conditions of a contact in a mode in which it is open, derived at first use.
+    // Throws InputError if they are too large.
     const Bouncing& bouncing(std::size_t contact = 0, Mode mode = {}) const;
     const Neighbours& neighbours(std::size_t contact, Mode mode) const;
-    // Of two contacts that bounce together while others are held; first < second.
+    // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
-    // An evaluator of one of the programs above with the parameters' values in place.
+    // An evaluator of one of the programs above with the values of the parameters set.
     template <class Scalar = double>
     Evaluator<Scalar> evaluator(const Program& program, std::span<const double> parameters) const {
         Evaluator<Scalar> result(program);
@@ -107,7 +107,7 @@ class Model {
         return {evaluator<Scalar>(static_cast<const Program&>(program), parameters), layout_.dof};
     }
 
-    // The same, made where it is first asked for: a run needs few of those that it may need.
+    // The same, created at first use: a run needs only a few of the evaluators that it may need.
     template <class Scalar, template <class> class TermsOf>
     TermsOf<Evaluator<Scalar>>& lazily(std::optional<TermsOf<Evaluator<Scalar>>>& evaluator,
                                        const ProgramOf<TermsOf>& program, std::span<const double> parameters) const {
@@ -123,25 +123,26 @@ class Model {
         return evaluators.try_emplace(mode, evaluator(program, parameters), layout_.dof, contacts()).first->second;
     }
 
-    // The run that the description asks for.
+    // The run that the description specifies.
     Run default_run() const { return achilles::default_run(description_); }
-    // Throws InputErrors if the run cannot start: start not finite or T, V, h or the acceleration undefined there,
-    // restitution outside [0,1], M not positive definite, gap clearly negative, dh = 0 in contact, a parameter
-    // subnormal, eps or tolerance not positive, the end not after the start.
+    // Throws InputErrors if the run cannot start: start not finite; T, V, h or the acceleration undefined there;
+    // restitution outside [0, 1]; M not positive definite; gap clearly negative; dh = 0 in contact; a parameter
+    // subnormal; eps or tolerance not positive; end not after the start.
     void check(const Run& run) const;
 
-    // Programs for what a view or a drawing says, over t, coordinates, rates, parameters, gap, gap', gap'', lambda,
-    // energy (view) or over coordinates, t and parameters, plus a curve's own parameter (drawing). Throw InputError.
+    // Programs for the expressions of a view or a drawing. Those of a view may contain t, coordinates, rates,
+    // parameters, gap, gap', gap'', lambda and energy. Those of a drawing may contain coordinates, t, parameters and
+    // the curve's own parameter. Throw InputError.
     Program compile_view(std::span<const Text> texts) const;
-    // What a view says and, behind it, its derivatives by t, q and v.
+    // The value of a view expression, followed by its derivatives with respect to t, q and v.
     Program compile_section(const Text& text) const;
-    // A program over the same and quantities of the run, input i behind the layout's being quantities[i].
+    // A program over the names of a view and quantities of the run: input layout().count() + i is quantities[i].
     struct MeasureProgram {
         Program program;
         std::vector<RunQuantity> quantities;
     };
     MeasureProgram compile_measures(std::span<const Text> texts) const;
-    // Over the parameters alone.
+    // A program over the parameters alone.
     Program compile_of_parameters(std::span<const Text> texts) const;
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 
@@ -152,7 +153,7 @@ class Model {
     ContactModes& contact_modes() const;
     template <class Map, class Make>
     const auto& derived(Map& map, const typename Map::key_type& key, const Make& make) const;
-    // Throw Mistake.
+    // These throw Mistake.
     void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
     void check_gap(const Run& run, std::size_t contact) const;
     void check_mass(const StartTerms<Evaluator<double>>& start) const;
@@ -163,7 +164,7 @@ class Model {
     std::unique_ptr<Graph> graph_;
     Equations equations_;
     std::vector<std::string> slot_names_;
-    mutable std::mutex modes_mutex_;  // of what is derived when it is asked for
+    mutable std::mutex modes_mutex_;  // protects everything that is derived at first use
     mutable std::unique_ptr<ContactModes> modes_;
     mutable std::map<Mode, Motion> motions_;
     mutable std::map<Mode, SeriesProgram> hddot_series_;
@@ -173,7 +174,7 @@ class Model {
     mutable std::map<ContactInMode, Neighbours> neighbours_;
     mutable std::map<ContactInMode, bool> carried_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
-    std::vector<const ContactPrograms*> free_;  // of programs_, those of contacts while none is held
+    std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;
     SeriesProgram edge_series_;
     std::vector<Edge> edges_;
@@ -181,9 +182,9 @@ class Model {
     ProgramOf<StartTerms> start_;
 };
 
-// The values of the parameters that follow from others.
+// ---- derived parameters ----
 
-// In the order of the description's `derived`, for these values of the parameters.
+// The derived parameters for these values of the parameters, in the order of the description's `derived`.
 std::vector<double> derived_values(const Model& model, std::span<const double> parameters);
 
 }  // namespace achilles

@@ -19,12 +19,12 @@ namespace {
 
 std::string without_primes(const std::string& name) { return name.substr(0, name.find('\'')); }
 
-// Reads the texts of one file.
+// Reads the texts of one file and collects their mistakes.
 class Reader {
  public:
     Reader(Graph& graph, Names& names, Mistakes& mistakes) : graph_(graph), names_(names), mistakes_(mistakes) {}
 
-    // Nothing where the text is missing or has a mistake, which is added.
+    // Returns nullopt if the text is missing or has a mistake, which is added.
     std::optional<Expression> read(const Text& text, Scope& scope, TextParts* parts = nullptr) {
         if (text.text.empty()) return std::nullopt;
         for (bool is_certain = true;; is_certain = false) {
@@ -32,17 +32,18 @@ class Reader {
                 const Expression expression = parse(text.text, scope, graph_, parts);
                 return is_certain ? std::optional(expression) : std::nullopt;
             } catch (const ParseError& error) {
-                // With a guess in it, nothing but another name can be blamed.
+                // After a substituted name only further unknown names are reported: other errors may follow from the
+                // substitution.
                 const bool is_told = error.name.empty() ? !is_certain : excuse(error.name, scope);
                 if (!is_told) mistakes_.add({place_in(text, error.offset), error.what(), error.hint});
-                // A hint is the whole text as it was meant.
+                // A hint proposes the whole text as intended, so parsing need not continue.
                 if (error.name.empty() || !error.hint.empty() || !go_on(error.name, scope)) return std::nullopt;
             }
         }
     }
 
  private:
-    // True if nothing needs to be said about this name. An unknown one is told once.
+    // Whether this name needs no message. An unknown name is reported once.
     bool excuse(const std::string& name, const Scope& scope) {
         const std::string bare = without_primes(name);
         if (names_.excused.contains(bare)) return true;
@@ -51,9 +52,9 @@ class Reader {
         return !names_.complete;
     }
 
-    // Lets an unknown name stand for anything, to read on. False if that does not help.
+    // Replaces an unknown name by a symbol, so that parsing can continue. Returns false if that does not help.
     bool go_on(const std::string& name, Scope& scope) {
-        constexpr int most = 100;  // in one file: each costs another reading
+        constexpr int most = 100;  // limit for one file: each replacement parses the text again
         if (!names_.excused.contains(without_primes(name)) || ++guesses_ > most) return false;
         return scope.allowed.emplace(name, graph_.symbol(0)).second;
     }
@@ -89,7 +90,7 @@ constexpr const char* quadratic = "kinetic energy must be quadratic in the rates
 
 std::string written(const Text& text, const TextPart& part) { return shown(text.text.substr(part.offset, part.size)); }
 
-// The part of T that is no polynomial in the rates.
+// Message: the part of T that is not a polynomial in the rates.
 Mistake not_polynomial(const Text& kinetic, const TextParts& parts, Expression offender,
                        const std::vector<std::string>& names) {
     const Operation operation = Builder::node(offender).operation;
@@ -105,7 +106,7 @@ Mistake not_polynomial(const Text& kinetic, const TextParts& parts, Expression o
             quadratic};
 }
 
-// The first term of T, as written, that leaves a term of another degree than 2 in the whole.
+// Message: the first term of T, as written, that contributes a term of degree other than 2 to the expanded T.
 Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePolynomial& whole, const Layout& layout,
                       const std::vector<std::string>& names) {
     const auto is_wrong = [](const RatePolynomial::value_type& entry) { return degree(entry.first) != 2; };
@@ -163,7 +164,7 @@ void check_gap(const Text& text, Expression gap, const Layout& layout) {
         throw Mistake{text.at, "dh = 0 everywhere: the gap does not change with any coordinate", {}};
 }
 
-// Runs what makes nodes, and tells what became too large at this text.
+// Calls a function that creates nodes; if the graph becomes too large, adds a mistake located at this text.
 template <class Make>
 void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& make) {
     mistakes.attempt([&] {
@@ -175,7 +176,7 @@ void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& mak
     });
 }
 
-// The derived parameters', for their mistakes: scopes hold what they stand for.
+// Reads the derived parameters to report their mistakes. Their values are part of the scopes.
 void read_definitions(const SystemDescription& system, const Layout& layout, Reader& reader, Graph& graph) {
     if (system.derived.empty()) return;
     const Scope parameters = definition_scope(system, layout, graph);
@@ -232,7 +233,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         const ConstraintDescription& constraint = system.constraints[i];
         if (gaps[i] && names.complete)
             attempt_within_limits(mistakes, constraint.gap, [&] { check_gap(constraint.gap, *gaps[i], layout); });
-        // One that parameters change is looked at when a run starts.
+        // A restitution that depends on parameters is checked at the start of a run.
         if (restitutions[i] && is_constant(*restitutions[i]))
             if (auto mistake = mistake_in(constraint.restitution, value_of_constant(*restitutions[i])))
                 mistakes.add(std::move(*mistake));

@@ -1,4 +1,4 @@
-// What the expressions of a system file mean: the equations' ingredients T, V, Q, h, e and M (theory.md 1).
+// Reads the expressions of a system file: T, V, Q, h, e and M of the equations (theory.md 1).
 #pragma once
 
 #include <array>
@@ -17,23 +17,24 @@
 
 namespace achilles {
 
-// Sets kinetic, potential, Q, gap, restitution and M of the equations, whose graph this is, and adds what is wrong with
-// them and with the
-// definitions of parameters: among it a T that is not quadratic and homogeneous in the rates after expansion. What is missing is passed
-// over. An unknown name is told where it stands first, once in the file, and what depends on it is not looked into.
+// Sets kinetic, potential, Q, gaps, restitutions and M of the equations, in whose graph it works. Adds the mistakes in
+// these expressions and in the definitions of parameters, including a T that is not quadratic and homogeneous in the
+// rates after expansion. Missing texts are skipped. An unknown name is reported once per file, at its first place;
+// expressions that depend on it are not checked.
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
                     Equations& equations, Mistakes& mistakes);
 
-// Adds what is wrong with any expression of the file: the above, drawings and views. Whether the above had nothing wrong.
+// Adds the mistakes in all expressions of the file: those above, drawings and views. Returns whether those above have
+// none.
 bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
 
-// An expression as a polynomial in the rates: how a kinetic energy is proved quadratic and its mass matrix read off.
+// ---- polynomials in the rates: they show that T is quadratic, and give the mass matrix ----
 
-// Exponents of the rates -> coefficient, free of rates. No coefficient is the number 0.
+// Exponents of the rates -> coefficient, which contains no rates. No coefficient is the number 0.
 using RatePolynomial = std::map<std::array<std::uint8_t, max_coordinates>, Expression>;
 
-// Expands an expression in the symbols of `slots` (the rates). Returns nothing where it is no polynomial of degree <=
-// 8; then `offender` is the smallest part of the expression that is not one.
+// Expands an expression in the symbols of `slots` (the rates). Returns nullopt if it is not a polynomial of degree 8 or
+// less; `offender` is then the smallest part of the expression that is not.
 std::optional<RatePolynomial> expand_in_rates(Expression expression, std::span<const std::uint32_t> slots,
                                               Expression& offender);
 

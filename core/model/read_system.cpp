@@ -15,7 +15,8 @@ SystemDescription read_system(const std::filesystem::path& file) {
 
 namespace {
 
-// What is wrong with the start of a system whose drawings and views alone have mistakes: all is to be told at once.
+// Checks the start of a system whose only mistakes are in drawings and views, so that all mistakes are reported at
+// once.
 void check_start(SystemDescription system, Mistakes& mistakes) {
     system.drawings.clear();
     system.views.clear();
@@ -32,7 +33,7 @@ void check_start(SystemDescription system, Mistakes& mistakes) {
 }  // namespace
 
 SystemDescription parse_system(std::string text, std::string name) {
-    const Ground ground;  // constants become intervals, too
+    const Ground ground;  // constants are evaluated as intervals, too
     FileReading read = read_tables(std::move(text), std::move(name));
     const bool has_equations = check_expressions(read.system, std::move(read.names), read.mistakes);
     if (read.mistakes.count() > 0 && read.has_system && has_equations) check_start(read.system, read.mistakes);

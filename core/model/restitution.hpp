@@ -13,16 +13,16 @@ struct Restitution {
     Interval enclosure;
 };
 
-// A restitution that is outside of [0, 1] by at most this counts as rounding. A parameter is enclosed to 4 ulp (2^-50) of its
-// decimal, and an expression of several parameters may double that a few times, so the enclosure of an exact 1 ends above 1. A
-// person's mistake is larger. An impact with such a restitution changes the energy by at most 2^-39, less than a step does. Doubles
-// and intervals have the same bound, so that whatever can be proved can be simulated.
+// A restitution outside of [0, 1] by at most this counts as rounding. A parameter is enclosed to 4 ulp (2^-50) of its
+// decimal. An expression of several parameters may double that a few times, so the enclosure of an exact 1 ends above
+// 1. A user's mistake is larger. An impact with such a restitution changes the energy by at most 2^-39, less than a
+// step does. Doubles and intervals share this bound, so that every system that can be proved can be simulated.
 inline constexpr double restitution_rounding = 0x1p-40;
 
-// Moves a value that is outside of [0, 1] by rounding to the end of the interval; returns any other value as it is.
+// Clamps a value that is outside of [0, 1] by rounding; returns any other value unchanged.
 double without_rounding(double e);
 
-// The mistake, if a restitution does not lie in [0, 1].
+// The error message if a restitution is not in [0, 1]; nullopt if it is.
 std::optional<Mistake> mistake_in(const Text& restitution, double e);
 std::optional<Mistake> mistake_in(const Text& restitution, const Interval& e);
 

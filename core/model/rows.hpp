@@ -1,4 +1,4 @@
-// Rows of expressions: what derivations of more than one file are made of.
+// Rows of expressions: vector operations shared by the derivations.
 #pragma once
 
 #include "program/terms.hpp"
@@ -13,7 +13,7 @@ inline Row adopt(Graph& graph, const Row& row) {
     return result;
 }
 
-// dx_i/d(slots) times a direction, for each entry.
+// The directional derivative dx_i/d(slots) . direction, for each entry.
 inline Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& direction) {
     Row sums(x.size(), x.front().graph().number(0));
     for (std::size_t k = 0; k < slots.size(); ++k) {

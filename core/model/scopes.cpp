@@ -26,13 +26,13 @@ void allow_parameters(Scope& scope, const SystemDescription& system, const Layou
     for (std::size_t i = 0; i < system.parameters.size(); ++i)
         scope.allowed.emplace(system.parameters[i].name, graph.symbol(layout.parameter(i)));
     if (system.derived.empty()) return;
-    Scope known;  // to definitions
+    Scope known;  // names that a definition may use
     for (const ParameterDescription& parameter : system.parameters)
         known.allowed.emplace(parameter.name, scope.allowed.find(parameter.name)->second);
     for (const DerivedDescription& derived : system.derived) {
         known.units.clear();
         allow_units(known, derived.unit, graph);
-        Expression value = graph.symbol(layout.own());  // where it has a mistake, which is told elsewhere
+        Expression value = graph.symbol(layout.own());  // placeholder if parsing fails, reported elsewhere
         try {
             value = parse(derived.definition.text, known, graph);
         } catch (const ParseError&) {
@@ -42,7 +42,7 @@ void allow_parameters(Scope& scope, const SystemDescription& system, const Layou
     }
 }
 
-// Names with primes that mean nothing anywhere.
+// Forbids names with primes that have no meaning in any expression.
 void forbid_primes(Scope& scope, const SystemDescription& system) {
     for (const CoordinateDescription& coordinate : system.coordinates)
         scope.forbidden.emplace(
@@ -59,7 +59,7 @@ void forbid_primes(Scope& scope, const SystemDescription& system) {
 
 constexpr std::array<const char*, 4> contact_outputs{"gap", "gap'", "gap''", "lambda"};
 
-// Words that mean something in views only.
+// Forbids words that have a meaning only in views.
 void forbid_outputs(Scope& scope, const SystemDescription& system) {
     const auto forbid = [&](const std::string& word) {
         scope.forbidden.emplace(word, fmt::format("'{}' is allowed only in a [[view]]", word));
@@ -71,7 +71,7 @@ void forbid_outputs(Scope& scope, const SystemDescription& system) {
     for (const char* word : {"energy", "work", "loss", "power"}) forbid(word);
 }
 
-// Coordinates, t and parameters; `what` is the text that they stand in, `why` the reason why no rate does.
+// Coordinates, t and parameters. For messages: `what` names the text, `why` gives the reason why rates are not allowed.
 Scope position_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* what,
                      const char* why) {
     Scope scope;
@@ -86,7 +86,7 @@ Scope position_scope(const SystemDescription& system, const Layout& layout, Grap
     return scope;
 }
 
-// Parameters; `what` is the text that they stand in.
+// Parameters. For messages: `what` names the text.
 Scope constant_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* what) {
     Scope scope;
     allow_parameters(scope, system, layout, graph);
@@ -173,13 +173,13 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
 
 namespace {
 
-// h, hdot, the acceleration of the gap and the force of each contact. With several, the last two follow from which are
-// held, and are told.
+// h, hdot, the acceleration of the gap and the force of each contact. With several contacts, the last two depend on
+// which are held and are inputs.
 std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Graph& graph, const Equations& equations) {
     const Expression held = graph.symbol(layout.contact());
     std::vector<std::array<Expression, 4>> values;
     const Expression any_value = graph.symbol(layout.t());
-    if (layout.contacts == 0) return {{any_value, any_value, any_value, any_value}};  // the file lacks them
+    if (layout.contacts == 0) return {{any_value, any_value, any_value, any_value}};  // the file lacks constraints
     for (std::size_t i = 0; i < layout.contacts; ++i) {
         const ContactEquations& c = equations.free.contacts[i];
         const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
@@ -244,7 +244,7 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
                                          {"impacts", {count, impact}},
                                          {"releases", {count, release}},
                                          {"least_gap", {least_gap, {}}}}) {
-        scope.allowed.emplace(name, input(quantity));  // a name of the system's own goes before
+        scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;
         scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });
     }

@@ -1,5 +1,5 @@
-// What the names of a system file mean, and which of them may stand in which of its expressions. A derived parameter is
-// its expression in the others, wherever it stands.
+// The names of a system file and the expressions in which each may appear. A derived parameter is replaced by its
+// expression in the other parameters.
 #pragma once
 
 #include <optional>
@@ -13,7 +13,7 @@
 
 namespace achilles {
 
-// Where the inputs of a system's programs stand.
+// The slots of the inputs of a system's programs.
 Layout layout_of(const SystemDescription& system);
 
 // The names of the inputs, by slot: what to_text() prints.
@@ -21,34 +21,34 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
 
 // Coordinates, rates, parameters.
 Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// Coordinates, rates, t, parameters: of a force or the dissipation.
+// Coordinates, rates, t, parameters: for a force or the dissipation.
 Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters.
 Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Parameters.
 Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// The same of what [orbit] says of a period and a shift.
+// Parameters: for the period and the shift of [orbit].
 Scope closing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// The same in a derived parameter; its units are for the caller to add.
+// Parameters: for a derived parameter; the caller adds its units.
 Scope definition_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// Coordinates, t, parameters; a drawn curve's own is for the caller to add.
+// Coordinates, t, parameters; the caller adds the curve's own parameter.
 Scope drawing_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// What of a whole run may stand in an expression, besides what a view shows of an instant: the k-th of its events, or the
-// last; how many there were; the least gap.
+// A quantity of a whole run that may appear in an expression, in addition to those of a view: the time or speed of the
+// k-th or last event, the number of events, or the smallest gap.
 struct RunQuantity {
     enum class Kind { time, speed, count, least_gap };
     Kind kind;
-    std::optional<Event::Kind> event;  // but of the least gap
-    int k = 0;                         // of an event, from 1; 0: the last one
+    std::optional<Event::Kind> event;  // empty for least_gap
+    int k = 0;                         // index of the event, from 1; 0: the last one
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
 
-// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy: with values from the equations.
+// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy; their values are taken from the equations.
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
 
-// The same, and quantities of the run: input i behind the layout's is quantities[i]. They are noted as they are met, so that
-// both outlive the scope.
+// The names of view_scope() and quantities of the run: input layout.count() + i is quantities[i]. Parsing appends to
+// `quantities` and creates nodes in `graph`, so both must outlive the scope.
 Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                     std::vector<RunQuantity>& quantities);
 

@@ -1,4 +1,4 @@
-// Whether a run can start: Model::check().
+// Model::check(): whether a run can start.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ void Model::check(const Run& run) const {
             refuse(parameter.at, subnormal_parameter(parameter.name, run.parameters[i]), subnormal_hint);
     }
     const std::vector<double> derived = derived_values(*this, run.parameters);
-    const bool have_values = mistakes.count() == before;  // what they follow from
+    const bool have_values = mistakes.count() == before;  // the values of the parameters that they depend on
     for (std::size_t i = 0; i < derived.size(); ++i)
         if (have_values && !std::isfinite(derived[i]))
             refuse(description_.derived[i].definition.at,
@@ -55,7 +55,7 @@ void Model::check(const Run& run) const {
         for (std::size_t i = 0; i < contacts(); ++i)
             if (auto mistake = mistake_in(description_.constraints[i].restitution, restitution(run.parameters, i)))
                 mistakes.add(std::move(*mistake));
-        // What follows from an energy or a gap without a value has none either: it is told once.
+        // A quantity that depends on an undefined energy or gap is undefined as well; only the cause is reported.
         const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
         bool has_gap = true;
         for (std::size_t i = 0; i < contacts(); ++i) has_gap = mistakes.attempt([&] { check_gap(run, i); }) && has_gap;
@@ -67,8 +67,8 @@ void Model::check(const Run& run) const {
 
 namespace {
 
-// "WHAT is not defined at the start: log(x - 2), with x - 2 = -1", where the part can be named. What has no such part
-// is too large.
+// Message "WHAT is not defined at the start: log(x - 2), with x - 2 = -1" if the undefined part is found. If there is
+// no such part, a value is too large.
 Mistake no_value(const Model& model, const Run& run, Location at, const char* what,
                  std::span<const Expression> expressions) {
     const State state = run.start();
@@ -82,7 +82,7 @@ Mistake no_value(const Model& model, const Run& run, Location at, const char* wh
 
 }  // namespace
 
-// T and V have values.
+// Checks that T and V have finite values.
 void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const {
     if (!std::isfinite(start.kinetic()))
         throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.kinetic, 1});
@@ -90,7 +90,7 @@ void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& 
         throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.potential, 1});
 }
 
-// The gap has a value and is not clearly negative, and where there is contact there is a normal.
+// Checks that the gap is defined and not clearly negative, and that a closed contact has a normal.
 void Model::check_gap(const Run& run, std::size_t contact) const {
     const Location at = description_.constraints[contact].gap.at;
     const State start = run.start();
@@ -102,7 +102,7 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     if (!std::isfinite(error)) throw no_value(*this, run, at, "the gap", {&equations_.gaps[contact], 1});
     if (mid(h) < -4.0 * error) {
         const Run file = default_run();
-        const bool is_of_file = run.q == file.q && run.parameters == file.parameters;  // else the gap was right there
+        const bool is_of_file = run.q == file.q && run.parameters == file.parameters;  // otherwise its sign was right
         throw Mistake{
             at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
             fmt::format("choose a start with h(q) >= 0{}",
@@ -114,12 +114,12 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     terms.run();
     double slope = 0.0;
     for (std::size_t i = 0; i < layout_.dof; ++i) slope += terms.gradient(i) * terms.gradient(i);
-    constexpr double steep = 1e-6;  // with it a gap is not flat where it is 0 to within rounding; the rest is asked
+    constexpr double steep = 1e-6;  // below it, is_flat() decides whether the gap is flat or 0 within rounding
     if (slope < steep && is_flat(*this, run.parameters, start, contact))
         throw Mistake{at, "the start is in contact, and dh = 0 there: the normal is not defined", flat_hint};
 }
 
-// M is positive definite.
+// Checks that M is positive definite.
 void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
     for (std::size_t i = 0; i < layout_.dof; ++i) {
         const double pivot = start.pivot(i);
@@ -131,12 +131,12 @@ void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
     }
 }
 
-// The equations of motion have values. Where they have none, a derivative of V, h or T is to blame.
+// Checks that the acceleration is finite. If it is not, the cause is a derivative of V, h or T.
 void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const {
     bool finite = std::isfinite(start.hddot(0));
     for (std::size_t i = 0; i < layout_.dof; ++i) finite = finite && std::isfinite(start.acceleration(i));
     if (finite) return;
-    Graph graph(*graph_);  // a copy: a model is shared between threads and never changes
+    Graph graph(*graph_);  // a copy, because threads share the model
     std::vector<std::uint32_t> q;
     for (std::size_t i = 0; i < layout_.dof; ++i) q.push_back(layout_.q(i));
     const auto blame = [&](const Text& text, const char* what, const std::vector<Expression>& parts) {

@@ -1,4 +1,4 @@
-// Which part of an expression has no value.
+// Finds the part of an expression that has no value.
 #pragma once
 
 #include <optional>
@@ -10,21 +10,21 @@
 
 namespace achilles {
 
-// A part as a person would name it, and what stands in its way: its operand (as in log(x)), or the divisor.
+// An undefined part, and the operand that causes it: the argument (as in log(x)) or the divisor.
 struct Undefined {
-    std::string part, operand;  // as text, cut after 60 letters
+    std::string part, operand;  // as text, cut after 60 characters
     double value;               // of the operand, at the state
 };
 
-// The first part of some expressions that has no value somewhere in a box of q, v and t: a function outside its domain, a
-// division by zero. Nothing where there is none.
+// The first part of the expressions that is undefined somewhere in a box of q, v and t: a function outside its domain,
+// or a division by zero. nullopt if there is none.
 std::optional<Undefined> first_undefined(const Model& model, std::span<const double> parameters,
                                          std::span<const Expression> expressions, const State& state,
                                          const std::vector<Interval>& box);
 
-// An expression for a message: at most 60 letters and "...".
+// An expression for a message: at most 60 characters and "...".
 std::string shortened(const Model& model, Expression expression);
-// Its value at a state.
+// The value of an expression at a state.
 double value_at(const Model& model, std::span<const double> parameters, Expression expression, const State& state);
 
 // A state as a box of q, v and t.

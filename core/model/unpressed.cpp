@@ -19,13 +19,13 @@ std::vector<std::uint32_t> slots_of_state(const Layout& layout) {
     return slots;
 }
 
-// A double as a person writes it: 0.1 is 1/10.
+// The decimal that a double stands for, as an exact number: 0.1 is 1/10.
 Expression number_of(double value, Graph& graph) {
     const Expression size = graph.decimal(fmt::format("{}", std::abs(value)));
     return value < 0.0 ? -size : size;
 }
 
-// Expressions at states with h = hdot = 0 of some contacts.
+// Simplifies expressions at states with h = hdot = 0 for a set of contacts.
 class ClosedStates {
  public:
     ClosedStates(ContactSet closed, ContactModes& motions, const Layout& layout, const KnownValues& known)
@@ -41,7 +41,8 @@ class ClosedStates {
         std::vector<Expression> zeros = rates_;
         zeros.insert(zeros.end(), gaps_.begin(), gaps_.end());
         if (vanishes_where(at_known(expression), zeros, slots_of_state(layout_))) return true;
-        // Rates that no velocity can be taken from in numbers: v - n hdot in place of v makes them 0 (theory-gaps.md 2).
+        // If the equations hdot = 0 give no velocity in numbers, replace v by v - n hdot, for which the gap rates are 0
+        // (theory-gaps.md 2).
         for (const std::uint32_t slot : known_.slots)
             if (slot < 2 * layout_.dof) return false;
         return vanishes_where(at_known(along_surfaces(expression)), gaps_, slots_of_state(layout_));
@@ -50,7 +51,8 @@ class ClosedStates {
  private:
     Expression at_known(Expression expression) const { return substitute(expression, known_.slots, values_); }
 
-    // The last contact's v - n hdot comes first: it leaves the rates of those before.
+    // Replaces v by v - n hdot of each contact, the last contact first: that leaves the gap rates of those before
+    // unchanged.
     Expression along_surfaces(Expression expression) {
         std::vector<std::uint32_t> v;
         for (std::size_t i = 0; i < layout_.dof; ++i) v.push_back(layout_.v(i));
@@ -78,7 +80,7 @@ bool needs_no_force(std::size_t contact, Mode mode, ContactModes& motions, const
         return ClosedStates(mode.held().with(contact), motions, layout, known)
             .vanishes(motions.of(mode).contacts.at(contact).hddot);
     } catch (const TooLarge&) {
-    } catch (const std::domain_error&) {  // contacts that depend on one another, or a division by what is 0 there
+    } catch (const std::domain_error&) {  // linearly dependent contacts, or a division by 0 at these states
     }
     return false;
 }
@@ -100,8 +102,8 @@ KnownValues UnpressedContacts::known_parameters() const {
     return known;
 }
 
-// The parameters and, of the coordinates at rest, those that stay so along the motion that holds these: they do where their
-// accelerations vanish as long as all of them rest. Where a gap of these says where a coordinate is, its own value is not used.
+// The parameters, and the coordinates at rest that are proved to stay at rest in this mode: their accelerations vanish
+// as long as all of them rest. A coordinate on which the gap of a held contact depends is not fixed at its value.
 KnownValues UnpressedContacts::at_rest(Mode mode, const State& state) {
     const Layout& layout = model_->layout();
     std::vector<std::size_t> rest;

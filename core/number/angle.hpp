@@ -1,17 +1,17 @@
-// Angles: computed in radians, shown in degrees; their sine and cosine, which mechanical systems ask for more than for anything
-// else.
+// Conversion of angles from radians to degrees, and a cached sine and cosine, the functions that mechanical systems
+// evaluate most often.
 #pragma once
 
 #include <numbers>
 
 namespace achilles {
 
-// radians * 180 / pi, rounded after each operation: an angle in degrees, or a rate in degrees per second. degrees(1.0)
-// is the factor of a unit; x times it may be rounded otherwise than degrees(x).
+// radians * 180 / pi, rounded after each operation. Converts an angle (rad) to degrees, or a rate (rad/s) to degrees
+// per second. degrees(1.0) is the conversion factor; multiplying by it may round differently than degrees(x).
 constexpr double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 
-// Both at once; and those of an angle asked for a moment ago are at hand: the programs of one model look at the same
-// state one after the other. The values are those of std::sin and std::cos.
+// Sine and cosine of one angle (rad), with the values of std::sin and std::cos. Recent results are cached for each
+// thread, because the programs of one model evaluate the same state one after the other.
 struct SineCosine {
     double sine = 0.0, cosine = 1.0;
 };

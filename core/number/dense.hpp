@@ -1,4 +1,4 @@
-// Eigen's decompositions, compiled once: each takes longer to compile than any file that asks for one.
+// Wrappers of Eigen's decompositions, compiled once because each takes long to compile.
 #pragma once
 
 #include <Eigen/Core>
@@ -7,14 +7,15 @@
 
 namespace achilles {
 
-// The shortest x of those with the least |A x - b|, by a QR decomposition with pivots; for every column of B.
+// Minimum-norm least-squares solution x of A x = b, for every column of B. Uses a complete orthogonal decomposition.
 Eigen::VectorXd least_solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 Eigen::MatrixXd least_solution(const Eigen::MatrixXd& A, const Eigen::MatrixXd& B);
-// x of A x = b, of a square A that has an inverse.
+// Solution x of A x = b for a square, invertible A.
 Eigen::VectorXd solution(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
-// An orthonormal basis of the range of A, of so many of its dimensions: those of the largest columns.
+// Orthonormal basis, A.rows() x dimensions, of the span of the leading pivot columns of A. `dimensions` is the
+// numerical rank to be used.
 Eigen::MatrixXd range_of(const Eigen::MatrixXd& A, Eigen::Index dimensions);
-// Of a square matrix, in no order.
+// Eigenvalues of a square matrix, in no particular order.
 std::vector<std::complex<double>> eigenvalues_of(const Eigen::MatrixXd& A);
 
 }  // namespace achilles

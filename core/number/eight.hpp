@@ -1,5 +1,5 @@
-// Eight numbers side by side, one of each of eight runs, as data; and what a method over one number or over eight uses
-// in place of branches: conditions and choices.
+// Eight doubles, one for each of eight runs, as plain data. Also the conditions and selections that code over one
+// number or over eight uses instead of branches.
 #pragma once
 
 #include <bit>
@@ -16,10 +16,10 @@ struct alignas(64) Eight {
     double operator[](std::size_t i) const { return lane[i]; }
 };
 
-// Of eight angles, to within an ulp of 1.
+// Sines and cosines of eight angles (rad), with an absolute error of at most one ulp of 1.
 void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine);
 
-// For a double a condition is a bool, for doubles side by side a mask (lanes.hpp).
+// The type of a comparison: bool for a double, a mask for several doubles (lanes.hpp).
 template <class Number>
 struct ConditionOf {
     using Type = bool;
@@ -27,14 +27,14 @@ struct ConditionOf {
 template <class Number>
 using Condition = typename ConditionOf<Number>::Type;
 
-// a where the condition holds, else b.
+// Returns a if the condition holds, else b.
 inline double select(bool condition, double a, double b) { return condition ? a : b; }
 inline bool any(bool condition) { return condition; }
-// b where they cannot be compared.
+// min and max return b if either argument is NaN.
 inline double min(double a, double b) { return a < b ? a : b; }
 inline double max(double a, double b) { return a > b ? a : b; }
 
-// Within 0.09 of log2(x), x > 0: exponent and mantissa as they stand in a double.
+// Approximates log2(x), x > 0, within 0.09, from the bits of the exponent and the mantissa.
 inline double rough_log2(double x) { return static_cast<double>(std::bit_cast<std::int64_t>(x)) * 0x1p-52 - 1023.0; }
 
 }  // namespace achilles

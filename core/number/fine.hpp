@@ -1,11 +1,11 @@
-// Fine: a number known to about 100 bits, as a sum of two doubles with a bound of how far it is from the exact value. For
-// the middle of a set that is proved: what an Interval loses at every operation there is lost for good, at every step of a
-// long run (theory-enclosure.md 2).
+// Fine: a double-double number with a rigorous error radius (about 100 bits). It is used for the center of an
+// enclosure, because what Interval loses there at each operation is never recovered over a long run
+// (theory-enclosure.md 2).
 //
-// Double-double arithmetic (Dekker 1971, Knuth's sum, a product by a fused multiplication), in which every rounding that is
-// left is counted afterwards, by what was rounded: an operation to nearest is off by at most 2^-53 of its result. Sound as
-// Interval is: in round to nearest, and of libm as much is assumed as there; sums, products, quotients, roots, sines and
-// cosines need no libm.
+// Double-double arithmetic (Dekker 1971): Knuth's sum and products by fused multiply-add. Each remaining rounding to
+// nearest is off by at most 2^-53 of its result, and this is added to the radius. The assumptions are those of
+// Interval: rounding to nearest, and its error bounds for libm. Sums, products, quotients, square roots, sines and
+// cosines do not use libm.
 #pragma once
 
 #include <array>
@@ -21,7 +21,7 @@ class Fine {
     Fine(double x) : high_(x) {}  // NOLINT: exact
     Fine(int x) : high_(x) {}     // NOLINT
     explicit Fine(const Interval& x) : high_(mid(x)), radius_(x.lo() == x.hi() ? 0.0 : rad(x)) {}
-    // Of what has no value every bound is infinite.
+    // A value that is not defined: its radius is infinite.
     static Fine undefined() { return {0.0, 0.0, rounding::infinity}; }
 
     bool is_defined() const { return radius_ < rounding::infinity; }
@@ -30,7 +30,7 @@ class Fine {
     double low() const { return low_; }
     double radius() const { return radius_; }
     static Fine half_pi() { return {0x1.921fb54442d18p+0, 0x1.1a62633145c07p-54, 0x1p-108}; }
-    // Contains the exact value.
+    // An interval that contains the exact value.
     Interval range() const {
         if (!is_defined()) return Interval::undefined();
         if (low_ == 0.0 && radius_ == 0.0) return {high_};
@@ -58,7 +58,7 @@ class Fine {
                 outward(size_a * b.radius_ + (size_b + b.radius_) * a.radius_ + std::abs(a.low_ * b.low_) +
                         half_ulps(std::abs(x) + std::abs(y) + std::abs(cross) + std::abs(low)) + tiny)};
     }
-    // A quotient Q of two digits, and what is left: a - Q b, over b.
+    // Two quotient digits Q; the error is bounded by |a - Q b|/|b|.
     friend Fine operator/(const Fine& a, const Fine& b) {
         const double least = mig(b.range());
         if (!(least > 0.0) || !a.is_defined()) return undefined();
@@ -72,7 +72,7 @@ class Fine {
     Fine& operator-=(const Fine& b) { return *this = *this - b; }
     Fine& operator*=(const Fine& b) { return *this = *this * b; }
 
-    // A root of two digits s: |sqrt(a) - s| = |a - s^2|/(sqrt(a) + s).
+    // Square root as a two-digit s; the error is bounded by |sqrt(a) - s| = |a - s^2|/(sqrt(a) + s).
     friend Fine sqrt(const Fine& a) {
         if (a.is_zero()) return {};
         if (!(a.range().lo() > 0.0)) return undefined();
@@ -95,7 +95,7 @@ class Fine {
 
     bool is_zero() const { return high_ == 0.0 && low_ == 0.0 && radius_ == 0.0; }
 
-    // Both exact, but for what is below `tiny` of a product.
+    // Both are exact, except that a product may underflow by less than `tiny`.
     static Two sum(double a, double b) {
         const double s = a + b, of_b = s - a;
         return {s, (a - (s - of_b)) + (b - of_b)};
@@ -105,9 +105,9 @@ class Fine {
         return {p, std::fma(a, b, -p)};
     }
     static constexpr double tiny = 0x1p-900;
-    // What rounding to nearest has changed of results of this size in all.
+    // Bound on the total rounding error of results whose sizes add up to `size`.
     static double half_ulps(double size) { return 0x1p-53 * size; }
-    // Above what a few sums and products of numbers that are not negative stand for.
+    // Upper bound on a few sums and products of nonnegative numbers, given their rounded value.
     static double outward(double bound) { return bound * (1.0 + 0x1p-46); }
     static double over(const Interval& rest, double least) {
         return rest.is_defined() ? (Interval(mag(rest)) / Interval(least)).hi() : rounding::infinity;
@@ -136,7 +136,8 @@ inline const Fine::Series& Fine::series() {
     return all;
 }
 
-// The angle less a multiple of pi/2, by the series of both.
+// Sine and cosine: reduces the angle by a multiple of pi/2, then sums both Taylor series. Angles beyond 2^20 use
+// Interval.
 inline void sine_and_cosine(const Fine& a, Fine& sine, Fine& cosine) {
     constexpr double farthest = 0x1p20;
     if (!(std::abs(a.high_) <= farthest) || !a.is_defined()) {
@@ -154,7 +155,8 @@ inline void sine_and_cosine(const Fine& a, Fine& sine, Fine& cosine) {
         c = c * square + terms.of_cosine[i];
     }
     s = s * x;
-    // What the series leave out is below the first term left out, |x| < 0.8; neither slope is above 1.
+    // The truncation error is below the first omitted term, |x| < 0.8. Both functions have derivatives of at most 1, so
+    // the radius of the angle is added.
     s.radius_ = Fine::outward(s.radius_ + 0x1p-112 + radius);
     c.radius_ = Fine::outward(c.radius_ + 0x1p-112 + radius);
     const auto quadrant = static_cast<long>(turns) & 3;
@@ -179,7 +181,7 @@ inline Fine tan(const Fine& a) {
     return sine / cosine;
 }
 
-// --- Others no finer than intervals are
+// --- All other functions, no more accurate than intervals
 
 #define AS_AN_INTERVAL(name) \
     inline Fine name(const Fine& a) { return Fine(name(a.range())); }

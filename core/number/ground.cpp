@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-// Of MXCSR: how results are rounded (0: to nearest), and which denormals are taken for zero.
+// Bits of MXCSR: the rounding mode (0: to nearest) and the two flags that flush denormals to zero.
 constexpr unsigned rounding = 0x6000, flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
 constexpr unsigned ours = rounding | flush_to_zero | denormals_are_zero;
 
@@ -26,7 +26,7 @@ Ground::Ground() : control_(_mm_getcsr()), rounding_(std::fegetround()) {
     if ((control_ & ours) != 0) _mm_setcsr(control_ & ~ours);
 }
 
-// What was raised in between stays raised.
+// Exception flags that were raised in between stay raised.
 Ground::~Ground() {
     if (rounding_ != FE_TONEAREST) std::fesetround(rounding_);
     if ((control_ & ours) != 0) _mm_setcsr((_mm_getcsr() & ~ours) | (control_ & ours));

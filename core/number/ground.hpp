@@ -1,12 +1,13 @@
-// The ground of a proof: IEEE double arithmetic in round-to-nearest, with denormal numbers.
+// Floating-point environment of a proof: IEEE double arithmetic, round to nearest, with denormals.
 //
-// number/interval.hpp widens every result by what such arithmetic may be wrong by. A thread may compute otherwise: any
-// shared library that was linked with -ffast-math turns denormals to zero when it is loaded (FTZ for results, DAZ for
-// operands), and then 1e-300 * 1e-10 is in [0, 0]; a program may have asked for another rounding. So everything that
-// proves stands on a Ground: it sets what is assumed, on its thread, and puts back what was there at its end.
+// number/interval.hpp widens every result by the error bound of such arithmetic. A thread may have another environment:
+// loading a shared library that was linked with -ffast-math flushes denormals to zero (FTZ for results, DAZ for
+// operands), and then 1e-300 * 1e-10 is in [0, 0]. A program may also have set another rounding mode. Every proof
+// therefore creates a Ground, which sets the required environment on its thread and restores the previous one in its
+// destructor.
 //
-// It is cheap where nothing has to change (two registers are read), but meant for a certificate or a run, not for an
-// operation. Its calls are not inlined: nothing is computed across them.
+// It is cheap if nothing has to change (it reads two registers), but meant for a certificate or a run, not for one
+// operation. Its calls are not inlined, so the compiler cannot move arithmetic across them.
 #pragma once
 
 #include <bit>
@@ -28,19 +29,18 @@ class Ground {
 
  private:
 #if defined(__SSE2__)
-    unsigned control_;  // of vectors and scalars (MXCSR), as it was
-    int rounding_;      // of the old unit (x87), as it was
+    unsigned control_;  // previous control register of SSE (MXCSR)
+    int rounding_;      // previous rounding mode of the x87 unit
 #else
     std::fenv_t environment_;
 #endif
 };
 
-// The mathematical library whose errors interval.hpp allows for: "glibc 2.36"; "unknown" where it does not say.
+// Name of the math library whose errors interval.hpp allows for, as "glibc 2.36"; "unknown" for other libraries.
 std::string mathematical_library();
 
-// Doubles that have lost digits: below 2^-1022 in size, and not zero.
-
-// By the bits: where denormals are taken for zero, a comparison would see none.
+// True for a denormal: nonzero and smaller than 2^-1022 in size. Tests the bits, because a comparison fails if the
+// thread flushes denormals to zero.
 inline bool is_subnormal(double x) {
     constexpr std::uint64_t exponent = 0x7FF0000000000000u, fraction = 0x000FFFFFFFFFFFFFu;
     const auto bits = std::bit_cast<std::uint64_t>(x);

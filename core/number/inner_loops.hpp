@@ -1,4 +1,4 @@
-// What inner loops over any number are made of: sums of powers, and neighbors in memory that are worked on at once.
+// Building blocks of inner loops over any number type: sums of powers, and adjacent numbers as one vector.
 #pragma once
 
 #include <cstddef>
@@ -6,10 +6,8 @@
 
 namespace achilles {
 
-// Sums of powers, the even and the odd powers by themselves: half as many sums wait for one another.
-
-// c_0 + c_1 t + ... + c_degree t^degree, degree >= 1, of values that the coefficients' type adds up: numbers, or some
-// side by side. coefficient(k) is c_k.
+// c_0 + c_1 t + ... + c_degree t^degree, degree >= 1, where coefficient(k) returns c_k. A value is a number or a vector
+// of numbers. Even and odd powers are summed separately, which halves the chain of dependent operations.
 template <class Value, class Number, class Coefficient>
 Value sum_of_powers(int degree, const Number& t, const Coefficient& coefficient) {
     const Number square = t * t;
@@ -28,7 +26,8 @@ struct ValueAndSlope {
     Number value, slope;
 };
 
-// p = a(s) + x b(s) and p' = b + 2 x (a' + x b') at s = x^2.
+// Polynomial and derivative by splitting into even and odd powers: with s = x^2, p = a(s) + x b(s) and p' = b + 2 x (a'
+// + x b').
 template <class Number>
 ValueAndSlope<Number> value_and_slope(const Number* c, int degree, const Number& x) {
     const Number s = x * x;
@@ -44,8 +43,7 @@ ValueAndSlope<Number> value_and_slope(const Number* c, int degree, const Number&
     return {a + x * b, b + 2.0 * x * (a_slope + x * b_slope)};
 }
 
-// Numbers that stand one after the other in memory and are worked on at once: so many doubles as one vector; of other
-// numbers each is taken by itself.
+// Adjacent numbers in memory that are processed together: `most` doubles as one vector, any other type one by one.
 template <class Number, std::size_t most>
 struct Pack {
     static constexpr std::size_t count = 1;

@@ -1,18 +1,19 @@
-// Interval: a closed set of reals [lo, hi] that provably contains the exact value. The only file that knows rounding.
+// Interval: a closed set of reals [lo, hi] that provably contains the exact value. Outward rounding happens only in
+// this file.
 //
-// Sound in round-to-nearest (theory.md 9.5; rounding modes do not reach libm, and optimisers ignore them): every
+// Assumes round to nearest (theory.md 9.5): libm does not honor rounding modes, and optimizers ignore them. Every
 // result is widened outward. An IEEE operation is off by at most half an ulp, and ulp(x) <= 2^-52 |x| for normal x, so
-//     exact value of x op y  in  fl(x op y) +- (2^-52 |fl(x op y)| + least denormal).
-// Not 2^-53: at a power of two 1 + 2^-53 rounds back to 1, and the widening is lost.
+//     exact value of x op y  in  fl(x op y) +- (2^-52 |fl(x op y)| + smallest denormal).
+// A factor of 2^-53 is not enough: 1 + 2^-53 rounds back to 1, and the widening is lost.
 //
-// Assumed of libm, which is not proved but measured (glibc's tables of known errors; Zimmermann et al., "Accuracy of
+// Assumptions about libm, measured but not proved (glibc's tables of known errors; Zimmermann et al., "Accuracy of
 // mathematical functions"): errors below 1 ulp for sin cos tan asin acos atan exp log pow, where we allow 2, and up to
-// 2.3 ulp for sinh cosh tanh, where we allow 4; and arguments of any size are reduced exactly.
+// 2.3 ulp for sinh cosh tanh, where we allow 4. Arguments of any size are reduced exactly.
 //
-// Endpoints may be infinite (lo = -inf, hi = +inf): then the set is unbounded. What has no value is undefined(), whose
-// endpoints are NaN: a domain violation, division by an interval that contains 0, a NaN. It propagates, and no
-// comparison with it is ever true: it cannot be mistaken for a proof. Prove with certainly_...(), never by negating a
-// question.
+// Endpoints may be infinite (lo = -inf, hi = +inf): then the set is unbounded. undefined() has NaN endpoints. It
+// results from a domain violation, a division by an interval that contains 0, or a NaN, and it propagates. Every
+// comparison with it is false, so it cannot be mistaken for a proof. Prove with certainly_...(); a negated comparison
+// proves nothing.
 #pragma once
 
 #include <algorithm>
@@ -35,8 +36,8 @@ inline constexpr double epsilon = std::numeric_limits<double>::epsilon();  // 2^
 inline constexpr int libm = 2;                                             // ulps allowed to libm
 inline constexpr int hyperbolic = 4;                                       // ulps allowed to sinh, cosh, tanh
 
-// Above every real that is within `ulps` ulps of one whose nearest double is x. A -inf that overflow made is lifted to
-// a double first. NaN stays NaN.
+// Upper bound on every real within `ulps` ulps of a real whose nearest double is x. An overflow to -inf is first raised
+// to the largest negative double. NaN stays NaN.
 inline double up(double x, int ulps = 1) {
     const double y = x < -largest ? -largest : x;
     return y + ulps * (epsilon * std::abs(y) + least);
@@ -45,7 +46,7 @@ inline double down(double x, int ulps = 1) {
     const double y = x > largest ? largest : x;
     return y - ulps * (epsilon * std::abs(y) + least);
 }
-// The same for sums, differences and roots: there a denormal result is exact, so that 0 stays 0.
+// The same for sums, differences and square roots. Their denormal results are exact, so 0 stays 0.
 inline double sum_up(double x) {
     const double y = x < -largest ? -largest : x;
     return y + epsilon * std::abs(y);
@@ -62,7 +63,7 @@ class Interval {
     Interval() = default;                   // [0, 0]
     Interval(double x) : Interval(x, x) {}  // NOLINT: a double is a point
     Interval(int x) : lo_(x), hi_(x) {}     // NOLINT
-    // Undefined where this is no set of reals: lo > hi, a NaN, lo = +inf, hi = -inf.
+    // Undefined unless it is a set of reals: lo > hi, a NaN, lo = +inf and hi = -inf are undefined.
     Interval(double lo, double hi) : lo_(lo), hi_(hi) {
         if (!(lo <= hi) || lo > rounding::largest || hi < -rounding::largest) *this = undefined();
     }
@@ -75,7 +76,7 @@ class Interval {
         constexpr double nan = std::numeric_limits<double>::quiet_NaN();
         return trusted(nan, nan);
     }
-    // Every real.
+    // The real line.
     static Interval everything() { return trusted(-rounding::infinity, rounding::infinity); }
 
     bool is_defined() const { return lo_ <= hi_; }
@@ -102,7 +103,7 @@ class Interval {
         return corners(a, b, a.lo_ / b.lo_, a.lo_ / b.hi_, a.hi_ / b.lo_, a.hi_ / b.hi_);
     }
 
-    // [lo, hi] known to be ordered, or both NaN: no check.
+    // [lo, hi] without a check: the caller ensures lo <= hi, or both NaN.
     static Interval trusted(double lo, double hi) {
         Interval result;
         result.lo_ = lo;
@@ -111,10 +112,10 @@ class Interval {
     }
 
  private:
-    // The hull of four corner values, widened. A NaN corner of defined operands is 0 inf or inf / inf, whose limits
-    // together with the other three corners are bounded by taking it as 0.
+    // The hull of four corner values, widened. If the operands are defined, a NaN corner is 0 inf or inf / inf. Taking
+    // it as 0 is sound: its limits lie in the hull of 0 and the other three corners.
     static Interval corners(const Interval& a, const Interval& b, double p, double q, double r, double s) {
-        if (std::isnan(p + q + r + s)) {  // NaN corner, or merely inf - inf here
+        if (std::isnan(p + q + r + s)) {  // a NaN corner, or only the sum is inf - inf
             if (!a.is_defined() || !b.is_defined()) return undefined();
             for (double* corner : {&p, &q, &r, &s}) *corner = std::isnan(*corner) ? 0.0 : *corner;
         }
@@ -125,21 +126,21 @@ class Interval {
     double lo_ = 0.0, hi_ = 0.0;
 };
 
-// --- Questions. A doubtful or undefined answer is false.
+// --- Comparisons. The result is false unless the relation is proved.
 
 inline bool certainly_less(const Interval& a, const Interval& b) { return a.hi() < b.lo(); }
 inline bool certainly_positive(const Interval& a) { return a.lo() > 0.0; }
 inline bool certainly_negative(const Interval& a) { return a.hi() < 0.0; }
 
-// --- Sizes. Of undefined(): mag, rad and width are +inf (std::max cannot lose that, as it loses a NaN), mig is 0.
+// --- Sizes. For undefined(), mag, rad and width are +inf (which std::max keeps, unlike NaN), and mig is 0.
 
-// The greatest |x|.
+// max |x| over the interval.
 inline double mag(const Interval& a) {
     return a.is_defined() ? std::max(std::abs(a.lo()), std::abs(a.hi())) : rounding::infinity;
 }
-// The least |x|.
+// min |x| over the interval.
 inline double mig(const Interval& a) { return std::max({0.0, a.lo(), -a.hi()}); }
-// A double inside, near the middle; NaN of undefined().
+// A double inside, near the middle; NaN for undefined().
 inline double mid(const Interval& a) {
     const double lo = std::max(a.lo(), -rounding::largest), hi = std::min(a.hi(), rounding::largest);
     return std::clamp(0.5 * lo + 0.5 * hi, lo, hi);
@@ -148,7 +149,7 @@ inline double mid(const Interval& a) {
 inline double width(const Interval& a) {
     return a.is_defined() ? rounding::sum_up(a.hi() - a.lo()) : rounding::infinity;
 }
-// A radius about mid() that covers the interval.
+// Radius around mid() that covers the interval.
 inline double rad(const Interval& a) {
     if (!a.is_defined()) return rounding::infinity;
     const double centre = mid(a);
@@ -173,7 +174,7 @@ inline Interval max(const Interval& a, const Interval& b) {
 
 namespace rounding {
 
-// Bounds of x^n, x >= 0, by repeated squaring; n > 0.
+// Bounds on x^n for x >= 0 and n > 0, by repeated squaring.
 inline double power_up(double x, unsigned n) {
     double result = 1.0;
     for (; n != 0; n >>= 1) {
@@ -215,7 +216,7 @@ inline Interval integer_power(const Interval& a, int n) {
     return n < 0 ? Interval(1) / result : result;
 }
 
-// a^b for a > 0: monotone in each variable, so its extremes are at the corners. Undefined where a <= 0 is possible.
+// a^b for a > 0: monotone in each variable, so its extremes are at the corners. Undefined if a may be <= 0.
 inline Interval pow(const Interval& a, const Interval& b) {
     if (!(a.lo() > 0.0) || !b.is_defined()) return Interval::undefined();
     const double p = std::pow(a.lo(), b.lo()), q = std::pow(a.lo(), b.hi());
@@ -274,7 +275,7 @@ inline Interval tanh(const Interval& a) {
 
 namespace rounding {
 
-// Multiples (k + shift) pi that may lie in an interval: k = first .. last, none where first > last.
+// Multiples (k + shift) pi that may lie in an interval, k = first .. last; empty if first > last.
 struct Multiples {
     double first, last;
     bool none() const { return first > last; }
@@ -282,10 +283,10 @@ struct Multiples {
     bool odd() const { return last > first || (last == first && std::fmod(first, 2.0) != 0.0); }
 };
 
-// Beyond this |x| multiples of pi are not told apart; far below 2^52, where doubles lose their last binary place.
+// For larger |x| multiples of pi are not distinguished. Far below 2^52, where doubles lose their last fractional bit.
 inline constexpr double largest_angle = 0x1p40;
 
-// Every multiple that is inside is found; one that is not may be found too, if it is within rounding of an endpoint.
+// Finds every multiple inside the interval. May also include one that is outside by a rounding error.
 inline Multiples multiples_of_pi(const Interval& a, double shift) {
     const Interval turns = a / Interval::pi() - shift;
     return {std::ceil(turns.lo()), std::floor(turns.hi())};
@@ -311,7 +312,7 @@ inline Interval cos(const Interval& a) {
     if (mag(a) > rounding::largest_angle) return Interval::trusted(-1.0, 1.0);
     return rounding::wave(a, std::cos(a.lo()), std::cos(a.hi()), 0.0);
 }
-// Undefined where a pole may lie inside.
+// Undefined if a pole may lie inside.
 inline Interval tan(const Interval& a) {
     if (!(mag(a) <= rounding::largest_angle) || !rounding::multiples_of_pi(a, 0.5).none()) return Interval::undefined();
     return Interval::trusted(rounding::down(std::tan(a.lo()), rounding::libm),

@@ -1,5 +1,5 @@
-// A value and its derivatives in N directions, over any number: forward differentiation, in which what runs over a Number
-// runs over a Jet. Without directions it is the number by itself, with products by an exact 0 left out.
+// Forward differentiation: a value with its derivatives in N directions, over any number type. Code written for a
+// Number also runs on a Jet. With N = 0 a Jet is a plain number whose products with an exact 0 are exact.
 #pragma once
 
 #include <array>
@@ -14,8 +14,8 @@
 
 namespace achilles {
 
-// a b. Of intervals: 0 times what is defined is 0, exactly; the general product would widen it by the least denormal, and
-// what is multiplied by that later costs a hundred times as much (theory-truncation.md 5).
+// The product a b. For intervals, 0 times a defined interval is exactly 0. The general product would widen it by the
+// smallest denormal, and later products with the result take a hundred times as long (theory-truncation.md 5).
 inline double times(double a, double b) { return a * b; }
 inline Interval times(const Interval& a, const Interval& b) {
     if ((a.lo() == 0.0 && a.hi() == 0.0 && b.is_defined()) || (b.lo() == 0.0 && b.hi() == 0.0 && a.is_defined()))
@@ -32,21 +32,21 @@ struct Jet {
     Jet() = default;
     Jet(const Number& x) : value(x) {}                                     // NOLINT: a constant
     Jet(double x) requires(!std::is_same_v<Number, double>) : value(x) {}  // NOLINT
-    // The variable of direction i.
+    // The independent variable of direction i: its derivative is 1 in direction i and 0 in the others.
     static Jet variable(const Number& x, std::size_t i) {
         Jet result(x);
         result.slope[i] = Number(1.0);
         return result;
     }
 
-    // f(x) where f'(x) is given.
+    // f(x) by the chain rule: f is f(x) and by_x is f'(x).
     friend Jet chain(const Jet& x, const Number& f, const Number& by_x) {
         Jet result(f);
         for (std::size_t i = 0; i < N; ++i) result.slope[i] = times(by_x, x.slope[i]);
         return result;
     }
 
-    // x, which rises by a b' besides.
+    // x with a b' added to its derivatives.
     friend Jet and_slope(Jet x, const Number& a, const Jet& b) {
         for (std::size_t i = 0; i < N; ++i) x.slope[i] = x.slope[i] + times(a, b.slope[i]);
         return x;
@@ -98,7 +98,7 @@ struct Jet {
     static bool is_defined(const Interval& x) { return x.is_defined(); }
 };
 
-// --- Functions: the value, and what it rises by; of jets, and of what else has a value, chain() and and_slope()
+// --- Functions of every type with chain() and and_slope(): the value and its derivatives
 
 template <class Number>
 concept HasSlopes = requires {
@@ -142,7 +142,7 @@ void sine_and_cosine(const J& x, J& sine, J& cosine) {
     using Number = typename J::Component;
     using std::cos, std::sin;
     const Number s = sin(x.value), c = cos(x.value);
-    const J angle = x;  // which may be where a result goes
+    const J angle = x;  // a copy: x may be the same object as sine or cosine
     sine = chain(angle, s, c);
     cosine = chain(angle, c, -s);
 }
@@ -197,7 +197,7 @@ J integer_power(const J& x, int n) {
     if (n == 0) return J(1.0);
     return chain(x, integer_power_of(x.value, n), times(Number(n), integer_power_of(x.value, n - 1)));
 }
-// a^b, a > 0.
+// a^b for a > 0.
 template <HasSlopes J>
 J pow(const J& a, const J& b) {
     using Number = typename J::Component;
@@ -206,8 +206,8 @@ J pow(const J& a, const J& b) {
     return and_slope(chain(a, r, b.value * pow(a.value, b.value - Number(1.0))), log(a.value) * r, b);
 }
 
-// A double with its derivatives in eight directions side by side, in vectors of so many bytes: a jet whose arithmetic is
-// compiled for the vectors that a processor has, as that of lanes is.
+// A double with its derivatives in eight directions, stored in vectors of `Bytes` bytes. Like Lanes, its arithmetic is
+// compiled for the vector size of the processor.
 template <std::size_t Bytes>
 struct Directed {
     using Component = double;
@@ -218,16 +218,16 @@ struct Directed {
     Directed() = default;
     IN_LANES Directed(double x) : slope(0.0), value(x) {}  // NOLINT: a constant
     IN_LANES Directed(double x, const Lanes<Bytes>& by) : slope(by), value(x) {}
-    // The variable of direction i.
+    // The independent variable of direction i.
     static Directed variable(double x, std::size_t i) {
         Directed result(x);
         result.slope.set(i, 1.0);
         return result;
     }
 
-    // f(x) where f'(x) is given.
+    // f(x) by the chain rule: f is f(x) and by_x is f'(x).
     IN_LANES friend Directed chain(const Directed& x, double f, double by_x) { return {f, by_x * x.slope}; }
-    // x, which rises by a b' besides.
+    // x with a b' added to its derivatives.
     IN_LANES friend Directed and_slope(const Directed& x, double a, const Directed& b) {
         return {x.value, x.slope + a * b.slope};
     }
@@ -239,7 +239,7 @@ struct Directed {
         return {a.value - b.value, a.slope - b.slope};
     }
     IN_LANES friend Directed operator*(const Directed& a, const Directed& b) {
-        Directed result;  // by the numbers themselves: a number that was made lanes before costs a sum
+        Directed result;  // scalar factors: converting them to Lanes first would cost an addition
         result.value = a.value * b.value;
         for (std::size_t p = 0; p < parts; ++p)
             result.slope.part[p] = a.slope.part[p] * b.value + a.value * b.slope.part[p];

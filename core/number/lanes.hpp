@@ -1,8 +1,8 @@
-// Eight numbers side by side in vectors of so many bytes. What is done to a lane does not depend on its neighbours.
+// Eight doubles in vectors of `Bytes` bytes. The result in each lane does not depend on the other lanes.
 //
-// A processor has vectors of one size or another, and a function that is compiled for one kind and becomes a part of
-// another does not use its vectors. So the arithmetic becomes a part of whoever calls it, and what is built on it (a
-// template over the number, TaylorStep say) is compiled once for each kind: see series/lane_kinds.hpp.
+// Processors differ in vector size. A function compiled for one size does not use the vectors of another size if it is
+// inlined into code for that size. The arithmetic here is therefore always inlined, and the templates built on it (such
+// as TaylorStep) are compiled once for each vector size: see series/lane_kinds.hpp.
 #pragma once
 
 #include <cmath>
@@ -27,7 +27,7 @@
 
 namespace achilles {
 
-// Which lanes: all bits of a lane, or none.
+// A condition for each lane: all bits of the lane are set, or none.
 template <std::size_t Bytes>
 struct alignas(Eight) Mask {
     using Vector [[gnu::vector_size(Bytes)]] = std::int64_t;
@@ -80,7 +80,7 @@ struct alignas(Eight) Lanes {
     OF_TWO(Mask, operator>, Lanes, a > b)
     OF_TWO(Mask, operator<=, Lanes, a <= b)
     OF_TWO(Mask, operator==, Lanes, a == b)
-    // b where they cannot be compared
+    // min and max return b if either argument is NaN
     OF_TWO(Lanes, min, Lanes, a < b ? a : b)
     OF_TWO(Lanes, max, Lanes, a > b ? a : b)
     IN_LANES friend Lanes operator-(const Lanes& a) {
@@ -91,14 +91,14 @@ struct alignas(Eight) Lanes {
     IN_LANES friend Lanes& operator+=(Lanes& a, const Lanes& b) { return a = a + b; }
     IN_LANES friend Lanes& operator*=(Lanes& a, const Lanes& b) { return a = a * b; }
 
-    // By lane: a where the mask holds, else b.
+    // For each lane: a if the mask is set, else b.
     IN_LANES friend Lanes select(const Mask& mask, const Lanes& a, const Lanes& b) {
         Lanes result;
         EACH_PART result.part[p] = mask.part[p] ? a.part[p] : b.part[p];
         return result;
     }
 
-    // The bits of doubles, and back.
+    // The bits of the doubles as integers, and back.
     IN_LANES friend Mask bits(const Lanes& a) {
         Mask result;
         std::memcpy(result.part, a.part, sizeof a);
@@ -115,13 +115,13 @@ struct alignas(Eight) Lanes {
         return doubles(result);
     }
 
-    // Within 0.09 of log2(x), x > 0: exponent and mantissa as they stand in a double.
+    // Approximates log2(x), x > 0, within 0.09, from the bits of the exponent and the mantissa.
     IN_LANES friend Lanes rough_log2(const Lanes& x) {
         Mask result = bits(x);
-        EACH_PART result.part[p] = result.part[p] >> 12 | 0x4330000000000000;  // 2^52 and what stands there
+        EACH_PART result.part[p] = result.part[p] >> 12 | 0x4330000000000000;  // the double 2^52 + (bits >> 12)
         return (doubles(result) - 0x1p52) * 0x1p-40 - 1023.0;
     }
-    // Within 0.3 percent of 2^x, |x| < 1000.
+    // Approximates 2^x, |x| < 1000, within 0.3 percent.
     IN_LANES friend Lanes rough_exp2(const Lanes& x) {
         const Lanes shifted = x + 0x1.8p52, f = x - (shifted - 0x1.8p52);  // |f| <= 1/2
         const Lanes mantissa = 1.0 + f * (0.6931 + f * (0.2402 + f * 0.0555));
@@ -137,7 +137,7 @@ struct ConditionOf<Lanes<Bytes>> {
     using Type = Mask<Bytes>;
 };
 
-// Functions that are not worth vectors, lane by lane.
+// Functions that are evaluated one lane at a time because vector versions would not pay off.
 template <class Function, std::size_t Bytes>
 IN_LANES Lanes<Bytes> each_lane(const Function& function, const Lanes<Bytes>& a) {
     Lanes<Bytes> result;
@@ -166,17 +166,17 @@ IN_LANES Lanes<Bytes> pow(const Lanes<Bytes>& a, const Lanes<Bytes>& b) {
     return result;
 }
 
-// To within an ulp of 1. The angle less a multiple k of pi/2, which is taken off in three parts: the first two have so
-// few digits that their products with k are exact. Then both series to where their terms are below rounding, and the
-// quadrant.
+// Sine and cosine with an absolute error of at most one ulp of 1. Subtracts a multiple k of pi/2 from the angle in
+// three parts, of which the first two are so short that their products with k are exact. Then sums both Taylor series
+// until the terms are below rounding, and selects by quadrant. Angles beyond 2^18 use std::sin and std::cos.
 template <std::size_t Bytes>
 void sine_and_cosine(const Lanes<Bytes>& angle, Lanes<Bytes>& sine, Lanes<Bytes>& cosine) {
     using Number = Lanes<Bytes>;
     constexpr double farthest = 0x1p18, to_integer = 0x1.8p52;
-    constexpr double first = 0x1.921fb544p0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;  // of pi/2
+    constexpr double first = 0x1.921fb544p0, second = 0x1.0b4611a6p-34, third = 0x1.3198a2e037073p-69;  // parts of pi/2
     const Number shifted = angle * (2.0 * std::numbers::inv_pi) + to_integer, k = shifted - to_integer;
     const Number x = ((angle - k * first) - k * second) - k * third, z = x * x;
-    // Both by pairs of terms: few sums wait for one another.
+    // Both series are summed in pairs of terms, to shorten the chain of dependent operations.
     const Number z2 = z * z, z4 = z2 * z2;
     const Number s = ((-1.0 / 6.0 + z * (1.0 / 120.0)) + z2 * (-1.0 / 5040.0 + z * (1.0 / 362880.0))) +
                      z4 * ((-1.0 / 39916800.0 + z * (1.0 / 6227020800.0)) +

@@ -31,7 +31,7 @@ Polynomial::End Polynomial::at_end() const {
 }
 
 Polynomial interpolate(const std::array<double, 5>& f) {
-    // Newton's forward differences at x = 4 theta, expanded: coefficients of the differences from the first value.
+    // Newton's forward differences at x = 4 theta, expanded in terms of the differences from the first value.
     const double d1 = f[1] - f[0], d2 = f[2] - f[0], d3 = f[3] - f[0], d4 = f[4] - f[0];
     Polynomial p;
     p.degree = 4;
@@ -47,7 +47,7 @@ namespace {
 
 using Coefficients = std::array<double, Polynomial::capacity>;
 
-// What a polynomial consists of, or the rest where low powers are divided out.
+// The coefficients of a polynomial, or of the quotient after low powers are divided out.
 struct Terms {
     const double* c;
     int degree;
@@ -63,7 +63,7 @@ constexpr auto binomials = [] {
     return table;
 }();
 
-// b_i = sum_j C(i,j)/C(d,j) c_j: the coefficients over [0, 1].
+// Coefficients in the Bernstein basis over [0, 1]: b_i = sum_j C(i,j)/C(d,j) c_j.
 Coefficients to_bernstein(const Terms& p) {
     Coefficients b{};
     const auto d = static_cast<std::size_t>(p.degree);
@@ -75,7 +75,8 @@ Coefficients to_bernstein(const Terms& p) {
     return b;
 }
 
-// De Casteljau at the middle: the halves' coefficients. Afterwards right[i] holds the last entry of each level.
+// De Casteljau's algorithm at 1/2: coefficients over the left and the right half. right[i] ends as the last entry of a
+// level.
 void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& right) {
     right = b;
     for (int level = 0; level <= degree; ++level) {
@@ -86,10 +87,10 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
     }
 }
 
-// The root between a positive and a negative end, from a guess: Newton's method, kept inside the shrinking bracket.
-// After so many rounds a small step is taken to be near the root.
+// The root between `low`, where p > 0, and `high`, where p < 0. Newton's method from x, kept inside the shrinking
+// bracket. From iteration `rounds` on, a Newton step of relative size below 2^-30 ends the iteration.
 double newton(const Terms& p, double low, double high, double x, int rounds) {
-    constexpr double squared_away = 0x1p-30;  // a step this small leaves an error of its square
+    constexpr double squared_away = 0x1p-30;  // after a step this small the error is about its square
     for (int round = 0; round < 100; ++round) {
         const auto [value, slope] = value_and_slope(p.c, p.degree, x);
         if (value == 0.0) return x;
@@ -112,7 +113,8 @@ double polish(const Terms& p, double low, double high) {
     return newton(p, low, high, low + (high - low) * (at_low / (at_low - at_high)), 2);
 }
 
-// Looks through the step from left to right, in pieces that are halved until each says one thing.
+// Searches the step from left to right, in subintervals that are halved until the sign variations of each are
+// conclusive.
 class Search {
  public:
     Search(const Terms& p, double remainder) : p_(p), remainder_(remainder) {}
@@ -127,8 +129,8 @@ class Search {
     }
 
  private:
-    // Where it comes down into the remainder in a piece that starts above it. By bisection: the piece may end where it
-    // leaves the remainder again, to within rounding, and Newton's method would as soon go there.
+    // Where the quantity enters the remainder in a subinterval that starts above it. By bisection: the quantity may
+    // leave the remainder again near the right end, and Newton's method might converge there.
     double entry(double low, double high) const {
         for (int i = 0; i < 52; ++i) {
             const double middle = 0.5 * (low + high);
@@ -142,8 +144,8 @@ class Search {
         return true;
     }
 
-    // One piece. What is known on entering it: inside_, that the quantity has come down into the remainder (at since_)
-    // and not left it; otherwise it is above. True if the search is over.
+    // Searches one subinterval. inside_ says that the quantity has entered the remainder (at since_) and not left it;
+    // otherwise it is above the remainder. Returns true if the search is over.
     bool visit(const Coefficients& b, double low, double high, int depth) {
         int rises_and_falls = 0, crossings_below = 0;  // sign variations of b - remainder, b + remainder
         bool above = b[0] > remainder_, below = b[0] < -remainder_;
@@ -193,8 +195,8 @@ class Search {
 
 Descent first_descent(const Polynomial& polynomial, int known, double remainder) {
     const Terms p{polynomial.c.data() + known, polynomial.degree - known};
-    // On [0, 1] the powers of theta decrease, so a polynomial is a mean of the partial sums of its coefficients (Abel),
-    // and lies between the least and the largest of these. The slope is bounded by its own partial sums.
+    // On [0, 1] the powers of theta decrease, so the polynomial is a convex combination of the partial sums of its
+    // coefficients (Abel summation) and lies between their minimum and maximum. The same holds for the derivative.
     double value = p.c[0], least = value, slope = p.c[1], least_slope = slope, largest_slope = slope;
     for (int k = 1; k <= p.degree; ++k) {
         const double c = p.c[k];
@@ -206,10 +208,11 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
         largest_slope = std::max(largest_slope, slope);
     }
     if (least > remainder || (largest_slope < 0.0 && value > remainder)) return {};
-    // It falls all along, from above the remainder to below it: one root, by Newton's method from the parabola's. Where
-    // the slope hardly changes, a small first step of it is trusted at once, else from the third on.
+    // The polynomial decreases throughout, from above the remainder to below it: there is one root. Newton's method
+    // starts from the root of the quadratic part. It may stop at the first small step if the derivative changes little,
+    // else at the third.
     if (p.c[0] > remainder && largest_slope < 0.0 && value < -remainder) {
-        const bool steady = least_slope > 3.0 * largest_slope;  // the slope changes by a factor of three at most
+        const bool steady = least_slope > 3.0 * largest_slope;  // the derivative changes by a factor of at most three
         const double curvature = p.degree > 1 ? p.c[2] : 0.0;
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * curvature));
         return {Descent::Kind::root,

@@ -20,21 +20,21 @@ namespace {
 
 constexpr std::size_t most_coordinates = 4;  // columns of the table
 
-// Half the certified interval of the Zeno time at its larger side, s; 0 where there is none.
+// Half-width of the certified Zeno time (s), to the farther end of the interval; 0 if it is not certified.
 double half_width(const Event& event) { return proved_time(event).value_or(0.0); }
 
 std::string with_unit(const std::string& text, const std::string& unit) {
     return unit.empty() ? text : text + " " + unit;
 }
 
-// Six decimals of numbers about 1, and as many digits of others.
+// Decimals: six for values of about 1, and the same number of significant digits for larger or smaller scales.
 int decimals_of(double scale) {
     if (!(scale > 0.0)) return 6;
     const int place = static_cast<int>(std::floor(std::log10(scale)));
     return std::clamp(place >= 0 ? 6 - std::max(0, place - 1) : 5 - place, 0, 12);
 }
 
-// The decimals of a number that such an error does not change.
+// The value without the decimals that the error affects.
 std::string decimal_text(double value, double error, double scale) {
     if (!std::isfinite(error)) return unknown_number;
     if (error >= 1.0) return known_digits(value, error, 9);
@@ -45,10 +45,10 @@ std::string decimal_text(double value, double error, double scale) {
     return text;
 }
 
-// A number as it was given, with at most nine digits.
+// An input value with at most nine digits.
 std::string given_text(double value) { return fmt::format("{:.9g}", value + 0.0); }
 
-// What happened, a row per change of the contact state.
+// The table of events: one row per change of the contact state.
 class Changes {
  public:
     Changes(const Trajectory& trajectory, const ErrorEstimate& estimate)
@@ -98,14 +98,14 @@ class Changes {
     std::vector<std::string> row(std::size_t index, const Event& event) const {
         const double time_error = std::max(half_width(event), precision_.of_event(index));
         const State errors = precision_.of_state(event.t);
-        // The state is that at the time printed: an error of the time moves it.
+        // The printed state is that at the printed time, so an error of the time moves it.
         const Vector moved = errors.q + time_error * event.v_after.cwiseAbs();
         const Event::Kind kind = is_plastic_landing(event) ? Event::Kind::impact : event.kind;
         return row(decimal_text(event.t, time_error, trajectory_.end_time), std::string(names_of(kind).label), event.q,
                    moved, sentences_.change(index));
     }
 
-    // Without errors the numbers are those given.
+    // Without `errors`, q is printed as given.
     std::vector<std::string> row(std::string time, std::string name, const Vector& q, const Vector& errors,
                                  std::string note) const {
         std::vector<std::string> cells{std::move(time), std::move(name)};

@@ -31,7 +31,7 @@ Impulses::Impulses(const Trajectory& trajectory)
 std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     const Event& impact = trajectory_.events[event];
     if (impact.joint && !impact.joint->impulses.empty()) return impact.joint->impulses;
-    // G (v+ - v-) = W p over what is held and what lands.
+    // Solves G (v+ - v-) = W p for the held and the impacting contacts.
     const ContactSet all = mode_before(trajectory_, event).held().with(impact.contacts);
     if (all.count() > most_contacts) return {};
     const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
@@ -82,18 +82,18 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
 }
 
 std::vector<Chatter> chatters_of(const Trajectory& trajectory) {
-    constexpr std::size_t few = 8;  // phases, which are told one by one
+    constexpr std::size_t few = 8;  // shorter sequences are printed phase by phase
     std::vector<Chatter> found;
     if (trajectory.model->contacts() < 2) return found;
     const std::vector<std::size_t> ends = ends_of_phases(trajectory);
-    // What a phase ends with: a contact comes to rest, or one is opened, or neither.
+    // How a phase ends: 1 at a Zeno point, -1 at an impact that opens a held contact, else 0.
     const auto end_of = [&](std::size_t phase) -> int {
         if (ends[phase] == (phase == 0 ? 0 : ends[phase - 1])) return 0;
         const Event& event = trajectory.events[ends[phase] - 1];
         return event.is_zeno() ? 1 : event.opened.empty() ? 0 : -1;
     };
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
-        const std::size_t first = i + 1;  // the phase before the first turn is like any other
+        const std::size_t first = i + 1;  // the phase before the first alternation is not part of it
         if (end_of(i) == 0) continue;
         while (i + 2 < ends.size() && end_of(i + 1) == -end_of(i)) ++i;
         if (i + 1 - first > few) found.push_back({first, i + 1, ends[first - 1], ends[i]});

@@ -1,4 +1,4 @@
-// What is said of the contacts of a run, by name.
+// Contacts by name in the output of a run, impulses, and the energy balance.
 #pragma once
 
 #include <cstddef>
@@ -13,20 +13,19 @@
 
 namespace achilles {
 
-// The names of these contacts, in their order.
+// The names of these contacts, in ascending order.
 std::vector<std::string> contact_names(const Model& model, ContactSet contacts);
-// The same as one text, "bowl, post" or "bowl+post".
+// The same joined: "bowl, post" or "bowl+post".
 std::string joined_names(const Model& model, ContactSet contacts, std::string_view between = ", ");
-// Of an event: the names of the contacts that land, come to rest or leave. Empty where the system has one contact, which goes
-// without saying.
+// The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.
 std::string contacts_told(const Trajectory& trajectory, const Event& event);
 
-// The impulses of impacts, v+ = v- + M^-1 sum p_i g_i': of the contacts that land, and of the held ones that these press
-// (theory-gaps.md 2).
+// The impulses of impacts, v+ = v- + M^-1 sum p_i g_i', of the impacting contacts and of the held ones that react to
+// them (theory-gaps.md 2).
 class Impulses {
  public:
     explicit Impulses(const Trajectory& trajectory);
-    // Contact by contact; empty where they cannot be told.
+    // By contact; empty if the impulses cannot be determined.
     std::vector<std::pair<std::size_t, double>> of(std::size_t event);
 
  private:
@@ -34,34 +33,33 @@ class Impulses {
     Surfaces surfaces_;
 };
 
-// What is proved of the other contacts, one part of a sentence after the other.
+// The bounds on the other contacts, as parts of a sentence.
 std::string others_told(const Model& model, const Certificate::Others& others);
 
-// "Moreau's law at event k": the first before this one whose order matters and could not be told, which all that is proved
-// later stands on (theory-gaps.md 2.4). Empty where there is none.
+// "Moreau's law at event k", for the first event before this one whose order matters but is unknown. Later proofs
+// depend on this choice (theory-gaps.md 2.4). Empty if there is no such event.
 std::string given(const Trajectory& trajectory, std::size_t event);
 
-// Of each phase, the event after its last one: a phase ends with that which changes what is held.
+// For each phase, the index after its last event. A phase includes the event that changes its mode.
 std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory);
 
-// Phases [first, last) that end in turn with a Zeno point and with an impact that opens what was held, more than a few:
-// hundreds are possible (theory-gaps.md 2.6). They are told as one.
+// More than a few phases [first, last) that end alternately at a Zeno point and at an impact that opens held contacts.
+// There may be hundreds (theory-gaps.md 2.6), so they are printed as one.
 struct Chatter {
     std::size_t first = 0, last = 0;
-    std::size_t first_event = 0, last_event = 0;  // theirs, the same way
+    std::size_t first_event = 0, last_event = 0;  // the events of these phases, [first_event, last_event)
 };
 std::vector<Chatter> chatters_of(const Trajectory& trajectory);
 
-// Where the energy of a run is and where it went: E(t) - E(start) = work - loss (theory-gaps.md 1).
-
-// At an instant, in the unit of the system's energy: what moves, what is stored, and what forces have done and impacts
-// have taken since the start. The work is no number where the run kept the ends of steps alone.
+// The energies at an instant, in the unit of the system's energy: kinetic, potential, work of forces since the start,
+// and dissipation at impacts since the start, with E(t) - E(start) = work - loss (theory-gaps.md 1). The work may be
+// NaN for a run stored with Keep::end.
 struct Energies {
     double kinetic = 0.0, potential = 0.0, work = 0.0, loss = 0.0;
     double total() const { return kinetic + potential; }
 };
 
-// One per thread.
+// Evaluates the energies of a run. Use one per thread.
 class EnergyBalance {
  public:
     EnergyBalance(const Model& model, const Run& run);
@@ -71,14 +69,13 @@ class EnergyBalance {
     EnergyTerms<Evaluator<double>> energy_;
 };
 
-// What this event alone has taken: of an impact, or of the restart at a Zeno point.
+// The energy dissipated by this event: by an impact, or by the restart at a Zeno point.
 double energy_lost(const Trajectory& trajectory, std::size_t event);
 
-// The impacts of the contacts that come to rest at a Zeno point since these were held last, and what they and the restart
-// have taken together. A landing without a bounce (e = 0) is a pile of one.
+// The impact sequence that ends at a Zeno point: all impacts of its contacts since they were last held, and the energy
+// dissipated by them and the restart. A plastic impact (e = 0) is a sequence of one.
 struct Pile {
-    std::size_t first =
-        0;  // the first of these impacts, an index into the events; the Zeno point itself where there is none
+    std::size_t first = 0;  // index of the first of these impacts; that of the Zeno point if there is none
     int impacts = 0;
     double loss = 0.0;
 };

@@ -1,4 +1,4 @@
-// A trajectory as CSV, and which instants of it files hold; as text, for golden tests.
+// Output of a trajectory as CSV, the instants that it contains, and a short text for golden tests.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,20 +19,20 @@ namespace achilles {
 
 namespace {
 
-// The shortest form that reads back the same double; empty where it is not finite.
+// In the shortest form that is read back as the same double; empty if it is not finite.
 void append(std::string& row, double x) {
     row += ',';
     if (std::isfinite(x)) row += fmt::format("{}", x + 0.0);
 }
 
-// What Python keeps for itself and a coordinate may be called; all of lambda's column is.
+// Reserved words of Python that a coordinate may have as a name. The column lambda always needs a replacement.
 constexpr std::string_view python_keywords[] = {
     "and",    "as",   "assert", "async",  "await",    "break", "class", "continue", "def",
     "del",    "elif", "else",   "except", "finally",  "for",   "from",  "global",   "if",
     "import", "in",   "is",     "lambda", "nonlocal", "not",   "or",    "pass",     "raise",
     "return", "try",  "while",  "with",   "yield",    "None",  "True",  "False"};
 
-// Each a name in Python, and no other's: x' is x_rate.
+// Unique names that are valid in Python: x' becomes x_rate.
 std::vector<std::string> plain(const std::vector<std::string>& columns) {
     std::vector<std::string> names;
     for (std::string name : columns) {
@@ -56,7 +56,7 @@ std::string row_of(const std::vector<std::string>& cells) {
 bool is_of_several(const Model& model) { return model.contacts() > 1; }
 bool has_work(const Model& model) { return is_of_several(model) || model.equations().has_power(); }
 
-// The names of the columns and, if wished for, their units.
+// The names of the columns and, if requested, their units.
 std::string heading(const Model& model, const CsvStyle& style) {
     std::vector<std::string> columns{"t", "phase"}, units{"s", ""};
     for (std::size_t i = 0; i < 2 * static_cast<std::size_t>(model.dof()); ++i) {
@@ -88,7 +88,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
     return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
 }
 
-// The kinds of these events [first, last), each once, in time: "impact+zeno". Empty where there is none.
+// The kinds of events [first, last), each once, in order of time: "impact+zeno". Empty if there are no events.
 std::string kinds_of(const Trajectory& trajectory, int first, int last) {
     std::string kinds;
     for (int i = first; i < last; ++i) {
@@ -109,7 +109,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         contacts.push_back(model.evaluator(model.programs_of(i).contact_terms, trajectory.run.parameters));
     ContactForces forces(model, trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
-    int happened = 0;  // events until the row before
+    int happened = 0;  // number of events up to the previous row
     for (const Sample& sample :
          style.instants ? samples_at(trajectory, *style.instants) : samples_of_curve(trajectory)) {
         forces.set(sample);
@@ -191,12 +191,12 @@ namespace {
 
 std::string to_text(const Vector& x) {
     std::string text = "(";
-    // Adding 0.0 turns -0 into 0: their difference is not one that a golden should see.
+    // Adding 0.0 turns -0 into 0, so that golden tests do not see the difference.
     for (Eigen::Index i = 0; i < x.size(); ++i) text += fmt::format("{}{:.9g}", i == 0 ? "" : ", ", x[i] + 0.0);
     return text + ")";
 }
 
-// " of knee held wall", where there are several contacts.
+// " {what} knee+post" for a system with several contacts; else empty.
 std::string contacts(const Trajectory& trajectory, const char* what, ContactSet contacts) {
     const Model& model = *trajectory.model;
     if (model.contacts() == 1 || contacts.empty()) return "";

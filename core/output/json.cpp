@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// Numbers print in the shortest form that reads back the same double; what is not finite is null.
+// Numbers are printed in the shortest form that is read back as the same double. Numbers that are not finite are null.
 
 Json list(const Vector& x) {
     Json result = Json::array();
@@ -31,14 +31,14 @@ Json list(const Eigen::VectorXd& x) {
     return result;
 }
 
-// Row by row.
+// A matrix as a list of rows.
 Json table(const Eigen::MatrixXd& x) {
     Json result = Json::array();
     for (Eigen::Index i = 0; i < x.rows(); ++i) result.push_back(list(Eigen::VectorXd(x.row(i).transpose())));
     return result;
 }
 
-// Following the event; null past where there are none.
+// Derivatives along the event; null for events beyond the last one with derivatives.
 Json derivatives_at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event) {
     if (event >= derivatives.events.size()) return nullptr;
     const Derivatives::AtEvent& at = derivatives.events[event];
@@ -91,7 +91,7 @@ Json system_of(const Trajectory& trajectory) {
         {"title", description.title}, {"coordinates", coordinates}, {"parameters", parameters}, {"contacts", contacts}};
 }
 
-// Of what has one that is known.
+// The units of quantities with a known unit.
 Json units_of(const SystemDescription& description) {
     Json units = {{"t", "s"}};
     for (const std::string& name : settable_names(description))
@@ -124,7 +124,7 @@ Json options_of(const Options& options) {
     return result;
 }
 
-// How the run ended, and by which tolerances it was made where those that were asked for left it undecided.
+// The outcome, and the tolerances of the second run if the requested ones left it undecided.
 Json outcome_of(const Trajectory& trajectory) {
     Json again = nullptr;
     if (trajectory.made_again_by)
@@ -137,7 +137,7 @@ Json outcome_of(const Trajectory& trajectory) {
 
 Json names(const Trajectory& trajectory, ContactSet contacts) { return contact_names(*trajectory.model, contacts); }
 
-// Values by the names of contacts.
+// Values as an object with the names of contacts as keys.
 template <class Pairs, class Value>
 Json by_contact(const Trajectory& trajectory, const Pairs& pairs, const Value& value) {
     Json result = Json::object();
@@ -152,7 +152,7 @@ Json by_contact(const Trajectory& trajectory, const std::vector<std::pair<std::s
                       [](const auto& entry) { return std::pair(entry.first, number_json(entry.second)); });
 }
 
-// Of the others while one contact bounces.
+// The bounds on the other contacts of a certificate.
 void add_others(Json& result, const Trajectory& trajectory, const Certificate::Others& others) {
     using Held = Certificate::Others::Held;
     result["transmission"] = by_contact(trajectory, others.held, [](const Held& held) {
@@ -200,7 +200,7 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
     return result;
 }
 
-// Those that an event is of; of an impact also those that touched without being held and are pushed by it.
+// The contacts that take part in an event. For an impact this includes touching contacts that receive an impulse.
 ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
     const Event& event = trajectory.events[index];
     ContactSet all = event.contacts;
@@ -211,7 +211,7 @@ ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
     return all;
 }
 
-// What is only said where several contacts took part in an impact.
+// Data that only impacts of several contacts have.
 void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
     result["order_matters"] = joint.order_matters;
     result["not_unique"] = joint.not_unique;
@@ -260,7 +260,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     return result;
 }
 
-// Null where there is none, with the reason.
+// Error estimates; null, with the reason, if there are none.
 void add_error_estimate(Json& result, const Trajectory& trajectory, const ErrorEstimate& estimate) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         Json& of_event = result["events"][i]["error_estimate"] = nullptr;
@@ -349,7 +349,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
         Json& end = result["end"]["derivatives"] = nullptr;
         if (d.end) end = {{"q", table(d.end->q)}, {"v", table(d.end->v)}};
     }
-    // Invalid UTF-8 in a title is replaced, never an exception; where this is read on a terminal, nothing steers it.
+    // Invalid UTF-8 in a title is replaced without an exception, and the result cannot control a terminal.
     return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 

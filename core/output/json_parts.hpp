@@ -1,4 +1,4 @@
-// Parts of what to_json() says of a run, for who says more.
+// Parts of the JSON of a run, shared with other output.
 #pragma once
 
 #include <cmath>
@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-// null for a number that JSON cannot write; no -0.
+// null for a number that is not finite; -0.0 becomes 0.0.
 inline nlohmann::ordered_json number_json(double x) {
     return std::isfinite(x) ? nlohmann::ordered_json(x + 0.0) : nlohmann::ordered_json(nullptr);
 }

@@ -1,4 +1,4 @@
-// A periodic run and its branch, written: for programs, and for a person.
+// Output of a periodic orbit and its branch, as JSON and as text.
 #include "output/output.hpp"
 
 #include <fmt/format.h>
@@ -201,7 +201,7 @@ std::string orbit_text(const Orbit& orbit, const Branch* branch) {
 
 namespace {
 
-// One period as a line: "release at 0 s, 17 impacts from 1.886 s before the cut, Zeno point at 2.43686 s".
+// Summary of one period: "release at 0 s, 17 impacts from 1.886 s before the cut, Zeno point at 2.43686 s".
 std::string period_line(const Orbit& orbit) {
     std::string text;
     int impacts = 0;

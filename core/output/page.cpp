@@ -9,7 +9,7 @@ namespace achilles {
 
 namespace {
 
-// How many characters a UTF-8 text shows.
+// Number of characters in a UTF-8 text.
 std::size_t shown(std::string_view text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
@@ -26,7 +26,7 @@ std::vector<std::size_t> column_widths(const std::vector<std::vector<std::string
 
 std::string padded(const std::string& text, std::size_t width) { return text + std::string(width - shown(text), ' '); }
 
-// The text of a page, block by block.
+// Writes a page as text, block by block.
 class Writing {
  public:
     explicit Writing(const Page& page) : notation_(page.notation()), width_(page.width()) {}
@@ -187,14 +187,14 @@ std::string Page::finish() const {
 
 namespace {
 
-// Where " + " and " - " stand, and how many brackets around each.
+// The positions of " + " and " - ", with the depth of brackets around each.
 struct Place {
     std::size_t offset;
     int depth;
 };
 
 std::vector<Place> places(std::string_view formula) {
-    constexpr int never = 1000;  // inside an argument of LaTeX, or what \left and \right hold together
+    constexpr int never = 1000;  // inside a LaTeX argument, or between \left and \right
     std::vector<Place> result;
     int depth = 0;
     std::vector<int> brackets;
@@ -204,7 +204,7 @@ std::vector<Place> places(std::string_view formula) {
             return i >= word.size() && formula.substr(i - word.size(), word.size()) == word;
         };
         if (c == '(' || c == '{') {
-            // A function's argument stays together as well.
+            // A function's argument is not split either.
             const bool function = i > 0 && std::isalnum(static_cast<unsigned char>(formula[i - 1])) != 0;
             brackets.push_back(c == '{' || follows("\\left") || function ? never : 1);
             depth += brackets.back();
@@ -241,7 +241,7 @@ std::size_t visible_length(std::string_view formula, Notation notation) {
 std::vector<std::string> wrap(const std::string& formula, std::size_t width, Notation notation) {
     if (visible_length(formula, notation) <= width) return {formula};
     const std::vector<Place> all = places(formula);
-    // The least depth of brackets at which every part fits; the last otherwise.
+    // The smallest depth at which every part fits; otherwise the last part list.
     constexpr int deepest = 8;
     std::vector<std::string> parts;
     for (int depth = 0; depth <= deepest; ++depth) {
@@ -269,13 +269,13 @@ std::vector<std::string> wrap(const std::string& formula, std::size_t width, Not
 
 namespace {
 
-// Characters that a terminal shows: bytes of UTF-8 that begin one.
+// Number of characters shown by a terminal: bytes that start a UTF-8 character.
 std::size_t width_of(const std::string& text) {
     return static_cast<std::size_t>(std::count_if(
         text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-// The characters before the decimal point, or all of a text without one.
+// Number of characters before the decimal point, or in all of a text without one.
 std::size_t whole_width(const std::string& text) { return width_of(text.substr(0, text.find('.'))); }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Text laid out: headings, sentences, formulas and matrices on a page of plain text or of LaTeX; tables for a terminal.
+// Page layout: headings, sentences, formulas and matrices as plain text or LaTeX; tables for a terminal.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace achilles {
 
-// A word or name in both notations.
+// Text in both notations.
 struct Both {
     std::string text, latex;
 };
 
-// A piece of a page, for whoever sets it in another way.
+// One element of a page, which can also be laid out by other code.
 struct Block {
     enum class Kind { title, heading, caption, sentence, lines, formula, matrix } kind = Kind::sentence;
-    Both words;         // of a title its two lines, of a formula or a matrix the left hand side
-    std::string right;  // of a formula
+    Both words;         // title: its two lines; formula or matrix: the left-hand side
+    std::string right;  // formula: the right-hand side
     std::vector<std::vector<std::string>> rows{};
     int indent = 0;
 };
 
 class Page {
  public:
-    // What a formula may take on a line, in visible characters.
+    // `width` is the maximum length of a formula on one line, in visible characters.
     Page(Notation notation, std::size_t width) : notation_(notation), width_(width) {}
     explicit Page(Notation notation) : Page(notation, notation == Notation::text ? 100 : 92) {}
 
@@ -35,17 +35,17 @@ class Page {
     void title(const std::string& title, const std::string& source);
     void heading(const Both& words);
     void heading(const std::string& words) { heading(Both{words, words}); }
-    void caption(const std::string& words);                         // what the next formula is
-    void sentence(const Both& words);                               // in LaTeX as it is
-    void lines(const std::vector<std::vector<std::string>>& rows);  // a table of plain words
+    void caption(const std::string& words);                         // describes the next formula
+    void sentence(const Both& words);                               // the LaTeX version is not escaped
+    void lines(const std::vector<std::vector<std::string>>& rows);  // a table of plain text
     void formula(const Both& left, const std::string& right, int indent = 0);
     void matrix(const Both& left, const std::vector<std::vector<std::string>>& rows);
 
     const std::vector<Block>& blocks() const { return blocks_; }
-    // All of it as one text.
+    // The whole page as one text.
     std::string finish() const;
 
-    // Plain words for LaTeX.
+    // Plain text escaped for LaTeX.
     static std::string escaped(std::string_view words);
 
  private:
@@ -54,11 +54,11 @@ class Page {
     std::vector<Block> blocks_;
 };
 
-// About how many characters a formula shows: LaTeX commands count as one, braces as none.
+// Approximate number of visible characters of a formula: a LaTeX command counts as one, a brace as none.
 std::size_t visible_length(std::string_view formula, Notation notation);
 
-// The formula cut before the signs of sums into lines of at most `width` visible characters where that can be: outside
-// brackets first, inside where it must, never inside LaTeX arguments.
+// Splits a formula before + and - signs into lines of at most `width` visible characters, if possible. Prefers signs
+// outside brackets; never splits LaTeX arguments.
 std::vector<std::string> wrap(const std::string& formula, std::size_t width, Notation notation);
 
 // A table for a terminal: columns as wide as their widest cell, numbers aligned at the decimal point.
@@ -66,13 +66,13 @@ std::vector<std::string> wrap(const std::string& formula, std::size_t width, Not
 class TextTable {
  public:
     enum class Align { left, decimal_point };
-    // Columns from left to right, with their headings.
+    // Appends a column with its heading.
     void add_column(std::string heading, Align align);
-    // One cell per column; a row may be shorter.
+    // Appends a row with one cell per column; it may be shorter.
     void add_row(std::vector<std::string> cells) { rows_.push_back(std::move(cells)); }
-    // A line across all columns.
+    // Appends a line across all columns.
     void add_line(std::string text) { rows_.push_back({std::move(text)}), lines_.push_back(rows_.size() - 1); }
-    // Every line indented by two spaces, without trailing spaces.
+    // The table, each line indented by two spaces, without trailing spaces.
     std::string text() const;
 
  private:
@@ -82,10 +82,11 @@ class TextTable {
     };
     std::vector<Column> columns_;
     std::vector<std::vector<std::string>> rows_;
-    std::vector<std::size_t> lines_;  // indices of rows that are one line
+    std::vector<std::size_t> lines_;  // indices of rows that are lines
 };
 
-// Keeps the first and last four rows of more than ten, with a line in between that counts the others.
+// For more than ten rows, adds only the first four and the last four, with a line between them for the number of
+// others.
 template <class Row, class AddRow, class AddLine>
 void add_first_and_last(const std::vector<Row>& rows, const AddRow& add_row, const AddLine& add_line) {
     constexpr std::size_t most = 10, kept = 4;

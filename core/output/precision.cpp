@@ -20,15 +20,15 @@ namespace achilles {
 
 namespace {
 
-constexpr int most_digits = 17;  // as many as tell any two doubles apart
+constexpr int most_digits = 17;  // enough to distinguish any two doubles
 
-// The digits of a number and the power of ten of the first.
+// The digits of a number, and the power of ten of the first digit.
 struct Digits {
     std::string all;
     int exponent = 0;
 };
 
-// |x| exactly, not 0: a double is a decimal of at most 767 digits.
+// |x| exactly, x != 0: a double is a decimal of at most 767 digits.
 Digits digits_of(double x) {
     std::array<char, 800> buffer;
     const auto end =
@@ -38,7 +38,7 @@ Digits digits_of(double x) {
     return {text.substr(0, 1) + text.substr(2, e - 2), std::atoi(text.c_str() + e + 1)};
 }
 
-// The power of ten of the first digit of |x|, not 0.
+// The power of ten of the first digit of |x|, x != 0.
 int leading(double x) {
     const std::string text = fmt::format("{:.20e}", x);
     return std::atoi(text.c_str() + text.find('e') + 1);
@@ -56,7 +56,7 @@ Digits digits_of(const Decimal& x) {
     return result;
 }
 
-// Whether a < b of two sequences of digits behind the same point: trailing zeros do not count.
+// True if a < b, for digits of positive numbers. Trailing zeros are ignored.
 bool is_less(const Digits& a, const Digits& b) {
     if (a.exponent != b.exponent) return a.exponent < b.exponent;
     const std::size_t size = std::max(a.all.size(), b.all.size());
@@ -69,7 +69,7 @@ bool is_less(const Decimal& a, double b) {
     return a.number > 0 ? is_less(digits_of(a), digits_of(b)) : is_less(digits_of(b), digits_of(a));
 }
 
-// The greatest multiple of 10^unit that is not above x; there are fewer than 10^18 of them below |x|.
+// The greatest multiple of 10^unit that is not above x. Requires fewer than 10^18 multiples below |x|.
 Decimal floor_of(double x, int unit) {
     const long double many = static_cast<long double>(x) * std::pow(10.0L, -unit), floor = std::floor(many);
     const long double rounding = 8.0L * std::numeric_limits<long double>::epsilon() * std::abs(many);
@@ -83,12 +83,12 @@ Decimal floor_of(double x, int unit) {
 
 Decimal ceil_of(double x, int unit) { return {-floor_of(-x, unit).number, unit}; }
 
-// As std::format("{}") prints numbers, with all digits of this one, zeros at its end included.
+// In the format of std::format("{}"), but with all digits of x, including trailing zeros.
 std::string to_text(const Decimal& x) {
     if (x.number == 0 && x.unit >= 0) return "0";
     Digits digits = digits_of(x);
     const char* const sign = x.number < 0 ? "-" : "";
-    constexpr int low = -5, high = 16;  // where numbers are printed with a power of ten
+    constexpr int low = -5, high = 16;  // exponents beyond these are printed in scientific notation
     if (x.number != 0 && (digits.exponent < low || digits.exponent >= high)) {
         if (digits.all.size() > 1) digits.all.insert(1, ".");
         return fmt::format("{}{}e{}", sign, digits.all, digits.exponent);
@@ -99,13 +99,13 @@ std::string to_text(const Decimal& x) {
     return sign + digits.all.insert(digits.all.size() - decimals, ".");
 }
 
-// Without the zeros at its end.
+// Without trailing zeros.
 std::string shortened(Decimal x) {
     while (x.number != 0 && x.number % 10 == 0) x.number /= 10, ++x.unit;
     return x.number == 0 ? "0" : to_text(x);
 }
 
-// A decimal of the fewest digits in [low, high]; of a single double with very many digits, all of them.
+// A decimal with the fewest digits in [low, high]; all digits if only a double with very many digits is inside.
 std::string shortest_in(double low, double high) {
     if (low <= 0.0 && high >= 0.0) return "0";
     const double large = std::max(std::abs(low), std::abs(high));
@@ -119,7 +119,7 @@ std::string shortest_in(double low, double high) {
                        digits.exponent);
 }
 
-// A center, to digits that mean something, and how many units of its last digit reach both ends of an interval.
+// A center with a limited number of digits, and the distance to the farther end in units of its last digit.
 struct Centered {
     Decimal center;
     std::int64_t off = 0;
@@ -131,7 +131,7 @@ Centered centered(const Interval& x, int least_unit, int most_unit) {
     if (large > 0.0) unit = std::max(unit, leading(large) + 1 - most_digits);
     const Decimal below = floor_of(middle, unit), low = floor_of(x.lo(), unit), high = ceil_of(x.hi(), unit);
     Centered result{below, 0};
-    // The nearer one of two.
+    // Of the two neighboring decimals, takes the one nearer to the center.
     const std::int64_t up = std::max(below.number + 1 - low.number, high.number - below.number - 1);
     result.off = std::max(below.number - low.number, high.number - below.number);
     if (up < result.off) result = {{below.number + 1, unit}, up};
@@ -140,7 +140,7 @@ Centered centered(const Interval& x, int least_unit, int most_unit) {
 
 bool is_finite(const Interval& x) { return std::isfinite(x.lo()) && std::isfinite(x.hi()); }
 
-// The double that a person wrote where as_written() made this of it.
+// The double that as_written() turned into this interval, if there is one.
 std::optional<double> written(const Interval& x) {
     const double middle = mid(x);
     for (const double near : {middle, std::nextafter(middle, -HUGE_VAL), std::nextafter(middle, HUGE_VAL)}) {
@@ -186,7 +186,7 @@ std::string interval_text(double low, double high) {
 
 std::string short_text(const Interval& x) {
     if (!is_finite(x)) return fmt::format("[{}, {}]", x.lo(), x.hi());
-    constexpr int least_unit = -15;  // of which a double of a few seconds has no less
+    constexpr int least_unit = -15;  // finer than the spacing of doubles of a few seconds
     const Centered value = centered(x, least_unit, 0);
     return value.off == 0 ? shortened(value.center) : fmt::format("{}({})", to_text(value.center), value.off);
 }
@@ -196,14 +196,14 @@ std::string outer_text(const Interval& x) {
     constexpr int tiny = -300, huge = 300;
     Centered value = centered(x, tiny, huge);
     if (value.off == 0) return "= " + shortened(value.center);
-    if (value.off >= 100) value.off = (value.off + 9) / 10 * 10;  // two digits
+    if (value.off >= 100) value.off = (value.off + 9) / 10 * 10;  // round up to two digits
     const double radius = std::strtod(fmt::format("{}e{}", value.off, value.center.unit).c_str(), nullptr);
     return fmt::format("= {} +- {:.1e}", value.center.number == 0 ? "0" : to_text(value.center), radius);
 }
 
 std::string inner_text(const Interval& x) {
     if (!is_finite(x)) return fmt::format("in [{}, {}]", x.lo(), x.hi());
-    constexpr double rounded = 0x1p-47;  // as much as writing down may have added
+    constexpr double rounded = 0x1p-47;  // bound on the relative widening by as_written()
     const double slack = rounded * mag(x);
     if (width(x) <= slack) {
         const std::optional<double> typed = written(x);
@@ -216,14 +216,15 @@ std::string inner_text(const Interval& x) {
 namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
-// An error of more than this share of a coordinate's range leaves nothing of it.
+// A coordinate whose error exceeds this share of its range has no known digits.
 constexpr double useless_share = 0.1;
 
-// The place of the first digit: -3 of 0.0042. Of an error it is the first that it changes.
+// The power of ten of the first digit: -3 for 0.0042.
 int place_of(double x) { return static_cast<int>(std::floor(std::log10(x))); }
 
-// The errors that rounding makes: coordinates of one unit are computed from one another, angles from their sine and cosine, and
-// a rate is seen by what it moves over the run.
+// Rounding errors, in proportion to a scale. Coordinates of the same unit have a common scale, because they may be
+// computed from one another. Angles have a scale of at least 1 rad. Rates have at least that of their coordinate,
+// divided by the duration of the run.
 State rounding_of(const Trajectory& trajectory) {
     const State own = scale_of(trajectory);
     const auto& coordinates = trajectory.model->description().coordinates;

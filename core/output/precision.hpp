@@ -1,5 +1,5 @@
-// Numbers as decimals that claim no more than is known: bounds, rounded to the safe side, and the digits of a run that mean
-// something.
+// Decimal output that claims no more than is known: bounds rounded outward, and only the meaningful digits of a run's
+// numbers.
 #pragma once
 
 #include <algorithm>
@@ -14,79 +14,82 @@
 
 namespace achilles {
 
-// Bounds and intervals as decimals that claim no more than the numbers they print: what is concluded is rounded outward,
-// what is assumed is rounded inward. Every comparison of a decimal with a double is exact.
+// Bounds and intervals as decimals: conclusions are rounded outward, hypotheses inward. All comparisons of a decimal
+// with a double are exact.
 
-// The least decimal of so many digits that is not below x, an upper bound: "3.6e-7".
+// The smallest decimal with this number of digits that is not below x, an upper bound: "3.6e-7".
 std::string rounded_up(double x, int digits = 2);
-// The greatest one that is not above x: a lower bound, or the time that a proof reaches.
+// The greatest such decimal that is not above x: a lower bound, or the time reached by a proof.
 std::string rounded_down(double x, int digits = 2);
-// A bound, rounded up to two digits; one below 1e-16, the rounding of numbers about 1, is printed as that.
+// A bound, rounded up to two digits. A bound below 1e-16, the rounding of numbers of about 1, is printed as 1e-16.
 std::string bound_text(double bound);
-// An estimate, which bounds nothing: its nearest decimal of one digit, "4e-9".
+// An estimate, which is not a bound: the nearest decimal of one digit, "4e-9".
 std::string estimate_text(double estimate);
 
-// "[low, high]", rounded outward, with as many digits as tell the ends apart and two more.
+// "[low, high]", rounded outward, with two digits more than needed to distinguish the ends.
 std::string interval_text(double low, double high);
-// "2.7251421727(13)": the last digits of the number may be off by so many of them. Both ends are inside.
+// "2.7251421727(13)", where the parentheses hold the uncertainty in units of the last digit. Contains both ends.
 std::string short_text(const Interval& x);
-// "= 2.7251421727 +- 1.3e-09": a conclusion. Both ends are inside. "= 2.5" where the interval is exactly that.
+// A conclusion: "= 2.7251421727 +- 1.3e-09", which contains both ends, or "= 2.5" for an interval of exactly that
+// number.
 std::string outer_text(const Interval& x);
-// "= 0.1" or "in [0.059, 0.061]": a hypothesis. What is printed lies in the interval: what a person wrote, or a decimal
-// between it and what as_written() adds on both sides.
+// A hypothesis: "= 0.1" or "in [0.059, 0.061]". The printed numbers lie in the interval: the number as typed, or
+// decimals within the widening by as_written() at both ends.
 std::string inner_text(const Interval& x);
 
-// Which digits of a run's numbers mean something: those that neither its estimated error nor rounding changes. Every number that
-// a person reads of a run goes through here; files of data hold all digits.
+// The meaningful digits of a run's numbers: those that neither the estimated error nor rounding changes. All numbers of
+// a run in text output are formatted here; data files have all digits.
 
-// Printed in place of a number of which no digit is known.
+// Printed for a number without any known digit.
 inline constexpr const char* unknown_number = "?";
 
-// The number as {:.{digits}g} prints it, without the digits behind the first that such an error changes; 0 where that is all of
-// them, unknown_number where the error is infinite.
+// The number with at most `digits` significant digits, cut after the first digit that the error changes. "0" if the
+// error exceeds the number; unknown_number if the error is infinite.
 std::string known_digits(double value, double error, int digits);
-// How many digits that is: 0 where the number is 0 to its error.
+// The number of these digits: 0 if the number is 0 within its error.
 int count_of_known_digits(double value, double error, int digits);
-// How many decimals such an error leaves, of so many.
+// The number of decimals that such an error leaves, at most `decimals`.
 int known_decimals(double error, int decimals);
 
 class EnergyBalance;
 class Surfaces;
 
+// Errors of the quantities of a run, for the choice of digits.
 class Precision {
  public:
-    // Of a run that outlives this, as its estimate does; without one rounding alone is known. Not for two threads at once.
+    // The trajectory and its estimate must outlive this object. Without an estimate, only rounding is considered. Not
+    // thread-safe.
     explicit Precision(const Trajectory& trajectory, const ErrorEstimate* estimate = nullptr);
     Precision(Precision&&) noexcept;
     Precision& operator=(Precision&&) noexcept;
     ~Precision();
 
-    // Errors of coordinates and rates at a time, at least of rounding; infinite where the estimate says that nothing is known.
+    // Errors of coordinates and rates at a time (s), including rounding; infinite if the estimate does not cover them.
     State of_state(double t) const;
-    // Of the time of an event; of the last event at this time, 0 where there is none (s).
+    // Error of the time of an event (s), or of the last event at this time; 0 if there is no such event.
     double of_event(std::size_t event) const;
     double of_time(double t) const;
-    // Of the gap speed of an impact, and of the energy at an instant.
+    // Errors of the gap speed of an impact, and of the energy at an instant.
     double of_gap_speed(std::size_t impact) const;
     double of_energy(const Sample& sample) const;
-    // Of any function of an instant: the sum of what the error of each coordinate and rate changes of it.
+    // Error of a function of an instant: the sum of the changes by the error of each coordinate and rate.
     template <class Function>
     double of(const Function& value_at, const Sample& sample) const;
-    // Where the horizon comes before the end (s).
+    // The time (s) beyond which the run is unreliable, if it is before the end.
     std::optional<double> horizon() const;
-    // Whether a time lies behind the horizon.
+    // True for a time beyond the horizon.
     bool is_beyond(double t) const { return horizon() && t > *horizon(); }
 
  private:
     const Trajectory* trajectory_;
     const ErrorEstimate* estimate_;
     State rounding_, range_;
-    std::vector<double> events_;  // of their times; behind the horizon none becomes smaller
+    std::vector<double> events_;  // errors of event times (s); nondecreasing beyond the horizon
     mutable std::unique_ptr<EnergyBalance> energy_;
     mutable std::unique_ptr<Surfaces> surfaces_;
 };
 
-// A coordinate whose error hides it does not matter where the value does not depend on it.
+// A coordinate with infinite error is varied over its range. The result is infinite unless the value does not change.
 template <class Function>
 double Precision::of(const Function& value_at, const Sample& sample) const {
     const double here = value_at(sample);

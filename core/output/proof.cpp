@@ -1,4 +1,5 @@
-// A proof as JSON and as text; the default output of `prove`: the answer first, then a table of what changed, then the hypotheses.
+// Output of a proof as JSON and as text. The default output of `prove` has the answer first, then a table of changes,
+// then the hypotheses.
 #include "output/proof.hpp"
 
 #include <fmt/format.h>
@@ -20,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The ends are doubles, and print in the shortest form that reads back the same ones.
+// The endpoints in the shortest form that is read back as the same double.
 Json interval(const Interval& x) { return {number_json(x.lo()), number_json(x.hi())}; }
 
 Json box(const Intervals& all) {
@@ -45,10 +46,10 @@ const EventNames& names_of(const EnclosedEvent& event) {
     return is_landing(event) ? landing_names : names_of(event.kind);
 }
 
-// A time that a person wrote is the double nearest to it.
+// True if a time, as typed, is not exactly a double.
 bool is_rounded(double time) { return width(as_written(time)) > 0.0; }
 
-// A proof for a person: what is assumed, how far it goes, and what is concluded.
+// A proof as text: hypotheses, time reached, conclusions.
 class ProofText {
  public:
     ProofText(const Model& model, const Claim& claim, const Enclosure& proof)
@@ -83,7 +84,7 @@ class ProofText {
         return text;
     }
 
-    // Of impacts in a row the first, and how many more there are.
+    // For successive impacts, the first one and the number of others.
     std::string events() const {
         std::string text;
         int impacts = 0;
@@ -100,7 +101,7 @@ class ProofText {
         return text;
     }
 
-    // After the first of so many; `next` is null at the end.
+    // The line for the other impacts after the first; `next` is the event after them, or null at the end.
     static std::string more_impacts(int impacts, const EnclosedEvent* next) {
         const int after_first = std::max(impacts - 1, 0);
         const bool is_cut = next != nullptr && next->is_zeno() && !is_landing(*next);
@@ -196,7 +197,7 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
 }
 
 std::string reach_text(const Enclosure& proof, int digits) {
-    const bool is_whole = proof.outcome.kind == Enclosure::Outcome::Kind::end_time;  // what a person wrote
+    const bool is_whole = proof.outcome.kind == Enclosure::Outcome::Kind::end_time;  // end time as typed
     return is_whole ? fmt::format("{}", proof.proved_until + 0.0) : rounded_down(proof.proved_until, digits);
 }
 
@@ -208,7 +209,7 @@ std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const E
     std::vector<const EnclosedEvent*> result(run.events.size(), nullptr);
     for (std::size_t contact = 0; contact < run.model->contacts(); ++contact) {
         auto enclosed = proof.events.begin();
-        const auto skip = [&](bool impacts) {  // to the next of this contact
+        const auto skip = [&](bool impacts) {  // to the next event of this contact
             while (enclosed != proof.events.end() &&
                    (enclosed->contact != contact || (impacts && enclosed->is_impact())))
                 ++enclosed;
@@ -231,7 +232,7 @@ namespace {
 
 constexpr std::size_t most_coordinates = 4;  // columns of the table
 
-// "2.5 +- 1e-9", without the equals sign of a list.
+// "2.5 +- 1e-9", without the equals sign.
 std::string cell(const Interval& x) {
     const std::string text = outer_text(x);
     return text.starts_with("= ") ? text.substr(2) : text;
@@ -269,7 +270,7 @@ class ProofAnswer {
         return cells;
     }
 
-    // A change of the contact state: no impact, but those that open a contact.
+    // One row per change of the contact state. Impacts are included only if they open a contact.
     std::vector<Row> rows() const {
         std::vector<Row> rows;
         for (const EnclosedEvent& event : proof_.events) {
@@ -301,14 +302,14 @@ class ProofAnswer {
         return table.text();
     }
 
-    // In short; proof_.assumptions has them in full.
+    // Short version; proof_.assumptions is complete.
     static std::string assumptions() {
         return "Assumes IEEE arithmetic, a math library within 2 ulp (4 for hyperbolic functions), and correctly "
                "derived and\n"
                "compiled equations: achilles help accuracy. Impacts: --verbose\n";
     }
 
-    // "Holds for x = 0, y = 2, ...": every number as typed or rounded inward.
+    // "Holds for x = 0, y = 2, ...": numbers as typed or rounded inward.
     std::string hypotheses() const {
         std::string text;
         const auto add = [&](const std::string& name, const Interval& x) {

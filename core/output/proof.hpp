@@ -1,4 +1,4 @@
-// A whole run as a theorem, written: for programs, and for a person.
+// Output of a proof of a whole run, as JSON and as text.
 #pragma once
 
 #include <string>
@@ -10,19 +10,20 @@
 namespace achilles {
 
 std::string_view to_text(Enclosure::Outcome::Kind kind);
-// Every interval is [lo, hi], both in the shortest form that reads back the same double; no wall clock.
+// Every interval is [lo, hi], both in the shortest form that is read back as the same double. No wall-clock times.
 std::string to_json(const Model& model, const Claim& claim, const Enclosure& proof);
-// No more than to_json() claims: hypotheses as a person wrote them, or rounded inward; conclusions rounded outward, as numbers
-// with how far the truth is from them at most.
+// The same claims as text: hypotheses as typed or rounded inward, conclusions as numbers with error bounds, rounded
+// outward.
 std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof);
-// The default output: the time reached, a row per change of the contact state, the hypotheses. The same rounding.
+// The default output: the time reached, a row per change of the contact state, the hypotheses. The same rounding
+// applies.
 std::string proof_answer(const Model& model, const Claim& claim, const Enclosure& proof);
 
-// The time until which all is proved, s: the end time, or another one rounded down to so many digits.
+// The time (s) until which everything is proved: the end time, or another time rounded down to this number of digits.
 std::string reach_text(const Enclosure& proof, int digits = 6);
 
-// Of every event of a run the enclosed one that it is among: Zeno points and releases one after the other, impacts as they
-// follow these. Null where the proof has none; a run may cut a bouncing earlier than a proof does.
+// For each event of a run, the enclosed event that contains it. Zeno points and releases are matched in order, impacts
+// between them. Null if the proof has no such event: a run may truncate an impact sequence earlier than a proof.
 std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const Enclosure& proof);
 
 }  // namespace achilles

@@ -23,7 +23,7 @@ Remark made_again(const Trajectory& trajectory) {
                         trajectory.undecided.empty() ? "" : " (" + trajectory.undecided + ")", what)};
 }
 
-// Whether the gap of a contact has been above this at an end of a step; `largest` is the largest seen on the way.
+// True if the gap of the contact exceeds `height` at the end of a step. `largest` returns the largest gap found.
 bool has_been_above(double height, const Trajectory& trajectory, std::size_t contact, double& largest) {
     const Model& model = *trajectory.model;
     auto gap = model.evaluator(model.gap(contact), trajectory.run.parameters);
@@ -38,16 +38,16 @@ bool has_been_above(double height, const Trajectory& trajectory, std::size_t con
     return largest > height;
 }
 
-// eps has the units of the file, whatever the size of the motion: a bouncing that is small beside it is cut too soon.
+// eps is in the units of the file, whatever the size of the motion. Small bounces are then truncated too soon.
 std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
     constexpr double large_share = 0.001, wanted_share = 1e-4;
-    std::vector<double> largest_of(trajectory.model->contacts(), 0.0);  // runs may have very many such events
+    std::vector<double> largest_of(trajectory.model->contacts(), 0.0);  // a run may have very many such events
     for (const Event& event : trajectory.events) {
         if (!is_zeno_point(event) || !event.certificate || event.contacts.count() != 1) continue;
         std::size_t contact = 0;
         while (!event.contacts.contains(contact)) ++contact;
         const Certificate& c = *event.certificate;
-        // With the paper's conditions what is left out is told by how high its bounces can be.
+        // With the paper's conditions, the height of the omitted bounces is bounded by their speed.
         const double w = event.truncation->impact_speed;
         const double bound = c.uniform_position.value_or(c.a_min > 0.0 ? 0.5 * w * w / c.a_min : c.position_bound);
         const double enough = bound / large_share;
@@ -66,15 +66,15 @@ std::optional<Remark> cut_too_soon(const Trajectory& trajectory) {
     return std::nullopt;
 }
 
-// From a cut to its Zeno point the motion holds contacts that the phase does not hold yet. A phase without pieces has no
-// motion: the last piece is of the phase before it.
+// Between a cut and its Zeno point the motion holds contacts that the phase does not hold yet. If a phase has no
+// pieces, the last piece belongs to the phase before it.
 std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
     if (trajectory.phases.empty() || trajectory.events.empty()) return std::nullopt;
     const Phase& phase = trajectory.phases.back();
     if (phase.first_piece == phase.last_piece || trajectory.end_time < trajectory.pieces.back().end)
         return std::nullopt;
     const ContactSet to_hold = trajectory.pieces.back().mode.held().without(phase.mode.held());
-    bool has_bounces = false;  // that are left out
+    bool has_bounces = false;  // bounces are omitted
     for (std::size_t i = 0; i < trajectory.model->contacts(); ++i)
         if (to_hold.contains(i) && trajectory.model->restitution(trajectory.run.parameters, i) > 0.0)
             has_bounces = true;
@@ -87,8 +87,8 @@ std::optional<Remark> ended_on_the_way(const Trajectory& trajectory) {
                     cut.t)};
 }
 
-// A proof starts from the computed state. Where that is known less well than the interval is wide, the interval is of a
-// neighbour's Zeno time; it matters where it is more than was asked for.
+// A certificate starts from the computed state. If the error of this state exceeds the width of the interval, the
+// interval contains the Zeno time of a neighboring motion. This matters only if the error exceeds the tolerance.
 std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
@@ -106,7 +106,7 @@ std::optional<Remark> integration_outweighs(const Trajectory& trajectory) {
     return std::nullopt;
 }
 
-// Shorter flights than double precision resolves are not made, whatever was asked for.
+// Flights too short for double precision are not computed, even if the requested tolerance needs them.
 std::optional<Remark> missed(const Trajectory& trajectory) {
     for (const Event& event : trajectory.events) {
         if (!event.is_zeno() || !event.certificate || !event.certificate->below_rounding ||

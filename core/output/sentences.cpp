@@ -19,7 +19,7 @@ std::string with_unit(const std::string& value, const std::string& unit) {
     return unit.empty() ? value : value + " " + unit;
 }
 
-// "9 impacts before the cut": after a cut there are infinitely many.
+// "9 impacts before the cut": infinitely many follow a cut.
 std::string counted(long impacts, int cuts) {
     return fmt::format("{} {}{}", impacts, impacts == 1 ? "impact" : "impacts",
                        cuts == 0   ? ""
@@ -73,7 +73,7 @@ std::string Sentences::energy(double value, const Event& event) const {
     return energy(value, precision_.of_energy(before));
 }
 
-// ", 0.4 J lost"; nothing of an elastic impact.
+// ", 0.4 J lost"; empty for an elastic impact.
 std::string Sentences::lost(double energy, const Event& event) const {
     const std::string text = this->energy(energy, event);
     if (text.empty()) return "";
@@ -117,7 +117,7 @@ std::string Sentences::impact(std::size_t index) const {
     return text;
 }
 
-// What the file says of the start of this contact, else "contact begins" or "knee is held".
+// The words of the file for the start of this contact, else "contact begins" or "knee is held".
 std::string Sentences::beginning(const Event& event) const {
     const bool is_one = event.contacts.count() == 1;
     const std::string words = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
@@ -164,12 +164,12 @@ std::string Sentences::state_at_end() const { return holding(trajectory_.end_mod
 std::string Sentences::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
     const std::string begins = beginning(event);
-    // Its impact has told what is lost.
+    // The loss is in the sentence of its impact.
     if (is_plastic_landing(event)) return begins + ": plastic impact";
     const Pile pile = pile_of(trajectory_, index);
     std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
     text += lost(pile.loss, event);
-    if (precision_.is_beyond(event.t)) return text;  // of the computed motion alone, which is not this one
+    if (precision_.is_beyond(event.t)) return text;  // a certificate holds for the computed motion only
     const std::optional<double> bound = proved_time(event);
     text += !bound         ? ", not certified"
             : *bound > 0.0 ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))

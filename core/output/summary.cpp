@@ -1,4 +1,4 @@
-// The summary of a run, and on what it depends.
+// The summary of a run, and that of its derivatives.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -20,7 +20,7 @@ namespace achilles {
 
 namespace {
 
-// " m", for what has a unit.
+// " m"; empty if the quantity has no unit.
 std::string unit_after(const Model& model, const std::string& name) {
     const std::string unit = unit_of(model.description(), name);
     return unit.empty() ? "" : " " + unit;
@@ -37,7 +37,7 @@ std::string named(const Model& model, std::size_t first_slot, const Vector& valu
     return text;
 }
 
-// A line for each part of a sentence.
+// The parts of a sentence on separate lines.
 std::string indented(std::string sentence) {
     const std::string margin(12, ' ');
     for (std::size_t at = 0; (at = sentence.find("; ", at)) != std::string::npos; ++at)
@@ -45,15 +45,14 @@ std::string indented(std::string sentence) {
     return margin + sentence + "\n";
 }
 
-// " holding knee", of a system with several contacts.
-// "in flight", "in contact", or of several contacts "in contact with knee".
+// "in flight", "in contact", or for a system with several contacts "in contact with knee".
 std::string contact_state(const Trajectory& trajectory, Mode mode) {
     const Model& model = *trajectory.model;
     if (mode.is_free()) return "in flight";
     return model.contacts() > 1 ? "in contact with " + joined_names(model, mode.held()) : "in contact";
 }
 
-// Phase by phase, event by event.
+// Prints the run phase by phase and event by event.
 class Course {
  public:
     Course(const Trajectory& trajectory, const ErrorEstimate& estimate)
@@ -114,7 +113,7 @@ class Course {
         return text + impact_lines(first, ends_[phase]);
     }
 
-    // Of impacts one after the other.
+    // Lines for successive impacts.
     std::string impact_lines(std::size_t first, std::size_t end) const {
         constexpr std::size_t shown_first = 4, shown_last = 1;
         std::string text;
@@ -149,7 +148,7 @@ class Course {
                                        known_digits(event.t, precision_.of_event(index), 10), contacts,
                                        named(model_, 0, event.q, precision_.of_state(event.t).q));
         text += indented(sentences_.of(index));
-        if (precision_.is_beyond(event.t)) return text;  // a certificate is of the computed motion
+        if (precision_.is_beyond(event.t)) return text;  // a certificate holds for the computed motion only
         if (event.truncation && !is_plastic)
             text += fmt::format("            cut at the last of these impacts, t = {}, gap speed {:.3g}\n",
                                 time(event.truncation->t), event.truncation->impact_speed);
@@ -176,9 +175,9 @@ class Course {
     std::vector<std::size_t> ends_;
 };
 
-// Where the energy went: known as well as the energy at the end.
+// The energy balance, with the digits of the energy at the end.
 std::string balance(const Trajectory& trajectory, const Precision& precision) {
-    // Of angles alone it would be no unit of an energy.
+    // If the coordinates are angles only, the unit is not J.
     const char* unit = unit_of_expression(trajectory.model->description(), "energy") == "J" ? " J" : "";
     const bool damped = !trajectory.model->description().dissipation.text.empty();
     Sample end;
@@ -197,7 +196,7 @@ std::string conventions(int count) {
         count == 1 ? "One simultaneous impact had" : fmt::format("{} simultaneous impacts had", count));
 }
 
-// What certificates rest on.
+// The assumptions of certificates.
 std::string assumed() {
     return fmt::format(
         "They assume IEEE double arithmetic, rounded to nearest\n(set during the computation), and elementary "
@@ -317,7 +316,7 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
 
 namespace {
 
-// "x -4.027, y -2.697, ...": of the directions that have one.
+// "x -4.027, y -2.697, ...", without directions whose derivative does not exist.
 std::string row(const Derivatives& d, const Eigen::VectorXd& values) {
     std::vector<std::string> parts;
     for (std::size_t k = 0; k < d.directions.size(); ++k) {

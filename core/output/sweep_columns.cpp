@@ -25,7 +25,7 @@ namespace {
 
 using Kind = RunMeasures::Column::Kind;
 
-// Row `row` of some, at the end of every column.
+// Appends row `row` to the columns.
 void append(const SweepTable& table, const Rows& rows, std::size_t row, std::vector<SweepColumn>& columns) {
     std::size_t next = 0;
     const auto number = [&](double value) { columns[next++].numbers.push_back(value); };
@@ -63,7 +63,7 @@ SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const Swee
     SweepColumns result;
     for (const SweepHeading& heading : sweep_headings(table))
         result.all.push_back({heading.name, heading.unit, {}, {}});
-    // Rows are kept here until it is their turn; there are no bytes.
+    // Chunks are stored here until all earlier ones are done.
     std::mutex mutex;
     std::map<std::uint64_t, Rows> made;
     std::atomic<bool> stop{false};
@@ -88,12 +88,12 @@ namespace {
 
 using Column = RunMeasures::Column;
 
-// The shortest form that reads back the same double; empty where it is not finite.
+// In the shortest form that is read back as the same double; empty if it is not finite.
 void append(std::string& text, double x) {
     if (std::isfinite(x)) fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), x + 0.0);
 }
 
-// A cell as RFC 4180 has it: in quotes where it holds a comma or a quote, which is doubled.
+// A cell by RFC 4180: in quotes if it contains a comma or a quote; quotes are doubled.
 std::string quoted_cell(const std::string& text) {
     if (text.find_first_of(",\"") == text.npos) return text;
     std::string cell = "\"";
@@ -106,7 +106,7 @@ std::string quoted_cell(const std::string& text) {
 std::vector<SweepHeading> sweep_headings(const SweepTable& table) {
     std::vector<SweepHeading> headings;
     const std::vector<std::string>& prints = table.sweep().prints;
-    // A start that is also printed at the end would be a column of the same name.
+    // An axis whose name is also printed at the end of the run gets the suffix (0).
     const auto name_of = [&](const SweepAxis& axis) {
         return axis.name + (std::find(prints.begin(), prints.end(), axis.name) == prints.end() ? "" : "(0)");
     };
@@ -132,7 +132,7 @@ std::string sweep_csv_heading(const SweepTable& table, bool units) {
 std::string sweep_csv(const SweepTable& table, const Rows& rows) {
     std::string text;
     text.reserve(rows.count() * (table.sweep().axes.size() + table.measures().columns().size() + 1) * 20);
-    std::size_t next = 0;  // number
+    std::size_t next = 0;  // index of the next number
     const Sweep& sweep = table.sweep();
     for (std::size_t row = 0; row < rows.count(); ++row) {
         for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
@@ -180,7 +180,7 @@ void take(std::string_view& bytes, std::vector<Element>& list, std::size_t count
 
 }  // namespace
 
-// The lists one after the other, behind their length.
+// The number of rows, then the lists.
 std::string to_bytes(const Rows& rows) {
     std::string bytes;
     const std::uint64_t count = rows.count();

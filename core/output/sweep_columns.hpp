@@ -1,4 +1,4 @@
-// A sweep as a table in memory, column by column.
+// The results of a sweep as columns in memory.
 #pragma once
 
 #include <functional>
@@ -14,25 +14,25 @@ namespace achilles {
 class Model;
 class SweepTable;
 
-// Of one quantity, row by row: numbers, in which what does not exist is not a number, or words (contact, held, outcome).
+// One quantity by rows: numbers, where NaN means that it does not exist, or words (contact, held, outcome).
 struct SweepColumn {
-    std::string name, unit;  // as the CSV has them; unit: "" where it is not known
+    std::string name, unit;  // as in the CSV; unit: "" if unknown
     std::vector<double> numbers;
     std::vector<std::string> words;
 };
 
-// The columns of a sweep, as its CSV has them: the axes, of a section t and contact, the prints, outcome. A row for each point,
-// or for each moment of a section, in the order of the points, of which the last axis is fastest.
+// The columns of a sweep, as in its CSV: the axes, for a section t and contact, the prints, outcome. There is one row
+// per point, or per crossing of a section, in the order of the points; the last axis varies fastest.
 struct SweepColumns {
     std::vector<SweepColumn> all;
     std::size_t rows() const { return all.empty() ? 0 : all.back().words.size(); }
-    // The first of that name. Throws InputError where there is none, with what was probably meant.
+    // The first column with this name. Throws InputError, with a suggestion, if there is none.
     const SweepColumn& operator[](std::string_view name) const;
 };
 
-// Makes the runs of a sweep, on so many threads (0: one for every core): the same numbers for any of them. `go_on`, where it
-// is given, is told how many points are done, now and then, and stops the sweep by false: the columns have the points until
-// then. Throws InputError where an expression means nothing.
+// Computes the runs of a sweep on `threads` threads (0: one per core); the result does not depend on this number.
+// `go_on`, if given, is called from time to time with the number of points done. If it returns false, the sweep stops
+// and the columns have only the points up to there. Throws InputError for an invalid expression.
 SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const Sweep& sweep, int threads = 0,
                            const std::function<bool(std::uint64_t done)>& go_on = {});
 

@@ -1,4 +1,4 @@
-// The files of a sweep: its rows as CSV and HDF5, and the log that it is kept in until it is done.
+// The files of a sweep: its rows as CSV and HDF5, and the log that stores them until it is complete.
 #pragma once
 
 #include <cstdint>
@@ -11,70 +11,70 @@
 
 namespace achilles {
 
-// What stands above a column, and its unit, empty where it is not known.
+// Heading of a column, and its unit; "" if unknown.
 struct SweepHeading {
     std::string name, unit;
 };
-// Of all columns: the axes, of a section t and contact, the prints, outcome.
+// The headings of all columns: the axes, for a section t and contact, the prints, outcome.
 std::vector<SweepHeading> sweep_headings(const SweepTable& table);
 
-// The first line, and with `units` a second one with the unit of every column.
+// The first line; with `units`, also a second line with the unit of each column.
 std::string sweep_csv_heading(const SweepTable& table, bool units);
-// A line for each row. What does not exist is empty.
+// One line per row. Values that do not exist are empty.
 std::string sweep_csv(const SweepTable& table, const Rows& rows);
 
-// Rows as bytes, and back. Throws std::runtime_error where they are none of the table's.
+// Rows as bytes, and the inverse. Throws std::runtime_error if the bytes are not rows of the table.
 std::string to_bytes(const Rows& rows);
 Rows rows_from(std::string_view bytes, const SweepTable& table);
 
-// Where a sweep comes from: what HDF5 carries as attributes.
+// The origin of a sweep, stored as attributes in HDF5.
 struct SweepOrigin {
     std::string software;  // "Achilles 0.1.0"
-    std::string command;   // as a shell reads it, without files and --resume
-    std::string system;    // the text of its file
+    std::string command;   // in shell syntax, without file names and --resume
+    std::string system;    // the text of the system file
 };
 
-// Whether this build and machine write HDF5; why not, else "".
+// The reason why this build or machine cannot write HDF5; "" if it can.
 std::string why_no_hdf5();
-// What keeps the prints of a table from being names in a file: the path of one leads through another; else "".
+// The reason why the prints of a table cannot be names in a file: the path of one leads through another. Else "".
 std::string fault_of_hdf5(const SweepTable& table);
-// Reads all rows, a chunk after the other, from the first on: take(rows). Asked more than once.
+// Calls take(rows) for each chunk, from the first one on. May be called repeatedly.
 using EachRows = std::function<void(const std::function<void(const Rows&)>& take)>;
-// Writes /axes/NAME, the values along each axis of a grid, else those of every row; /values/TEXT, in the shape of the grid or
-// by rows, with the outcome and, of a section, t and contact; /signature in the same shape; units as attributes of each, the origin and the options as
-// those of the file. Nothing depends on when and how the rows were made. Throws std::runtime_error.
+// Writes /axes/NAME, the values along each axis of a grid, or of every row without a grid. Writes /values/TEXT, in the
+// shape of the grid or by rows, with the outcome and, for a section, t and contact, and /signature in the same shape.
+// Units are attributes of these arrays, origin and options attributes of the file. The bytes do not depend on when and
+// how the rows were computed. Throws std::runtime_error.
 void write_hdf5(const std::string& path, const SweepTable& table, const SweepOrigin& origin, const EachRows& each_rows);
 
-// What a sweep has come to so far, in a file that survives whatever ends the program.
-
-// The text that a log begins with: what a sweep must have in common with one that it goes on with, key by key.
+// The text at the start of a log: the properties that must be equal for a sweep to be resumed.
 struct SweepKey {
     std::string software, sweep, files, system;
 };
 
-// Why one of a log is not that of the same sweep: what differs, in a sentence; "" where nothing does.
+// The difference between the sweep of a log and the requested one, as a sentence; "" if they are the same.
 std::string difference(const SweepKey& log, const SweepKey& asked);
 
-// A log: the key, and the bytes of one chunk after the other, each behind its length and a checksum. The finished file could be
-// neither: a CSV has no room for the key, and an HDF5 file that is cut off in the middle of a write cannot be opened again.
-// So both are made of the log at the end, chunk by chunk; what that costs is copying, and room for both on the disk. A record that
-// was not written whole, whatever ended it, is one that does not check, and what follows it is cut off.
+// Stores the results of an incomplete sweep so that they survive any end of the program. It has the key, then for each
+// chunk a header with its length and a checksum, and its bytes. The final files cannot serve: CSV has no room for the
+// key, and an HDF5 file whose writing was interrupted cannot be opened. Both are made from the log at the end, chunk by
+// chunk, at the cost of copying and disk space. A record that was not written completely fails its checksum, and the
+// log is cut before it.
 class SweepLog {
  public:
-    // A log as it is found: the end of the points that it has, from 0 on; the sweep has so many. Throws InputError where the file
-    // is another one's, or is being written by another process; where `resume` is false, also where it has points that would be
-    // lost. One with all points of the same sweep serves without `resume`: only its files are still to be made.
+    // Opens or creates a log. `points` is the number of points of the sweep. Throws InputError if the file is something
+    // else, or in use by another process. Without `resume` it also throws if the log has points, unless they are all
+    // points of the same sweep: then only its files remain to be made.
     SweepLog(std::string path, const SweepKey& key, bool resume, std::uint64_t points);
     ~SweepLog();
     SweepLog(const SweepLog&) = delete;
     SweepLog& operator=(const SweepLog&) = delete;
 
     std::uint64_t done() const { return done_; }
-    // Appends a chunk. Throws std::system_error; what was written before stays.
+    // Appends a chunk. Throws std::system_error; earlier chunks are not affected.
     void append(Chunk chunk, const std::string& bytes);
-    // All chunks from the first on.
+    // Calls take() for all chunks in order.
     void each(const std::function<void(Chunk, std::string_view)>& take) const;
-    // It has served.
+    // Deletes the log.
     void remove();
 
  private:
@@ -85,8 +85,8 @@ class SweepLog {
     void find_end();
     std::string path_;
     int file_ = -1;
-    std::uint64_t done_ = 0;              // points
-    std::uint64_t first_ = 0, size_ = 0;  // bytes: where the chunks begin and end
+    std::uint64_t done_ = 0;              // number of points
+    std::uint64_t first_ = 0, size_ = 0;  // byte offsets of the start and the end of the chunks
 };
 
 }  // namespace achilles

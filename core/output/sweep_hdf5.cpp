@@ -1,5 +1,5 @@
-// The rows of a sweep as HDF5, by the C library, which is loaded when a file is asked for: the start of the program does not
-// wait for it, and a machine may lack it.
+// The rows of a sweep as HDF5. The C library is loaded on first use: this saves time at program start, and the library
+// may be missing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 
 namespace achilles {
 
-// A print with '/' is a path: /values/y/2 is read as it was typed, and nothing else can stand at /values/y.
+// A print with '/' is a path: /values/y/2 is read as typed, and /values/y cannot be an array then.
 std::string fault_of_hdf5(const SweepTable& table) {
     std::vector<std::string> names;  // of /values
     if (table.is_section()) names = {"t", "contact"};
@@ -46,9 +46,9 @@ namespace {
 
 using Column = RunMeasures::Column;
 
-// What is used of the library.
+// The functions of the HDF5 library in use, loaded with dlopen.
 class Library {
-    void* library_ = nullptr;  // before what is found in it
+    void* library_ = nullptr;  // declared before the functions, which are read from it
     std::string fault_;
 
  public:
@@ -87,7 +87,7 @@ class Library {
     ACHILLES_HDF5_FUNCTION(H5Pclose);
 #undef ACHILLES_HDF5_FUNCTION
 
-    // What its macros read once it is open.
+    // A variable that HDF5 macros read; it is set once the library is open.
     hid_t constant(const char* name) const {
         const auto* value = static_cast<const hid_t*>(dlsym(library_, name));
         if (value == nullptr) throw std::runtime_error(fmt::format("{} lacks {}", ACHILLES_HDF5_LIBRARY, name));
@@ -97,10 +97,10 @@ class Library {
  private:
     Library() {
         if (!fault_.empty()) return;
-        // At the end of the program it would close files once more, and crashes where one could not be written.
+        // At exit the library would close files again, and crash if one could not be written.
         H5dont_atexit();
         H5open();
-        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // what is wrong is told once, by us
+        H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // we report errors ourselves
     }
 
     template <class Function>
@@ -115,7 +115,7 @@ class Library {
     }
 };
 
-constexpr unsigned overwrite = 0x0002u;  // H5F_ACC_TRUNC, a macro that calls the library
+constexpr unsigned overwrite = 0x0002u;  // H5F_ACC_TRUNC is a macro that calls the library
 
 [[noreturn]] void fail() { throw std::runtime_error("the HDF5 file cannot be written"); }
 
@@ -123,7 +123,7 @@ void check(herr_t status) {
     if (status < 0) fail();
 }
 
-// Something of the library's, closed at the end.
+// An HDF5 object, closed in the destructor.
 class Handle {
  public:
     Handle(hid_t id, herr_t (*how_to_close)(hid_t)) : id_(id), close_(how_to_close) {
@@ -135,7 +135,7 @@ class Handle {
         if (id_ >= 0) close_(id_);
     }
     operator hid_t() const { return id_; }
-    // What is written then may fail.
+    // Closes the object. Throws if its pending writes fail.
     void close() { check(close_(std::exchange(id_, -1))); }
 
  private:
@@ -143,7 +143,7 @@ class Handle {
     herr_t (*close_)(hid_t);
 };
 
-// Of so many bytes.
+// A string type of this size in bytes.
 Handle text_type(std::size_t size) {
     const Library& h5 = Library::get();
     Handle type(h5.H5Tcopy(h5.constant("H5T_C_S1_g")), h5.H5Tclose);
@@ -160,7 +160,7 @@ void put_attribute(hid_t of, const char* name, const std::string& text) {
     check(h5.H5Awrite(attribute, type, text.c_str()));
 }
 
-// An array of a shape that is written in the order of its elements.
+// An array that is written in the order of its elements.
 class Array {
  public:
     Array(hid_t file, const std::string& path, const std::vector<hsize_t>& shape, Handle type, const std::string& units)
@@ -168,7 +168,7 @@ class Array {
         if (!units.empty()) put_attribute(array_, "units", units);
     }
 
-    // Elements `at_`, ..., as they lie in memory. What they fill is cut into boxes of the shape.
+    // Writes elements `at_`, ... from contiguous memory, split into boxes of the array's shape.
     void append(const void* elements, hsize_t count, std::size_t size) {
         const char* from = static_cast<const char*>(elements);
         while (count > 0) {
@@ -196,7 +196,7 @@ class Array {
             links(h5_.H5Pcreate(h5_.constant("H5P_CLS_LINK_CREATE_ID_g")), h5_.H5Pclose),
             how(h5_.H5Pcreate(h5_.constant("H5P_CLS_DATASET_CREATE_ID_g")), h5_.H5Pclose);
         check(h5_.H5Pset_create_intermediate_group(links, 1));
-        check(h5_.H5Pset_obj_track_times(how, false));  // the same sweep is the same bytes
+        check(h5_.H5Pset_obj_track_times(how, false));  // equal sweeps give equal bytes
         return {h5_.H5Dcreate2(file, path.c_str(), type_, space, links, how, H5P_DEFAULT), h5_.H5Dclose};
     }
 
@@ -234,7 +234,7 @@ class ColumnArray {
           width_(std::max<std::size_t>(1, width)),
           texts_(std::move(texts)) {}
 
-    // The signatures.
+    // The column of signatures.
     ColumnArray(hid_t file, const std::string& path, const std::vector<hsize_t>& shape)
         : array_(file, path, shape, type_named(u64), "") {}
 
@@ -262,7 +262,7 @@ class ColumnArray {
     Texts texts_;
 };
 
-// How many rows there are, and how long their texts.
+// The number of rows, and the maximum lengths of their texts.
 struct Extent {
     hsize_t rows = 0;
     std::size_t held = 0, contacts = 0, ends = 0;
@@ -382,7 +382,7 @@ void write_hdf5(const std::string& path, const SweepTable& table, const SweepOri
     put_attribute(file, "origin", origin.command);
     put_attribute(file, "options", options_text(table.sweep().base.options));
     {
-        // An attribute holds 64 kB at most.
+        // The text is an array, because an attribute holds at most 64 kB.
         Array system(file, "/system", {1}, text_type(origin.system.size()), "");
         system.append(origin.system.c_str(), 1, origin.system.size());
         system.close();

@@ -1,4 +1,4 @@
-// The log of a sweep that is not done yet.
+// The log of an incomplete sweep.
 #include "output/sweep_files.hpp"
 
 #include <fcntl.h>
@@ -48,7 +48,7 @@ void write_all(int file, std::string_view bytes, std::uint64_t at, const std::st
     }
 }
 
-// So many bytes, or fewer at the end of the file.
+// Reads `count` bytes, or fewer at the end of the file.
 std::string read_some(int file, std::uint64_t count, std::uint64_t at, const std::string& path) {
     std::string bytes(count, '\0');
     std::size_t have = 0;
@@ -70,7 +70,7 @@ std::string text_of(const SweepKey& key) {
     return text;
 }
 
-// Takes "SIZE\nTEXT\n" off the front. False where there is none.
+// Removes "SIZE\nTEXT\n" from the front. Returns false if the text does not start with it.
 bool take_part(std::string_view& text, std::string& part) {
     const std::size_t end = text.find('\n');
     std::size_t size = 0;
@@ -104,7 +104,7 @@ std::string difference(const SweepKey& log, const SweepKey& asked) {
     }
 }
 
-// Before the bytes of a chunk.
+// Precedes the bytes of each chunk.
 struct SweepLog::Header {
     std::uint64_t first, count, size, sum;
     std::uint64_t expected(std::string_view bytes) const {
@@ -126,7 +126,7 @@ SweepLog::SweepLog(std::string path, const SweepKey& key, bool resume, std::uint
         else
             begin(key);
     } catch (...) {
-        if (is_file && there.st_size == 0) ::unlink(path_.c_str());  // it was not there before
+        if (is_file && there.st_size == 0) ::unlink(path_.c_str());  // the file is new or was empty
         ::close(file_);
         throw;
     }
@@ -167,7 +167,7 @@ bool SweepLog::read_key(SweepKey& key) {
     text.remove_prefix(magic.size());
     for (std::string* part : {&key.software, &key.sweep, &key.files, &key.system})
         if (!take_part(text, *part)) {
-            key = {};  // its writer was ended here: nothing is lost
+            key = {};  // writing was interrupted here, so there are no points to lose
             first_ = begin.size();
             return true;
         }
@@ -175,7 +175,7 @@ bool SweepLog::read_key(SweepKey& key) {
     return true;
 }
 
-// Behind the last chunk that checks, and that follows the one before.
+// The end of the last valid chunk that follows its predecessor without a gap.
 void SweepLog::find_end() {
     size_ = first_;
     done_ = 0;
@@ -203,7 +203,7 @@ void SweepLog::append(Chunk chunk, const std::string& bytes) {
         write_all(file_, bytes, size_ + sizeof header, path_);
         write_all(file_, {reinterpret_cast<const char*>(&header), sizeof header}, size_, path_);
     } catch (const std::system_error&) {
-        // Where this fails too, what is there does not check.
+        // If this fails, too, the partial record fails its checksum.
         [[maybe_unused]] const int ignored = ::ftruncate(file_, static_cast<off_t>(size_));
         throw;
     }

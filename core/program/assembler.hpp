@@ -1,6 +1,6 @@
-// Xbyak's code generator, with the numbers of a function in mind: where each stands, and which are still in a register.
+// Xbyak's code generator, extended by where each number of a function is stored and which numbers are in registers.
 //
-// Only the files that write code include this: it takes long to compile.
+// Only the files that generate code include this, because it takes long to compile.
 #pragma once
 
 #include <xbyak/xbyak.h>
@@ -16,30 +16,31 @@
 
 namespace achilles {
 
-// What stands so many doubles behind an address.
+// The memory operand at an offset, counted in doubles, from an address.
 inline Xbyak::Address at(const Xbyak::Reg64& base, std::ptrdiff_t doubles) {
     return Xbyak::util::ptr[base + static_cast<std::size_t>(8 * doubles)];
 }
 
-// A number stands at an index from an address in a register of the processor. Of the vector registers 0 .. 15 the first
-// few are free for use; results are kept in the others as long as there is room, besides being stored.
+// A number is identified by its index from an address in a general register. Of the vector registers 0 .. 15 the first
+// `free` are for temporary use. The others cache results, which are also stored in memory.
 class Assembler : public Xbyak::CodeGenerator {
  public:
     using Xmm = Xbyak::Xmm;
     using Operand = Xbyak::Operand;
 
-    // Numbers of the function stand at (numbers, index), one double each or eight, one after the other.
+    // Numbers are at (numbers, index), contiguous, one or eight doubles each.
     Assembler(const Xbyak::Reg64& numbers, unsigned free) : Assembler(numbers, free, Width::one, Width::one) {}
-    // An instruction works on a whole number or, of eight doubles, on four: see for_each_part().
+    // `of_vector` is the number of doubles that an instruction processes: the whole number, or four of eight (see
+    // for_each_part()).
     Assembler(const Xbyak::Reg64& numbers, unsigned free, Width of_number, Width of_vector)
         : CodeGenerator(Xbyak::DEFAULT_MAX_CODE_SIZE, Xbyak::AutoGrow, &ordinary_memory),
           numbers_(numbers),
           free_(free),
           doubles_(static_cast<std::ptrdiff_t>(of_number)),
           width_(of_vector) {
-        setDefaultJmpNEAR(true);  // how far a jump forward goes is not known when it is written
+        setDefaultJmpNEAR(true);  // the distance of a forward jump is not known when it is emitted
     }
-    // All that was written, its jumps in place; wherever it is copied to, it does the same.
+    // The complete code with its jumps resolved. It is position-independent.
     std::span<const std::uint8_t> bytes() {
         ready();
         return {getCode(), getSize()};
@@ -47,10 +48,10 @@ class Assembler : public Xbyak::CodeGenerator {
 
     // ---- numbers ----
 
-    // Of an instruction.
+    // Width of the instructions.
     Width width() const { return width_; }
-    // Does for each part of the numbers that is as wide as a vector what `write` writes for one. Registers hold what belongs
-    // to the part; where there are several, none of it is left for what comes before or after.
+    // Calls `write` for each vector-wide part of the numbers. Cached registers belong to one part. If there are several
+    // parts, no register stays cached before, between or after them.
     template <class Write>
     void for_each_part(const Write& write) {
         const auto wide = static_cast<std::ptrdiff_t>(width_);
@@ -62,25 +63,25 @@ class Assembler : public Xbyak::CodeGenerator {
         forget_all();
         part_ = 0;
     }
-    // How many doubles from the beginning of a number its part begins that is worked on.
+    // Offset, in doubles, of the current part from the beginning of its number.
     std::ptrdiff_t part() const { return part_; }
-    // How many doubles from the first number another one begins; and its part as an operand.
+    // Offset, in doubles, of a number from the first one, and the current part of a number as an operand.
     std::ptrdiff_t place(std::uint32_t index) const { return static_cast<std::ptrdiff_t>(index) * doubles_; }
     Xbyak::Address number(std::uint32_t index) const { return at(numbers_, place(index) + part_); }
-    // A register as wide as an instruction.
+    // A vector register of the instructions' width.
     Xmm vector(unsigned reg) const {
         constexpr auto one = Operand::XMM, four = Operand::YMM, eight = Operand::ZMM;
         return {width_ == Width::one ? one : width_ == Width::four ? four : eight, static_cast<int>(reg)};
     }
 
-    // A register for the result with this index. What it held is forgotten.
+    // A register for the result with this index. Its previous content is dropped from the cache.
     Xmm result(std::uint32_t index) {
         const unsigned reg = free_ + results_++ % room();
         if (held_[reg]) holding_.erase(*held_[reg]);
         hold(index, reg);
         return vector(reg);
     }
-    // The register that holds a number.
+    // The register that caches a number, if any.
     std::optional<Xmm> holder(std::uint32_t index) const {
         const auto found = holding_.find(index);
         if (found == holding_.end()) return std::nullopt;
@@ -91,29 +92,29 @@ class Assembler : public Xbyak::CodeGenerator {
         holding_.clear();
         results_ = 0;
     }
-    // From here on this register is known to hold a number; one past those of results holds it for good.
+    // Records that the register holds a number. Registers beyond those of results keep it permanently.
     void hold(std::uint32_t index, unsigned reg) {
         if (reg < held_.size()) held_[reg] = index;
         holding_[index] = reg;
     }
-    // How many results are held at once.
+    // The number of results that can be cached at once.
     unsigned room() const { return 16 - free_; }
 
     void store(const Xmm& from, std::uint32_t index) {
         width_ == Width::one ? vmovsd(number(index), from) : vmovupd(number(index), from);
     }
     void get(const Xmm& to, std::uint32_t index) {
-        if (const auto held = holder(index)) return vmovapd(to, *held);  // vmovsd would wait for the other half
+        if (const auto held = holder(index)) return vmovapd(to, *held);  // vmovsd would depend on the old upper half
         width_ == Width::one ? vmovsd(to, number(index)) : vmovupd(to, number(index));
     }
-    // The register that holds a number, or else this one, with it.
+    // The register that caches the number; otherwise loads the number into the given register and returns that.
     Xmm held_or(const Xmm& otherwise, std::uint32_t index) {
         if (const auto held = holder(index)) return *held;
         get(otherwise, index);
         return otherwise;
     }
 
-    // The same double everywhere.
+    // Copies one double to all lanes.
     void broadcast(const Xmm& to, const Operand& from) {
         if (width_ == Width::eight) return vbroadcastsd(Xbyak::Zmm(to.getIdx()), from);
         vbroadcastsd(Xbyak::Ymm(to.getIdx()), from);
@@ -121,7 +122,7 @@ class Assembler : public Xbyak::CodeGenerator {
 
     // ---- arithmetic ----
 
-    // The instruction for one double, and that for a vector of them.
+    // One operation as an instruction for a double and as one for vectors.
     struct Arithmetic {
         void (Xbyak::CodeGenerator::*one)(const Xmm&, const Operand&, const Operand&);
         void (Xbyak::CodeGenerator::*vector)(const Xmm&, const Operand&, const Operand&);
@@ -158,25 +159,25 @@ class Assembler : public Xbyak::CodeGenerator {
         write(number(index));
     }
     void zero(const Xmm& reg) {
-        const Xmm low(reg.getIdx());  // the rest of the register follows
+        const Xmm low(reg.getIdx());  // clears the whole register
         vxorpd(low, low, low);
     }
 
     // ---- functions ----
 
-    // Begin and end of a function that calls others: its first argument is kept in rbx, and the stack is where a call
-    // wants it.
+    // Start and end of a function that calls others. The first argument is kept in rbx, and the push aligns the stack
+    // as calls require.
     void prologue() {
         push(rbx);
         mov(rbx, rdi);
     }
     void epilogue() {
-        if (width_ != Width::one) vzeroupper();  // else code that knows of no wider vectors is slow
+        if (width_ != Width::one) vzeroupper();  // avoids slow transitions to code without wide vectors
         pop(rbx);
         ret();
     }
-    // Calls a function with arguments in vector registers 0 and 1, rdi, rsi and rdx: its result is in 0, all others are
-    // lost.
+    // Calls a function with arguments in vector registers 0 and 1, rdi, rsi and rdx. Its result is in vector register
+    // 0. All other registers are lost.
     void call(const void* function) {
         if (width_ != Width::one) vzeroupper();
         mov(rax, reinterpret_cast<std::uintptr_t>(function));
@@ -185,7 +186,7 @@ class Assembler : public Xbyak::CodeGenerator {
     }
 
  private:
-    // Code is written where it cannot be run, and MachineCode makes it what can be run and not written.
+    // Code is generated in ordinary memory; MachineCode copies it to memory that is executable and not writable.
     struct OrdinaryMemory : Xbyak::Allocator {
         bool useProtect() const override { return false; }
     };
@@ -193,12 +194,12 @@ class Assembler : public Xbyak::CodeGenerator {
 
     Xbyak::Reg64 numbers_;
     unsigned free_;
-    std::ptrdiff_t doubles_;  // of a number
+    std::ptrdiff_t doubles_;  // per number
     Width width_;
     std::ptrdiff_t part_ = 0;
     unsigned results_ = 0;
-    std::unordered_map<std::uint32_t, unsigned> holding_;  // the register that holds a number
-    std::array<std::optional<std::uint32_t>, 16> held_;    // and the other way round
+    std::unordered_map<std::uint32_t, unsigned> holding_;  // from a number to the register that caches it
+    std::array<std::optional<std::uint32_t>, 16> held_;    // and the inverse
 };
 
 }  // namespace achilles

@@ -21,7 +21,7 @@ std::atomic<bool> wanted = is_wanted();
 
 void ask_environment_for_code() { wanted = is_wanted(); }
 
-// Written first, made executable then, and never both at once.
+// The memory is first written, then made executable; it is never both at once.
 std::shared_ptr<const MachineCode> MachineCode::of(std::span<const std::uint8_t> bytes) {
     const std::size_t size = margin + bytes.size();
     void* const memory = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -1,9 +1,9 @@
-// Straight-line arithmetic as machine code: what an interpreter would look up step by step, laid out once.
+// Straight-line arithmetic as machine code instead of a loop over instructions.
 //
-// A loop over instructions passes each result on through memory and guesses at every turn what comes next; both take a
-// processor longer than the arithmetic. Laid out as code, the last results stay in registers. The operations are those
-// of the loop, in its order, so results are the same to the last bit. Where there can be no such code (another
-// processor, a system that lets no program write code, a build without ACHILLES_MACHINE_CODE) the loops do the work.
+// A loop over instructions passes every result through memory and has branches that are hard to predict; both take
+// longer than the arithmetic. In machine code, recent results stay in registers. It does the same operations in the
+// same order, so the results are the same to the last bit. Loops are used if machine code is not available: on another
+// processor, on a system that does not allow it, or in a build without ACHILLES_MACHINE_CODE.
 #pragma once
 
 #include <cstddef>
@@ -14,41 +14,42 @@
 
 namespace achilles {
 
-// Code that can be run, and never changes.
+// Immutable executable code.
 class MachineCode {
  public:
-    // Nothing where that is not to be had. The bytes must do the same wherever they stand.
+    // Returns null if executable memory is not available. The code must be position-independent.
     static std::shared_ptr<const MachineCode> of(std::span<const std::uint8_t> bytes);
     ~MachineCode();
     MachineCode(const MachineCode&) = delete;
     MachineCode& operator=(const MachineCode&) = delete;
 
-    // What begins at this byte.
+    // The function at this byte offset.
     template <class Function>
     Function* as(std::size_t offset = 0) const {
         return reinterpret_cast<Function*>(static_cast<std::uint8_t*>(memory_) + margin + offset);
     }
 
  private:
-    static constexpr std::size_t margin = 16;  // sanitizers look at what stands before a function
+    static constexpr std::size_t margin = 16;  // sanitizers read bytes before a function
     MachineCode(void* memory, std::size_t size) : memory_(memory), size_(size) {}
     void* memory_;
     std::size_t size_;
 };
 
-// How many doubles an instruction works on; four need AVX2, as one does here, and eight AVX-512.
+// Number of doubles that an instruction processes. Four needs AVX2 (as does the code for one), eight AVX-512.
 enum class Width : unsigned { one = 1, four = 4, eight = 8 };
 
-// The widest that this processor and system can run; none where no code can, and none if the environment variable
-// ACHILLES_MACHINE_CODE is 0: what is compiled then is run by loops.
+// The widest vectors that this processor and system support. nullopt if machine code is not available, or if the
+// environment variable ACHILLES_MACHINE_CODE is 0; programs compiled then use loops.
 std::optional<Width> best_width();
-// The variable is read when the program starts: later, other threads may change the environment. This reads it again.
+// The variable is read once at program start, because other threads may change the environment later. This function
+// reads it again.
 void ask_environment_for_code();
 
 struct Instruction;
 
-// Code of type void(double* registers) for these instructions of a program, the first of which writes register `first`; may be
-// none. Of numbers of eight doubles it is of type void(Eight* registers), by vectors of four or of eight.
+// Code for these instructions of a program; the first writes register `first`. Its type is void(double* registers), or
+// void(Eight* registers) for numbers of eight doubles with vectors of four or eight. May be null.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
                                                 Width of_number = Width::one, Width of_vector = Width::one);
 

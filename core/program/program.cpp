@@ -11,20 +11,20 @@ namespace achilles {
 
 namespace {
 
-// Puts instructions, given by ascending ids, in an order in which equal operations stand in long runs: always takes the
-// operation of which most are ready, until none of it is left. Operands stand before their users.
+// Orders instructions, given by ascending ids, so that equal operations form long runs. Takes all ready instructions of
+// the operation with most of them, then repeats. Operands come before their users.
 std::vector<std::uint32_t> in_runs(const std::vector<std::uint32_t>& ids, const Graph& graph) {
     const std::uint32_t most = ids.empty() ? 0 : ids.back() + 1;
     std::vector<bool> pending(most, false);
     for (const std::uint32_t id : ids) pending[id] = true;
-    std::vector<int> missing(most, 0);  // operands that are still to come
+    std::vector<int> missing(most, 0);  // number of operands not yet in the order
     std::vector<std::vector<std::uint32_t>> users(most);
     std::map<Operation, std::deque<std::uint32_t>> ready;
     for (const std::uint32_t id : ids) {
         const Graph::Node& node = graph.node(id);
         if (!is_leaf(node.operation)) {
             for (const std::uint32_t operand : {node.a, is_binary(node.operation) ? node.b : node.a}) {
-                // Not an instruction of this list, or the first operand again.
+                // Skips operands outside this list, and a repeated operand.
                 if (!pending[operand] || (operand == node.a && missing[id] > 0)) continue;
                 ++missing[id];
                 users[operand].push_back(id);
@@ -49,7 +49,7 @@ std::vector<std::uint32_t> in_runs(const std::vector<std::uint32_t>& ids, const 
 
 }  // namespace
 
-// Registers: inputs, then constants, then one result an instruction. Instructions that depend on parameters alone come
+// Registers: inputs, then constants, then one result per instruction. Instructions that depend on parameters only come
 // first.
 Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slots) {
     if (outputs.empty()) return;
@@ -95,7 +95,7 @@ Program::Program(std::span<const Expression> outputs, Slots slots) : slots_(slot
     if (code_) run_code_ = code_->as<void(double*)>();
 }
 
-// From the results down to what they are made of.
+// Marks what is needed, from the results back to the inputs.
 std::vector<bool> Program::inputs_of(std::size_t outputs) const {
     const std::size_t first = slots_.count + constants_.size();
     std::vector<bool> needed(first + instructions_.size(), false);

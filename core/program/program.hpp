@@ -1,7 +1,8 @@
-// A flat program: a list of expressions, every common subexpression evaluated once, over any scalar type.
+// A flat program: evaluates a list of expressions over any scalar type, each common subexpression once.
 //
-// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [parameters_begin, parameters_end) are parameters:
-// what depends on them alone is evaluated by fix(), once a run, and the rest by run(), with no allocation.
+// Inputs are slots 0 .. inputs-1 (see model.hpp for their layout). Slots in [parameters_begin, parameters_end) are
+// parameters. fix() evaluates what depends on parameters only, once per run; run() evaluates the rest, without
+// allocation.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +22,7 @@ struct Slots {
     std::uint32_t count = 0;             // all inputs
     std::uint32_t parameters_begin = 0;  // the parameters among them
     std::uint32_t parameters_end = 0;
-    // The input behind the parameters is the time, if there is one.
+    // The input after the parameters is the time, if the program has one.
     std::uint32_t clock() const { return parameters_end; }
     bool has_clock() const { return parameters_end < count; }
 };
@@ -40,7 +41,7 @@ class Program {
     std::uint32_t input_count() const { return slots_.count; }
     std::size_t output_count() const { return outputs_.size(); }
     std::size_t size() const { return instructions_.size(); }
-    // By slot: the inputs that the first so many outputs depend on.
+    // By slot: true for inputs that the first `outputs` outputs depend on.
     std::vector<bool> inputs_of(std::size_t outputs) const;
 
  private:
@@ -52,17 +53,17 @@ class Program {
     friend class LaneAccess;
     Slots slots_;
     std::vector<Constant> constants_;        // registers count .. count + constants - 1
-    std::vector<Instruction> instructions_;  // results follow in order, one register each
-    std::size_t fixed_ = 0;                  // instructions that depend on parameters alone come first
-    std::vector<std::size_t> runs_;          // ends of runs of instructions of one operation
+    std::vector<Instruction> instructions_;  // their results follow in this order, one register each
+    std::size_t fixed_ = 0;                  // number of instructions that depend on parameters only; they come first
+    std::vector<std::size_t> runs_;          // end index of each run of instructions with the same operation
     std::size_t fixed_runs_ = 0;
     std::vector<std::uint32_t> outputs_;  // registers
-    // The instructions that move, over double, as a function of the registers; may be none.
+    // Code over double for the instructions after `fixed_`; may be null.
     std::shared_ptr<const MachineCode> code_;
     void (*run_code_)(double* registers) = nullptr;
 };
 
-// A program with its registers. One per thread; copying copies the registers.
+// A program with its registers. Use one per thread; a copy has its own registers.
 template <class Scalar>
 class Evaluator {
  public:
@@ -74,20 +75,20 @@ class Evaluator {
     }
 
     Scalar& input(std::size_t slot) { return registers_[slot]; }
-    // The time, of a program that has it among its inputs.
+    // The time, for a program with a time input.
     Scalar& clock() { return registers_[program_->slots_.clock()]; }
     const Scalar& output(std::size_t index) const { return registers_[program_->outputs_[index]]; }
     std::size_t output_count() const { return program_->outputs_.size(); }
 
-    // Evaluates what depends on the parameters alone. Call after the parameter inputs change, before run().
+    // Evaluates what depends on parameters only. Call after changing parameter inputs, before run().
     void fix() { execute(0, program_->fixed_runs_); }
-    // Evaluates the rest. Inputs must be set.
+    // Evaluates the rest. All inputs must be set.
     void run() {
         if constexpr (std::is_same_v<Scalar, double>)
             if (program_->run_code_ != nullptr) return program_->run_code_(registers_.data());
         run_by_loop();
     }
-    // The same without machine code.
+    // The same as run(), without machine code.
     void run_by_loop() { execute(program_->fixed_runs_, program_->runs_.size()); }
 
  private:
@@ -99,7 +100,7 @@ class Evaluator {
     std::vector<Scalar> registers_;
 };
 
-// Branches once a run of equal operations, not once an instruction: what to do next is hard to foresee for a processor.
+// Branches once per run of equal operations, not once per instruction: branches by instruction are hard to predict.
 template <class Scalar>
 void Evaluator<Scalar>::execute(std::size_t first_run, std::size_t last_run) {
     using std::acos, std::asin, std::atan, std::cos, std::cosh, std::exp, std::log, std::sin, std::sinh, std::sqrt,

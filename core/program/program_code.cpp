@@ -1,4 +1,4 @@
-// A program over double, or lanes, as machine code.
+// Machine code for a program over double, or over eight lanes.
 #include <cmath>
 #include <map>
 #include <optional>
@@ -56,7 +56,7 @@ Function function_of(Operation operation) {
     }
 }
 
-// ---- the same for lanes: operands and results stand in memory ----
+// ---- functions over lanes: operands and results are in memory ----
 
 using OfLanes = void(const Eight* a, Eight* result);
 
@@ -106,9 +106,9 @@ OfLanes* function_of_lanes(Operation operation) {
     }
 }
 
-// ---- writing ----
+// ---- code generation ----
 
-// A function of xmm0 (and what else is in place).
+// Calls a function of xmm0 (and of other arguments that are already in place).
 void call(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
     code.get(code.xmm0, a);
     code.call(function);
@@ -145,17 +145,17 @@ void write_arithmetic(Assembler& code, const Instruction& in, std::uint32_t resu
     code.store(reg, result);
 }
 
-// to = the address of a number
+// to = address of a number
 void address(Assembler& code, const Xbyak::Reg64& to, std::uint32_t number) { code.lea(to, code.number(number)); }
 
-// A function of (operand, result) and a third argument.
+// Calls a function of (operand, result); a third argument must be in place.
 void call_on_lanes(Assembler& code, const void* function, std::uint32_t a, std::uint32_t result) {
     address(code, code.rdi, a);
     address(code, code.rsi, result);
     code.call(function);
 }
 
-// False if there is no code for it.
+// Returns false if there is no code for the operation.
 bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
         code.mov(code.edx, static_cast<std::uint32_t>(in.exponent));
@@ -173,7 +173,7 @@ bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t resul
     return true;
 }
 
-// False if there is no code for it.
+// Returns false if there is no code for the operation.
 bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
         code.mov(code.edi, static_cast<std::uint32_t>(in.exponent));
@@ -191,7 +191,7 @@ bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result)
     return true;
 }
 
-// The results that are sine and cosine of one operand.
+// Indices of the results that are the sine and the cosine of one operand.
 struct Waves {
     std::optional<std::uint32_t> sine, cosine;
     bool written = false;
@@ -207,7 +207,7 @@ std::map<std::uint32_t, Waves> waves_of(std::span<const Instruction> instruction
     return waves;
 }
 
-// Where the first of the two stands.
+// Emits one call for both, at the first of the two instructions.
 void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
     if (waves.written) return;
     waves.written = true;
@@ -224,7 +224,7 @@ void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
     code.call(one ? reinterpret_cast<const void*>(&both) : reinterpret_cast<const void*>(&sine_and_cosine_of_lanes));
 }
 
-// A function. False if there is no code for it.
+// Emits a function call. Returns false if there is no code for it.
 bool write_call(Assembler& code, const Instruction& in, std::uint32_t result, std::map<std::uint32_t, Waves>& waves) {
     const bool is_wave = in.operation == Operation::sin || in.operation == Operation::cos;
     if (is_wave && waves[in.a].sine && waves[in.a].cosine) {
@@ -234,7 +234,7 @@ bool write_call(Assembler& code, const Instruction& in, std::uint32_t result, st
     return code.width() == Width::one ? write_for_one(code, in, result) : write_for_lanes(code, in, result);
 }
 
-// Vectors of the processor that work on numbers of so many doubles, and of which it has enough.
+// True if the processor supports these vectors, and they fit numbers of this width.
 bool can_work(Width of_number, Width of_vector) {
     const bool fit = (of_number == Width::one) == (of_vector == Width::one);
     const auto best = best_width();
@@ -243,7 +243,7 @@ bool can_work(Width of_number, Width of_vector) {
 
 }  // namespace
 
-// Functions are of all parts of a number at once, so the parts of what lies between two of them are written in turn.
+// A function call processes all parts of a number at once. The arithmetic between two calls is emitted part by part.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
                                                 Width of_number, Width of_vector) {
     if (!can_work(of_number, of_vector) || instructions.empty() || instructions.size() > most_instructions)

@@ -1,8 +1,8 @@
-// The outputs of programs by name: where each stands is said here alone, for whoever writes a program and whoever reads
-// it, over any scalar.
+// Programs' outputs by name, over any scalar. The order of the outputs is defined only here, both for the code that
+// compiles a program and for the code that reads it.
 //
-// A class of terms extends what has outputs (an Evaluator, say), of a system with `dof` coordinates; list() puts
-// expressions in the order in which the members find them.
+// A class of terms extends a base with outputs (such as an Evaluator) for a system with `dof` coordinates. list()
+// arranges expressions in the order in which the members read them.
 #pragma once
 
 #include <initializer_list>
@@ -16,7 +16,7 @@ namespace achilles {
 
 using Expressions = std::vector<Expression>;
 
-// One list after the other.
+// Concatenates lists.
 inline Expressions joined(std::initializer_list<Expressions> lists) {
     Expressions all;
     for (const Expressions& list : lists) all.insert(all.end(), list.begin(), list.end());
@@ -33,15 +33,15 @@ class Terms : public Base {
     std::size_t dof_ = 0;
 };
 
-// Stands for what has the outputs, where only their order is asked for.
+// A base without outputs, for the use of list() alone.
 struct NoOutputs {};
 
-// A program whose outputs are such terms.
+// A program whose outputs have the names of TermsOf.
 template <template <class> class TermsOf>
 class ProgramOf : public Program {
  public:
     ProgramOf() = default;
-    // Compiles expressions, given as list() wants them.
+    // Compiles the expressions; the arguments are those of list().
     template <class... Parts>
     static ProgramOf of(Slots slots, const Parts&... parts) {
         return ProgramOf(TermsOf<NoOutputs>::list(parts...), slots);
@@ -68,8 +68,8 @@ class ContactTerms : public Terms<Base> {
     decltype(auto) gap_t() const { return this->output(3 + 2 * this->dof_); }
 };
 
-// The acceleration of a motion, the pivots of M, hddot of every contact (of a held one along the motion that holds the
-// others), and of those that are held, one after the other, the rate of that.
+// Outputs of a mode's motion: acceleration, pivots of M, hddot of every contact, and jerk, the rate of hddot for each
+// held contact. For a held contact, hddot is along the motion that holds the other held contacts.
 template <class Base>
 class MotionTerms : public Terms<Base> {
  public:
@@ -82,14 +82,14 @@ class MotionTerms : public Terms<Base> {
     decltype(auto) acceleration(std::size_t i) const { return this->output(i); }
     decltype(auto) pivot(std::size_t i) const { return this->output(this->dof_ + i); }
     decltype(auto) hddot(std::size_t contact) const { return this->output(2 * this->dof_ + contact); }
-    // Of contact i among those that are held.
+    // For contact i of the held contacts.
     decltype(auto) jerk(std::size_t i) const { return this->output(2 * this->dof_ + contacts_ + i); }
 
  private:
     std::size_t contacts_ = 1;
 };
 
-// What must be defined where a run starts: the free motion, T and V.
+// What must be defined at the start of a run: free acceleration, pivots, hddot, kinetic and potential energy.
 template <class Base>
 class StartTerms : public MotionTerms<Base> {
  public:
@@ -102,7 +102,7 @@ class StartTerms : public MotionTerms<Base> {
     decltype(auto) potential() const { return this->output(2 * this->dof_ + 2); }
 };
 
-// How the contact force passes through zero: hddot, and its rate along the constrained motion.
+// What a release needs: hddot, and its rate along the constrained motion.
 template <class Base>
 class ReleaseTerms : public Terms<Base> {
  public:

@@ -1,4 +1,5 @@
-// A set of contacts: those that land, that leave, that are looked at. What a motion holds is a Mode.
+// A set of contacts, such as those that impact, release or are examined. The contacts that a motion holds are in its
+// Mode.
 #pragma once
 
 #include <bit>
@@ -7,7 +8,7 @@
 
 namespace achilles {
 
-// The most that a system may have.
+// Maximum number of contacts in a system.
 inline constexpr std::size_t max_contacts = 16;
 
 class ContactSet {
@@ -17,7 +18,7 @@ class ContactSet {
 
     constexpr bool empty() const { return bits_ == 0; }
     constexpr int count() const { return std::popcount(bits_); }
-    // Its only contact, where it has just one.
+    // True for exactly one contact; only() then returns it.
     constexpr bool has_one() const { return bits_ != 0 && (bits_ & (bits_ - 1)) == 0; }
     constexpr std::size_t only() const { return static_cast<std::size_t>(std::countr_zero(bits_)); }
     constexpr bool contains(std::size_t contact) const { return (bits_ >> contact & 1u) != 0; }
@@ -30,7 +31,7 @@ class ContactSet {
     friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
     friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }
 
-    // Its contacts, in ascending order.
+    // Iterates over the contacts in ascending order.
     class Iterator {
      public:
         constexpr explicit Iterator(std::uint32_t left) : left_(left) {}

@@ -1,4 +1,4 @@
-// The mode of a motion: the state of every contact. Whatever is derived, compiled or cached for a motion has its mode
+// The mode of a motion: the state of every contact. Equations, compiled programs and caches of a motion have its mode
 // as the key.
 #pragma once
 
@@ -8,15 +8,15 @@
 
 namespace achilles {
 
-// What a contact does along a motion. The table in contacts/contact_law.hpp says what follows from each state. A mode
-// has room for four.
+// The state of a contact along a motion. The table in contacts/contact_law.hpp gives the consequences of each state. A
+// mode has room for four states.
 enum class ContactState : std::uint8_t { open, held };
 
-// Free flight is the default: every contact is open, also those that the system does not have.
+// The default is free flight: every contact is open, including those that the system does not have.
 class Mode {
  public:
     constexpr Mode() = default;
-    // These contacts are held, all others are open.
+    // These contacts are held, all others open.
     static constexpr Mode holding(ContactSet contacts) { return Mode().with(contacts, ContactState::held); }
 
     constexpr ContactState state(std::size_t contact) const {
@@ -24,7 +24,7 @@ class Mode {
     }
     constexpr bool is_held(std::size_t contact) const { return state(contact) != ContactState::open; }
     constexpr bool is_free() const { return bits_ == 0; }
-    // The contacts that are not open, and those in one state.
+    // The contacts that are not open, and those in a given state.
     constexpr ContactSet held() const { return ContactSet((bits_ | bits_ >> high) & all); }
     constexpr ContactSet contacts_in(ContactState state) const {
         return ContactSet(~(bits_ ^ low_bits(all, state)) & ~(bits_ >> high ^ high_bits(all, state) >> high) & all);
@@ -35,17 +35,17 @@ class Mode {
         return Mode((bits_ & ~(set | set << high)) | low_bits(set, state) | high_bits(set, state));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
-    // The same but for these contacts, which are open.
+    // This mode with these contacts open.
     constexpr Mode without(ContactSet contacts) const { return with(contacts, ContactState::open); }
     constexpr Mode without(std::size_t contact) const { return with(contact, ContactState::open); }
-    // The same for these contacts. All others are open.
+    // This mode for these contacts, with all others open.
     constexpr Mode only(ContactSet contacts) const { return without(held().without(contacts)); }
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
     friend constexpr bool operator<(const Mode& a, const Mode& b) { return a.bits_ < b.bits_; }
 
  private:
-    // A state has two bits. The low bits of all contacts stand in one half of the word, the high bits in the other.
+    // A state has two bits. The low bits of all contacts are in one half of the word, the high bits in the other.
     static constexpr std::uint32_t high = max_contacts, all = (1u << max_contacts) - 1u;
     static constexpr std::uint32_t low_bits(std::uint32_t set, ContactState state) {
         return (static_cast<std::uint32_t>(state) & 1u) != 0 ? set : 0u;
@@ -58,7 +58,7 @@ class Mode {
     std::uint32_t bits_ = 0;
 };
 
-// The key of what belongs to one contact in a mode.
+// Key of the data of one contact in a mode.
 using ContactInMode = std::pair<Mode, std::size_t>;
 
 }  // namespace achilles

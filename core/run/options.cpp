@@ -13,7 +13,7 @@ namespace achilles {
 
 namespace {
 
-// The words of a choice, in the order of its enumerators.
+// The words of an enumeration, in the order of its enumerators.
 template <class Choice>
 constexpr std::array<std::string_view, 2> words_of{};
 template <>
@@ -55,7 +55,7 @@ std::string to_text(const OptionValue& value) {
 
 namespace {
 
-// The member that a path of pointers leads to.
+// The member at the end of a chain of member pointers.
 template <auto first, auto... rest, class Owner>
 auto& member(Owner& owner) {
     if constexpr (sizeof...(rest) == 0)
@@ -64,7 +64,7 @@ auto& member(Owner& owner) {
         return member<rest...>(owner.*first);
 }
 
-// A row with what follows from the member: how it is read and written, and its words.
+// Completes a row with what follows from the member: getter, setter and words.
 template <auto... path>
 constexpr Option at(Option said) {
     using Value = std::remove_cvref_t<decltype(member<path...>(std::declval<Options&>()))>;
@@ -289,7 +289,7 @@ std::optional<std::string> fault_of_times(const Options& options) {
 std::vector<std::string> faults(const Options& options) {
     std::vector<std::string> told;
     for (const Option& o : all_options()) {
-        if (!o.words.empty()) continue;  // Options can keep no other word
+        if (!o.words.empty()) continue;  // Options cannot hold an invalid word
         const OptionValue value = o.get(options);
         if (allows(o, value)) continue;
         told.push_back(std::holds_alternative<double>(value)

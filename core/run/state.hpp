@@ -1,4 +1,5 @@
-// Where a system is: coordinates, rates, time. At most eight coordinates, so vectors of them live on the stack.
+// The state of a system: coordinates, rates, time. At most eight coordinates, so that their vectors need no heap
+// memory.
 #pragma once
 
 #include <Eigen/Core>
@@ -14,7 +15,7 @@ struct State {
     double t = 0.0;  // s
 };
 
-// Puts a state into the inputs of a program (slots 0 .. 2n - 1 and the clock, see model/derive.hpp).
+// Copies a state to the inputs of a program (slots 0 .. 2n - 1 and the clock, see model/derive.hpp).
 template <class Evaluator>
 void set_state(Evaluator& evaluator, const State& state) {
     const auto n = state.q.size();

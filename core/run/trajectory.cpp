@@ -1,4 +1,4 @@
-// Names of the kinds of things.
+// Evaluation and summary quantities of a trajectory, and the names of its kinds.
 #include "run/trajectory.hpp"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::
 
 double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event) {
     const Event& zeno = trajectory.events[zeno_event];
-    const Event* first = nullptr;  // impact of the bouncing
+    const Event* first = nullptr;  // first impact of the sequence
     for (std::size_t i = zeno_event; i-- > 0 && trajectory.events[i].is_impact();)
         if (trajectory.events[i].contacts.without(zeno.contacts).empty()) first = &trajectory.events[i];
     if (first == nullptr || !(first->impact_speed > 0.0)) return 0.0;

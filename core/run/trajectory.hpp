@@ -1,9 +1,10 @@
-// A completed execution (Defs. 4 and 5 of the paper), as data: phases, the events between them, and how it ended.
-// The central noun of Achilles; read this first.
+// A completed execution (Defs. 4 and 5 of the paper) as data: phases, the events between them, and the outcome. This is
+// the central type of Achilles; read it first.
 //
-// A hybrid phase is free flight and impacts; a constrained phase keeps h = 0 of the contacts that it holds. A phase ends
-// where its mode changes: at the Zeno point of a contact, which joins it, at a release, at an impact that opens a held
-// contact. With one contact impacts happen inside hybrid phases; with several a constrained phase may have its own.
+// A hybrid phase consists of free flights and impacts. A constrained phase keeps h = 0 for the contacts that it holds.
+// A phase ends when its mode changes: at a Zeno point, where a contact becomes held, at a release, or at an impact that
+// opens a held contact. With one contact, impacts occur in hybrid phases only; with several, also in constrained
+// phases.
 #pragma once
 
 #include <array>
@@ -30,58 +31,59 @@ struct Piece {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    Mode mode;            // of its phase, or of the phase to come: the way to a Zeno point is in contact
-    ContactSet carriers;  // of what is held, whose motion it is: a sample is projected to their h = 0, hdot = 0
+    Mode mode;            // mode of its phase; between a cut and its Zeno point, of the next phase
+    ContactSet carriers;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
     Mode motion() const { return mode.only(carriers); }
-    double work = 0.0, loss = 0.0;  // of the run, until it starts
+    double work = 0.0, loss = 0.0;  // from the start of the run to the start of this piece
 };
 
-// The state of a piece's polynomials at a time (s), clamped to the piece.
+// The state by the polynomials of a piece at time t (s), clamped to the piece.
 State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::Index dof, double t);
 
 struct Phase {
     enum class Kind { hybrid, constrained };
-    Kind kind = Kind::hybrid;  // exactly where none is held
+    Kind kind = Kind::hybrid;  // hybrid if and only if no contact is held
     Mode mode;
-    // Of what is held, whose motion it is: all, or where gradients depend on one another some, which may change inside
-    // the phase (the last ones). The forces could be shared otherwise, then (theory-gaps.md 2.5).
+    // The held contacts that determine the motion: all of them, or a subset if gradients are linearly dependent. The
+    // subset may change within the phase; this is the last one. The distribution of the forces is then not unique
+    // (theory-gaps.md 2.5).
     ContactSet carriers;
     Mode motion() const { return mode.only(carriers); }
     bool not_unique() const { return carriers != mode.held(); }
     double start = 0.0, end = 0.0;
     int impacts = 0;
-    std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory, in time
+    std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory
 };
 
-// One inequality of a truncation condition: satisfied when left < right.
+// One inequality of a truncation condition: satisfied if left < right.
 struct Inequality {
-    std::string_view name;  // "c1: time", ...: a literal
+    std::string_view name;  // "c1: time", ...: a string literal
     double left = 0.0, right = 0.0;
-    double share() const { return left / right; }  // of what is allowed, where both are positive
+    double share() const { return left / right; }  // used fraction of the limit, if both are positive
 };
 
-// What is proved about a truncated bouncing. Bounds are proved by interval evaluation, except that errors made before
-// tau_k (integration, rounding) and the accumulation over several truncations are not covered.
+// What is proved about a truncated impact sequence. Bounds are proved by interval evaluation. They do not include
+// errors before tau_k (integration, rounding), nor the accumulation of errors over several truncations.
 struct Certificate {
     bool certified = false;
     Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
-    bool below_rounding = false;                                   // completed since no further flight can be resolved
-    double zeno_low = 0.0, zeno_high = 0.0;                        // encloses tau_inf
-    double zeno_time = 0.0;                                        // its best estimate, inside
-    double position_bound = 0.0;                                   // on |q_inf - q*|
-    double velocity_bound = 0.0;                                   // on |v_inf - v*|
+    bool below_rounding = false;                                   // completed: further flights cannot be resolved
+    double zeno_low = 0.0, zeno_high = 0.0;                        // enclosure of tau_inf
+    double zeno_time = 0.0;                                        // best estimate of tau_inf, inside the enclosure
+    double position_bound = 0.0;                                   // bound on |q_inf - q*|
+    double velocity_bound = 0.0;                                   // bound on |v_inf - v*|
     std::optional<double> shadowing_position, shadowing_velocity;  // theory.md 5.2, at tau_inf
-    std::optional<double> uniform_position;                        // on |q - q~| at all times from tau_k to tau_inf
-    double a_min = 0.0, a_max = 0.0;                               // of -hddot over the neighbourhood
-    std::string_view decisive;  // the decision's inequality that has least room, or why there is no decision
+    std::optional<double> uniform_position;                        // bound on |q - q~| from tau_k to tau_inf
+    double a_min = 0.0, a_max = 0.0;                               // range of -hddot over the neighborhood
+    std::string_view decisive;  // name of the tightest inequality of the decision, or the reason for no decision
     struct Paper {
         double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
     };
     std::optional<Paper> paper;
-    // Of the other contacts until tau_inf, where there are any: what impulses are passed on to held ones by, the least force
-    // that holds each, the least gap of those that are open.
+    // Bounds on the other contacts until tau_inf, if there are any. For each held contact: the range of its
+    // transmission of impulses and its minimum force. For the open ones: their minimum gap.
     struct Others {
         struct Held {
             std::size_t contact;
@@ -89,37 +91,37 @@ struct Certificate {
         };
         std::vector<Held> held;
         std::optional<double> least_gap;
-        bool rounded_zero = false;  // what is passed on is 0 only within its rounding (theory-gaps.md 8)
+        bool rounded_zero = false;  // a transmission is 0 only within rounding (theory-gaps.md 8)
     };
     std::optional<Others> others;
-    // By which it is decided whether the bouncing may be cut. Nothing where that needs no condition.
+    // The inequalities that decide whether to truncate. nullopt if no condition is needed.
     struct Decision {
         Inequality time, position, velocity;
-        // The one that has least room.
+        // The tightest inequality: the one with the largest share().
         const Inequality& closest() const;
     };
     std::optional<Decision> decision;
-    std::vector<Inequality> assumptions;  // what the proof stands on
-    // All of them, for a person: the decision's, then the others.
+    std::vector<Inequality> assumptions;  // prerequisites of the proof
+    // All inequalities for a report: those of the decision, then the assumptions.
     std::vector<Inequality> inequalities() const;
 };
 
-// What an event of several contacts has besides.
+// Additional data of an event of several contacts.
 struct Joint {
-    std::vector<std::pair<std::size_t, double>> impulses;  // of an impact, contact by contact
-    bool not_unique = false;                               // another share of the same impulses, or forces, would do
-    // Landings that cannot be ordered, and whose order matters: what was done is Moreau's law, all at once. The rates of
-    // the gaps that would follow if one contact was first, and together.
+    std::vector<std::pair<std::size_t, double>> impulses;  // of an impact, by contact
+    bool not_unique = false;                               // the impulses or forces could also be distributed otherwise
+    // True for impacts whose times cannot be separated and whose order changes the outcome. They were resolved together
+    // by Moreau's law. `alternatives` lists the gap rates after each order, and after the joint impact.
     bool order_matters = false;
-    bool rounded_zero = false;  // for the order something counted as 0 that is 0 only within its rounding
+    bool rounded_zero = false;  // for the order, a quantity that is 0 only within rounding was taken as 0
     struct Alternative {
-        std::optional<std::size_t> first;                         // nothing: all at once
-        std::vector<std::pair<std::size_t, double>> rates_after;  // of the gaps
+        std::optional<std::size_t> first;                         // nullopt: all at once
+        std::vector<std::pair<std::size_t, double>> rates_after;  // by contact
     };
     std::vector<Alternative> alternatives;
 };
 
-// Base of the records of an event: its kind. A new kind stands before `last` and has a row in event_names below.
+// Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
 struct EventBase {
     enum class Kind { impact, zeno, release, last = release };
     Kind kind = Kind::impact;
@@ -131,15 +133,15 @@ struct EventBase {
 
 struct Event : EventBase {
     double t = 0.0;
-    Vector q, v_before, v_after;         // equal velocities where nothing jumps (release, zeno)
-    double impact_speed = 0.0;           // impact: |hdot| before
-    ContactSet contacts;                 // that land, come to rest, or leave
-    Mode mode;                           // after it
-    ContactSet opened;                   // of an impact: those that were held before and leave
+    Vector q, v_before, v_after;         // velocities are equal unless they jump (at impacts)
+    double impact_speed = 0.0;           // impact: |hdot| before the impact
+    ContactSet contacts;                 // those that impact, become held at a Zeno point, or release
+    Mode mode;                           // after the event
+    ContactSet opened;                   // impact: contacts held before and opened by it
     std::shared_ptr<const Joint> joint;  // may be null
-    double work = 0.0, loss = 0.0;       // of the run until then, what happens here included
-    int impacts = 0;     // zeno: impacts of the phase it ends, the one at which the bouncing was cut included
-    struct Truncation {  // zeno: the impact where the bouncing was cut, and what restarted from it
+    double work = 0.0, loss = 0.0;       // from the start of the run, including this event
+    int impacts = 0;                     // zeno: impacts of the phase it ends, including the one at the cut
+    struct Truncation {                  // zeno: the impact at the cut, and the restart
         double t = 0.0;
         Vector q, v_before, v;  // v: after reinitialization
         double impact_speed = 0.0;
@@ -147,39 +149,39 @@ struct Event : EventBase {
     std::optional<Truncation> truncation;
     std::optional<Certificate> certificate;  // zeno
 
-    // Whether another set of contacts is held after it: an impact may open held contacts.
+    // True if the set of held contacts changes: any event but an impact that opens no held contact.
     bool changes_held() const { return !is_impact() || !opened.empty(); }
 
-    Event() {}  // the room for the two that most events have not need not be zero
+    Event() {}  // leaves the storage of the two optional members uninitialized, because most events have neither
 };
 
-// A Zeno event without bouncing: restitution 0 ends the fall in contact at once. Nothing is cut short, so nothing is to be
-// bounded but the integration before it.
+// A Zeno event without bouncing: with restitution 0 the first impact ends in contact. Nothing is truncated, so only the
+// integration before it has an error.
 bool is_plastic_landing(const Event& event);
-// A Zeno event after bouncing.
+// A Zeno event that ends an impact sequence.
 inline bool is_zeno_point(const Event& event) { return event.is_zeno() && !is_plastic_landing(event); }
 
-// The names of a kind of event. The one table for everything that prints, draws or reads them; the marker and color of
-// a kind are in render/figure/palette.cpp.
+// Names of the kinds of events, for everything that prints, draws or reads them. Markers and colors are in
+// render/figure/palette.cpp.
 struct EventNames {
     Event::Kind kind;
     std::string_view word;   // in JSON, CSV and options: "zeno"
     std::string_view name;   // in sentences and legends: "Zeno point"
-    std::string_view label;  // before a number or the names of contacts: "Zeno 2", "Zeno knee"
+    std::string_view label;  // before a number or names of contacts: "Zeno 2", "Zeno knee"
 };
 inline constexpr std::array<EventNames, 3> event_names{{
     {Event::Kind::impact, "impact", "impact", "impact"},
     {Event::Kind::zeno, "zeno", "Zeno point", "Zeno"},
     {Event::Kind::release, "release", "release", "release"},
 }};
-// A plastic landing is a Zeno event, but named for what is seen.
+// A plastic landing is a Zeno event, but has its own names.
 inline constexpr EventNames landing_names{Event::Kind::zeno, "landing", "landing", "landing"};
 
 constexpr const EventNames& names_of(Event::Kind kind) { return event_names[static_cast<std::size_t>(kind)]; }
 inline const EventNames& names_of(const Event& event) {
     return is_plastic_landing(event) ? landing_names : names_of(event.kind);
 }
-// Whether a table has a row for each kind of event, in the order of the kinds.
+// True if the table has one row for each kind of event, in the order of the kinds.
 template <class Table>
 consteval bool has_all_event_kinds(const Table& table) {
     for (std::size_t i = 0; i < table.size(); ++i)
@@ -188,11 +190,11 @@ consteval bool has_all_event_kinds(const Table& table) {
 }
 static_assert(has_all_event_kinds(event_names));
 
-// What is kept of an event where of a run the end alone is: no states, no certificate.
+// Record of an event in a run stored with Keep::end: no states, no certificate.
 struct Passage : EventBase {
     ContactSet contacts;
     double t = 0.0;
-    double impact_speed = 0.0;  // impact: |hdot| before
+    double impact_speed = 0.0;  // impact: |hdot| before the impact
     friend bool operator==(const Passage&, const Passage&) = default;
 };
 
@@ -206,9 +208,9 @@ struct Outcome {
         left_the_domain,
         step_too_small,
         undecided,
-        simultaneous_impacts,  // their order matters and cannot be told, and the run is to stop there
-        redundant_contacts,    // that leave no motion, or are more than can be decided
-        cancelled              // another thread told it to stop
+        simultaneous_impacts,  // their order matters but is unknown, and the options ask to stop
+        redundant_contacts,    // they leave no motion, or are too many to decide
+        cancelled              // by another thread
     };
     Kind kind = Kind::end_time;
     std::string message;
@@ -216,57 +218,59 @@ struct Outcome {
 
 struct Statistics {
     long steps = 0, evaluations = 0, impacts = 0;
-    double energy_drift = 0.0;  // largest relative change of energy less work inside a smooth stretch, at step ends
-    double least_gap = 0.0;     // at step ends alone; of the whole run: least_gap(trajectory)
-    // Wall clock: the only values that may differ between two runs.
+    double energy_drift = 0.0;  // largest relative change of energy minus work within a smooth segment, at step ends
+    double least_gap = 0.0;     // at step ends only; for the whole run see least_gap(trajectory)
+    // Wall-clock times: the only values that may differ between equal runs.
     double seconds = 0.0;
-    double certificate_seconds = 0.0;  // of these, for the truncation conditions' proofs
+    double certificate_seconds = 0.0;  // part of `seconds` for the proofs of truncation conditions
 };
 
 struct Trajectory {
     std::shared_ptr<const Model> model;
     Run run;
     std::vector<Phase> phases;
-    std::vector<Event> events;  // in time
-    // Of a run of which the end alone was kept, in place of its events; else empty. Of either: sequence_of().
+    std::vector<Event> events;  // ordered by time
+    // Event records of a run stored with Keep::end; otherwise empty. Use sequence_of() for either kind.
     std::vector<Passage> passages;
-    std::vector<Piece> pieces;  // in time
+    std::vector<Piece> pieces;  // ordered by time
     std::vector<double> coefficients;
     double end_time = 0.0;
     State end;
     Phase::Kind end_phase = Phase::Kind::hybrid;
     Mode end_mode;
-    int by_convention = 0;  // impacts whose order matters and could not be told
-    // E(end) - E(start) = work - loss: what forces, a potential that changes with time and moving surfaces have done on the
-    // system, and what impacts have taken. The work is no number where the ends of steps alone were kept.
+    int by_convention = 0;  // number of impacts whose order matters but is unknown
+    // E(end) - E(start) = work - loss. The work is that of forces, of a time-dependent potential and of moving
+    // surfaces; the loss is the energy dissipated at impacts. For a run stored with Keep::end the work is NaN, unless
+    // none can be done.
     double work = 0.0, loss = 0.0;
     Outcome outcome;
     Statistics statistics;
-    // Where the options of `run` left it undecided: those that it was made again by, as exactly as double precision allows.
+    // The tighter options of a second run, if a run with the options of `run` was undecided.
     std::optional<Options> made_again_by;
-    std::string undecided;  // what was, then; else empty
+    std::string undecided;  // reason for the second run; else empty
 
-    // The state at a time (s), clamped to the run; at an event that after it. Who asks often asks a Sampler (simulate/sampler.hpp).
+    // State at time t (s), clamped to the run; at an event, the state after it. For many queries use a Sampler
+    // (simulate/sampler.hpp).
     Sample operator()(double t) const;
 };
 
-// What the local errors of so many steps may have grown to in the state, roughly: a measure, no bound.
+// Rough estimate (no bound) of the error of the state after `steps` steps, from their local errors.
 inline double integration_error(const Options& options, double steps) { return 0.1 * options.tolerance * steps; }
-// What the integration and the cuts before may have made a Zeno time (s) wrong by: a state that is wrong by eps moves the
-// first impact, of speed v, by eps/v, and what follows takes longer in proportion to v. An estimate, and a generous one:
-// of smooth systems the true error was up to 20 times what integration_error() says.
+// Estimated error of a Zeno time (s) from the integration and from earlier cuts. A state error eps moves the first
+// impact, of speed v, by eps/v, and prolongs the rest of the sequence in proportion. The estimate is generous: for
+// smooth systems the true error was up to 20 times integration_error().
 double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event);
 
-// How many bytes what is kept of a run takes.
+// Memory used by the stored trajectory, bytes.
 double bytes_of(const Trajectory& trajectory);
-// The events of a run, whatever was kept of it.
+// The records of all events of a run, whatever was stored.
 std::vector<Passage> sequence_of(const Trajectory& trajectory);
 
-// The largest |q| and |v|, coordinate by coordinate, at the start, the events and the end: what is much smaller is noise.
+// The largest |q| and |v| of each coordinate at the start, the events and the end, as a reference for noise.
 State scale_of(const Trajectory& trajectory);
-// What is rounding noise beside a scale: below so much of it.
+// Values below this fraction of a scale are rounding noise.
 inline constexpr double noise = 1e-14;
-// For a person, 0 where a value is noise beside such a scale.
+// For printing: 0 if the value is noise relative to the scale, else the value.
 double without_noise(double value, double scale);
 
 std::string_view to_text(Phase::Kind);

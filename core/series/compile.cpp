@@ -1,4 +1,4 @@
-// From a flat program to the recurrences of its series.
+// Compiles a flat program into the recurrences of its series.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -14,12 +14,12 @@
 
 namespace achilles {
 
-// The inner sums of a plan: which there are, each once, and where they stand.
+// The distinct inner sums of a plan, and their lanes.
 
-// Sums over 0 < j < k of x_j y_{k-j}, or, weighted, of j x_j y_{k-j}/k.
+// Sums over 0 < j < k of x_j y_{k-j}, or, if weighted, of j x_j y_{k-j}/k.
 class InnerSums {
  public:
-    // The sum of these series, as an operand of a rule until it has its place.
+    // The sum of these series, as an operand that place() replaces by its lane.
     std::uint32_t of(std::uint32_t x, std::uint32_t y, bool weighted) {
         const auto [found, fresh] = ids_.emplace(std::tuple(x, y, weighted), static_cast<std::uint32_t>(sums_.size()));
         if (fresh) sums_.push_back({x, y, weighted});
@@ -27,8 +27,8 @@ class InnerSums {
     }
     std::size_t count() const { return sums_.size(); }
 
-    // Gives each a lane behind the plan's series, and the operands of the rules their places. Weighted sums come first:
-    // their left factors are stored times the order.
+    // Gives each sum a lane after the plan's series, and replaces the operands of the rules. Weighted sums come first,
+    // because their left factors are stored multiplied by the order.
     void place(SeriesPlan& plan) const {
         std::vector<std::uint32_t> position(sums_.size());
         for (const bool weighted : {true, false}) {
@@ -40,7 +40,7 @@ class InnerSums {
             }
             if (weighted) plan.weighted = static_cast<std::uint32_t>(plan.left.size());
         }
-        // One vector at least: the rows tell the orders apart.
+        // At least one vector, because the code distinguishes the orders by the addresses of their rows.
         plan.lanes = static_cast<std::uint32_t>(std::max<std::size_t>(1, (sums_.size() + 3) / 4) * 4);
         plan.left.resize(plan.lanes, 0);
         plan.right.resize(plan.lanes, 0);
@@ -63,7 +63,7 @@ class SeriesCompiler {
  public:
     explicit SeriesCompiler(SeriesProgram& series) : series_(series), program_(series.program_) {}
 
-    // Of the outputs, the first `wanted` as series.
+    // The first `wanted` outputs are compiled as series.
     void compile(std::size_t wanted) {
         const Slots& slots = program_.slots_;
         const auto first = slots.count + static_cast<std::uint32_t>(program_.constants_.size());
@@ -99,14 +99,14 @@ class SeriesCompiler {
     using Seed = SeriesProgram::Seed;
     using Operand = SeriesProgram::Operand;
 
-    // coefficient * series, and a sum of such terms: what moves in a register.
+    // coefficient * series. A form is a sum of such terms, for the higher orders of a register.
     struct Term {
         std::uint32_t series, coefficient;
     };
     using Form = std::vector<Term>;
     static constexpr std::size_t longest_form = 6;
 
-    static constexpr std::uint32_t one = 0;  // the coefficient
+    static constexpr std::uint32_t one = 0;  // index of the coefficient 1
 
     static bool has_edge(Operation operation) {
         return operation == Operation::sqrt || operation == Operation::log || operation == Operation::asin ||
@@ -126,7 +126,7 @@ class SeriesCompiler {
         return std::any_of(all.begin() + static_cast<std::ptrdiff_t>(program_.fixed_), all.end(), uses) ||
                std::any_of(program_.outputs_.begin(), program_.outputs_.end(), [&](auto reg) { return is_clock(reg); });
     }
-    // What reads the time reads a copy: the series itself is gone where an order ends (SeriesPlan::clock).
+    // The time is read from a copy, because its own series is reset at the end of an order (SeriesPlan::clock).
     void start_clock() {
         const std::uint32_t clock = series_.plan_.clock = next_series_++, copy = next_series_++;
         combine(copy, {clock, 0, 0}, {one, one, one});
@@ -173,7 +173,7 @@ class SeriesCompiler {
         return result.size() > longest_form ? Form{{written_out(result), one}} : result;
     }
 
-    // A rule whose factors are coefficients.
+    // Adds a rule whose factors are coefficients.
     void combine(std::uint32_t result, const std::array<std::uint32_t, 3>& series,
                  const std::array<std::uint32_t, 3>& coefficients) {
         series_.combinations_.push_back({static_cast<std::uint32_t>(series_.plan_.rules.size()), coefficients});
@@ -181,14 +181,14 @@ class SeriesCompiler {
         for (std::size_t i = 0; i < 3; ++i) rule.known[i] = known(coefficients[i]);
         series_.plan_.rules.push_back(rule);
     }
-    // 1 or -1 where a coefficient is always that; else 0.
+    // 1 or -1 if the coefficient is always that, else 0.
     std::int8_t known(std::uint32_t coefficient) const {
         if (coefficient == one) return 1;
         const SeriesProgram::Coefficient& c = series_.coefficients_[coefficient];
         return c.operation == Operation::negate && c.a == one ? -1 : 0;
     }
 
-    // The series of a form, as rules of up to three terms each.
+    // A series equal to the form, by rules of up to three terms.
     std::uint32_t written_out(const Form& form) {
         std::uint32_t series = form[0].series, scale = form[0].coefficient;
         for (std::size_t i = 1; i < form.size(); i += 2) {
@@ -202,7 +202,7 @@ class SeriesCompiler {
         return series;
     }
 
-    // A register as a factor. A form of several terms is written out once.
+    // A register as a factor. A form of several terms is replaced by a series once.
     Operand operand(std::uint32_t reg) {
         if (!moves(reg) || forms_[reg].empty()) return {reg, 0, one};
         Form& form = forms_[reg];
@@ -210,8 +210,8 @@ class SeriesCompiler {
         return {reg, form[0].series, form[0].coefficient};
     }
 
-    // The series of an output, scaled. One that is an input is copied: the inputs of the next order may be written
-    // while outputs are still read.
+    // The series of an output, scaled. An output that is an input is copied: the inputs of the next order may be
+    // written while outputs are still read.
     std::uint32_t written_apart(const Operand& output) {
         const bool is_input = output.series != 0 && output.series <= program_.slots_.parameters_begin;
         if (!is_input && output.scale == one) return output.series;
@@ -222,8 +222,8 @@ class SeriesCompiler {
 
     // ---- recurrences ----
 
-    // Adds the recurrence of a function and returns its result as a factor. The same function of the same operands is
-    // made once: sine and cosine of one angle, chains of powers.
+    // Adds the recurrence of a function and returns its result as a factor. Equal functions of equal operands share one
+    // recurrence, as in the sine and cosine of one angle or in powers.
     Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
                  std::optional<std::uint32_t> partner_value = {}) {
         const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
@@ -240,7 +240,7 @@ class SeriesCompiler {
         seed.result = result;
         seed.partner = partner;
         const std::uint32_t p = partner.series;
-        // The factor of w is known where it is made of scales alone (see SeriesEvaluator::begin).
+        // The factor of w is known if it consists of known scales only (see SeriesProgram::start).
         const std::int8_t by_a = known(a.scale), by_b = known(b.scale);
         const auto sign = static_cast<std::int8_t>(seed.sign);
         const auto add = [&](std::uint32_t to, std::uint32_t x, std::uint32_t y, std::uint32_t w, int of_w = 0) {
@@ -285,7 +285,7 @@ class SeriesCompiler {
         partners_.emplace(result.series, partner);
         return result;
     }
-    // A result that has no register in the program.
+    // For a result that has no register in the program.
     Operand hidden(Seed seed, const Operand& a, const Operand& b) { return make(seed, a, b, next_register_++); }
     Operand partner_of(const Operand& result) const { return partners_.at(result.series); }
 
@@ -294,7 +294,7 @@ class SeriesCompiler {
         return hidden({.kind = same ? Kind::square : Kind::multiply}, a, b);
     }
 
-    // Order 0 of each is taken from the program where it stands there.
+    // Order 0 of each function is read from the program if the program contains it.
     Operand sine_and_cosine(const Instruction& in) {
         const bool circular = in.operation == Operation::sin || in.operation == Operation::cos;
         const Operand a = operand(in.a);
@@ -397,11 +397,11 @@ class SeriesCompiler {
     SeriesProgram& series_;
     const Program& program_;
     std::uint32_t first_moving_ = 0, next_register_ = 0, next_series_ = 0;
-    std::vector<Form> forms_;  // of the program's registers that move
+    std::vector<Form> forms_;  // by moving register of the program
     std::map<std::tuple<Operation, std::uint32_t, std::uint32_t>, std::uint32_t> coefficient_ids_;
     std::map<std::tuple<Kind, Operation, double, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, Operand>
         made_;
-    std::map<std::uint32_t, Operand> partners_;                                        // by the series of the result
+    std::map<std::uint32_t, Operand> partners_;                                        // by series of the result
     std::map<std::pair<Operation, std::uint32_t>, std::uint32_t> function_registers_;  // by function and operand
     InnerSums sums_;
 };

@@ -1,5 +1,5 @@
-// A program, and a series program with its coefficients, over double, eight of them side by side, or any other number. One per
-// thread.
+// Evaluators of a program, and of a series program with its coefficients, over double, eight doubles, or any other
+// number type. Use one per thread.
 #pragma once
 
 #include <algorithm>
@@ -23,13 +23,12 @@ inline constexpr bool is_lanes = false;
 template <std::size_t Bytes>
 inline constexpr bool is_lanes<Lanes<Bytes>> = true;
 
-// A program over any number. Over double and lanes it has machine code where that is available; over lanes its constants are
-// those of double, over other numbers they are as exact as the number allows.
+// A program over any number type. Over double and lanes it uses machine code if available. Over lanes the constants are
+// those of double; over other types they are as accurate as the type allows.
 template <class Number>
 class ProgramOver {
  public:
-    // Lanes may have machine code by vectors of four or eight. With room for so many registers, if these are more than the
-    // program's.
+    // Over lanes, machine code uses vectors of four or eight. `registers` is the minimum number of registers.
     explicit ProgramOver(const Program& program, std::optional<Width> machine_code = {}, std::size_t registers = 0)
         : program_(&program) {
         if constexpr (!is_lanes<Number>) {
@@ -47,7 +46,7 @@ class ProgramOver {
         }
     }
 
-    // Evaluates what depends on the parameters alone.
+    // Evaluates what depends on parameters only.
     template <class Parameter>
     void fix(std::span<const Parameter> parameters) {
         const std::size_t first = LaneAccess::moving_inputs(*program_);
@@ -57,7 +56,7 @@ class ProgramOver {
     Number& input(std::size_t slot) { return evaluator_.input(slot); }
     Number& clock() { return evaluator_.clock(); }
     const Number& output(std::size_t index) const { return evaluator_.output(index); }
-    // All registers, the inputs first.
+    // All registers, inputs first.
     std::vector<Number>& numbers() { return LaneAccess::registers_of(evaluator_); }
 
     void run() {
@@ -77,35 +76,36 @@ class ProgramOver {
 template <class Number>
 class SeriesEvaluator {
     static constexpr bool is_one = std::is_same_v<Number, double>;
-    // Machine code that makes orders faster, to the same bits; may be null. Over numbers other than double and lanes it is.
+    // Machine code that computes orders faster, with the same bits; may be null. It is null for all types except double
+    // and lanes.
     using Code = std::conditional_t<is_one, OrderCode, LaneOrderCode>;
 
  public:
     static constexpr int highest_order = OrderCode::highest_order;
 
-    // To be fixed before it is used.
+    // Call fix() before use.
     explicit SeriesEvaluator(const SeriesProgram& program) requires(!is_lanes<Number>)
         : SeriesEvaluator(&program, code_of(program)) {}
     SeriesEvaluator(const SeriesProgram& program, std::span<const double> parameters) requires is_one
         : SeriesEvaluator(program) {
         fix(parameters);
     }
-    // With machine code by vectors of four or eight, or without. To be fixed before it is used.
+    // With machine code by vectors of four or eight, or without. Call fix() before use.
     SeriesEvaluator(const SeriesProgram& program, std::optional<Width> machine_code) requires is_lanes<Number>
         : SeriesEvaluator(&program, nullptr, machine_code) {
         if constexpr (is_lanes<Number>)  // clang 14 instantiates this for one too
             if (machine_code) code_ = LaneOrderCode::of(program.plan_, sums_.plan, *machine_code);
     }
 
-    // Evaluates what depends on the parameters alone.
+    // Evaluates what depends on parameters only.
     template <class Parameter>
     void fix(std::span<const Parameter> parameters) {
         zero_.fix(parameters);
         program_->fix(zero_.numbers().data(), coefficients_.data(), factors_.data());
     }
 
-    // Evaluates order 0 at these values of the moving inputs, at a time that passes at this rate: 1, or what a unit is
-    // long in which the series are.
+    // Evaluates order 0 at these values of the moving inputs and this time. `rate` is the derivative of the time with
+    // respect to the variable of the series: 1, or the duration of its unit.
     void begin(const Number* inputs, const Number& time = 0.0, const Number& rate = 1.0) {
         std::copy_n(inputs, inputs_, zero_.numbers().data());
         if (program_->plan_.clock != 0) {
@@ -113,29 +113,29 @@ class SeriesEvaluator {
             tables_.now[program_->plan_.clock] = rate;
         }
         zero_.run();
-        std::fill_n(tables_.now + program_->plan_.series, sums_.count(), Number(0.0));  // sums of order 1
+        std::fill_n(tables_.now + program_->plan_.series, sums_.count(), Number(0.0));  // inner sums of order 1
         program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());
     }
-    // Order 0 of an output, after begin().
+    // Order 0 of an output. Requires begin().
     const Number& start(std::size_t index) { return zero_.numbers()[program_->outputs_[index]]; }
 
-    // Evaluates order k, 1 <= k <= highest_order, from that order of the moving inputs, after all lower ones.
+    // Evaluates order k, 1 <= k <= highest_order, given order k of the moving inputs. Requires all lower orders.
     void extend(int k, const Number* inputs) {
         std::copy_n(inputs, inputs_, tables_.now + 1);
         if constexpr (is_one)
             if (k == 1 && code_) return code_->make_first(tables_);
         make_order(program_->plan_, sums_, tables_, static_cast<std::size_t>(k));
     }
-    // Order k of an output, after extend(k) until the next.
+    // Order k of an output, valid from extend(k) until the next call of extend().
     const Number& output(std::size_t index) const { return tables_.now[program_->plan_.outputs[index]]; }
 
-    // Of a motion, see make_orders(); after order 1.
+    // For a motion, see make_orders(). Requires order 1.
     int extend(MotionOrders& motion, int k, int last) requires is_one {
         if (code_) return code_->make_orders(tables_, motion, k, last);
         return make_orders(program_->plan_, tables_, motion, k, last);
     }
-    // Orders 1 .. last of a motion (last >= 4), into rows of q, v and the event functions. Row 1 comes first, where q and v
-    // are given; before it stands row 0.
+    // Orders 1 .. last (last >= 4) of a motion, in rows of q, v and the event functions. `row` points to row 1, where q
+    // and v are given; row 0 precedes it.
     void extend(Number* row, int last) requires is_lanes<Number> {
         const SeriesPlan& plan = program_->plan_;
         if constexpr (is_lanes<Number>)
@@ -148,7 +148,7 @@ class SeriesEvaluator {
         for (int k = 1; k <= last; ++k, row += plan.states())
             make_motion_order(plan, sums_, tables_, row, static_cast<std::size_t>(k));
     }
-    // Orders k .. last of a motion, after all lower ones, into such rows; `row` is that of order k.
+    // Orders k .. last of a motion, in such rows; `row` is that of order k. Requires all lower orders.
     void extend(Number* row, int k, int last) requires(!is_lanes<Number>) {
         const SeriesPlan& plan = program_->plan_;
         const std::size_t n = plan.coordinates();
@@ -159,7 +159,8 @@ class SeriesEvaluator {
                 row += plan.states();
                 ++k;
             }
-            // No term is so small that it would be the last: only a 0 is, and then it goes on from there.
+            // With this power no nonzero coefficient counts as small. A coefficient 0 ends a call, and the loop
+            // continues after it.
             constexpr double never_small = 1e300;
             MotionOrders motion;
             motion.row = row - plan.states();
@@ -195,7 +196,7 @@ class SeriesEvaluator {
         const std::size_t numbers = program->plan_.numbers();
         block_ =
             std::make_unique_for_overwrite<Number[]>(numbers + sums_.row() * (highest_order + 1) + SeriesPlan::aligned);
-        // From the start of a cache line on.
+        // Aligned to a cache line.
         const auto past = reinterpret_cast<std::uintptr_t>(block_.get()) % line;
         Number* const now = block_.get() + (line - past) % line / sizeof(Number);
         tables_ = {factors_.data(), now, now + numbers};
@@ -203,10 +204,10 @@ class SeriesEvaluator {
     }
 
     const SeriesProgram* program_;
-    std::size_t inputs_;                          // moving ones
+    std::size_t inputs_;                          // number of moving inputs
     ProgramOver<Number> zero_;                    // order 0, with room for hidden registers
-    std::vector<Number> coefficients_;            // of the program, by number
-    std::vector<std::array<Number, 3>> factors_;  // of the rules
+    std::vector<Number> coefficients_;            // of the program, by index
+    std::vector<std::array<Number, 3>> factors_;  // by rule
     InnerSums<Number> sums_;
     std::unique_ptr<Number[]> block_;
     SeriesTablesOver<Number> tables_;

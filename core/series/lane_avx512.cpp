@@ -1,5 +1,6 @@
-// What is below the pragma is compiled for AVX-512; what is included above it is not, even where a template of it is
-// instantiated below: it may be a file's for any processor. Functions of it that take or return lanes are named.
+// Everything below the pragma is compiled for AVX-512. Headers included above it are not, even if their templates are
+// instantiated below, because other files may share them. Their functions that take or return lanes are instantiated by
+// name.
 #include <algorithm>
 #include <array>
 #include <cmath>

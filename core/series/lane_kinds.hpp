@@ -1,11 +1,11 @@
-// The kinds of vectors that eight runs are worked on by. Each has a file that compiles lane_steps.hpp, and all templates
-// over the number that it stands on, for Lanes<Bytes>: with the 128 bits that every processor has, and for AVX-512.
-// (256 bits are for machine code alone, where most of the time goes: beside it what the compiler makes with them is no
-// faster than what it makes with 128.)
+// Vector sizes for eight runs. Each size has a source file that compiles lane_steps.hpp, and all templates over the
+// number type that it uses, for Lanes<Bytes>: with the 128 bits of every processor, and with AVX-512. (256 bits are
+// used by machine code only, which takes most of the time; compiled code of 256 bits beside it is no faster than that
+// of 128.)
 //
-// Lanes must never be passed by value to or from what is compiled elsewhere: each kind has a calling convention of its
-// own. Nor may a kind's file leave anything for the linker that another kind's file, or a file for any processor, also
-// has: so all of its functions that are not a part of others have Lanes<Bytes> in their names.
+// Never pass lanes by value between source files: each size has its own calling convention. A source file of one size
+// must not define a function that another file also defines, because the linker keeps only one of them. All of its
+// functions that are not inlined therefore have Lanes<Bytes> in their names.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,4 @@
-// The orders of eight runs as machine code.
+// Machine code for the orders of eight runs.
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -13,22 +13,22 @@ namespace achilles {
 namespace {
 
 using Xbyak::Xmm;
-using Index = std::ptrdiff_t;  // of doubles
+using Index = std::ptrdiff_t;  // in doubles
 
-// The function's arguments, by the calling convention, and the pointers of the loop over older rows.
+// The function's arguments, by the calling convention, and pointers of the loop over older rows.
 constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, row = Xbyak::util::rdx,
                        weights = Xbyak::util::rcx, last = Xbyak::util::r8, motion = Xbyak::util::r9,
                        left_row = Xbyak::util::rax, right_row = Xbyak::util::r10, before = Xbyak::util::r11;
-constexpr unsigned scratch = 3;  // free vector registers
+constexpr unsigned scratch = 3;  // registers for temporary use
 constexpr Index by_order = 0, by_inverse_of_next = 1, by_inverse = 2, weights_per_order = 3;
 
 Index lane(std::size_t number) { return static_cast<Index>(number * Eight::count); }
 
 }  // namespace
 
-// AVX-512 has 32 registers: inner sums have 16 of their own, and where they all do, they and the results stay there from
-// one order to the next. Vectors of four have 16, and a number fills two: each half of an order is written by itself,
-// inner sums take the registers of its results when these are through, and all is in memory.
+// AVX-512 has 32 vector registers. Sixteen are for inner sums; if all sums fit, they and the results stay there from
+// one order to the next. With vectors of four there are 16, and a number fills two. Each half of an order is then
+// emitted separately, inner sums reuse the registers of its results, and all results are in memory.
 class LaneOrderWriter {
  public:
     LaneOrderWriter(const SeriesPlan& plan, const LanePlan& lanes, Width vectors)
@@ -46,13 +46,13 @@ class LaneOrderWriter {
                          [&](std::uint32_t a, std::uint32_t b) { return sum(a).left < sum(b).left; });
     }
 
-    // Orders 1 to 3, then the others, which are alike.
+    // Orders 1 to 3, then a loop for the others.
     void write() {
         for (unsigned k = 1; k <= 3; ++k) order(k);
         const Xbyak::Label loop = code_.L();
         order(4);
         code_.cmp(weights, last);
-        code_.jbe(loop);  // the weights tell the orders apart
+        code_.jbe(loop);  // the address of the weights gives the order
         code_.vzeroupper();
         code_.ret();
     }
@@ -61,13 +61,13 @@ class LaneOrderWriter {
  private:
     const LanePlan::Sum& sum(std::uint32_t i) const { return lanes_.sums[i]; }
     Index stride() const { return lane(lanes_.kept.size()); }
-    // Row 1, from `now` on.
+    // Offset of row 1 from `now`.
     Index first_row() const { return lane(plan_.numbers()) + stride(); }
-    // The part of a number that is worked on, so far from an address on.
+    // The current part of a number, as an operand at an offset from an address.
     Xbyak::Address part(const Xbyak::Reg64& base, Index number) const { return at(base, number + code_.part()); }
     Xmm vector(std::size_t reg) const { return code_.vector(static_cast<unsigned>(reg)); }
 
-    // Order k, 4 for all that follow; and on to the next.
+    // Order k, where 4 stands for all higher ones; then advances to the next order.
     void order(unsigned k) {
         code_.for_each_part([&] { part_of_order(k); });
         code_.lea(row, at(row, stride()));
@@ -87,7 +87,7 @@ class LaneOrderWriter {
         add_up(k);
     }
 
-    // What the order before has left in registers: results have the same ones in all orders.
+    // Restores which numbers the previous order left in registers: each result has the same register in all orders.
     void remember(bool any) {
         std::vector<std::pair<std::uint32_t, unsigned>> left;
         if (any && all_held_)
@@ -100,8 +100,8 @@ class LaneOrderWriter {
         for (const auto& [number, reg] : left) code_.hold(number, reg);
     }
 
-    // So many sums at once as there are registers; those with one left factor load it once. The terms with row k come
-    // last, before them those with row k - 1: the others need not wait.
+    // As many sums at once as there are registers; sums with a common left factor load it once. The terms with row k
+    // come last, preceded by those with row k - 1, so that the others need not wait.
     void add_up(unsigned k) {
         const std::span<const std::uint32_t> all(by_left_);
         const std::size_t most = end_of_registers_ - first_sum_;
@@ -131,7 +131,7 @@ class LaneOrderWriter {
         if (k >= 2) add_products(sums, row, 0, now, first);
         for (unsigned i = 0; i < sums.size(); ++i) finish(sums[i], vector(first_sum_ + i));
     }
-    // The right factors are fetched once too, as many as there are idle registers.
+    // Right factors are loaded once, too, as far as idle registers allow.
     void add_products(std::span<const std::uint32_t> sums, const Xbyak::Reg64& left, Index to_left,
                       const Xbyak::Reg64& right, Index to_right) {
         const Xmm x = vector(0), product = vector(1);
@@ -155,7 +155,7 @@ class LaneOrderWriter {
         }
     }
 
-    // The term x_1 y_k, from the register of y_k where it has one.
+    // Adds the term x_1 y_k, with y_k from its register if it has one.
     void finish(std::uint32_t i, const Xmm& total) {
         const Xmm product = vector(1), weight = vector(2);
         const auto [left, right] = sum(i);
@@ -170,7 +170,7 @@ class LaneOrderWriter {
         if (!one_group_) code_.vmovupd(part(now, lane(plan_.series + i)), total);
     }
 
-    // q_k = v_{k-1}/k, v_k = v'_{k-1}/k; those of order 1 are given.
+    // q_k = v_{k-1}/k, v_k = v'_{k-1}/k; order 1 is given.
     void inputs(bool given) {
         const Xmm inverse = vector(0);
         const auto n = static_cast<std::uint32_t>(plan_.coordinates());
@@ -208,11 +208,11 @@ class LaneOrderWriter {
     const SeriesPlan& plan_;
     const LanePlan& lanes_;
     Assembler code_;
-    std::vector<std::uint32_t> by_left_;  // the sums
+    std::vector<std::uint32_t> by_left_;  // the sums, by left factor
     bool many_registers_;
     unsigned first_sum_, end_of_registers_;
-    bool all_held_;   // no result leaves its register before the order is through
-    bool one_group_;  // all sums have registers of their own
+    bool all_held_;   // every result keeps its register until the end of the order
+    bool one_group_;  // every sum has its own register
 };
 
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors) {

@@ -8,12 +8,12 @@
 
 namespace achilles {
 
-// By the vectors that every processor has.
+// With the vectors that every processor has.
 template struct LaneKind<16>;
 
 namespace {
 
-// No tolerance is below rounding.
+// A tolerance below rounding is raised to it.
 double resolved(double tolerance) { return std::max(tolerance, 0x1p-53); }
 
 #ifdef ACHILLES_HAS_AVX512

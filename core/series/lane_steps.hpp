@@ -1,6 +1,6 @@
-// The stepper of lane_stepper.hpp by one kind of vectors: TaylorStep for eight runs, and what makes a step plain.
+// Implementation of lane_stepper.hpp for one vector size: TaylorStep for eight runs, and the test for plain steps.
 //
-// Included by the file of each kind alone (lane_kinds.hpp).
+// Included only by the source file of each vector size (lane_kinds.hpp).
 #pragma once
 
 #include <algorithm>
@@ -17,11 +17,11 @@
 
 namespace achilles {
 
-// As in Execution: steps as short as the resolution of time, and none left.
+// As in Execution, relative to the time: a step too short to advance it, and a remaining time that counts as none.
 inline constexpr double stall = 0x1p-51, end_of_time = 1e-15;
 
-// What lies between two steps costs as much as a step, so that it takes a higher order than the step alone would have; a
-// brief flight ends long before that could serve.
+// Order of flights. The work between two steps costs as much as a step, which favors a higher order than the step alone
+// would have. A brief flight ends long before the end of such a step.
 inline int order_of_flights(const SeriesProgram& flight, double tolerance, double of_best) {
     return std::min(static_cast<int>(of_best * best_order(flight, tolerance, costs_of_eight_runs)),
                     OrderCode::highest_order - 1);
@@ -30,12 +30,12 @@ inline int order_of_flights(const SeriesProgram& flight, double tolerance, doubl
 template <class Number>
 class LaneStepperOver final : public LaneStepper {
     using Mask = Condition<Number>;
-    static constexpr std::size_t contact = 0;  // the only one
+    static constexpr std::size_t contact = 0;  // one-contact systems only
 
  public:
     LaneStepperOver(const LanePrograms& programs, double tolerance, std::optional<Width> machine_code)
         : dof_(programs.coordinates),
-          // Most flights end long before their series.
+          // Most flights end long before the end of a series' step.
           flight_{{programs.flight, machine_code}, {order_of_flights(programs.flight, tolerance, 1.2), false}},
           brief_(order_of_flights(programs.flight, tolerance, 0.6), false),
           contact_{{programs.contact, machine_code},
@@ -69,7 +69,7 @@ class LaneStepperOver final : public LaneStepper {
         say(step, plain, Mask{});
     }
 
-    // Flight, where partial sums tell that the gap stays open, or only falls (first_descent()).
+    // A flight step is plain if partial sums prove that the gap stays open, or that it is monotone (first_descent()).
     [[gnu::flatten]] void fly(LaneStep& step, bool brief) override {
         step_.gap(contact) = {step.h, step.hdot, step.error, step.rate_error, step.state_error};
         const FixedOrder<Number>& order_policy = brief ? brief_ : flight_.order;
@@ -100,13 +100,13 @@ class LaneStepperOver final : public LaneStepper {
     }
 
  private:
-    // What one motion is expanded by.
+    // The series of one motion and their order.
     struct Expansion {
         SeriesEvaluator<Number> series;
         FixedOrder<Number> order;
     };
 
-    // Contact, where the force keeps its sign by more than its remainder: true there.
+    // One step in contact. Returns the lanes in which the force keeps its sign by more than its remainder.
     [[gnu::flatten]] Mask stay_once(LaneStep& step, Number& span) {
         step_.gap(contact) = {0.0, 0.0, 0.0, 0.0, step.state_error};
         Mask plain = expand(contact_.series, contact_.order, step, Mode::holding(ContactSet::of(contact)));
@@ -123,10 +123,10 @@ class LaneStepperOver final : public LaneStepper {
         return plain;
     }
 
-    // Flow::least()
+    // The shortest useful step (s), as Flow::least().
     Number shortest(const LaneStep& step) const { return 1e-16 * max(abs(Number(step.t)), 1e-3); }
 
-    // The series at the state where the step starts. True where they are numbers.
+    // Computes the series at the start of the step. Returns the lanes in which the state is valid.
     Mask expand(SeriesEvaluator<Number>& series, const FixedOrder<Number>& order, const LaneStep& step, Mode mode) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) step_.row(0)[i] = step.q_and_v[i];
         step_.time() = step.t;
@@ -138,7 +138,7 @@ class LaneStepperOver final : public LaneStepper {
 
     std::size_t order() const { return static_cast<std::size_t>(step_.order()); }
 
-    // The gap at the end of the step by its series, and its errors there. Returns the remainder.
+    // The gap at the end of the step by its series, with its errors. Returns the remainder.
     Number gap_at_end(LaneStep& step, const Number& span) {
         Number value = 0.0, slope = 0.0, size = 0.0;
         for (std::size_t k = 0; k <= order(); ++k) {
@@ -180,8 +180,8 @@ class LaneStepperOver final : public LaneStepper {
                 falls & (terms_[0] > remainder) & (value < -remainder)};
     }
 
-    // Newton's method from the parabola's root, kept inside a shrinking bracket. Lanes that do not come to an end are
-    // taken out of `searched`.
+    // Newton's method from the root of the quadratic part, kept inside a shrinking bracket. Removes lanes that do not
+    // converge from `searched`.
     Number root(Mask& searched) const {
         const Number discriminant = max(terms_[1] * terms_[1] - 4.0 * terms_[0] * terms_[2], 0.0);
         const Mask steady = least_slope_ > 3.0 * largest_slope_;
@@ -203,7 +203,7 @@ class LaneStepperOver final : public LaneStepper {
         return x;
     }
 
-    // The same for lanes of which the sums do not tell, one by one.
+    // first_descent() for each lane in which the partial sums are inconclusive.
     void look_closer(const Mask& plain, const Number& remainder, Mask& none, Mask& falls, Number& theta) const {
         for (std::size_t i = 0; i < Eight::count; ++i) {
             if (!plain[i] || none[i] || falls[i]) continue;
@@ -218,9 +218,9 @@ class LaneStepperOver final : public LaneStepper {
         }
     }
 
-    // ---- the surface ----
+    // ---- contact quantities ----
 
-    // Where a step ends, after this time.
+    // Evaluates the contact quantities at the end of a step of length `span` (s).
     void look(LaneStep& step, const Number& span) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) contact_terms_.input(i) = step.q_and_v[i];
         contact_terms_.clock() = Number(step.t) + span;
@@ -238,7 +238,7 @@ class LaneStepperOver final : public LaneStepper {
         step.rounding = unit_roundoff * sum;
     }
 
-    // The first two rounds of ContactKinematics::project(), which are enough where all is well: true there.
+    // The first two iterations of ContactKinematics::project(). Returns the lanes in which they suffice.
     Mask project(LaneStep& step, const Number& span) {
         look(step, span);
         const Mask regular = Number(step.end_W) > 0.0;
@@ -255,7 +255,7 @@ class LaneStepperOver final : public LaneStepper {
             step.q_and_v[i] = select(which, Number(step.q_and_v[i]) - h * step.impulse_direction[i], step.q_and_v[i]);
     }
 
-    // Those that fall onto the surface; the others stay where they are.
+    // Projects the runs that land to h = 0; the others keep their state.
     void land(LaneStep& step, const Number& span, Mask& none, Mask& falls) {
         look(step, span);
         none &= (Number(step.end_W) > 0.0) & ~(step.end_h < -4.0 * Number(step.rounding));
@@ -276,16 +276,16 @@ class LaneStepperOver final : public LaneStepper {
 
     std::size_t dof_;
     Expansion flight_;
-    FixedOrder<Number> brief_;  // of flights
+    FixedOrder<Number> brief_;  // for brief flights
     Expansion contact_;
     ContactTerms<ProgramOver<Number>> contact_terms_;
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step
     std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of the event function
-    Number least_slope_, largest_slope_;                               // of it along the step
+    Number least_slope_, largest_slope_;                               // of its partial sums, along the step
 };
 
-// What a kind of vectors offers (lane_kinds.hpp), to be instantiated by its file alone.
+// The functions of one vector size (lane_kinds.hpp), instantiated only by its source file.
 
 template <std::size_t Bytes>
 std::unique_ptr<LaneStepper> LaneKind<Bytes>::make_stepper(const LanePrograms& programs, double tolerance,

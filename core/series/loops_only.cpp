@@ -1,5 +1,5 @@
-// In place of all that makes machine code, where there is none: another processor or system, or ACHILLES_MACHINE_CODE
-// off when it was built.
+// Replaces the machine code generators where there is none: on other processors or systems, or in a build with
+// ACHILLES_MACHINE_CODE off.
 #include "program/machine.hpp"
 #include "program/program.hpp"
 #include "series/order.hpp"

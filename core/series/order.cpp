@@ -1,4 +1,4 @@
-// The orders of one run by loops, the plan of those of eight runs, and the series over double: compiled once.
+// The orders of one run by loops, the plan for eight runs, and the instantiation of the series over double.
 #include "series/order.hpp"
 
 #include <cmath>
@@ -32,8 +32,7 @@ LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums) {
         if (fresh) kept.push_back({series, weighted});
         return found->second;
     };
-    // Which factor of an unweighted sum is the left one does not matter: the fewer there are on each side, the fewer
-    // must be fetched.
+    // The factors of an unweighted sum may be swapped. Few distinct factors on each side mean few loads.
     std::set<std::uint32_t> on_left, on_right;
     const auto more = [&](const Sum& sum) {
         return static_cast<int>(!on_left.contains(sum.left)) + static_cast<int>(!on_right.contains(sum.right));

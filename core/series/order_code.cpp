@@ -1,4 +1,4 @@
-// One order of all series as machine code.
+// Machine code for one order of all series.
 #include <algorithm>
 #include <span>
 
@@ -12,27 +12,27 @@ namespace {
 
 using Xbyak::Xmm, Xbyak::Ymm, Xbyak::Zmm, Xbyak::Label;
 
-// The function's arguments, by the calling convention, and the pointers of the loop over older rows.
+// The function's arguments, by the calling convention, and pointers of the loop over older rows.
 constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, first_row = Xbyak::util::rdx,
                        row = Xbyak::util::rcx, weights = Xbyak::util::r8, motion = Xbyak::util::r9,
                        left_row = Xbyak::util::rax, right_row = Xbyak::util::r10, last_pair = Xbyak::util::r11;
-constexpr unsigned scratch = 4;  // free vector registers
+constexpr unsigned scratch = 4;  // registers for temporary use
 
-using Index = std::ptrdiff_t;  // of doubles
+using Index = std::ptrdiff_t;  // in doubles
 
 // Lanes [begin, begin + width).
 struct Part {
     Index begin;
     Width width;
     Index end() const { return begin + static_cast<Index>(width); }
-    // A register as wide as this part.
+    // A register of this part's width.
     Ymm vector(std::size_t reg) const {
         const auto number = static_cast<int>(reg);
         return width == Width::eight ? Zmm(number) : Ymm(number);
     }
 };
 
-// Where a member of MotionOrders stands.
+// Offset of a member of MotionOrders, in doubles.
 #define ACHILLES_PLACE(member) (static_cast<Index>(offsetof(MotionOrders, member) / sizeof(double)))
 
 }  // namespace
@@ -49,7 +49,7 @@ class OrderWriter {
             parts_.push_back({lane, lanes_ - lane < 8 ? Width::four : width});
     }
 
-    // Write a function; return where it begins.
+    // Emit a function and return its offset in the code.
     std::size_t write_first() {
         const std::size_t begin = code_.getSize();
         code_.forget_all();
@@ -67,7 +67,7 @@ class OrderWriter {
         inputs();
         write_order(false);
         keep_and_compare();
-        code_.jbe(done);  // also where they cannot be compared
+        code_.jbe(done);  // also if either is NaN
         code_.cmp(row, last_pair);
         code_.jae(done);
         code_.lea(row, at(row, 2 * lanes_));
@@ -89,9 +89,9 @@ class OrderWriter {
         for (const Part& part : parts_) keep_and_sum(part, first);
     }
 
-    // ---- terms of the inner sums that lie before this order ----
+    // ---- terms of the inner sums with rows of earlier orders ----
 
-    // Two rows at a time, into sums of their own; so many vectors at once as there are registers.
+    // Even and odd rows have separate sums. Processes as many vectors at once as there are registers.
     void sum_older() {
         constexpr std::size_t most = 6;
         for (std::size_t i = 0; i < parts_.size(); i += most)
@@ -157,7 +157,7 @@ class OrderWriter {
         }
     }
 
-    // Compares what is to be compared with 1. Leaves the last row in last_pair.
+    // Compares the scaled coefficient with 1. Loads the last row into last_pair.
     void keep_and_compare() {
         constexpr Xbyak::Reg64 state = left_row, largest = right_row;
         constexpr Xmm scaled(0), size(1);
@@ -180,9 +180,9 @@ class OrderWriter {
         code_.vucomisd(scaled, at(motion, ACHILLES_PLACE(one)));
     }
 
-    // ---- this order as a row ----
+    // ---- storing this order as a row ----
 
-    // Two numbers side by side.
+    // Loads two numbers into one register.
     void pair(const Xmm& to, std::uint32_t low, std::uint32_t high) {
         const Xmm from = code_.held_or(to, low);
         if (const auto held = code_.holder(high)) {
@@ -191,13 +191,13 @@ class OrderWriter {
             code_.vmovhpd(to, from, code_.number(high));
         }
     }
-    // Four, in register `to`; the next is lost.
+    // Loads four numbers into register `to`; overwrites the next register.
     void four(const std::uint32_t* numbers, int to) {
         pair(Xmm(to), numbers[0], numbers[1]);
         pair(Xmm(to + 1), numbers[2], numbers[3]);
         code_.vinsertf128(Ymm(to), Ymm(to), Xmm(to + 1), 1);
     }
-    // So many as the part is wide, side by side, in register `to`; the next two are lost.
+    // Loads the numbers of a part into register `to`; overwrites the next two registers.
     void gather(const std::uint32_t* numbers, const Part& part, int to) {
         four(numbers + part.begin, to);
         if (part.width != Width::eight) return;
@@ -205,7 +205,7 @@ class OrderWriter {
         code_.vinsertf64x4(Zmm(to), Zmm(to), Ymm(to + 1), 1);
     }
 
-    // reg *= the order (which = 0) or its successor's inverse (1), in the lanes that are weighted
+    // In weighted lanes: reg *= the order k (which = 0) or 1/(k + 1) (which = 1).
     void weigh(const Part& part, const Ymm& reg, Index which, const Ymm& free) {
         if (part.begin >= weighted_) return;
         if (part.end() <= weighted_) {

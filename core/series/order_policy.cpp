@@ -1,4 +1,4 @@
-// The order of a Taylor step.
+// The order policy of single runs: the order and the length of a Taylor step.
 #include "series/taylor_step.hpp"
 
 #include <algorithm>
@@ -8,11 +8,11 @@ namespace achilles {
 
 namespace {
 
-constexpr int guarded = 10;  // from this order on, four terms tell the step
+constexpr int guarded = 10;  // from this order on, four terms determine the step
 constexpr int lowest = costs_of_one_run.lowest;
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Symmetry may hide three terms in a row, not four.
+// Symmetry may make three successive terms vanish, but not four.
 bool three_before_vanish(const TaylorStep<double>& step, int order) {
     return step.size(order - 1) + step.size(order - 2) + step.size(order - 3) == 0.0;
 }
@@ -22,7 +22,7 @@ bool three_before_vanish(const TaylorStep<double>& step, int order) {
 int best_order(const SeriesProgram& program, double tolerance, const OrderCosts& costs) {
     const double order = costs.order + costs.rule * static_cast<double>(program.rules()),
                  square = costs.square * static_cast<double>(program.inner_sums());
-    // The logarithm of cost(p)/length(p) falls as long as its derivative, times p^2 cost(p), is below zero.
+    // log(cost(p)/length(p)) decreases while its derivative, times p^2 cost(p), is negative.
     const double digits = -std::log(tolerance);
     int p = costs.lowest;
     while (p < OrderCode::highest_order - 1 &&
@@ -34,8 +34,8 @@ int best_order(const SeriesProgram& program, double tolerance, const OrderCosts&
 AdaptiveOrder::AdaptiveOrder(const SeriesProgram& program, double tolerance)
     : most_(best_order(program, tolerance, costs_of_one_run)) {}
 
-// The largest coefficient of order k in units of its tolerance, and its component. The sum serves only to let NaN or
-// infinity of any component through, which comparisons would miss.
+// The largest coefficient of order k in units of its tolerance, and its component. The sum propagates NaN and infinity
+// of any component, which the comparisons would miss.
 AdaptiveOrder::Magnitude AdaptiveOrder::magnitude(const TaylorStep<double>& step, int k) {
     const double *const c = step.row(k), *const units = step.units();
     double largest = 0.0, sum = 0.0;
@@ -50,7 +50,7 @@ AdaptiveOrder::Magnitude AdaptiveOrder::magnitude(const TaylorStep<double>& step
     return {sum < infinity ? largest : sum, component};
 }
 
-// Where an order is not finite: back to the last before the first that is not.
+// Reduces the order to the last one before the first that is not finite.
 int AdaptiveOrder::leave_out_infinite(const TaylorStep<double>& step, int order) {
     int finite = 0;
     while (finite + 1 < order && magnitude(step, finite + 1).m < infinity) ++finite;
@@ -59,8 +59,8 @@ int AdaptiveOrder::leave_out_infinite(const TaylorStep<double>& step, int order)
     return finite >= lowest ? finite : 0;
 }
 
-// The first orders of a flight, from which its length is guessed. No order below `lowest` may end the series, so that the
-// test of smallness is switched off: some component (the first v) is compared with a power that is never small.
+// The first orders of a flight, from which its length is estimated. No order below `lowest` may end the series, so the
+// test of smallness is disabled: one component (the first v) is compared with a power that is never small.
 int AdaptiveOrder::begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, MotionOrders& motion,
                                 double longest) {
     constexpr double never_small = 1e300;
@@ -83,14 +83,15 @@ int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& ser
     int order = 1;
     power_ = target_ = longest;
     if (step.watches_any_gap()) order = begin_flight(step, series, motion, longest);
-    for (bool small = false;;) {  // small: whether the order just before was
+    for (bool small = false;;) {  // small: is the order just before small?
         const auto [m, largest] = magnitude(step, order);
         if (!(m < infinity)) return leave_out_infinite(step, order);
         const bool now = m * power_ <= 1.0;
         reached_ = small && now;
         if (order >= most_ || (order >= lowest && reached_ && (m > 0.0 || three_before_vanish(step, order))))
             return order;
-        // While the component that is largest now stays large, orders are made without looking at the others.
+        // While the component that is largest now stays large, further orders are computed without examining the
+        // others.
         const int before = order;
         motion.largest = step.row(order) + largest;
         motion.power = step.units()[largest] * power_;
@@ -101,8 +102,9 @@ int AdaptiveOrder::expand(TaylorStep<double>& step, SeriesEvaluator<double>& ser
     }
 }
 
-// The last two terms may be at most 1 at the step's end. Symmetry may make them too small, so the two before must be at
-// most 1 at half the step; not where a short series was ended early, whose earlier terms are large.
+// The last two terms may be at most 1 at the end of the step. Symmetry may make them too small, so the two before them
+// must be at most 1 at half the step. This does not apply to a short series that was ended early, whose earlier terms
+// are large.
 double AdaptiveOrder::natural_step(const TaylorStep<double>& step) const {
     const int order = step.order();
     if (reached_ && order < guarded) return target_;
@@ -116,7 +118,7 @@ double AdaptiveOrder::natural_step(const TaylorStep<double>& step) const {
         all = all && m * power <= (i < 2 ? 1.0 : static_cast<double>(std::int64_t{1} << k));
     }
     if (all) return target_;
-    double exponent = infinity;  // of 2
+    double exponent = infinity;  // exponent of 2
     for (int i = 0; i < counted; ++i) {
         const double m = terms[static_cast<std::size_t>(i)];
         if (m > 0.0) exponent = std::min(exponent, step.reach(order - i, m, i < 2 ? 0.0 : 1.0));

@@ -1,4 +1,4 @@
-// The series of a program over any number: how they start, and one order after the other.
+// The series of a program over any number type: their start, and one order after the other.
 #pragma once
 
 #include <cmath>
@@ -11,7 +11,7 @@
 
 namespace achilles {
 
-// How a series program starts: order 0, and the factors of its rules; over double, or lanes.
+// Start of a series program: order 0, and the factors of its rules.
 
 template <class Scalar>
 Scalar function_value(Operation function, const Scalar& a) {
@@ -46,7 +46,7 @@ Scalar combined(Operation operation, const Scalar& a, const Scalar& b) {
     }
 }
 
-// What depends on the parameters alone.
+// Evaluates what depends on parameters only.
 template <class Scalar>
 void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::array<Scalar, 3>* factors) const {
     coefficients[0] = 1.0;
@@ -60,7 +60,7 @@ void SeriesProgram::fix(const Scalar* registers, Scalar* coefficients, std::arra
         for (std::size_t i = 0; i < 3; ++i) factors[c.rule][i] = coefficients[c.coefficient[i]];
 }
 
-// The program itself gives order 0 of its registers z; here follow the hidden ones, and the factors of the rules.
+// The program has computed order 0 of its own registers z. This adds the hidden registers and the factors of the rules.
 template <class Scalar>
 void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scalar, 3>* factors) const {
     using std::cosh, std::exp, std::pow, std::sinh, std::sqrt, std::tan, std::tanh;
@@ -136,23 +136,24 @@ void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scal
     }
 }
 
-// One order of all series of a program, over any number: what all machine code for it must give, to the last bit.
+// One order of all series of a program, over any number type. All machine code must give the same results to the last
+// bit.
 //
-// Order k >= 1 of all series is made where order k of the inputs and the inner sums of order k stand in `now`, and then
-// the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or of j x_j y_{k+1-j}/(k+1) where it is weighted. No product
-// is fused into a sum.
+// On entry, `now` holds order k >= 1 of the inputs and the inner sums of order k. Computes order k of all series, then
+// the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or the sum of j x_j y_{k+1-j}/(k+1) for a weighted one. No
+// product is fused into a sum.
 
-// How a number's inner sums are kept and added up. Row j >= 1 of what is kept has row() places; place i holds order j
-// of a series, times j if it is weighted. Sum i multiplies two places. add_up() adds up product(j) = x_j y_{k+1-j} for
-// 0 < j <= k: the terms with row k, which must be waited for, come last.
+// Storage and order of summation of the inner sums. Row j >= 1 of the stored numbers has row() entries; entry i is
+// order j of a series, times j if it is weighted. Sum i multiplies two entries. add_up() sums product(j) = x_j
+// y_{k+1-j} for 0 < j <= k. The terms with row k come last, because they are available last.
 //
-// Of runs side by side: a number fills a vector by itself, so what several sums multiply is kept once. The terms with
-// row k - 1 come late too.
+// For eight runs a number fills a vector by itself, so a factor of several sums is stored once. The terms with row k -
+// 1 come late, too.
 template <class Number>
 struct InnerSums {
     LanePlan plan;
 
-    // Of the plan's lanes, the first `inner_sums` are of use.
+    // The first `inner_sums` lanes of the plan are used.
     InnerSums(const SeriesPlan& series, std::size_t inner_sums) : plan(series, inner_sums) {}
     std::size_t count() const { return plan.sums.size(); }
     std::size_t row() const { return plan.kept.size(); }
@@ -172,8 +173,8 @@ struct InnerSums {
     }
 };
 
-// Of one run: each sum has its own factors, side by side with those of the others, so that some sums are one vector.
-// The even and the odd terms by themselves.
+// For one run, each sum has its own factors, contiguous with those of other sums, so that several sums form one vector.
+// Even and odd terms are summed separately.
 template <>
 struct InnerSums<double> {
     const SeriesPlan& plan;
@@ -202,7 +203,7 @@ struct InnerSums<double> {
     }
 };
 
-// (f[2] w + f[1] y) + f[0] x, of the operands that there are (see SeriesRule).
+// (f[2] w + f[1] y) + f[0] x, without the absent operands (see SeriesRule).
 template <class Number>
 [[gnu::always_inline]] inline Number value_of(const SeriesRule& rule, const std::array<Number, 3>& factors,
                                               const Number* now) {
@@ -242,8 +243,8 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
     for (std::size_t i = 0; i < plan.weighted; ++i) totals[i] = totals[i] * inverse;
 }
 
-// Order k >= 1 of a motion, into `row`, of q, v and the event functions, whose order k - 1 stands before it:
-// q_k = v_{k-1}/k, v_k = v'_{k-1}/k. Order 1 of q and v is given, in the row.
+// Order k >= 1 of q, v and the event functions of a motion, into `row`; order k - 1 precedes it in memory: q_k =
+// v_{k-1}/k, v_k = v'_{k-1}/k. For k = 1, q and v in the row are given.
 template <class Number>
 void make_motion_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const SeriesTablesOver<Number>& tables,
                        Number* row, std::size_t k) {

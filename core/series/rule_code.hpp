@@ -1,4 +1,4 @@
-// A rule as machine code, whatever the width.
+// Machine code for one rule, for any vector width.
 #pragma once
 
 #include "program/assembler.hpp"
@@ -8,14 +8,14 @@ namespace achilles {
 
 constexpr std::size_t most_rules_in_code = 10000;
 
-// The three factors of a rule stand at (factors, first), one after the other. Register 0 is lost.
+// The three factors of a rule are contiguous at (factors, first). Overwrites register 0.
 class RuleWriter {
  public:
-    using Index = std::ptrdiff_t;  // of doubles
+    using Index = std::ptrdiff_t;  // in doubles
 
     RuleWriter(Assembler& code, const Xbyak::Reg64& factors) : code_(code), factors_(factors) {}
 
-    // The result need not be stored where its register keeps it as long as it is needed.
+    // Storing the result can be omitted if its register keeps it for as long as it is needed.
     void write(const SeriesRule& rule, Index first, bool store = true) {
         using Kind = Sum::Kind;
         const Xbyak::Xmm result = code_.result(rule.result);
@@ -35,14 +35,14 @@ class RuleWriter {
     }
 
  private:
-    // A sum as far as it is known: in a register, or a number (or its negative) that is not looked up yet.
+    // A partial sum: in a register, or a number or its negative that is not loaded yet.
     struct Sum {
         enum class Kind { none, in_register, number, negative } kind = Kind::none;
         Xbyak::Xmm reg;
         std::uint32_t number = 0;
     };
 
-    // A factor times its number; into this register unless it is known to be 1 or -1.
+    // A factor times its number, in register `to` unless the factor is known to be 1 or -1.
     Sum product(std::int8_t known, std::uint32_t number, Index factor, const Xbyak::Xmm& to) {
         if (known > 0) return {Sum::Kind::number, Xbyak::Xmm(), number};
         if (known < 0) return {Sum::Kind::negative, Xbyak::Xmm(), number};

@@ -1,5 +1,5 @@
-// The Taylor coefficients of a motion over any number, row by row: over double as runs make them, over an interval for proofs,
-// over a number with its slopes for derivatives.
+// Taylor coefficients of a motion over any number type, row by row: double as in runs, intervals for proofs, numbers
+// with derivatives for sensitivities.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ class SeriesOver {
  public:
     static constexpr int highest_order = SeriesEvaluator<Number>::highest_order;
 
-    // To be fixed before it is used. The program outlives this.
+    // Call fix() before use. The program must outlive this object.
     explicit SeriesOver(const SeriesProgram& program)
         : dof_(LaneAccess::plan_of(program).coordinates()),
           events_(program.events()),
@@ -23,11 +23,11 @@ class SeriesOver {
           series_(program),
           rows_(width_ * (highest_order + 2)) {}
 
-    // Evaluates what depends on the parameters alone.
+    // Evaluates what depends on parameters only.
     void fix(std::span<const Number> parameters) { series_.fix(parameters); }
 
-    // Makes orders 0 .. last of the event functions, 0 .. last + 1 of the state, from (q, v) and the time;
-    // 1 <= last <= highest_order.
+    // Computes orders 0 .. last of the event functions and 0 .. last + 1 of the state, from (q, v) and the time (s); 1
+    // <= last <= highest_order.
     void expand(const Number* state, const Number& time, int last) {
         begin(state, time);
         extend(1, last);
@@ -38,8 +38,8 @@ class SeriesOver {
             next[dof_ + i] = inverse * series_.output(i);
         }
     }
-    // The same order by order: order 0 of all and order 1 of the state; then the orders k .. last of all, from 1 on, each after
-    // those below it.
+    // The same in steps: begin() computes order 0 of all components and order 1 of the state; extend() computes orders
+    // k .. last of all, k >= 1, and requires all lower orders.
     void begin(const Number* state, const Number& time) {
         std::copy_n(state, 2 * dof_, row(0));
         series_.begin(row(0), time);
@@ -51,9 +51,9 @@ class SeriesOver {
     }
     void extend(int k, int last) { series_.extend(row(k), k, last); }
 
-    // Order k: q and v, then the event functions.
+    // Order k of component i: q and v, then the event functions.
     const Number& coefficient(int k, std::size_t i) const { return rows_[static_cast<std::size_t>(k) * width_ + i]; }
-    // Order 0 of an output: accelerations, event functions, what else there is.
+    // Order 0 of an output: accelerations, event functions, then any others.
     const Number& start(std::size_t index) { return series_.start(index); }
 
  private:

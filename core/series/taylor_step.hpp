@@ -1,11 +1,11 @@
-// One step of the Taylor method over any number: a double for a run, doubles side by side for an ensemble.
+// One step of the Taylor method over any number type: a double for one run, eight doubles for an ensemble.
 //
-// With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. What events
-// are looked for in is an output of the same program, so its series comes with it: every contact has an event function,
-// for what its law watches: its gap, or hddot for its force.
+// With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. Event
+// functions are outputs of the same program, so their series are computed along with it. Every contact has one, chosen
+// by its law: its gap, or hddot for the sign of its force.
 //
-// Order and step: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last terms
-// reach 1. Which order that is, and how far the last terms are trusted, is the order policy's (below).
+// Order and step size: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last
+// terms reach 1. The order policy (below) chooses p, and how many of the last terms are considered.
 #pragma once
 
 #include <array>
@@ -22,17 +22,17 @@
 namespace achilles {
 
 inline constexpr double unit_roundoff = 0x1p-53;
-// A state's numbers stay below this: their squares are numbers too.
+// Bound on the absolute values of a state, so that their squares do not overflow.
 inline constexpr double largest_state = 1e150;
 
-// 1/k of the orders.
+// 1/k by order k.
 inline constexpr auto reciprocals = [] {
     std::array<double, OrderCode::highest_order + 1> table{};
     for (std::size_t k = 1; k < table.size(); ++k) table[k] = 1.0 / static_cast<double>(k);
     return table;
 }();
 
-// Of an event function's terms at the end of a step: the sum of their sizes, and that of the last two.
+// Sizes of an event function's terms at the end of a step: the sum of all absolute values, and that of the last two.
 template <class Number>
 struct TermSizes {
     Number all, last;
@@ -44,7 +44,7 @@ class TaylorStep {
     using Series = SeriesEvaluator<Number>;
     static constexpr int highest_order = Series::highest_order;
 
-    // `contacts`: how many event functions the motions have.
+    // `contacts`: number of event functions.
     TaylorStep(std::size_t dof, std::size_t contacts, double tolerance)
         : dof_(dof),
           contacts_(contacts),
@@ -57,17 +57,17 @@ class TaylorStep {
 
     std::size_t dof() const { return dof_; }
     std::size_t contacts() const { return contacts_; }
-    // Row k: order k of q, v and the event functions.
+    // Numbers per row. Row k is order k of q, v and the event functions.
     std::size_t width() const { return width_; }
     Number* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width(); }
     const Number* row(int k) const { return rows_.data() + static_cast<std::size_t>(k) * width(); }
     const Number& event(std::size_t contact, int k) const { return row(k)[2 * dof_ + contact]; }
-    // 1/(tolerance of each component).
+    // 1/(tolerance of the component), by component.
     const Number* units() const { return units_.data(); }
-    // What 1 m of a coordinate makes of a gap, roughly: tolerances of event functions are in it. 1 unless it is set.
+    // Scale of a contact's gap per meter of a coordinate, for the tolerances of its event function. The default is 1.
     double& gap_unit(std::size_t contact) { return gap_units_[contact]; }
     int order() const { return order_; }
-    // Whether the event function of a contact is its gap.
+    // True if the event function of the contact is its gap.
     bool watches_gap(std::size_t contact) const { return gaps_watched_.contains(contact); }
     bool watches_any_gap() const {
         for (std::size_t i = 0; i < contacts(); ++i)
@@ -77,16 +77,16 @@ class TaylorStep {
 
     // ---- expansion ----
 
-    // What is true of the state where a step starts: it is made of numbers, and M is positive definite there.
+    // Conditions on the initial state: all numbers are finite and not too large; M is positive definite.
     struct Start {
         Condition<Number> numbers, regular;
     };
-    // Of the state where the step starts, to be set before it is expanded; of a held contact only the state_error counts,
-    // and the time (s) only where the motion depends on it.
+    // The gap at the start of the step, to be set before expand(). For a held contact only state_error is used. time()
+    // (s) is needed only if the motion depends on it.
     GapOver<Number>& gap(std::size_t contact) { return gaps_[contact]; }
     Number& time() { return time_; }
-    // The series at the state whose q and v stand in row 0, to the order that the policy finds is needed for `longest`
-    // (s), along the motion in this mode.
+    // Computes the series of this mode's motion from the q and v in row 0. The policy chooses the order needed for a
+    // step of at most `longest` (s).
     template <class OrderPolicy>
     Start expand(Series& series, OrderPolicy& policy, Mode mode, const Number& longest) {
         gaps_watched_ = contacts_watching(mode, WatchedFunction::gap);
@@ -94,44 +94,44 @@ class TaylorStep {
         if (any(start.numbers & start.regular)) order_ = policy.expand(*this, series, longest);
         return start;
     }
-    // For a policy: after order 1 has been made, open gaps move at the rates that are known.
+    // For a policy, after order 1: sets the rates of open gaps to the known values.
     void give_rates() {
         for (std::size_t i = 0; i < contacts(); ++i)
             if (watches_gap(i)) row(1)[2 * dof_ + i] = gaps_[i].hdot;
     }
-    // For a policy, after order 2: as long as the parabola of the open gap that closes first and a little more, or
-    // `longest`. Every gap must be known well against the height of such a flight.
+    // For a policy, after order 2: 1.05 times the shortest time in which the parabola of an open gap closes, at most
+    // `longest` (s). Also tightens the tolerance of each gap in proportion to the height of that flight.
     Number aim(const Number& longest);
 
     // ---- the step's length ----
 
-    // m_k: the largest coefficient of order k in units of its tolerance. What is no number is not seen.
+    // m_k: the largest coefficient of order k in units of its tolerance. NaN is ignored.
     Number size(int k) const;
-    // log2 of the time t at which term k of size m is m t^k = 2^(k allowed).
+    // log2 of the time t at which term k, of size m, reaches m t^k = 2^(k allowed).
     Number reach(int k, const Number& m, double allowed) const {
         return allowed - rough_log2(m) * reciprocals[static_cast<std::size_t>(k)];
     }
 
-    // ---- what is reached, and the event functions ----
+    // ---- state at the end, and event functions ----
 
-    // q and v after a time.
+    // q and v after a time (s).
     template <class Place>
     void evaluate(const Number& span, Place* q_and_v) const;
-    // A contact's event function as a polynomial in theta = t/span: order() + 1 terms.
+    // A contact's event function as a polynomial in theta = t/span, with order() + 1 terms.
     void event_terms(std::size_t contact, const Number& span, Number* terms) const;
 
-    // What is left out of an event function, what the steps before have made it wrong by where the step ends, and
-    // how fast the error of the state moves it.
+    // Error bounds of an event function: the remainder of this step, the error at its end from earlier steps, and the
+    // rate at which the error of the state changes it.
     struct Doubt {
         Number own, earlier, drifting;
         Number remainder() const { return own + earlier; }
     };
     Doubt doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const;
-    // Adds to a gap at the end of the step what later steps must take it to be wrong by.
+    // Adds the error of this step to the gap at its end, for later steps.
     void add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes, const Doubt& doubt,
                    GapOver<Number>& end) const;
-    // Whether an event function stays below zero by more than its remainder, as Abel's sums tell: first_descent()
-    // would find the same. term(k) is asked for in ascending order.
+    // True if partial sums (Abel) prove that an event function is below minus its remainder throughout the step, as
+    // first_descent() would. term(k) is called in ascending order of k.
     template <class Term>
     Condition<Number> stays_negative(std::size_t contact, const Number& span, const Term& term) const;
 
@@ -143,14 +143,14 @@ class TaylorStep {
     std::size_t dof_, contacts_, width_;
     double tolerance_;
     std::vector<Number> rows_, units_;
-    std::vector<GapOver<Number>> gaps_;  // where the step starts
+    std::vector<GapOver<Number>> gaps_;  // at the start of the step
     std::vector<double> gap_units_;
-    Number time_ = 0.0;  // the same
+    Number time_ = 0.0;  // at the start of the step
     ContactSet gaps_watched_;
     int order_ = 0;  // of the last expansion
 };
 
-// Orders 0 of all and 1 of q and v.
+// Order 0 of all components, and order 1 of q and v.
 template <class Number>
 auto TaylorStep<Number>::begin(Series& series) -> Start {
     using std::abs;
@@ -175,7 +175,8 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
     return start;
 }
 
-// Where h_0 + h_1 t + h_2 t^2 comes down to zero, if it does: after a release, say, all three are nothing.
+// The time at which h_0 + h_1 t + h_2 t^2 decreases to zero, if it does. All three coefficients may be 0, as after a
+// release.
 template <class Number>
 Number TaylorStep<Number>::aim(const Number& longest) {
     using std::abs, std::sqrt;
@@ -198,7 +199,7 @@ Number TaylorStep<Number>::aim(const Number& longest) {
     return target;
 }
 
-// The even and the odd components by themselves: half as many comparisons wait for one another.
+// Even and odd components have separate maxima, to shorten the chain of dependent comparisons.
 template <class Number>
 Number TaylorStep<Number>::size(int k) const {
     using std::abs;
@@ -213,7 +214,7 @@ Number TaylorStep<Number>::size(int k) const {
     return largest;
 }
 
-// Two components at a time; q and v stand side by side, so there is no odd one.
+// Two components at a time; the number 2 dof of components is even.
 template <class Number>
 template <class Place>
 void TaylorStep<Number>::evaluate(const Number& span, Place* q_and_v) const {
@@ -233,9 +234,10 @@ void TaylorStep<Number>::event_terms(std::size_t contact, const Number& span, Nu
     }
 }
 
-// The terms fall at least by half from one to the next in a step that the tolerance allows, so what is left out is less
-// than the last two together, with the rounding of all, and about the tolerance, which is in units of the flight's
-// height. A dip within that, and within what the steps before have made, can be neither claimed nor denied.
+// The terms decrease at least by half from one to the next in a step that the tolerance allows. The truncation error is
+// therefore below the sum of the last two terms; the rounding errors and twice the tolerance, in units of the height of
+// the flight, are included too. A dip smaller than this and the errors of earlier steps can be neither confirmed nor
+// excluded.
 template <class Number>
 auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const -> Doubt {
     using std::abs;
@@ -247,10 +249,10 @@ auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const Te
     return {own, open ? gap.error_after(span, drifting) : drifting, drifting};
 }
 
-// The end is better known than the remainder says of the whole step. But what is left out is wrong in the rate too, as
-// many times as there are orders, and moves the gap for a step; terms at the level of rounding tell nothing of what
-// is left out. The weights are measured with bench_floor's dips: right or undecided, and at a tolerance of 1e-14 right,
-// but for 2 of 3300.
+// The end of the step is known better than the remainder, which holds for the whole step. But a truncation error also
+// affects the rate, multiplied by the order, and moves the gap during the next step. Terms at the level of rounding say
+// nothing about truncation. The weights are fitted to the dips of bench_floor: results are right or undecided, and at a
+// tolerance of 1e-14 right except for 2 of 3300.
 template <class Number>
 void TaylorStep<Number>::add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes,
                                    const Doubt& doubt, GapOver<Number>& end) const {
@@ -275,57 +277,58 @@ Condition<Number> TaylorStep<Number>::stays_negative(std::size_t contact, const 
     return highest < -doubt(contact, span, {size, abs(last) + abs(before)}).remainder();
 }
 
-// Which order a Taylor step has, and how far its last terms are trusted: what TaylorStep is given as a policy.
+// Order policies of TaylorStep: which order a step has, and how far its last terms are trusted.
 
-// What a step costs, in processor cycles, measured: a step on its own; of each order a part on its own and one a rule;
-// of each order squared a part an inner sum.
+// Measured cost of a step in processor cycles: a constant part per step, a constant part and one per rule for each
+// order, and a part per inner sum for each order squared.
 struct OrderCosts {
     double step, order, rule, square;
-    int lowest;  // order that is worth a step
+    int lowest;  // lowest order used
 };
-// A release is a triple root: the gap needs more terms than that.
+// A release is a triple root, so the gap needs more than three terms.
 inline constexpr OrderCosts costs_of_one_run{1000.0, 40.0, 2.0, 0.125, 5};
-// By machine code for eight runs. The times are nearly the same over a few orders; a low weight of the step takes the
-// lower ones, whose steps are more exact. The last four terms tell the step.
+// With machine code for eight runs. Times hardly differ within a few orders; a low cost of the step favors lower
+// orders, whose steps are more accurate. Four terms determine the step, hence the higher minimum.
 inline constexpr OrderCosts costs_of_eight_runs{400.0, 60.0, 5.0, 0.8, 10};
 
-// The order p at which cost(p)/length(p) is least: a step of order p has a length of about (tolerance)^(1/p) times the
+// The order p that minimizes cost(p)/length(p). A step of order p has a length of about (tolerance)^(1/p) times the
 // radius of convergence.
 int best_order(const SeriesProgram& program, double tolerance, const OrderCosts& costs);
 
-// A single run's. How far the next event can be is often known from the first terms (a flight ends about where its
-// parabola does); then the order is the first one whose terms are that small there, and a short flight costs a few
-// orders. Else it is the order at which the cost of a step over its length is least.
+// Policy of a single run. The first terms often show how far away the next event is, because a flight ends about where
+// its parabola does. The order is then the first whose terms are small at that time, so a short flight costs few
+// orders. Otherwise it is best_order().
 class AdaptiveOrder {
  public:
     AdaptiveOrder(const SeriesProgram& program, double tolerance);
 
-    // The order, until two in a row are small or as many as pay; none if no step can be made of what is finite.
+    // Computes orders until two successive ones are small, or the best order is reached. Returns the order, or 0 if too
+    // few coefficients are finite.
     int expand(TaylorStep<double>& step, SeriesEvaluator<double>& series, double longest);
-    // As far as is wanted, or to where the last terms reach 1.
+    // Step size (s): as long as requested, or until the last terms reach 1.
     double natural_step(const TaylorStep<double>& step) const;
 
  private:
     struct Magnitude {
         double m;
-        std::size_t component;  // that it is of
+        std::size_t component;  // the component that has it
     };
     static Magnitude magnitude(const TaylorStep<double>& step, int k);
     int begin_flight(TaylorStep<double>& step, SeriesEvaluator<double>& series, MotionOrders& motion, double longest);
     int leave_out_infinite(const TaylorStep<double>& step, int order);
 
     int most_;
-    double target_ = 0.0;   // the longest step that the order is needed for, as far as is known
+    double target_ = 0.0;   // the longest step needed, as far as known
     double power_ = 0.0;    // target^order
-    bool reached_ = false;  // the last two terms are small there
+    bool reached_ = false;  // the last two terms are small at the target
 };
 
-// All steps have one order, so that none depends on its neighbours: that of runs side by side.
+// Policy of runs side by side: all steps have the same order, so that no run depends on its neighbors.
 template <class Number>
 class FixedOrder {
  public:
-    // If `ends_late`, the last term may reach 2 and the one before it 4 where a step ends: those left out are then, as a
-    // rule, less than 1 together. That will do where no event waits for the end to be known better.
+    // If `ends_late`, the last term may reach 2 and the one before it 4 at the end of a step. The omitted terms
+    // together are then usually below 1. This is accurate enough if no event depends on the end of the step.
     FixedOrder(int order, bool ends_late) : order_(order), ends_late_(ends_late) {}
 
     int expand(TaylorStep<Number>& step, SeriesEvaluator<Number>& series, const Number&) const {
@@ -333,15 +336,15 @@ class FixedOrder {
         step.give_rates();
         return order_;
     }
-    // As far as is wanted, or as it reaches.
+    // Step size (s): as long as requested, or reach() if that is shorter.
     Number natural_step(const TaylorStep<Number>& step, const Number& longest) const {
         return min(reach(step), longest);
     }
-    // To where the last two terms reach 1, and half of it is within the reach of the two before; the step is expanded to this
-    // order, or further.
+    // Step size (s) at which the last two terms reach 1, at most twice that at which the two terms before them do. The
+    // step must be expanded to this order or further.
     Number reach(const TaylorStep<Number>& step) const {
         constexpr int counted = 4;
-        Number exponent = 900.0;  // of 2
+        Number exponent = 900.0;  // exponent of 2
         for (int i = 0; i < counted; ++i) {
             const int k = order_ - i;
             const double late = ends_late_ ? (i + 1) * reciprocals[static_cast<std::size_t>(k)] : 0.0;

@@ -1,5 +1,6 @@
-// Contacts whose gradients depend on one another, a table on four legs (theory-gaps.md 2.5): the motion holds some of them,
-// the carriers, whose gradients are independent and whose forces press; the gaps of the others stay 0 with theirs.
+// Closed contacts with linearly dependent gradients, such as a table on four legs (theory-gaps.md 2.5). The motion
+// holds some of them, the carriers, whose gradients are independent and whose forces press. The gaps of the others stay
+// 0 as a consequence.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace achilles {
 
 namespace {
 
-// Parts of the largest force: below the first a force is in doubt, above the second it presses whatever the integration has
-// made of it.
+// Fractions of the largest force: below in_doubt the sign of a force is uncertain; above `clearly` it presses, whatever
+// the integration error.
 constexpr double in_doubt = 1e-9, clearly = 1e-3;
 
 ContactSet all_places(const Closed& closed) {
@@ -28,7 +29,7 @@ bool depends(const Closed& closed, std::size_t place, ContactSet on) {
     return block && block->transmission(closed.W, k).W <= HeldBlock<double>::clear * closed.W(k, k);
 }
 
-// The largest set of independent gradients among these, or one of them.
+// A maximal subset with independent gradients.
 ContactSet basis_of(const Closed& closed, ContactSet set) {
     ContactSet basis;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -38,7 +39,7 @@ ContactSet basis_of(const Closed& closed, ContactSet set) {
 
 }  // namespace
 
-// Of hddot, whose terms may cancel.
+// Bound on the rounding of hddot, whose terms may cancel.
 ContactVector<double> Execution::rounding_of(const Closed& closed) {
     ContactVector<double> rounding(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -46,12 +47,13 @@ ContactVector<double> Execution::rounding_of(const Closed& closed) {
     return rounding;
 }
 
-// All sets of closed contacts that could carry by the accelerations: independent, their forces press or are in doubt, and no
-// other gap closes. The larger ones first, of the same size those whose least force is the largest.
+// All sets of closed contacts that could carry the load at these accelerations: independent, with forces that press or
+// are uncertain, while no other gap closes. Larger sets come first; among equal sizes, those with the largest minimum
+// force.
 std::vector<Execution::Carriers> Execution::carriers_of(const Closed& closed, const ContactVector<double>& hddot) {
     std::vector<Carriers> found;
     const std::size_t count = closed.which.size();
-    const ContactVector<double> unit = closed.W.diagonal().cwiseSqrt();  // of forces, whatever the units of the gaps
+    const ContactVector<double> unit = closed.W.diagonal().cwiseSqrt();  // makes forces comparable in any units
     const ContactVector<double> rounding = rounding_of(closed);
     for (std::uint32_t bits = 0; bits < 1u << count; ++bits) {
         Carriers one;
@@ -83,8 +85,8 @@ std::vector<Execution::Carriers> Execution::carriers_of(const Closed& closed, co
     return found;
 }
 
-// Contacts whose gradients depend on one another are held by some of them, which carry all; where one of their forces was in
-// doubt, by others than `doubted`, which press clearly.
+// Holds contacts with linearly dependent gradients by a set of carriers. If the force of a carrier was uncertain, the
+// new carriers must differ from `doubted` and press clearly.
 bool Execution::hold_dependent(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces,
                                ContactSet doubted) {
     const ContactSet pressed = forces.active;
@@ -98,7 +100,7 @@ bool Execution::hold_dependent(const Closed& closed, const ContactVector<double>
         note_carried(closed, pressed);
         return true;
     }
-    // At rest for ever nothing has to be told apart.
+    // At permanent rest, the forces of the carriers need not be told apart.
     const ContactSet pressed_ones = closed.contacts_at(pressed);
     const bool rests = doubted.empty() && is_at_rest(Mode::holding(pressed_ones));
     if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))
@@ -111,15 +113,16 @@ bool Execution::hold_dependent(const Closed& closed, const ContactVector<double>
     return true;
 }
 
-// Where the force of every carrier may touch 0, as under a load that comes to the middle of a table and turns back, but all
-// together press, so that they would answer any small change: for a short time nobody asks who carries.
+// Handles the case that the force of every possible carrier may touch 0 although all contacts together press clearly.
+// An example is a load that moves to the middle of a table and turns back. For a short time, the carriers are not
+// checked for events.
 bool Execution::share(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces) {
     const ContactVector<double> rounding = rounding_of(closed);
     const ContactVector<double> p = forces.p.cwiseProduct(closed.W.diagonal().cwiseSqrt());
     for (Eigen::Index i = 0; i < p.size(); ++i)
         if (contains(forces.active, i) &&
             !(p[i] > clearly * p.maxCoeff() && clearly * forces.p[i] * closed.W(i, i) > rounding[i]))
-            return false;  // or they vanish all together
+            return false;  // otherwise all forces may vanish together
     const ContactSet all = all_places(closed);
     const auto carriers = carriers_of(closed, hddot);
     if (carriers.empty() || carriers.front().least > clearly || !carriers.front().opening.empty() ||
@@ -134,7 +137,7 @@ bool Execution::share(const Closed& closed, const ContactVector<double>& hddot, 
     return true;
 }
 
-// That time is over.
+// Ends the time during which carriers are not checked.
 void Execution::end_sharing() {
     const Mode resting = next_.resting();
     decide(next_.held().with(next_.touching));
@@ -144,8 +147,8 @@ void Execution::end_sharing() {
                                                names_of(resting.held()), where(next_.state)));
 }
 
-// Holds these, the carriers, if it can be proved that they do: each force presses, or grows from 0. The others rest with
-// them, or touch, or leave.
+// Holds these carriers if each force is proved to press, or to grow from 0. The other contacts rest with them, touch,
+// or leave.
 bool Execution::carry(const Closed& closed, const Carriers& carriers) {
     const Mode mode = Mode::holding(closed.contacts_at(carriers.places));
     std::vector<EventStart> starts = next_.starts;
@@ -156,7 +159,7 @@ bool Execution::carry(const Closed& closed, const Carriers& carriers) {
         const bool carried = !mode.is_held(contact) && depends(closed, i, carriers.places);
         if (carried) {
             touching = carriers.opening.contains(i) ? touching : touching.with(contact);
-            start = {{0.0, 0.0}, 2};  // where it opens
+            start = {{0.0, 0.0}, 2};  // order of its zero if it opens
             continue;
         }
         const auto normal = surfaces_->of(contact, mode.without(contact)).normal(next_.state);
@@ -188,7 +191,8 @@ void Execution::hold(Mode mode, ContactSet touching) {
         if (touching.contains(i)) next_.starts[i] = {{0.0, 0.0}, 1};
 }
 
-// Of those that touch, who may bear a part of the forces: whose gradients depend on those of others that do.
+// Sets next_.carried: the touching contacts that may share the load, because their gradients depend on those of other
+// load-bearing contacts.
 void Execution::note_carried(const Closed& closed, ContactSet pressed) {
     const ContactSet bearing = closed.places_of(next_.held()).with(pressed);
     next_.carried = {};
@@ -198,7 +202,8 @@ void Execution::note_carried(const Closed& closed, ContactSet pressed) {
             next_.carried = next_.carried.with(closed.which[i]);
 }
 
-// Whether these, pressed, leave no motion at all: nothing moves, no surface does, and the gradients span everything.
+// Whether these contacts, if pressed, leave no motion: velocities are 0, no contact surface moves, and the gradients
+// span the whole space.
 bool Execution::is_stuck(const Closed& closed, ContactSet pressed) {
     if (next_.state.v != Vector::Zero(next_.state.v.size())) return false;
     for (const Contact& contact : closed.contacts)
@@ -206,8 +211,8 @@ bool Execution::is_stuck(const Closed& closed, ContactSet pressed) {
     return basis_of(closed, pressed).count() == model_->dof();
 }
 
-// Of contacts that hold everything still, some that press by themselves and leave no acceleration; all of them if there are
-// none such.
+// From contacts that hold everything at rest, the smallest set that presses by itself and opens no other; all of them
+// if there is none.
 ContactSet Execution::enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed) {
     const auto found = carriers_of(closed, hddot);
     const auto enough = std::find_if(found.rbegin(), found.rend(), [&](const Carriers& one) {
@@ -217,7 +222,7 @@ ContactSet Execution::enough_of(const Closed& closed, const ContactVector<double
     return enough == found.rend() ? pressed : enough->places;
 }
 
-// The force of a carrier may touch 0, and whether it does cannot be told: others carry on without it, if they can.
+// Called if the force of a carrier may touch 0 and this cannot be decided. Tries to continue with other carriers.
 bool Execution::carry_on_without(std::size_t which, const State& state) {
     if (next_.carried.empty() || !next_.mode.is_held(which)) return false;
     const StepRequest before = next_;
@@ -231,9 +236,9 @@ bool Execution::carry_on_without(std::size_t which, const State& state) {
     return goes_on;
 }
 
-// The same rest, though others of them may carry now: the phase goes on.
+// Continues the phase: the same contacts rest, but the carriers may have changed.
 void Execution::carry_on() {
-    constexpr int many = 100;  // at one time, that would be for ever
+    constexpr int many = 100;  // more changes at one time would never end
     changes_of_carriers_ = next_.state.t == carriers_since_ ? changes_of_carriers_ + 1 : 0;
     carriers_since_ = next_.state.t;
     if (changes_of_carriers_ > many)
@@ -243,7 +248,8 @@ void Execution::carry_on() {
     begin_stretch(next_.mode, run_.options.end_time);
 }
 
-// How long nobody asks who carries: longer than a touch is in doubt, and short beside what the motion needs to change.
+// End of the time during which carriers are not checked (s): long enough for an uncertain touch to pass, and short
+// compared with the time scale of the motion.
 double Execution::end_of_sharing() const {
     constexpr double part = 1.0 / 16, least = 1e-6;
     return next_.state.t + std::max(part * last_step_, least * (1.0 + std::abs(next_.state.t)));

@@ -1,4 +1,4 @@
-// What an execution does at its events: impact, completion of a bouncing, Zeno point, release.
+// The events of an execution: impact, completion at a Zeno point, release.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (surfaces_->count() > 1) {
-        // Contacts that strike in turn may leave no time between them, however high each would bounce alone.
+        // Contacts that impact in turn may leave no time between impacts, even if each alone would bounce high.
         constexpr double resolved = 16.0;
         if (record_.impacts() > 1 &&
             (last_step_ < resolved * ulp(next_.state.t) || moves_within_rounding(which, -contact.hdot))) {
@@ -50,7 +50,7 @@ void Execution::land(std::size_t which, const Contact& contact) {
     land_alone(contact);
 }
 
-// On an open place; what is held stays held.
+// An impact of one contact that leaves all held contacts held.
 void Execution::land_alone(const Contact& contact) {
     const double e = restitution(which_);
     conditions_ = nullptr;
@@ -58,7 +58,8 @@ void Execution::land_alone(const Contact& contact) {
     for (const OfContact& known : all_conditions_)
         if (known.contact == which_ && known.mode == next_.mode && known.unpressed == unpressed)
             conditions_ = known.conditions.get();
-    // Most impacts need no more than this look. Not where flights are near rounding: there the bouncing must end.
+    // For most impacts this check is enough. Flights near rounding level need the full treatment below, because the
+    // bouncing must end there.
     if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
         is_well_resolved(-contact.hdot))
         return bounce(contact, e);
@@ -89,7 +90,8 @@ void Execution::land_alone(const Contact& contact) {
     }
 }
 
-// The truncation conditions stand ready from the first question on. The guess takes less time than the clock.
+// Creates the truncation conditions at first use. The fast check itself is not timed: it takes less time than reading
+// the clock.
 bool Execution::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
         const ContactSet unpressed = always_unpressed(next_.mode);
@@ -102,13 +104,13 @@ bool Execution::could_truncate(const Collision& collision) {
     return !conditions_->fails_at_point(collision);
 }
 
-// Asks for a proof, after could_truncate().
+// Calls a proof of the conditions; could_truncate() must have been called.
 std::optional<Certificate> Execution::prove(
     std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
     return timed([&] { return ((*conditions_).*question)(collision); });
 }
 
-// Newton's law, and the flight it starts.
+// Applies Newton's impact law and starts the next flight.
 void Execution::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
     record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
@@ -118,19 +120,20 @@ void Execution::bounce(const Contact& contact, double e) {
     next_.state.v = v_after;
     change_rates(v_before, ContactSet::of(which_));
     begin_stretch(next_.mode, run_.options.end_time);
-    if (run_.options.method == Method::taylor) return;  // a series tells its length itself
+    if (run_.options.method == Method::taylor) return;  // a series determines its own step length
     const double hddot = kinematics().normal_acceleration(next_.state);
-    next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little past the predicted landing
+    next_.first_step = hddot < 0.0 ? 1.05 * 2.0 * hdot / -hddot : 0.0;  // a little beyond the predicted impact
 }
 
-// Cheap and sufficient: the last step was so long, and what it fell so much, that too_short_to_resolve() need not look.
+// Fast sufficient check: the last flight was so long and so high that too_short_to_resolve() is false.
 bool Execution::is_well_resolved(double speed) const {
     const double q = next_.state.q.cwiseAbs().maxCoeff();
     return last_step_ > 1e-6 * (1.0 + next_.state.t) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
 
-// theory.md 6.3: the next flight, to leading order, is lower than four roundings of h or shorter than four of t. The first
-// line looks at the last step alone: with a very small e it may let one such flight through, which then ends here.
+// theory.md 6.3: the next flight, to leading order, is lower than four roundings of h or shorter than four of t. The
+// first check uses the last flight; with a very small e it may accept one flight that is too short, and the next impact
+// then ends here.
 bool Execution::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = newton::rate_after(e, -collision.speed);
@@ -140,8 +143,8 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
            2.0 * u / a < 4.0 * ulp(collision.before.t);
 }
 
-// e = 0: the impact itself ends on the surface, at s. No bounce follows where hddot < 0, or where the contact stays closed
-// without a force, and nothing is cut short.
+// Plastic impact, e = 0: the motion continues on the contact surface with velocity s. If hddot < 0, or if the contact
+// stays closed without a force, no bounce follows and no impact sequence is truncated.
 void Execution::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
@@ -172,10 +175,10 @@ void Execution::capture(const Contact& contact, const Collision& before) {
 
 // ---- completion ----
 
-// The collision is the last impact that is drawn: the bouncing after it is replaced by the constrained motion. The
-// phase changes at the best estimate of the Zeno time.
+// Truncation at this collision, the last simulated impact: the constrained motion replaces the bouncing after it. The
+// phase changes at the estimated Zeno time.
 void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
-    // A plastic impact leads to s. Nothing does to the v* of Def. 7.
+    // A plastic impact leads to s. No impact leads to the v* of Def. 7, so the loss follows from the energies.
     Exchange plastic = exchange_of(contact, 0.0);
     if (collision.restart != collision.tangential)
         plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
@@ -198,7 +201,7 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     begin_stretch(mode, std::min(event.t, run_.options.end_time));
 }
 
-// The motion in contact has come to the Zeno time.
+// Records the Zeno event and continues in the constrained phase.
 void Execution::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
@@ -210,13 +213,13 @@ void Execution::pass_zeno_point() {
     begin_stretch(next_.mode, run_.options.end_time);
 }
 
-// What is held has changed.
+// Starts a new phase after a change of the mode.
 void Execution::enter_phase() {
     record_.close(next_.state.t);
     record_.open(next_.resting(), next_.held(), next_.state.t);
 }
 
-// If it has. Else others of it may carry now.
+// Starts a new phase if the mode has changed; otherwise only the carriers may have.
 void Execution::enter_or_stay() {
     if (next_.resting() != record_.mode()) return enter_phase();
     record_.carry_on(next_.held());
@@ -224,7 +227,7 @@ void Execution::enter_or_stay() {
 
 // ---- release ----
 
-// lambda = 0. It is a release where h''' > 0 is proved; otherwise contact and flight cannot be told apart.
+// Called if lambda = 0. It is a release if h''' > 0 is proved; otherwise contact and flight cannot be distinguished.
 void Execution::release(std::size_t which) {
     which_ = which;
     if (completing())
@@ -252,7 +255,7 @@ void Execution::release(std::size_t which) {
     leave(ContactSet::of(which));
 }
 
-// These have been released.
+// Records the release of these contacts.
 void Execution::leave(ContactSet contacts) {
     Event event;
     event.kind = Event::Kind::release;

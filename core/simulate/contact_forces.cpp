@@ -32,8 +32,9 @@ double ContactForces::force(std::size_t contact) {
     return known->second.output(0);
 }
 
-// W lambda = -hddot over all that is held: of all lambda >= 0 those of least norm. hddot is first freed of what no force could
-// answer, the rounding by which dependent gaps do not move together; where nothing presses so, lambda = W^+ (-hddot).
+// Solves W lambda = -hddot over all held contacts for the lambda >= 0 of least norm. First, the part of hddot that no
+// force can balance is removed (rounding, by which dependent gaps do not move together). If no lambda >= 0 exists,
+// lambda = W^+ (-hddot).
 void ContactForces::share() {
     if (!all_) {
         Run run;

@@ -1,4 +1,4 @@
-// The forces that hold contacts, and how the gaps accelerate, at an instant of a run (theory-gaps.md 2).
+// Contact forces and gap accelerations at an instant of a run (theory-gaps.md 2).
 #pragma once
 
 #include <map>
@@ -13,26 +13,27 @@
 
 namespace achilles {
 
-// One per thread. Refers to the model.
+// Use one object per thread. Refers to the model.
 class ContactForces {
  public:
     ContactForces(const Model& model, std::span<const double> parameters);
 
-    // What is asked next is asked of this state, where these are held, in the motion of the carriers among them.
+    // Sets the state, the mode and the carriers (the held contacts whose constraints define the motion) for the calls
+    // below.
     void set(const State& state, Mode mode, ContactSet carriers);
     void set(const State& state, Mode mode) { set(state, mode, mode.held()); }
     void set(const Sample& sample) { set(sample.state, sample.mode, sample.carriers); }
 
-    // lambda_i, that which holds contact i while the others of them are held; 0 where it is not held. Where not all of them are
-    // carriers it is one choice of several: the forces of least norm that press (solve_complementarity).
+    // lambda_i of a held contact; 0 if it is open. If some held contacts are not carriers, the forces are not unique:
+    // these are the nonnegative ones of least norm (solve_complementarity).
     double force(std::size_t contact);
-    // hddot_i of the motion; 0 where contact i is held.
+    // hddot_i of an open contact; 0 if it is held.
     double acceleration(std::size_t contact);
-    // sum lambda_i g_i', as a generalised force.
+    // sum lambda_i g_i', the generalized contact force.
     Vector generalised();
 
-    // Gives the program of a view all that it may ask for of a sample, and runs it. `reads`, by slot: the inputs that it depends
-    // on (Program::inputs_of); empty: all of them.
+    // Sets the inputs of a view's program from a sample, and runs it. `reads` marks, by slot, the inputs that the
+    // program depends on (Program::inputs_of); if it is empty, all are set.
     void run_view(Evaluator<double>& view, const Sample& sample, const std::vector<bool>& reads = {});
 
  private:
@@ -44,12 +45,12 @@ class ContactForces {
     State state_;
     Mode mode_;
     ContactSet carriers_;
-    std::vector<double> shared_;  // of all contacts, where the forces are not unique; empty until they are asked for
+    std::vector<double> shared_;  // forces of all contacts, if they are not unique; empty until needed
     Model::MotionEvaluators motions_;
-    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until it is asked for
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until needed
     std::map<ContactInMode, Evaluator<double>> forces_;
     std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
-    std::optional<Surfaces> all_;  // where forces are shared
+    std::optional<Surfaces> all_;  // used if forces are not unique
 };
 
 }  // namespace achilles

@@ -1,12 +1,12 @@
-// Dormand and Prince's Runge-Kutta method of order 5 with its dense output of order 4, from Boost.Odeint.
+// The Runge-Kutta method of order 5 by Dormand and Prince, with dense output of order 4, from Boost.Odeint.
 //
-// The event functions are integrated along with the motion, under the same error control: of an open contact the gap
-// (h, hdot with (h, hdot)' = (hdot, hddot)), of a held one hddot (with rate h'''). So a step is never longer than
-// that quantity allows, and the gap after an impact is an increment from zero, not a difference of large numbers
-// (theory.md 9.3).
+// The event functions are integrated with the motion under the same error control. For an open contact it is the gap
+// (h, hdot with (h, hdot)' = (hdot, hddot)), for a held one hddot (with rate h'''). Steps are therefore as short as
+// these functions require, and the gap after an impact is an increment from zero instead of a difference of large
+// numbers (theory.md 9.3).
 #include <algorithm>
 
-// Must stand first: dense_output_runge_kutta.hpp forgets to include it.
+// Must be included first: dense_output_runge_kutta.hpp does not include it.
 #include <boost/numeric/odeint/util/unwrap_reference.hpp>
 
 #include <boost/numeric/odeint/stepper/dense_output_runge_kutta.hpp>
@@ -24,7 +24,7 @@ namespace achilles {
 namespace {
 
 namespace odeint = boost::numeric::odeint;
-// q, v, then of each contact, in its unit (GapUnits), what its law watches: h, hdot of a gap; hddot, 0 of a force.
+// q, v, then for each contact its event function in units of GapUnits: h, hdot of a gap; hddot, 0 of a force.
 using Values = std::vector<double>;
 using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
 
@@ -72,7 +72,7 @@ class Dopri5 : public Stepper {
     double drifting(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
     bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
-    std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // where its event function stands
+    std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
     Values values_of(const State& state) const;
     Polynomial component(std::size_t i) const {
@@ -85,22 +85,22 @@ class Dopri5 : public Stepper {
     const Model* model_;
     std::vector<double> parameters_;
     Mode mode_;
-    Model::MotionEvaluators motions_;                   // of those met so far
-    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // of them, that of mode_
+    Model::MotionEvaluators motions_;                   // by mode, created at first use
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
     double span_ = 0.0;
-    double natural_ = 0.0;   // the step the error control would take next; 0: not known
-    State from_, to_;        // the last step's ends
-    double time_ = 0.0;      // s, where it starts,
-    double begun_ = 0.0;     // by Odeint's own clock
-    std::vector<Gap> gaps_;  // at `from`
+    double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
+    State from_, to_;        // the ends of the last step
+    double time_ = 0.0;      // s, start of the step
+    double begun_ = 0.0;     // the same on Odeint's clock
+    std::vector<Gap> gaps_;  // at from_
     GapUnits units_;
-    bool continuing_ = false;  // Odeint's stepper itself stands at `to`, ready for the natural step
+    bool continuing_ = false;  // Odeint's stepper is at to_, ready for a step of natural_
     std::array<Values, 5> nodes_;
     long evaluations_ = 0;
 };
 
-// After a time has passed by Odeint's clock, y' = (v, f, hdot, hddot) in flight, (v, f_c, h''', 0) in contact. Where M is not positive definite the derivative is NaN, and with it
-// the step.
+// y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact; `passed` is Odeint's clock. If M is not
+// positive definite, the derivative is NaN and the step fails.
 void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
     ++evaluations_;
     MotionTerms<Evaluator<double>>& motion = *motion_;
@@ -141,7 +141,7 @@ void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps
     if (natural_ == 0.0) guess_first_step();
 }
 
-// The first stretch of a run: a guess from the first derivative, which the error control corrects at once.
+// First step of a run: a guess from the first derivative, which the error control corrects.
 void Dopri5::guess_first_step() {
     Values dydt(width());
     const Values y = values_of(to_);
@@ -156,7 +156,7 @@ void Dopri5::guess_first_step() {
 
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
-    if (!mode_.is_free()) {  // hddot of the state itself
+    if (!mode_.is_free()) {  // hddot at the state itself
         for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
         motion_->clock() = time_;
         motion_->run();
@@ -170,14 +170,14 @@ void Dopri5::set(double dt) {
     begun_ = 0.0;
 }
 
-// What a step that never became finite means: the state itself tells.
+// The reason why no step has a finite result, from the size of the state.
 StepFailure Dopri5::failure_here() const {
     for (const double y : values_of(from_))
-        if (!(std::abs(y) < 1e150)) return StepFailure::not_a_number;  // it ran away to infinity
+        if (!(std::abs(y) < 1e150)) return StepFailure::not_a_number;  // diverges to infinity
     return StepFailure::left_the_domain;
 }
 
-// Reads the step that was just made. Dense output at theta = 0, 1/4, 1/2, 3/4, 1: a quartic is known by these.
+// Reads the last step: dense output at theta = 0, 1/4, 1/2, 3/4, 1, which determines a quartic.
 StepFailure Dopri5::accept() {
     const double begin = dense_.previous_time();
     span_ = dense_.current_time() - begin;
@@ -195,7 +195,7 @@ StepFailure Dopri5::accept() {
     return StepFailure::none;
 }
 
-// Steps from `from` by dt, or less if the error control or the domain asks for it.
+// Steps from `from` by dt, or less if the error control or the domain requires it.
 StepFailure Dopri5::advance(double dt, double least) {
     bool finite = true;
     while (dt > least) {
@@ -233,7 +233,7 @@ StepFailure Dopri5::do_step(double time, double longest, double first, double le
     }
     if (failure != StepFailure::none) failure = advance(std::min(wanted, longest), least);
     if (failure != StepFailure::none) return failure;
-    // A step that was short by order says nothing about what the error control would allow.
+    // A step shortened by request gives no information about the step that the error control would allow.
     const double next = dense_.current_time_step();
     natural_ = by_order ? std::max(next, natural_) : next;
     continuing_ = true;
@@ -256,8 +256,8 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
     return 4;
 }
 
-// The local error that the error control allows, and as much for the dense output between the ends, which is of one
-// order less. In a flight that is short against such a step, less than the highest term that was kept.
+// The local error allowed by the error control, and as much again for the dense output, whose order is one less. In a
+// flight much shorter than such a step, at most the highest term kept.
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
@@ -281,7 +281,7 @@ double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
     return own_remainder(contact, p) + earlier_error(contact, p);
 }
 
-// A step leaves the gap and its rate wrong by no more than that.
+// The errors of the gap and of its rate after a step grow by at most these bounds.
 void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
     const Gap& gap = gaps_[contact];
     const double own = own_remainder(contact, p);

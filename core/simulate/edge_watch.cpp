@@ -11,12 +11,12 @@ namespace achilles {
 
 namespace {
 
-constexpr int counted = 4;  // last terms: symmetry may hide three in a row
+constexpr int counted = 4;  // last terms of a series that are used: symmetry may make three in a row 0
 constexpr int lowest = 8;
 constexpr int highest = SeriesEvaluator<double>::highest_order;
 static_assert(highest < Polynomial::capacity);
 
-// The sum of the last terms' sizes.
+// Sum of the absolute values of the last terms.
 double tail(const Polynomial& p) {
     double sum = 0.0;
     for (int k = p.degree; k > p.degree - counted; --k) sum += std::abs(p.c[static_cast<std::size_t>(k)]);
@@ -32,16 +32,17 @@ EdgeWatch::EdgeWatch(const Model& model, const Run& run)
       distances_(edges_.size()),
       signs_(edges_.size()) {}
 
-// A function that hides has a distance, too (model/edges.hpp): `growth` less what u has risen, or less twice what |u| has
-// fallen. This is the factor of the series of u in that distance; 0 where |u| is too small to hide anything.
+// An exponential or hyperbolic function has a distance, too (model/edges.hpp): `growth` minus the rise of u, or minus
+// twice the fall of |u|. Returns the factor of the series of u in that distance; 0 if |u| is too small for the function
+// to be missed.
 double EdgeWatch::sign_of(const Edge& edge, double start) const {
     if (edge.kind == Edge::Kind::edge) return 1.0;
     if (edge.kind == Edge::Kind::exponential) return -1.0;
     return std::abs(start) < Edge::growth ? 0.0 : std::copysign(2.0, start);
 }
 
-// The motion of a step is a polynomial in theta, whatever the method; so the distances are series in theta. They need
-// as many orders as it takes them to become small.
+// The motion in a step is a polynomial in theta, whatever the method, so the distances are series in theta. They are
+// expanded until their last terms are small.
 double EdgeWatch::safe_part(const Stepper& stepper, double time) {
     motion_.clear();
     const std::size_t degree = stepper.coefficients(motion_);
@@ -71,8 +72,8 @@ double EdgeWatch::safe_part(const Stepper& stepper, double time) {
 double EdgeWatch::safe_part(Polynomial& distance) const {
     const double start = distance.c[0], allowed = 0x1p-6 * start;
     if (!(start > 0.0)) return 0.0;
-    // Where the series is known: its last terms are small there. Of a step that is very much too long, the last ones
-    // may have overflowed.
+    // The series is accurate as far as its last terms are small. If the step is far too long, the last terms may have
+    // overflowed; they are dropped.
     while (distance.degree > lowest && !std::isfinite(tail(distance))) --distance.degree;
     double known = 1.0;
     for (int k = distance.degree; k > distance.degree - counted; --k) {
@@ -82,8 +83,8 @@ double EdgeWatch::safe_part(Polynomial& distance) const {
     double power = known;
     for (int k = 1; known < 1.0 && k <= distance.degree; ++k, power *= known)
         distance.c[static_cast<std::size_t>(k)] *= power;
-    // Less an eighth of the start, and less the last terms as an estimate of those left out: where this is positive the
-    // distance is above an eighth of what it was. At the start it is.
+    // Subtract an eighth of the start, and the last terms as an estimate of the omitted ones. As long as the rest is
+    // positive, which it is at the start, the distance is above an eighth of its start value.
     distance.c[0] -= 0.125 * start + tail(distance);
     const Descent descent = first_descent(distance, 0, 0.0);
     if (descent.kind == Descent::Kind::none) return known;
@@ -94,7 +95,8 @@ namespace {
 
 using Values = std::vector<Interval>;  // q, v, t
 
-// The first undefined part of some expressions over a box, named with the value of its operand at the state; or "".
+// The first undefined part of the expressions over a box, with the value of its operand at the state; empty if there is
+// none.
 std::string undefined_among(const Model& model, const Run& run, std::span<const Expression> expressions,
                             const State& state, const Values& box, const char* name) {
     const auto found = first_undefined(model, run.parameters, expressions, state, box);
@@ -102,7 +104,8 @@ std::string undefined_among(const Model& model, const Run& run, std::span<const 
     return fmt::format("{} in {} becomes undefined, with {} = {:.3g}", found->part, name, found->operand, found->value);
 }
 
-// The first function that may come to its edge in the box, where it has a value and is not smooth; or "".
+// The first function that may reach its edge in the box, where it has a value but is not smooth; empty if there is
+// none.
 std::string first_edge(const Model& model, const Run& run, const State& state, const Values& box) {
     for (const Edge& edge : model.edges()) {
         if (edge.kind != Edge::Kind::edge) continue;
@@ -118,7 +121,7 @@ std::string first_edge(const Model& model, const Run& run, const State& state, c
     return "";
 }
 
-// The first pivot of M that is not positive all over the box, with its value at the state; or "".
+// The first pivot of M that is not positive on the whole box, with its value at the state; empty if there is none.
 std::string first_bad_pivot(const Model& model, const Run& run, const State& state, const Values& box) {
     const Program program(model.equations().pivots, model.layout().slots());
     auto enclosure = model.evaluator<Interval>(program, run.parameters);
@@ -136,7 +139,7 @@ std::string first_bad_pivot(const Model& model, const Run& run, const State& sta
     return "";
 }
 
-// What the user wrote comes first: a derivative of log(x) is 1/x, which is no help.
+// Checks the user's expressions first: a message about the derivative 1/x of log(x) would not help.
 std::string undefined_in(const Model& model, const Run& run, const State& state, const Values& box) {
     const Equations& e = model.equations();
     const auto look = [&](const std::vector<Expression>& expressions, const char* name) {

@@ -1,4 +1,4 @@
-// How far a step may go before a function comes to its edge (model/edges.hpp).
+// Limits steps so that no function reaches the edge of its domain unnoticed (model/edges.hpp).
 #pragma once
 
 #include <string>
@@ -15,10 +15,10 @@ class EdgeWatch {
  public:
     EdgeWatch(const Model& model, const Run& run);
 
-    // The part (0, 1] of the stepper's last step, from this time on, along which every distance from an edge stays above an eighth of what
-    // it was at the start, or is known at all, and nothing that hides grows by more than exp(Edge::growth). To an edge
-    // that is met the steps shorten to nothing; one that is passed closely, as sqrt(x^2 + y^2) may pass its, is passed
-    // in steps that see it.
+    // The fraction (0, 1] of the stepper's last step that is safe. Over it, every distance from an edge is known and
+    // stays above an eighth of its value at the start, and no monitored exponential grows by more than
+    // exp(Edge::growth). If the motion reaches an edge, the steps shorten to nothing. If it passes close to one, as
+    // sqrt(x^2 + y^2) may, the steps resolve the passage.
     double safe_part(const Stepper& stepper, double time);
 
  private:
@@ -29,20 +29,21 @@ class EdgeWatch {
     std::size_t block_;               // q and v
     SeriesEvaluator<double> series_;  // of the distances
     std::vector<Polynomial> distances_;
-    std::vector<double> signs_;   // of a distance's terms, after the first
-    std::vector<double> motion_;  // of the last step, as the stepper tells it, and an order of zeros
+    std::vector<double> signs_;   // factors of the higher terms of each distance
+    std::vector<double> motion_;  // the last step as polynomials, and a block of zeros
 };
 
-// Why no motion follows a state: what stops being defined just ahead of it.
+// ---- messages: the function that becomes undefined just ahead of a state ----
 
-// The first part of the system that cannot be shown to be defined along the straight line that the state moves on, for
-// the shortest of a few times up to 1e-9 max(1e-3, |t|): a function outside its domain, a division by zero (both named
-// as they stand in T, V, h or the equations of motion), a function at an edge where it is not smooth (sqrt(x^2) where
-// x = 0), or a mass matrix that is not positive definite. Interval evaluation over the box of that line: a pole between
-// two floating-point numbers is not missed. A sentence without a full stop; empty if there is none.
+// The first part of the system that cannot be shown to be defined on the straight line along which the state moves. In
+// this order: a function outside its domain or a division by zero (in T, V, h or the forces), a function at an edge
+// where it is not smooth (sqrt(x^2) at x = 0), a mass matrix that is not positive definite, and an undefined part of
+// the equations of motion. Several durations up to 1e-9 max(1e-3, |t|) are tried; the shortest one counts. Interval
+// evaluation over the box of the line does not miss a pole between two floating-point numbers. Returns a sentence
+// without a period; empty if nothing is found.
 std::string edge_of_domain(const Model& model, const Run& run, const State& state);
 
-// The same at the state itself, to within rounding, for a contact. Empty where it is dh that vanishes.
+// The same at the state itself, for a contact that has no normal. Empty if the reason is that dh vanishes.
 std::string edge_of_contact(const Model& model, const Run& run, const State& state);
 
 }  // namespace achilles

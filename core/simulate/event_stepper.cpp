@@ -39,8 +39,8 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     return result_;
 }
 
-// What the flow's last step came to. What is no event after all may have made the step shorter, which then is looked at
-// again for the other contacts.
+// Finds the first event in the last step. A candidate that proves to be no event may have shortened the step, which is
+// then checked again for the other contacts.
 StepResult::End EventStepper::find_event() {
     ContactSet met;
     while (const auto incident = first_incident(met)) {
@@ -62,7 +62,7 @@ std::optional<EventStepper::Incident> EventStepper::first_incident(ContactSet bu
     return first;
 }
 
-// Of what the contact's law watches, along the flow's last step.
+// First zero crossing of the contact's event function in the last step.
 Descent EventStepper::descent() {
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
@@ -95,13 +95,13 @@ StepResult::End EventStepper::end_without_event() {
     return End::no_event;
 }
 
-// All that led there was as exact as can be.
+// Whether the segment's start is as accurate as possible, because the run uses exact_tolerance or less.
 bool EventStepper::knows_its_start() const { return run_.options.tolerance <= exact_tolerance; }
 
-// Whether the step comes to where the motion ends at the latest.
+// Whether the step reaches the time `until`.
 bool EventStepper::is_last() const { return flow_->end_time() >= request_->until; }
 
-// Makes the flow's last step end at a part of its length, if that is a step.
+// Shortens the last step to a fraction of its length. Returns false if the result would not be a step.
 bool EventStepper::end_step_at(double theta) {
     return theta > 0.0 && theta < 1.0 && end_step_after(theta * flow_->duration());
 }
@@ -111,7 +111,7 @@ bool EventStepper::end_step_after(double duration) {
     return flow_->redo_step(duration) == StepFailure::none;
 }
 
-// The flow's last step, as it stands, is what came.
+// Reports the last step as the result.
 void EventStepper::end_step(double gap) {
     result_.steps = 1;
     result_.duration = flow_->duration();

@@ -1,4 +1,4 @@
-// The steps of one run, each as long as its motion allows, or to the first event in it.
+// The integration steps of one run, each ending at the first event or where the method's accuracy ends.
 #pragma once
 
 #include <memory>
@@ -12,82 +12,82 @@
 
 namespace achilles {
 
-// What an execution asks of whoever makes its steps, and what it is told: all that passes between the two.
+// ---- interface between Execution and the steppers ----
 
-// The least tolerance that steps can serve: below it they are rounding.
+// The smallest tolerance that a step can meet; below it, rounding dominates.
 inline constexpr double exact_tolerance = 1e-14;
 
-// How what the law of a contact watches along a step leaves the step's start: its gap, or its force.
+// Initial data of a contact's event function in a step: of its gap if it is open, of its force if it is held.
 struct EventStart {
-    Gap gap;                   // in contact its state_error alone has a meaning
-    int multiplicity = 0;      // of the zero there: of h in flight; of the force 1 where it starts from zero
-    bool asked_again = false;  // the step before was ended where it entered its remainder (theory-truncation.md 6)
+    Gap gap;                   // for a held contact, only state_error is used
+    int multiplicity = 0;      // order of its zero at the start: of h if open; 1 for a force that starts at 0
+    bool asked_again = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
 };
 
-// A step of smooth motion, from the state's t to `until` at the latest, or to the first event in (t, until]: an open gap
-// closes, the force of a held contact vanishes. A zero at t itself is none, as often as multiplicity says.
+// Request for a smooth step from state.t to `until` at the latest, or to the first event in (t, until]. Events are the
+// closing of an open gap and a zero of the force of a held contact. A zero at t itself, of the order given by
+// `multiplicity`, is not an event.
 struct StepRequest {
-    Mode mode;            // what it holds has independent gradients
-    ContactSet touching;  // open as far as the motion goes, but their gap stays 0: no event of theirs is looked for
-    // Of those touching, what rests with the held ones since its gradient depends on theirs: it may bear a part of the
-    // forces that the held ones are reckoned to bear (theory-gaps.md 2.5). The others that touch bear none.
+    Mode mode;            // its held contacts have independent gradients
+    ContactSet touching;  // open in `mode`, but their gap stays 0: not checked for events
+    // Touching contacts that stay closed because their gradients depend on those of the held ones: they may share the
+    // load (theory-gaps.md 2.5). The other touching contacts carry no load.
     ContactSet carried;
-    ContactSet unwatched;  // of the held ones: no event of theirs is looked for, since others share what they bear
-    ContactSet
-        unpressed;  // of the held ones: no event of theirs is looked for, since nothing presses them (theory-gaps.md 2.7)
+    ContactSet unwatched;  // held contacts not checked for events: the load may be shared otherwise
+    ContactSet unpressed;  // held, not checked for events: nothing presses them (theory-gaps.md 2.7)
     State state;
-    std::vector<EventStart> starts;  // at that state, of each contact
+    std::vector<EventStart> starts;  // at that state, for each contact
     double until = 0.0;              // s, > state.t
-    double first_step = 0.0;         // s, where a flight begins: a length that is known to be sensible; 0: none is
-    long most = 1;                   // as many steps may be made at once where none has an event
-    bool begins = true;    // a stretch of motion begins here; else the step goes on from where the last one ended
-    bool exactly = false;  // at exact_tolerance instead of the run's
-    bool plain = false;    // steps that show at once that they have no event, or just an impact, may answer it
+    double first_step = 0.0;         // s; a known reasonable length for the first step of a flight; 0: none
+    long most = 1;                   // largest number of steps to take at once if none has an event
+    bool begins = true;              // starts a new segment; otherwise continues from the end of the last step
+    bool exactly = false;            // use exact_tolerance instead of the tolerance of the run
+    bool plain = false;              // may be answered by fast steps that detect only "no event" and plain impacts
 
     ContactSet held() const { return mode.held(); }
     Mode resting() const { return mode.with(carried, ContactState::held); }
 };
 
-// What came of a request: from its state to that of the result there is no event, and there what `end` says.
+// Result of a request: the state reached, with no event before it, and how the step ended there.
 struct StepResult {
     enum class End : char {
-        no_event,        // none: the next step starts there, as `starts` says
-        impact,          // a gap closes, as `contact` says; `state` is on the surface, before the impact
-        force_vanishes,  // of a held contact
-        doubt,           // none, but whether one follows just after cannot be told
-        off_surface,     // `state` cannot be moved onto the surfaces on which it belongs
-        no_step          // no step could be made, for the reason of `failure`: `state` is that of the request
+        no_event,        // continue from `state` with `starts`
+        impact,          // the gap of `which` closes; `state` is on the contact surface, before the impact
+        force_vanishes,  // of the held contact `which`
+        doubt,           // no event so far, but cannot decide whether one follows just after
+        off_surface,     // `state` cannot be projected onto the contact surfaces where it belongs
+        no_step          // no step was possible, see `failure`; `state` is that of the request
     };
     End end = End::no_event;
-    // Steps that were made. Where there is none, its t is that of the request: an event there is one that the end of the
-    // step before had come to, within its remainder. Then `state` may still be moved onto the surface.
+    // Number of steps made. If 0, the time is that of the request: its event lies where the step before ended, within
+    // the remainder of that step. `state` may still be moved onto the contact surface.
     long steps = 0;
-    double duration = 0.0;           // s; of the last step
-    const State* state = nullptr;    // it stands until the next step
-    double gap = 0.0;                // the least there; the least of several steps' ends
-    std::vector<EventStart> starts;  // of each contact; without a meaning for the one that the event is of
-    std::size_t which = 0;           // the contact that the event is of
-    Contact contact;                 // it, as the motion sees it that holds those of the request
-    double remainder = 0.0;          // doubt of a gap: what it is known to
+    double duration = 0.0;           // s, of the last step
+    const State* state = nullptr;    // valid until the next step
+    double gap = 0.0;                // smallest gap at the end of the step, or at the ends of several steps
+    std::vector<EventStart> starts;  // for each contact; meaningless for `which` at an event
+    std::size_t which = 0;           // the contact of the event
+    Contact contact;                 // at an impact: its contact quantities, in the mode of the request
+    double remainder = 0.0;          // ambiguous gap: the bound on its error
     StepFailure failure = StepFailure::none;
-    const Flow* flow = nullptr;  // that made the step, with all of it; null where the end alone is known
-    long evaluations = 0;        // of the motion, also for what led to no step
+    const Flow* flow = nullptr;  // the integrator with the whole last step; null if only the end is known
+    long evaluations = 0;        // of the right-hand side, including those of failed steps
 };
 
 class EventStepper {
  public:
-    // `surfaces` are of the same model and run; both outlive this. It serves every run of these parameters, this
-    // tolerance and this method, one after the other.
+    // `surfaces` must belong to the same model and run; both must outlive this object. One object can serve consecutive
+    // runs with the same parameters, tolerance and method.
     EventStepper(const Model& model, const Run& run, Surfaces& surfaces);
 
-    // One step, by the method of the run, with any end that StepResult knows, and with `flow`; it stands until the next
-    // step. A request that begins nothing goes on from the step before, which must have ended without event; after any
-    // other end the next request begins a stretch.
+    // Makes one step by the method of the run. Sets `flow`; the result is valid until the next step. A request with
+    // begins = false continues the last step, which must have ended without an event; after any other end, the next
+    // request must begin a segment.
     const StepResult& step(const StepRequest& request);
 
  private:
     using End = StepResult::End;
-    // What may be an event of a contact along the flow's last step.
+    // A possible event of a contact in the last step.
     struct Incident {
         std::size_t contact = 0;
         Descent descent;
@@ -98,7 +98,7 @@ class EventStepper {
     std::optional<End> meet(const Incident& incident);
     End end_without_event();
 
-    // Of open gaps (flight.cpp).
+    // Gaps of open contacts (flight.cpp).
     Descent gap_descent();
     std::optional<End> meet_gap(Descent descent);
     const Polynomial& gap_along(std::size_t contact);
@@ -110,13 +110,13 @@ class EventStepper {
     std::optional<End> locate_impact(double theta);
     End end_flight();
     bool settle_gaps(ContactSet but, double& least);
-    // Of the forces of held contacts (flight.cpp).
+    // Forces of held contacts (flight.cpp).
     Descent force_descent();
     std::optional<End> meet_force(Descent descent);
     End doubt_force(double theta);
     std::optional<End> locate_release(double theta);
     bool end_on_surface();
-    // Of both.
+    // Events of either kind.
     bool end_step_at(double theta);
     bool end_step_after(double duration);
     void end_step(double gap);
@@ -133,19 +133,19 @@ class EventStepper {
     const Model* model_;
     Run run_;
     Surfaces* surfaces_;
-    Flow usual_;                   // at the run's tolerance
-    std::unique_ptr<Flow> exact_;  // made where it is first asked for
-    // Of the last step.
+    Flow usual_;                   // at the tolerance of the run
+    std::unique_ptr<Flow> exact_;  // at exact_tolerance; created at first use
+    // The last step.
     const StepRequest* request_ = nullptr;
-    Flow* flow_ = nullptr;     // what makes it
-    std::size_t contact_ = 0;  // whose event is looked at
-    ContactSet asked_again_;   // the step was ended where these entered their remainder
+    Flow* flow_ = nullptr;     // the integrator in use
+    std::size_t contact_ = 0;  // whose event function is examined
+    ContactSet asked_again_;   // contacts at whose remainder the step was shortened
     StepResult result_;
-    State landed_;                   // an impact without a step
-    std::vector<Gap> gaps_;          // where a stretch starts
-    std::vector<Polynomial> along_;  // gap_along() of those that are known of the step as it now is
+    State landed_;                   // state of an impact without a step
+    std::vector<Gap> gaps_;          // at the start of a segment
+    std::vector<Polynomial> along_;  // gap polynomials of the contacts in known_, for the current step
     ContactSet known_;
-    long evaluations_ = 0;  // told so far
+    long evaluations_ = 0;  // reported so far
 };
 
 }  // namespace achilles

@@ -39,7 +39,7 @@ bool Execution::restart(const Run& run) {
     const Options &now = run_.options, &next = run.options;
     if (next.tolerance != now.tolerance || next.method != now.method || next.truncation != now.truncation) return false;
     if (run.parameters != run_.parameters) {
-        if (surfaces_->count() > 1) return false;  // pairs keep what they know of their restitutions
+        if (surfaces_->count() > 1) return false;  // pair conditions depend on restitutions
         surfaces_->bounce_as(run);
     }
     run_ = run;
@@ -54,9 +54,9 @@ bool Execution::restart(const Run& run) {
     return true;
 }
 
-// ---- the start ----
+// ---- start ----
 
-// In flight, in contact, or at an impact, which comes first.
+// Starts in free flight, in contact, or with an impact, which takes precedence.
 void Execution::begin() {
     forget_held();
     next_.state = run_.start();
@@ -88,7 +88,7 @@ void Execution::begin() {
     collide(landing);
 }
 
-// Contacts with h = 0 and hdot = 0.
+// Contacts that start with h = 0 and hdot = 0.
 void Execution::start_at_rest(ContactSet resting) {
     if (resting.empty()) return;
     if (resting.count() > 1) {
@@ -102,7 +102,7 @@ void Execution::start_at_rest(ContactSet resting) {
     decide(resting);
 }
 
-// ---- what is needed next ----
+// ---- next step ----
 
 const StepRequest* Execution::next() {
     if (outcome_ || (watch_ != nullptr && is_cancelled())) return nullptr;
@@ -121,14 +121,14 @@ const StepRequest* Execution::next() {
                          "limit or choose an earlier end time",
                          record_.steps(), record_.impacts(), next_.state.t, run_.options.memory / 1e6));
     } else if (stalled_ > most_stalled) {
-        // Steps of the resolution of time, one after the other, round back to the same state for ever.
+        // Consecutive steps at the resolution of time would return to the same state forever.
         stop_at(StepFailure::step_too_small);
     }
     if (outcome_) return nullptr;
     const bool in_contact = !next_.mode.is_free();
     for (const std::size_t i : next_.held()) next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
-    const EventStart& start = next_.starts.front();  // of the only contact, where it is asked for
+    const EventStart& start = next_.starts.front();  // of the only contact; used only if there is one
     next_.plain =
         stalled_ == 0 && !start.asked_again && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
     if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
@@ -136,7 +136,7 @@ const StepRequest* Execution::next() {
     return &next_;
 }
 
-// Where a stretch of motion begins.
+// Saves the start of the segment.
 void Execution::note_beginning() {
     record_.stretch(next_.state);
     if (!may_ask_exactly()) return;
@@ -148,8 +148,8 @@ void Execution::note_beginning() {
 
 bool Execution::is_time_left() const { return next_.until - next_.state.t > 1e-15 * std::abs(next_.state.t); }
 
-// Tells the watch how far the run is, and asks whether it shall go on. Once a step: every impact and every release lies
-// between two.
+// Reports progress, and checks for cancellation. Called once per step; every impact and every release lies between two
+// steps.
 bool Execution::is_cancelled() {
     watch_->time.store(next_.state.t, std::memory_order_relaxed);
     watch_->impacts.store(record_.impacts(), std::memory_order_relaxed);
@@ -158,13 +158,13 @@ bool Execution::is_cancelled() {
     return true;
 }
 
-// What the steps so far may have made the state wrong by, relative to its size: a tenth of the tolerance each, as
-// measured; and what the cuts of bouncings have, as certified.
+// Estimated error of the state relative to its size: a tenth of the tolerance for each step so far, as measured, and
+// the certified errors of the truncations.
 double Execution::state_error() const {
     return integration_error(run_.options, static_cast<double>(record_.steps())) + cut_error_;
 }
 
-// ---- what came ----
+// ---- result of a step ----
 
 void Execution::accept(const StepResult& result) {
     using End = StepResult::End;
@@ -191,7 +191,7 @@ void Execution::accept(const StepResult& result) {
     }
 }
 
-// To the end of the steps that were made.
+// Records the steps made, and moves to their end.
 void Execution::advance(const StepResult& result) {
     if (result.flow != nullptr) {
         record_.step(*result.flow, result.gap, next_.resting());
@@ -210,7 +210,7 @@ void Execution::note_scale() {
     scale_.t = std::max(scale_.t, std::abs(state.t));
 }
 
-// A motion that ends at `until` at the latest.
+// Begins a segment in this mode that ends at `until` (s) at the latest.
 void Execution::begin_stretch(Mode mode, double until) {
     next_.mode = mode;
     next_.first_step = 0.0;
@@ -219,19 +219,19 @@ void Execution::begin_stretch(Mode mode, double until) {
     next_.exactly = false;
 }
 
-// The velocity has jumped: the rates of open gaps, but of these, have too.
+// Updates the gap rates of open contacts after a velocity jump, except those in `but`.
 void Execution::change_other_rates(const Vector& v_before, ContactSet but) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (!next_.mode.is_held(i) && !but.contains(i) && !next_.touching.contains(i))
             next_.starts[i].gap.hdot += surfaces_->of(i).at(next_.state).g.dot(next_.state.v - v_before);
 }
 
-// Not where all that led there was as exact.
+// False if the segment already uses exact_tolerance, or the run does.
 bool Execution::may_ask_exactly() const {
     return in_doubt_ == InDoubt::ask_exactly && !next_.exactly && run_.options.tolerance > exact_tolerance;
 }
 
-// Back to where the stretch began.
+// Returns to the start of the segment, to redo it at exact_tolerance.
 void Execution::ask_exactly() {
     next_ = beginning_.next;
     record_.go_back(beginning_.recorded);
@@ -240,7 +240,7 @@ void Execution::ask_exactly() {
     next_.exactly = true;
 }
 
-// ---- the end ----
+// ---- end of the run ----
 
 std::string Execution::doubt(const StepResult& result) const {
     const std::string place = where(next_.state);

@@ -1,11 +1,12 @@
-// A completed execution as an automaton (Defs. 4 and 5 of the paper): it says which step of smooth motion it needs
-// next, is told what came of it, and does what lies between: impacts, completions, releases, the end.
+// State machine of one completed execution (Defs. 4 and 5 of the paper). It requests integration steps and handles
+// everything between them: impacts, completion at Zeno points, releases, and the end of the run.
 //
 //     while (const StepRequest* request = execution.next()) execution.accept(stepper.step(*request));
 //
-// It flies to an impact, and bounces or, where that is certified, is on its way to the Zeno point, in contact; from
-// there it stays in contact until the contact force vanishes, and flies. With several contacts it does so with each, while
-// others are held (theory-gaps.md 2); where several are closed at an event, all of them decide what follows.
+// In free flight it waits for an impact. After an impact it bounces or, if the truncation is certified, continues in
+// contact toward the Zeno point. In contact it waits for the contact force to reach zero, then releases the contact.
+// With several contacts, each does this while others are held (theory-gaps.md 2). If several contacts are closed at an
+// event, they are decided together.
 #pragma once
 
 #include <chrono>
@@ -22,48 +23,49 @@
 
 namespace achilles {
 
-// A state in words, for messages.
+// Text of a state, for messages.
 std::string where(const State& state);
 
 class Execution {
  public:
-    // What follows where a step cannot tell whether an event comes: the same stretch of motion from its beginning,
-    // once, as exactly as double precision allows; or the end, undecided.
+    // What to do if a step cannot decide whether an event occurs: redo the segment from its start, once, at
+    // exact_tolerance; or end the run with outcome `undecided`.
     enum class InDoubt { ask_exactly, end };
 
-    // At the start of the run, which Model::check() allows: in flight, in contact, or after an impact there.
-    // `surfaces` are of the same model and run; they and `watch`, which may be null, outlive this.
+    // Starts the run, in free flight, in contact or with an impact. Model::check() must accept it. `surfaces` must
+    // belong to the same model and run. They and `watch`, which may be null, must outlive this object.
     Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
               InDoubt in_doubt);
 
-    // As if it were made anew, for another run of the same tolerance, method and truncation, whose parameters differ at most in
-    // what restitutions alone depend on. False, and nothing is done, where one of the first differs.
+    // Prepares this object for another run, reusing its buffers. The run must have the same tolerance, method and
+    // truncation, and parameters that differ only where restitution depends on them. Returns false and changes nothing
+    // if tolerance, method or truncation differ, or if a system of several contacts has other parameters.
     bool restart(const Run& run);
 
-    // The step that is needed; null once the run is over: at its end time, at a bound on what it may take, cancelled,
-    // or by what accept() was told. It stands until accept(), and until then next() says the same.
+    // The next step to make. Null once the run is over: at its end time, at a limit, cancelled, or stopped by accept().
+    // The pointer is valid until accept(); until then, next() returns the same request.
     const StepRequest* next();
 
-    // Takes what came of the last request: the motion stands at the result's state, and then
-    //     no_event        goes on from there
-    //     impact          goes on by Newton's law, or in contact to the Zeno point, where that is certified
-    //     force_vanishes  goes on without that contact, where h''' > 0 is proved
-    //     doubt           is put back to where its stretch began and asked for exactly, if that may be; else it ends
-    //     off_surface, no_step    ends
-    // Where an event cannot be decided, it ends as well. Ended, the run has an outcome and next() is null.
+    // Processes the result of the last request. The run continues from the result's state:
+    //     no_event        the next step
+    //     impact          Newton's impact law, or contact until the Zeno point if the truncation is certified
+    //     force_vanishes  release of the contact if h''' > 0 is proved
+    //     doubt           the segment is redone at exact_tolerance if that is allowed; otherwise the run ends
+    //     off_surface, no_step    the run ends
+    // It also ends if an event cannot be decided. Then the run has an outcome and next() returns null.
     void accept(const StepResult& result);
 
-    // Whether the run is on its way to a Zeno point: in contact, for bouncing that was cut.
+    // Whether the run is in contact after a truncation, before the Zeno point.
     bool completing() const { return completion_.has_value(); }
     const Run& run() const { return run_; }
 
-    // What was recorded, once next() has nothing left to ask.
+    // The recorded trajectory; call it once next() returns null.
     Trajectory finish();
-    // There is no memory for what comes next: the run ends with what was recorded.
+    // Ends the run with outcome `out of memory`. What was recorded so far is kept.
     void run_out_of_memory();
 
  private:
-    // Where a stretch of motion began.
+    // Data to restore the start of the current segment.
     struct Beginning {
         StepRequest next;
         Recorder::Mark recorded;
@@ -91,10 +93,10 @@ class Execution {
     void fail_projection();
     void stop(Outcome::Kind kind, std::string message);
 
-    // At events.
+    // ---- events (completion.cpp) ----
     void land(std::size_t which, const Contact& contact);
     void land_alone(const Contact& contact);
-    // What the impact does to the energy, also by what it passes on to held contacts.
+    // The work and loss of an impact, including the impulses transmitted to held contacts.
     Exchange exchange_of(const Contact& contact, double e) {
         const Exchange own = exchange(contact, e);
         return next_.mode.is_free() ? own : exchange_beside(contact, e, own);
@@ -102,7 +104,7 @@ class Execution {
     Exchange exchange_beside(const Contact& contact, double e, Exchange own);
     double restitution(std::size_t contact) const { return surfaces_->restitution(contact).value; }
     ContactKinematics& kinematics() { return surfaces_->of(which_, next_.mode); }
-    // What some work gives; its time counts as that of proofs.
+    // Calls `work` and adds its duration to the time of proofs.
     template <class Work>
     auto timed(const Work& work) {
         const auto clock = std::chrono::steady_clock::now();
@@ -123,7 +125,7 @@ class Execution {
     void leave(ContactSet contacts);
     void enter_phase();
     void enter_or_stay();
-    // Where several contacts are closed (several.cpp).
+    // ---- several closed contacts (several.cpp, holding.cpp) ----
     std::optional<ContactSet> landing_with(std::size_t which, const Contact& contact);
     bool is_order_independent(ContactSet landing);
     double rounding_so_far(const Contact& contact) const;
@@ -154,12 +156,12 @@ class Execution {
     bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
-    // Where gradients of closed contacts depend on one another (carriers.cpp).
+    // ---- linearly dependent gradients (carriers.cpp) ----
     ContactVector<double> rounding_of(const Closed& closed);
     struct Carriers {
-        ContactSet places, opening;  // in what is closed; others that leave at once
-        double least = 0.0;          // of their forces, as a part of the largest,
-        double most = 0.0;           // this
+        ContactSet places, opening;  // places in a Closed; other contacts that leave at once
+        double least = 0.0;          // smallest force, as a fraction of the largest
+        double most = 0.0;           // largest force
     };
     std::vector<Carriers> carriers_of(const Closed& closed, const ContactVector<double>& hddot);
     bool hold_dependent(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces,
@@ -179,11 +181,11 @@ class Execution {
     }
     void carry_on();
 
-    StepRequest next_;        // where the motion stands, and how it goes on
+    StepRequest next_;        // the current state and the next step
     double last_step_ = 0.0;  // s
     State scale_;             // the largest |q|, |v|, |t| so far
     long evaluations_ = 0;
-    int stalled_ = 0;  // steps in a row that were as short as the resolution of t
+    int stalled_ = 0;  // consecutive steps as short as the resolution of t
     InDoubt in_doubt_;
     Watch* watch_;
     Run run_;
@@ -191,9 +193,9 @@ class Execution {
     std::shared_ptr<const Model> model_;
     Recorder record_;
     Surfaces* surfaces_;
-    Beginning beginning_;              // of the stretch, where it may be asked for again
-    std::optional<Event> completion_;  // the Zeno event that the run is on its way to
-    // The truncation conditions of contacts while others are held, those met so far.
+    Beginning beginning_;              // of the current segment, if it may be redone
+    std::optional<Event> completion_;  // the Zeno event ahead, after a truncation
+    // Truncation conditions for a contact and the held contacts, created when first needed.
     struct OfContact {
         std::size_t contact;
         Mode mode;
@@ -203,18 +205,18 @@ class Execution {
     std::vector<OfContact> all_conditions_;
     struct PairOf {
         std::size_t first, second;
-        Mode mode;  // of the others
+        Mode mode;  // of the other contacts
         ContactSet unpressed;
         std::unique_ptr<PairConditions> conditions;
     };
-    std::vector<PairOf> all_pairs_;               // the same of two contacts
-    TruncationConditions* conditions_ = nullptr;  // of them, those of which_; null: not met yet
-    std::size_t which_ = 0;                       // the contact whose event this is
-    bool not_unique_ = false;                     // the forces that hold what is held could be shared otherwise
-    double carriers_since_ = 0.0;                 // s; who carries was last changed then, and so often at that time
+    std::vector<PairOf> all_pairs_;               // the same for pairs
+    TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
+    std::size_t which_ = 0;                       // the contact of the current event
+    bool not_unique_ = false;                     // whether the contact forces are not unique
+    double carriers_since_ = 0.0;  // s; time of the last change of carriers, and the number of changes at that time
     int changes_of_carriers_ = 0;
-    double cut_error_ = 0.0;  // of the state, by the cuts so far: what is certified at their Zeno times
-    double proving_ = 0.0;    // s, the clock's
+    double cut_error_ = 0.0;  // error of the state by truncations so far, as certified
+    double proving_ = 0.0;    // s, wall-clock time of proofs
 };
 
 }  // namespace achilles

@@ -18,7 +18,7 @@ std::size_t first_of(ContactSet contacts, const Model& model) {
     return 0;
 }
 
-// Of what is held those that never need a force.
+// The held contacts of a mode that never need a force.
 ContactSet unpressed_at(const Trajectory& trajectory, Mode mode, const State& state) {
     ContactSet found;
     if (mode.is_free()) return found;
@@ -80,7 +80,7 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);
-    // hddot vanishes here, so the change of W does not matter.
+    // hddot is 0 at a release, so the derivative of W has no effect.
     reason.lambda_rate = -reason.jerk / W;
 
     constexpr int instants = 60;
@@ -91,7 +91,7 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     }
     ContactForces forces(model, trajectory.run.parameters);
     Sampler sampler(trajectory);
-    for (int i = 0; i < instants; ++i) {  // the release itself belongs to what follows
+    for (int i = 0; i < instants; ++i) {  // the release itself belongs to the next phase
         const double t = start + (release.t - start) * i / instants;
         forces.set(sampler.at(t));
         reason.force.emplace_back(t, forces.force(which));

@@ -1,4 +1,5 @@
-// Why an event is what it is: what a person asks of a finished run. Computed from the run when asked, not kept in it.
+// Explains events of a finished run: why an impact was or was not truncated, why a contact was released. Computed on
+// demand.
 #pragma once
 
 #include <optional>
@@ -9,28 +10,28 @@
 
 namespace achilles {
 
-// Of an impact (index into trajectory.events): what it cost, and why the bouncing was not cut short at it, if it was
-// not.
+// Explanation of an impact (index into trajectory.events): its energy, and the reason if the bouncing was not
+// truncated.
 struct ImpactReason {
-    bool cut = false;  // it was: the bounces after it are not drawn
+    bool cut = false;  // truncated at this impact: the bounces after it are not simulated
     double energy_before = 0.0, energy_after = 0.0;
-    // The contact that lands; nothing where several do, whose bouncings are not cut.
+    // The impacting contact; empty for simultaneous impacts, which are not truncated.
     std::optional<std::size_t> contact;
-    Mode mode;  // just before it
-    // hddot of the contact at the velocity that it would be held with, along the motion in that mode.
+    Mode mode;  // before the impact
+    // hddot of the contact in that mode, at the restart velocity.
     double normal_acceleration = 0.0;
-    // What could be proved here whatever the tolerances: its first three inequalities are those of the run's own
-    // tolerances, and one that does not hold is the reason. Nothing where hddot is not proved negative around here.
+    // The certificate that can be proved here whatever the tolerances. Its first three inequalities compare with the
+    // tolerances of the run; one that fails is the reason. Empty if hddot is not proved negative around the collision.
     std::optional<Certificate> attempt;
 };
 ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event);
 
-// Of a release: lambda = -hddot/W crosses zero, as the motion that holds the other contacts sees it.
+// Explanation of a release: lambda = -hddot/W of the contact, in the mode that holds the others, crosses zero.
 struct ReleaseReason {
-    std::size_t contact = 0;                 // the first of those that leave
-    double lambda = 0.0, lambda_rate = 0.0;  // the rate is -h'''/W
-    double jerk = 0.0;                       // h''', positive: the surface falls away
-    // Lambda since the contact has been held: (t, lambda), to the release. It jumps where others come or go.
+    std::size_t contact = 0;                 // the first of the released contacts
+    double lambda = 0.0, lambda_rate = 0.0;  // lambda_rate = -h'''/W
+    double jerk = 0.0;                       // h''', positive: the contact opens
+    // (t, lambda) since the contact was last held, up to the release. It jumps where other contacts join or leave.
     std::vector<std::pair<double, double>> force;
 };
 ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event);

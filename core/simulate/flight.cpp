@@ -1,4 +1,4 @@
-// The gaps that are open along a step: the next impact.
+// EventStepper: impacts of open contacts, and zeros of the forces of held ones.
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace achilles {
 
-// Made once for a step as it stands.
+// The gap polynomial of a contact, computed once for the current step.
 const Polynomial& EventStepper::gap_along(std::size_t contact) {
     Polynomial& h = along_[contact];
     if (!known_.contains(contact)) make_gap(contact, h);
@@ -15,9 +15,9 @@ const Polynomial& EventStepper::gap_along(std::size_t contact) {
     return h;
 }
 
-// The gap along the last step, as a polynomial in theta. It is the integrated increment; evaluating h(q) instead would
-// leave a root uncertain by err(h)/w, which is longer than the last flights. Where h(q) at the step's end is known
-// better (the difference is above its rounding), the polynomial is made to end there.
+// The gap along the last step, as a polynomial in theta. It is the integrated increment; a root of h(q) itself would be
+// uncertain by err(h)/w, which exceeds the last flights. If h(q) at the end of the step is more accurate (the
+// difference exceeds its rounding), the polynomial is corrected to end there.
 void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     const int multiplicity = start_of(contact).multiplicity;
     flow_->event_function(contact, h);
@@ -28,7 +28,7 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     const Polynomial::End reached = h.at_end();
     const double value = end.h - reached.value, slope = end.hdot * flow_->duration() - reached.slope;
     if (!surface.within_gap_error(value, 4.0, end, flow_->end())) {
-        // theta^m (value - b + b theta), with this value and slope at 1, and nothing below theta^m
+        // Adds theta^m (value - b + b theta), which has this value and slope at theta = 1 and no lower powers.
         const int m = std::max(2, multiplicity);
         const double b = slope - m * value;
         h.c[static_cast<std::size_t>(m)] += value - b;
@@ -41,22 +41,23 @@ Descent EventStepper::gap_descent() {
     return first_descent(h, start_of(contact_).multiplicity, flow_->remainder(contact_, h));
 }
 
-// Nothing where the gap stays open along the step, as it then is.
+// Returns nullopt if the gap stays open along the step, which may have been shortened.
 std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
     const bool asked_before = start_of(contact_).asked_again;
-    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta))  // a short step knows its start better
+    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta))  // its remainder is smaller
         descent = gap_descent();
     switch (descent.kind) {
         case Descent::Kind::none:
             break;
         case Descent::Kind::root:
             if (descent.theta == 0.0) return land_here();
-            return locate_impact(descent.theta);  // it may be none, or the step have become shorter
+            return locate_impact(descent.theta);  // nullopt: no impact, or the step was shortened
         case Descent::Kind::rose:
             if (!knows_its_start() || asked_before) return doubt_gap(0.0);
             break;
         case Descent::Kind::open:
-            // It is asked again from where the doubt begins: what holds the end of a step lies inside the next one.
+            // Try again from where the gap enters its remainder: an event near the end of this step is then inside the
+            // next one.
             if (!asked_before && end_step_at(descent.theta)) {
                 asked_again_ = asked_again_.with(contact_);
             } else if (surely_closes_at_start()) {
@@ -71,8 +72,8 @@ std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
     return std::nullopt;
 }
 
-// How the contacts, but for these, go on from the end of the step. False, and contact_ is the one, where one has closed
-// there by h(q), though its series stays open. The least of them is taken note of.
+// Computes the start of the next step for all contacts except `but`, and updates the smallest gap. Returns false, with
+// the contact in contact_, if h(q) is negative at the end although the polynomial stays positive.
 bool EventStepper::settle_gaps(ContactSet but, double& least) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i)) continue;
@@ -104,7 +105,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
     return true;
 }
 
-// Whether the gap closes cannot be told from theta on: the step ends there.
+// It is ambiguous from theta on whether the gap closes: ends the step there.
 StepResult::End EventStepper::doubt_gap(double theta) {
     Polynomial h;
     flow_->event_function(contact_, h);
@@ -114,21 +115,21 @@ StepResult::End EventStepper::doubt_gap(double theta) {
     return End::doubt;
 }
 
-// Whether the gap, which starts within its remainder, closes so fast that it is through this before it could turn round: then
-// the impact is certain, and only its instant is not known better.
+// Whether the gap starts within its remainder and closes so fast that it must pass through zero before it could turn
+// around. The impact is then certain, and only its time has this uncertainty.
 bool EventStepper::surely_closes_at_start() {
     const EventStart& start = start_of(contact_);
     if (start.multiplicity > 0) return false;
     const Polynomial& h = gap_along(contact_);
     const double span = flow_->duration(), remainder = flow_->remainder(contact_, h), rate = h.c[1] / span;
     if (!(h.c[0] <= remainder) || !(rate < -4.0 * start.gap.rate_error)) return false;
-    double acceleration = 0.0;  // at most, over the step
+    double acceleration = 0.0;  // upper bound over the step
     for (int k = 2; k <= h.degree; ++k) acceleration += k * (k - 1) * std::abs(h.c[static_cast<std::size_t>(k)]);
     const double passage = 2.0 * (std::abs(h.c[0]) + remainder) / -rate;
     return passage * acceleration / (span * span) < -0.25 * rate;
 }
 
-// The gap came down to zero within the remainder of the step before: where that ended.
+// Impact at the start of the step: the gap reached zero within the remainder of the step before.
 StepResult::End EventStepper::land_here() {
     landed_ = request_->state;
     result_.state = &landed_;
@@ -137,8 +138,8 @@ StepResult::End EventStepper::land_here() {
     return End::impact;
 }
 
-// The step's end lies under the surface by h(q), though the series of the gap, exact to the tolerance, stays above. Finds
-// by bisection where h(q) crosses zero, making the step again to each middle, and lands there.
+// The step ends below the contact surface by h(q), although the gap polynomial, accurate to the tolerance, stays
+// positive. Finds the zero of h(q) by bisection, repeating the step to each midpoint, and impacts there.
 StepResult::End EventStepper::land_under() {
     const double duration = flow_->duration();
     double above = 0.0, under = 1.0;
@@ -147,12 +148,12 @@ StepResult::End EventStepper::land_under() {
         if (!end_step_after(middle * duration)) break;
         (surfaces_->of(contact_).at(flow_->end()).h > 0.0 ? above : under) = middle;
     }
-    if (!end_step_after(under * duration)) return doubt_gap(0.0);  // nothing of the step is kept
+    if (!end_step_after(under * duration)) return doubt_gap(0.0);  // the step is discarded
     return end_flight();
 }
 
-// Integrates to the root and corrects it by Newton's method until the rest is a Taylor step. Nothing if there is no
-// impact in the step after all (it was the dense output that dipped).
+// Integrates to the root and corrects it by Newton's method until the rest is within a Taylor step. Returns nullopt if
+// the step contains no impact (only the dense output crossed zero).
 std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
     double duration = theta * flow_->duration();
     for (int round = 0; round < 8; ++round) {
@@ -174,23 +175,23 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
     return end_flight();
 }
 
-// The flow's last step ends on the surface.
+// Ends the last step on the contact surface, with an impact.
 StepResult::End EventStepper::end_flight() {
     const std::size_t contact = contact_;
     const bool landed = surfaces_->land(flow_->edit_end(), contact, request_->mode, result_.contact);
     double least = landed ? result_.contact.h : surfaces_->of(contact).at(flow_->end()).h;
     if (landed) {
         if (surfaces_->count() > 1)
-            settle_gaps(ContactSet::of(contact), least);  // what has closed as well lands then, too
+            settle_gaps(ContactSet::of(contact), least);  // other contacts that have closed as well impact at this time
         contact_ = contact;
     }
     end_step(least);
     return landed ? End::impact : End::off_surface;
 }
 
-// The contacts that are held along a step: where the force of one vanishes.
+// ---- forces of held contacts ----
 
-// Nothing where the force goes on along the step, as it then is.
+// Returns nullopt if the force stays positive along the step, which may have been shortened.
 std::optional<StepResult::End> EventStepper::meet_force(Descent descent) {
     const bool asked_before = start_of(contact_).asked_again;
     if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
@@ -199,12 +200,12 @@ std::optional<StepResult::End> EventStepper::meet_force(Descent descent) {
             break;
         case Descent::Kind::root:
             if (descent.theta == 0.0) return End::force_vanishes;
-            return locate_release(descent.theta);  // nothing: the step has become shorter
+            return locate_release(descent.theta);  // nullopt: the step was shortened
         case Descent::Kind::rose:
             if (!knows_its_start() || asked_before) return doubt_force(0.0);
             break;
         case Descent::Kind::open:
-            // As in flight: a dip that holds the end of a step lies inside the next one.
+            // As for gaps: an event near the end of this step is then inside the next one.
             if (!asked_before && end_step_at(descent.theta)) {
                 asked_again_ = asked_again_.with(contact_);
             } else if (!(knows_its_start() && is_last())) {
@@ -217,14 +218,14 @@ std::optional<StepResult::End> EventStepper::meet_force(Descent descent) {
     return std::nullopt;
 }
 
-// Ends the flow's last step moved onto the surfaces of what is held. False if it cannot be.
+// Projects the end of the last step onto the surfaces of the held contacts. Returns false if that fails.
 bool EventStepper::end_on_surface() {
     const auto gap = surfaces_->project(flow_->edit_end(), held(), held());
     end_step(gap ? *gap : surfaces_->of(contact_).at(flow_->end()).h);
     return gap.has_value();
 }
 
-// Whether the force vanishes cannot be told from theta on: the step ends there.
+// It is ambiguous from theta on whether the force vanishes: ends the step there.
 StepResult::End EventStepper::doubt_force(double theta) {
     if (!end_step_at(theta)) return End::doubt;
     if (!end_on_surface()) return End::off_surface;
@@ -234,7 +235,7 @@ StepResult::End EventStepper::doubt_force(double theta) {
     return End::doubt;
 }
 
-// Where a contact force vanishes along the last step: -hddot = W lambda. At theta = 0 if it did before, to within
+// First zero of the contact force -hddot = W lambda in the last step; theta = 0 if it is zero at the start within
 // rounding.
 Descent EventStepper::force_descent() {
     if (flow_->stays_negative(contact_)) return {};
@@ -255,10 +256,10 @@ Descent EventStepper::force_descent() {
     return first_descent(force, multiplicity, flow_->remainder(contact_, force));
 }
 
-// The same as locate_impact, for hddot = 0 along the constrained motion.
+// Like locate_impact, for hddot = 0 along the constrained motion.
 std::optional<StepResult::End> EventStepper::locate_release(double theta) {
     ContactKinematics& leaving = surfaces_->of(contact_, request_->mode.without(contact_));
-    const double longest = flow_->duration();  // where the force only touches zero Newton's method would run away
+    const double longest = flow_->duration();  // limits Newton's method, which diverges if the force only touches zero
     double duration = theta * longest;
     for (int round = 0; round < 8; ++round) {
         known_ = {};
@@ -274,7 +275,7 @@ std::optional<StepResult::End> EventStepper::locate_release(double theta) {
             surfaces_->project(flow_->edit_end(), held(), held());
             break;
         }
-        if (!std::isfinite(correction)) break;  // a touch: the release decides
+        if (!std::isfinite(correction)) break;  // the force only touches zero; release() decides
         duration = std::clamp(duration + correction, 0.5 * duration, longest);
     }
     const std::size_t contact = contact_;

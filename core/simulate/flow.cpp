@@ -23,7 +23,7 @@ void Flow::start(Mode mode, const State& state, std::span<const Gap> gaps, doubl
     moved_ = true;
 }
 
-// Shorter than half the resolution of time is no step.
+// The shortest step (s), half the resolution of time.
 double Flow::least() const { return 1e-16 * std::max(1e-3, std::abs(t_)); }
 
 StepFailure Flow::step(double until) {
@@ -41,7 +41,7 @@ StepFailure Flow::step(double until) {
     }
     if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
-    // Neither short of it nor past it by a rounding: time never runs back.
+    // Avoid rounding past `until`: time never decreases.
     end_ = span_ == longest ? until : std::min(t_ + span_, until);
     fetched_ = false;
     return failure;
@@ -91,7 +91,7 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;
-    // An end that was moved onto the surface is met.
+    // Corrects the polynomial to end at the projected state.
     const State& moved = end();
     const State& reached = stepper_->current_state();
     const Eigen::Index n = moved.q.size();
@@ -119,7 +119,7 @@ double Work::along(const Piece& piece, std::span<const double> coefficients, dou
         return power.output(0);
     };
     using boost::math::quadrature::gauss;
-    // A power that depends on the time may change while the motion stands still.
+    // A power that depends on time may vary while the system is at rest.
     if (!model_->equations().autonomous) return gauss<double, 30>::integrate(power_at, from, to);
     if (piece.degree <= 7) return gauss<double, 7>::integrate(power_at, from, to);
     if (piece.degree <= 10) return gauss<double, 10>::integrate(power_at, from, to);

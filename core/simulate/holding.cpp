@@ -1,4 +1,4 @@
-// Who is held after an event, who leaves, who merely touches (theory-gaps.md 2.2, 2.5).
+// Decides which contacts are held, released or touching after an event (theory-gaps.md 2.2, 2.5).
 #include <fmt/format.h>
 
 #include <cmath>
@@ -8,8 +8,8 @@
 
 namespace achilles {
 
-// Contacts with h = 0 and hdot = 0: who of them is held, who leaves, who merely touches (theory-gaps.md 2.2). What was held
-// before counts no more. The forces of `vanishing` are known to be 0.
+// Classifies contacts with h = 0 and hdot = 0 as held, released or touching (theory-gaps.md 2.2). The mode before the
+// event is not used. The forces of `vanishing` are known to be 0.
 void Execution::decide(ContactSet closed, ContactSet vanishing) {
     forget_held();
     not_unique_ = false;
@@ -34,7 +34,7 @@ void Execution::decide(ContactSet closed, ContactSet vanishing) {
                                                    surfaces_->count() > 1 ? names_of(closed) : "", where(next_.state)));
 }
 
-// hddot of the free motion, at the state where the run stands.
+// hddot in free flight, at the current state.
 ContactVector<double> Execution::accelerations(const Closed& closed) {
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -42,7 +42,7 @@ ContactVector<double> Execution::accelerations(const Closed& closed) {
     return hddot;
 }
 
-// Those of the doubtful whose force grows from 0, in this mode.
+// The doubtful contacts whose force grows from 0, in this mode.
 ContactSet Execution::pressed_by_rates(ContactSet doubtful, Mode mode) {
     const Closed closed = surfaces_->at(next_.state, doubtful.with(mode.held()));
     const auto block = HeldBlock<double>::of(closed.W, closed.places_of(mode.held()));
@@ -71,12 +71,12 @@ ContactSet Execution::pressed_by_rates(ContactSet doubtful, Mode mode) {
     return pressed;
 }
 
-// Proves for each contact what the forces say of it: `active` are held by them, the others leave. Where that cannot be told,
-// the rate of hddot along the motion decides, of one contact or of several that do not feel one another.
+// Proves for each contact what the forces suggest: `active` are held, the others leave. If the sign of hddot is
+// uncertain, its rate along the motion decides, for one contact or for several that are not coupled.
 bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing) {
     const ContactSet unpressed = unpressed_among(closed, active);
     return judge(closed, active, vanishing, unpressed) ||
-           (!unpressed.empty() && judge(closed, active, vanishing, {}));  // others may press them, after all
+           (!unpressed.empty() && judge(closed, active, vanishing, {}));  // other contacts may press them
 }
 
 bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed) {
@@ -89,7 +89,7 @@ bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing
         if (unpressed.contains(i)) next_.starts[i] = {};
         if (!closed.without(unpressed).contains(i)) continue;
         const auto [hddot, jerk] = surfaces_->of(i, Mode::holding(active.without(i))).normal(next_.state);
-        // Known to be, or nearer to it than time resolves.
+        // Known to be 0, or 0 within the resolution of time.
         const bool is_zero = vanishing.contains(i) || mag(hddot) <= resolved * mag(jerk);
         if (!is_zero && certainly_negative(hddot)) {
             mode = mode.with(i, ContactState::held);
@@ -101,7 +101,8 @@ bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing
         }
     }
     if (!doubtful.empty()) {
-        // The rates of hddot decide, 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful, as far as they are proved.
+        // The rates of hddot decide, as far as proved: 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful
+        // contacts.
         ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, mode);
         const bool alone = doubtful.count() == 1;
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {
@@ -125,7 +126,7 @@ bool Execution::judge(ContactSet closed, ContactSet active, ContactSet vanishing
     return unpressed_of(unpressed, mode) == unpressed;
 }
 
-// Of these contacts those that a mode holds and that stay closed without a force.
+// The contacts of this set that the mode holds and that stay closed without a force.
 ContactSet Execution::unpressed_of(ContactSet contacts, Mode mode) {
     ContactSet found;
     for (const std::size_t i : contacts)
@@ -133,7 +134,7 @@ ContactSet Execution::unpressed_of(ContactSet contacts, Mode mode) {
     return found;
 }
 
-// Those that nothing presses now and that, at whatever state these are held, nothing does.
+// The current unpressed contacts that no state presses as long as these contacts are held.
 ContactSet Execution::always_unpressed(Mode mode) {
     ContactSet found;
     for (const std::size_t i : next_.unpressed)
@@ -141,13 +142,13 @@ ContactSet Execution::always_unpressed(Mode mode) {
     return found;
 }
 
-// Of closed contacts those that need no force, while the others of them and those that `active` says are pressed are held.
+// The closed contacts that need no force while the others of them and the `active` contacts are held.
 ContactSet Execution::unpressed_among(ContactSet closed, ContactSet active) {
     ContactSet found;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (closed.contains(i) && surfaces_->is_nearly_free(i, Mode::holding(active.without(i)), next_.state, scale_))
             found = found.with(i);
-    active = active.without(found);  // what may be no force presses no other
+    active = active.without(found);  // forces that may be 0 press no other contact
     for (ContactSet before; before != found;) {
         before = found;
         found = unpressed_of(found, Mode::holding(active.with(found)));
@@ -155,8 +156,8 @@ ContactSet Execution::unpressed_among(ContactSet closed, ContactSet active) {
     return found;
 }
 
-// The held contacts whose forces vanish with that of this one, as far as the state is known: as where a floor, and nothing else,
-// presses a ball against a wall.
+// The held contacts whose forces vanish together with that of this one, within the accuracy of the state; for example,
+// if only a floor presses a ball against a wall.
 ContactSet Execution::vanishing_with(std::size_t which) {
     ContactSet found = ContactSet::of(which);
     const double known = state_error() + 0x1p-40;
@@ -169,13 +170,13 @@ ContactSet Execution::vanishing_with(std::size_t which) {
     return found;
 }
 
-// Whether a contact with h = hdot = hddot = 0 stays so along the motion in a mode: where hddot is 0 everywhere, or
-// the whole system is at rest for ever.
+// Whether a contact with h = hdot = hddot = 0 stays closed in a mode: hddot is 0 everywhere, or the system is at
+// permanent rest.
 bool Execution::stays_closed(std::size_t contact, Mode mode) {
     return (surfaces_->count() > 1 && model_->is_carried(contact, mode)) || is_at_rest(mode);
 }
 
-// What merely touches must go on to do so.
+// Ends the run if a touching contact has opened or penetrated.
 void Execution::check_touching() {
     if (next_.touching.empty()) return;
     constexpr double closed = 1e-9;
@@ -195,7 +196,7 @@ void Execution::check_touching() {
     }
 }
 
-// Nothing moves, nothing depends on the time, and the forces that hold these leave no acceleration.
+// Whether the system is at permanent rest: zero velocity, no dependence on time, and zero acceleration in this mode.
 bool Execution::is_at_rest(Mode mode) {
     if (!model_->equations().autonomous || next_.state.v != Vector::Zero(next_.state.v.size())) return false;
     const Closed closed = surfaces_->at(next_.state, mode.held());

@@ -9,7 +9,8 @@ namespace achilles {
 
 namespace {
 
-// Plain loops: an expression over vectors whose length is known to the program alone costs more than its sum.
+// Bound on the change of h by rounding of q. Written as a loop, because a vector expression of dynamic size is slower
+// than the sum.
 double rounding_of_q(const Contact& contact, const State& state) {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < state.q.size(); ++i) sum += std::abs(contact.g.data()[i] * state.q.data()[i]);
@@ -22,7 +23,7 @@ void move_along(Vector& x, double a, const Vector& n) {
         x.data(), static_cast<std::size_t>(x.size()), [n = n.data()](std::size_t i) { return n[i]; }, a);
 }
 
-// A computed number stands for every number within this relative distance.
+// The interval of all numbers within this relative distance of a computed number.
 Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
 
 }  // namespace
@@ -75,9 +76,9 @@ double ContactKinematics::gap_error(const State& state) {
     return rad(gap_.output(0));
 }
 
-// What the rounding of q alone does to h is a part of the bound and at hand.
+// The rounding of q alone contributes a part of the bound, which is cheap to compute and often sufficient.
 bool ContactKinematics::within_gap_error(double value, double times, const Contact& contact, const State& state) {
-    const double part = 0.5 * rounding_of_q(contact, state);  // half, for its own rounding
+    const double part = 0.5 * rounding_of_q(contact, state);  // half of it, for its own rounding
     return std::abs(value) <= times * part || std::abs(value) <= times * gap_error(state);
 }
 
@@ -88,17 +89,18 @@ double ContactKinematics::hdot_error(const State& state) {
     return rad(enclosure.hdot());
 }
 
-// Newton's method along n. Near the surface h may be exact far below the rounding of q, as (2 + sin x) y is near y = 0:
-// then the last correction alone sets its rounding. Newton's method squares what is left, so what fell by 2^-40 at once is rounding;
-// where dh vanishes on the surface it falls by a constant factor instead.
+// Newton's method along n. Near the surface, h may be accurate far below the rounding of q, as (2 + sin x) y is near
+// y = 0; its rounding is then set by the last correction. Because Newton's method converges quadratically, a reduction
+// of |h| by 2^-40 in one iteration means that the rest is rounding. If dh vanishes on the surface, |h| falls by a
+// constant factor instead.
 bool ContactKinematics::project(State& state, bool keep_velocity, Contact& contact) {
-    constexpr int rounds = 8;  // two or three are usual; the rest is patience with rounding
+    constexpr int rounds = 8;  // two or three are usual; more help only with rounding
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0;; ++round) {
         look(state, contact);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) break;
-        // The bound costs more than another round, so it is not asked in the first one unless h is tiny at once. One
-        // round leaves a few roundings of q as a rule, and no further one does better: that is near enough.
+        // The error bound costs more than an iteration, so the first one evaluates it only if h is tiny at once. One
+        // iteration usually leaves a few roundings of q, which further ones do not improve; that is accepted.
         const double roundings = std::abs(contact.h) / rounding_of_q(contact, state);
         const bool far = round == 0 && roundings > 0.5;
         const bool near = round > 0 && (roundings <= 4.0 || std::abs(contact.h) <= 0x1p-40 * before);

@@ -1,4 +1,4 @@
-// The surface h(q) = 0 and what happens on it: Newton's law, the tangential velocity, projection, reinitialization.
+// Contact quantities at a state, Newton's impact law, reinitialization, and projection onto the surface h(q) = 0.
 #pragma once
 
 #include <optional>
@@ -10,10 +10,10 @@
 
 namespace achilles {
 
-// The contact quantities at one state (theory.md 1).
+// Contact quantities at one state (theory.md 1).
 struct Contact {
     double h = 0.0, hdot = 0.0, W = 0.0;
-    double gap_t = 0.0;        // dh/dt where q stands still: less the speed at which the surface comes
+    double gap_t = 0.0;        // dh/dt at constant q: minus the speed at which the surface approaches
     Vector impulse_direction;  // n = M^-1 g'/W, so that g n = 1: the direction of every impulse
     Vector g;                  // dh, as a column
 };
@@ -21,7 +21,7 @@ struct Contact {
 // v+ by Newton's impact law (contacts/impact_law.hpp).
 Vector impact(const Contact& contact, const Vector& v_before, double e);
 
-// What an impact does to the energy: dE = work - loss, the work of the moving surface.
+// The energy balance of an impact, dE = work - loss, with the work of the moving contact surface.
 struct Exchange {
     double work = 0.0, loss = 0.0;
 };
@@ -30,31 +30,31 @@ inline Exchange exchange(const Contact& contact, double e) {
     return {newton::work(impulse, contact.gap_t), newton::loss(impulse, e, contact.hdot)};
 }
 
-// Where the constrained execution restarts.  kinetic: s = v - n hdot;  euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
+// Restart velocity of the constrained motion. kinetic: s = v - n hdot; euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);
 
 // Evaluates contact quantities for one run.
 class ContactKinematics {
  public:
-    // Of a contact in a mode in which it is open: n, W, hddot and its rate are then those of theory-gaps.md 2.
+    // For a contact in a mode in which it is open: n, W, hddot and its rate are those of theory-gaps.md 2.
     ContactKinematics(const Model& model, const Run& run, std::size_t contact = 0, Mode mode = {});
 
     Contact at(const State& state);
-    // Bound on the error of h at q: the radius of its interval enclosure over what rounds to q.
+    // Error bound of h at q: the radius of its interval enclosure over all states that round to this one.
     double gap_error(const State& state);
-    // Is |value|, a difference of gaps, within `times` that bound at q?
+    // Whether |value|, a difference of gaps, is at most `times` that bound.
     bool within_gap_error(double value, double times, const Contact& contact, const State& state);
-    // The bound for hdot.
+    // Error bound of hdot.
     double hdot_error(const State& state);
-    // Moves q along n until |h| is at rounding level, then v to s (keep_velocity = false) or not at all. Gives the contact
-    // there; false where that fails: dh = 0, or h cannot be brought to zero.
+    // Moves q along n until |h| is at rounding level, then sets v to s unless keep_velocity. Returns the contact
+    // quantities there in `contact`; false if it fails: dh = 0, or h cannot be brought to zero.
     bool project(State& state, bool keep_velocity, Contact& contact);
     // Enclosures of hddot and of h''' along the constrained motion over the rounding box of a state.
     struct Normal {
         Interval hddot, jerk;
     };
     Normal normal(const State& state);
-    // hddot over all states within these distances of one.
+    // hddot over all states within these distances of `state`.
     Interval hddot_within(const State& distances, const State& state);
     double normal_acceleration(const State& state);
     double jerk(const State& state);

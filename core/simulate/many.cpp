@@ -28,8 +28,8 @@ void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
     const auto work = [&](const tbb::blocked_range<std::size_t>& range) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) take(i, attempt(model, run_of(i), keep));
     };
-    // One run takes long enough (10 us and more) to be a task of its own, and may take a thousand times longer than
-    // its neighbour.
+    // A run takes long enough (10 us and more) to be a task of its own, and may take a thousand times longer than its
+    // neighbor.
     tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
     arena.execute([&] { tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count), work, tbb::auto_partitioner()); });
 }

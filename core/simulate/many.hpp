@@ -1,4 +1,4 @@
-// Many runs of one model on all cores: what maps and sweeps stand on.
+// Runs many simulations of one model on all cores, for maps and sweeps.
 #pragma once
 
 #include <cstddef>
@@ -15,36 +15,36 @@
 
 namespace achilles {
 
-// What one run of many gave: its trajectory, or why it could not start (a start below the floor is one point of a map,
-// not the end of it).
+// Result of one of many runs: its trajectory, or the reason why it could not start (in a map, a start below the floor
+// is just one point).
 using Attempt = std::variant<Trajectory, InputError>;
 
-// Makes run_of(i), simulates it, keeping what `keep` says, and hands the result to take(i, attempt), for 0 <= i <
-// count, on at most `threads` threads (0: one for every core). Runs share the model only, which never changes, so that
-// no result depends on the number of threads or on the other runs; only Statistics::seconds does.
+// Simulates run_of(i) for 0 <= i < count, recording what `keep` says, and passes the result to take(i, attempt). Uses
+// at most `threads` threads (0: one for every core). Runs share only the model, which never changes. No result depends
+// on the number of threads or on other runs; only Statistics::seconds does.
 //
-// run_of and take are called once for every i, from several threads at once and in no order: they may write to a place
-// that belongs to i and share nothing else that changes. A trajectory ends with its take() unless that keeps it, so
-// memory does not grow with count. What run_of or take throws ends the runs not yet begun and is thrown again here
-// (where several throw, one of theirs); that is how a caller cancels.
+// run_of and take are called once for every i, from several threads and in any order. They may write to data that
+// belongs to i, and must not modify anything shared. A trajectory is destroyed after its take() unless take() keeps it,
+// so memory does not grow with count. An exception from run_of or take stops the runs that have not started, and is
+// rethrown here (one of them, if there are several). A caller cancels that way.
 void simulate_many(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
                    const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0,
                    Keep keep = Keep::everything);
 
-// The same with Keep::end, the sequences of events included, and eight runs at a time in one vector of the processor, as far
-// as their motion is plain: for ensembles and maps, of which the ends are wanted. Steps are of lower order than simulate()
-// takes, so an end agrees with that of simulate() within the tolerance, not to the last bit; but no more than there does it
-// depend on the other runs, the threads or the processor. What remains undecided so is simulated alone. Runs by dopri5, and
-// systems with functions that are not defined everywhere, are simulated one by one. Statistics::seconds stays 0.
+// The same with Keep::end, including the sequences of events, for ensembles and maps. Eight runs at a time share a
+// vector of the processor as long as their motion is plain. The steps have lower order than those of simulate(), so a
+// final state agrees with simulate() within the tolerance, not to the last bit. Results do not depend on other runs,
+// threads or the processor. A run that stays undecided is simulated alone. Runs by dopri5, and systems with functions
+// that are not defined everywhere, are simulated one by one. Statistics::seconds stays 0.
 void simulate_ends(const std::shared_ptr<const Model>& model, std::size_t count,
                    const std::function<Run(std::size_t)>& run_of,
                    const std::function<void(std::size_t, Attempt&&)>& take, int threads = 0);
 
 class SideBySide;
 
-// simulate_ends() on the thread that asks, for one share of many runs after the other: what is compiled for the first
-// serves the others. One per thread; of no further use once run_of or take has thrown.
+// simulate_ends() on the calling thread, for one batch of runs after another; what is compiled for the first batch is
+// reused. Use one object per thread. It must not be used again once run_of or take has thrown.
 class EndSimulator {
  public:
     explicit EndSimulator(const std::shared_ptr<const Model>& model);
@@ -56,8 +56,7 @@ class EndSimulator {
     std::unique_ptr<SideBySide> runs_;
 };
 
-// simulate_many() for a list of runs, each reduced to what is wanted of it: results[i] = summarize(i, attempt of
-// runs[i]).
+// simulate_many() for a list of runs: results[i] = summarize(i, result of runs[i]).
 template <class Summarize>
 auto simulate_many(const std::shared_ptr<const Model>& model, std::span<const Run> runs, const Summarize& summarize,
                    int threads = 0, Keep keep = Keep::everything) {

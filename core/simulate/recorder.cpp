@@ -23,7 +23,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
         trajectory_.passages.reserve(32);
         return;
     }
-    // A usual run grows no further than this.
+    // Capacity for a typical run.
     trajectory_.events.reserve(64);
     trajectory_.pieces.reserve(128);
     trajectory_.coefficients.reserve(8192);
@@ -31,8 +31,8 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
 
 namespace {
 
-// Room for so many more elements. A vector that grows is for a moment there twice. A large one takes address space for
-// all that the run may keep instead, of which the system gives memory only to what is written.
+// Reserves room for `more` elements. Growing a vector briefly needs twice its memory. A large vector therefore reserves
+// address space for all that the run may record; the system provides memory only for pages that are written.
 template <class Element>
 void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes) {
     constexpr std::size_t large = std::size_t{8} << 20;  // bytes
@@ -43,7 +43,7 @@ void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes
             constexpr double most_address_space = 1e12;
             const double elements = std::min(most_bytes, most_address_space) / sizeof(Element);
             return vector.reserve(std::max(doubled, static_cast<std::size_t>(elements) + more));
-        } catch (const std::bad_alloc&) {  // the process may not have that much: piece by piece
+        } catch (const std::bad_alloc&) {  // the process may not have that much address space: grow stepwise
         }
     }
     vector.reserve(doubled);
@@ -102,7 +102,7 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     steps(1, gap);
     if (keep_ == Keep::end) return;
     Statistics& statistics = trajectory_.statistics;
-    // More orders than any step has.
+    // An upper bound on the coefficients of one step.
     const std::size_t most_coefficients = 128 * static_cast<std::size_t>(trajectory_.run.q.size());
     const double memory = trajectory_.run.options.memory;
     make_room(trajectory_.coefficients, most_coefficients, memory);
@@ -114,14 +114,14 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
     set_state(energy_, flow.end());
     energy_.run();
-    // Relative to the largest the parts have been: their sum, and each of them at an instant, may be nothing.
+    // The drift is relative to the largest |T| + |V| so far, because at an instant the sum and each part may be 0.
     scale_ = std::max(scale_, std::abs(energy_.kinetic()) + std::abs(energy_.potential()));
     largest_ = std::max(largest_, scale_ + std::abs(trajectory_.work));
-    // At rest nothing is left but the rounding of what there was.
+    // At rest, only the rounding of earlier energies remains.
     const double change = std::abs(energy_.total() - trajectory_.work - reference_);
     if (!(change > 0x1p-60 * largest_)) return;
-    // What a drive gives and takes may be large where T and V are nothing; and before it begins, all of it may be nothing: the
-    // change is compared with the largest of the whole run.
+    // A drive may exchange much energy while T and V are small, and all of these may be 0 before it starts. The change
+    // is then compared with the largest energy of the whole run.
     if (work_.any())
         largest_change_ = std::max(largest_change_, change);
     else
@@ -133,7 +133,7 @@ Exchange Recorder::exchange_of_jump(const State& before, const State& after, dou
     const auto energy_at = [&](const State& state) {
         set_state(energy_, state);
         energy_.run();
-        return energy_.total();  // the place jumps too where a pair rests
+        return energy_.total();  // the position jumps, too, if a pair comes to rest
     };
     return {work, work + energy_at(before) - energy_at(after)};
 }

@@ -1,4 +1,4 @@
-// Writes a trajectory while it happens: pieces, phases, events, statistics.
+// Records the trajectory during a run: dense output, phases, events, statistics.
 #pragma once
 
 #include "model/model.hpp"
@@ -13,10 +13,10 @@ class Recorder {
  public:
     Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep);
 
-    // For another run of the same parameters.
+    // Starts over, for another run with the same parameters.
     void restart(std::shared_ptr<const Model> model, const Run& run);
 
-    // What was recorded so far, and back to it. No event may lie between.
+    // The position in the record; go_back() returns to it. No event may lie between.
     struct Mark {
         std::size_t pieces, coefficients;
         Statistics statistics;
@@ -34,32 +34,32 @@ class Recorder {
     }
     void go_back(const Mark& mark);
 
-    // A phase begins. Where not all that is held carries, its forces are not unique.
+    // Begins a phase. If not all held contacts are carriers, its forces are not unique.
     void open(Mode mode, ContactSet carriers, double t);
-    // The phase goes on with other carriers.
+    // Continues the phase with other carriers.
     void carry_on(ContactSet carriers);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
     Mode mode() const { return trajectory_.phases.back().mode; }
 
-    // A smooth stretch begins: the energy at its start is what later ends of steps are compared with.
+    // Begins a segment. Its initial energy is the reference for the energy drift at later step ends.
     void stretch(const State& state);
-    // The flow's last step, as it stands, in the mode of the phase; `gap` is h at its end.
+    // Records the last step, in the mode of the phase; `gap` is the smallest h at its end.
     void step(const Flow& flow, double gap, Mode mode);
-    // Steps of which the end alone is kept.
+    // Counts steps of which only the end is known.
     void steps(long count, double least_gap);
-    // An impact at this state before it, and what it does to the energy.
+    // Records an impact: the state before it, and its work and loss.
     void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
                 std::shared_ptr<const Joint> joint = nullptr);
-    // What the last impact has opened, and the mode after it.
+    // Adds to the last impact the contacts that it opened and the mode after it.
     void after_impact(ContactSet opened, Mode mode);
-    // The same of a jump to a velocity that no impact leads to: what is lost follows from the energies.
+    // Work and loss of a jump that is not an impact: the loss follows from the energies before and after.
     Exchange exchange_of_jump(const State& before, const State& after, double work);
-    // Any other event.
+    // Records any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
     long steps() const { return trajectory_.statistics.steps; }
-    // Of all that is kept.
+    // Memory of everything recorded, bytes.
     double bytes() const;
 
     // Ends the run. The recorder is empty afterwards.
@@ -70,10 +70,10 @@ class Recorder {
     Trajectory trajectory_;
     EnergyTerms<Evaluator<double>> energy_;
     Work work_;
-    double reference_ = 0.0;       // energy less work at the start of the stretch
-    double scale_ = 0.0;           // the largest |T| + |V| of the stretch so far
-    double largest_ = 0.0;         // the same of the run
-    double largest_change_ = 0.0;  // of the energy less the work, in the stretches of a run with work
+    double reference_ = 0.0;       // energy minus work at the start of the segment
+    double scale_ = 0.0;           // largest |T| + |V| in the segment so far
+    double largest_ = 0.0;         // the same over the whole run
+    double largest_change_ = 0.0;  // of energy minus work in any segment, for runs with work
     bool any_gap_ = false;
 };
 

@@ -23,7 +23,7 @@ ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t) {
     return phase == trajectory.phases.rend() ? mode.held() : phase->carriers;
 }
 
-// A sample in contact is brought back to h = 0, hdot = 0: the dense output leaves the surface by its own error.
+// Projects samples in contact onto h = 0, hdot = 0, because dense output leaves the surface by its own error.
 struct Sampler::Projection {
     explicit Projection(const Trajectory& trajectory)
         : surfaces(*trajectory.model, trajectory.run), work(*trajectory.model, trajectory.run) {}
@@ -77,7 +77,7 @@ Sample Sampler::at(double t) {
     sample.state = state(*std::prev(piece), t);
     sample.work = work(*std::prev(piece), t);
     sample.loss = std::prev(piece)->loss;
-    // The last piece may end at an impact after which no step was made.
+    // The last step may end at an impact after which no step was made.
     if (t == trajectory_.end_time) {
         const auto& events = trajectory_.events;
         if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
@@ -105,7 +105,7 @@ Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
     return sample;
 }
 
-// With `between` instants inside each step.
+// Collects the visited samples, and `between` instants inside each step.
 std::vector<Sample> Sampler::listed(const Selection& selection, int between) const {
     std::vector<Sample> samples;
     visit(selection, [&](const Sample& sample, const Piece* piece) {
@@ -124,7 +124,7 @@ std::vector<Sample> Sampler::listed(const Selection& selection, int between) con
 std::vector<Sample> Sampler::all(int between) { return listed(whole_run(), between); }
 
 std::vector<Sample> Sampler::some(std::size_t most_steps, int between) {
-    if (trajectory_.pieces.size() <= most_steps) return all(between);  // also of a run that ended before its first step
+    if (trajectory_.pieces.size() <= most_steps) return all(between);  // also of a run without a step
     Selection selection = whole_run();
     selection.stride = 1 + (trajectory_.pieces.size() - 1) / most_steps;
     std::vector<bool>& whole = selection.whole;
@@ -146,7 +146,7 @@ Sampler::Selection Sampler::whole_run() const {
     return {trajectory_.run.options.start_time, trajectory_.end_time, true, 1, {}};
 }
 
-// Of the blocks of so many steps, those in which something happens, or at an end of which.
+// The blocks of `stride` steps that contain an event, or have one at an end.
 std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
     const std::vector<Piece>& pieces = trajectory_.pieces;
     std::vector<bool> result((pieces.size() + stride - 1) / stride);
@@ -160,8 +160,8 @@ std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
     return result;
 }
 
-// One step of each `stride` that follow one another, and not always the same of them: a motion may have that period. Of a
-// block that is to be `whole` every step.
+// Visits one step of each block of `stride` consecutive steps, at varying positions in the block, because the motion
+// may have that period. Blocks marked `whole` are visited completely.
 void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     const std::size_t stride = selection.stride, count = trajectory_.pieces.size();
     const std::vector<Event>& events = trajectory_.events;
@@ -185,7 +185,8 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
         sample.phase = phase;
         return sample;
     };
-    // Events up to a time; an impact that no step led to (a run may start with one) shows its state before.
+    // Passes events up to a time. An impact that no step leads to (a run may start with one) also gets a sample before
+    // it.
     const auto pass_events = [&](double until) {
         bool any = false;
         for (; j < events.size() && events[j].t <= until; any = true) {
@@ -251,8 +252,8 @@ class GapAlong {
         return {state.t, contact_.h(), contact_.hdot()};
     }
 
-    // The least gap inside the piece where it is below this; else this. A step of either method is short enough that the
-    // gap turns round once at most in each of a few parts.
+    // The smallest gap inside the piece if it is below `least`; otherwise `least`. Steps of both methods are so short
+    // that the gap has at most one minimum in each of a few parts.
     double below(double least, const Piece& piece) {
         constexpr int parts = 8;
         Height before = at(piece, piece.start);
@@ -271,13 +272,13 @@ class GapAlong {
         return at(state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t));
     }
 
-    // No convex function with these values and rates goes lower.
+    // Lower bound for a convex function with these values and rates.
     static double where_tangents_meet(const Height& a, const Height& b) {
         const double t = (b.h - a.h + a.hdot * a.t - b.hdot * b.t) / (a.hdot - b.hdot);
         return a.h + a.hdot * (std::clamp(t, a.t, b.t) - a.t);
     }
 
-    // Between a fall and a rise, by halving.
+    // The minimum between a falling and a rising point, by bisection.
     double minimum(const Piece& piece, Height falling, Height rising) {
         for (int i = 0; i < 60; ++i) {
             const double t = 0.5 * (falling.t + rising.t);

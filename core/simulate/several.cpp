@@ -1,4 +1,4 @@
-// Impacts of several contacts, and two that chatter together (theory-gaps.md 2.1, 2.4, 2.6).
+// Impacts of several contacts, and pairs that chatter together (theory-gaps.md 2.1, 2.4, 2.6).
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -16,7 +16,7 @@ namespace {
 
 double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
 
-// The error of a Delassus matrix that was evaluated in double: a few roundings of its terms.
+// Error bound of a Delassus matrix evaluated in double: a few roundings of its terms.
 ContactMatrix<double> radius_of(const ContactMatrix<double>& W) {
     constexpr double few = 0x1p-48;
     ContactMatrix<double> radius(W.rows(), W.cols());
@@ -35,10 +35,10 @@ std::string Execution::names_of(ContactSet contacts) const {
     return fmt::format("{}", fmt::join(names, ", "));
 }
 
-// What roundings of the coordinates, as large as they have been, make of a gap.
+// Effect on a gap of roundings of the coordinates at the largest values they have had.
 double Execution::rounding_so_far(const Contact& contact) const { return 0x1p-53 * contact.g.cwiseAbs().dot(scale_.q); }
 
-// Whether these landings lead to the same in every order, with what is held (theory-gaps.md 2.4).
+// Whether these impacts have the same outcome in every order, given the held contacts (theory-gaps.md 2.4).
 bool Execution::is_order_independent(ContactSet landing) {
     const Closed closed = surfaces_->at(next_.state, next_.held().with(landing));
     ContactVector<double> e(closed.W.rows());
@@ -49,8 +49,8 @@ bool Execution::is_order_independent(ContactSet landing) {
                 .matters();
 }
 
-// Those whose landings cannot be told from this one in time (theory-gaps.md 2.4). Nothing, and the run has ended, where the
-// order matters and a smaller tolerance may tell it.
+// The contacts whose impacts cannot be separated in time from this one (theory-gaps.md 2.4). Returns nullopt, and the
+// run has ended, if the order matters and a smaller tolerance may decide it.
 std::optional<ContactSet> Execution::landing_with(std::size_t which, const Contact& contact) {
     constexpr double few = 4.0, resolved = 16.0;
     const double time = ulp(next_.state.t);
@@ -75,8 +75,8 @@ std::optional<ContactSet> Execution::landing_with(std::size_t which, const Conta
     return std::nullopt;
 }
 
-// Whether all that is held stays so at an impact of this contact: the impact presses it (kappa >= 0), and with the velocities
-// after it the forces, which may depend on them, still do.
+// Whether all held contacts stay held at an impact of this contact: the impact presses them (kappa >= 0), and so do the
+// forces with the velocities after it.
 bool Execution::stays_held(std::size_t which, const Contact& contact) {
     if (next_.mode.is_free()) return true;
     if (next_.held().count() >= most_contacts) return false;
@@ -98,7 +98,7 @@ bool Execution::stays_held(std::size_t which, const Contact& contact) {
     return is_pressed(closed, rests ? pressed.with(lands) : pressed, after);
 }
 
-// Whether the forces that hold some of these contacts press, by more than their rounding.
+// Whether the forces of these held contacts are positive by more than their rounding.
 bool Execution::is_pressed(const Closed& closed, ContactSet held, const State& state) {
     const auto block = HeldBlock<double>::of(closed.W, held);
     if (!block) return false;
@@ -114,7 +114,7 @@ bool Execution::is_pressed(const Closed& closed, ContactSet held, const State& s
     return true;
 }
 
-// What an impact does to the energy, with what is passed on to held contacts that move.
+// Work and loss of an impact, including the impulses transmitted to held contacts with moving surfaces.
 Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange own) {
     if (!model_->equations().has_power()) return own;
     const Closed closed = surfaces_->at(next_.state, next_.held().with(which_));
@@ -129,7 +129,7 @@ Exchange Execution::exchange_beside(const Contact& contact, double e, Exchange o
     return own;
 }
 
-// What surfaces that move do where contacts are brought to rest: -p dh/dt, p = -W^-1 hdot.
+// Work of moving contact surfaces when contacts are brought to rest: -p dh/dt, p = -W^-1 hdot.
 double Execution::plastic_work(const State& before, ContactSet contacts) {
     if (!model_->equations().has_power()) return 0.0;
     const Closed closed = surfaces_->at(before, contacts);
@@ -142,7 +142,7 @@ double Execution::plastic_work(const State& before, ContactSet contacts) {
     return work;
 }
 
-// An impact of several at once, by Newton's law in Moreau's form.
+// Simultaneous impact of several contacts, by Newton's law in Moreau's form.
 void Execution::collide(ContactSet landing) {
     const ContactSet held = next_.held(), resting = next_.resting().held(), still = held.with(next_.touching),
                      all = still.with(landing);
@@ -172,7 +172,8 @@ void Execution::collide(ContactSet landing) {
     joint->not_unique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
-    // What nothing presses would let go of what comes a moment earlier, unless it is plastic.
+    // An unpressed contact with e > 0 would be opened by an impact just before, so for the order it counts as
+    // impacting.
     ContactSet loose;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (next_.unpressed.contains(i) && restitution(i) > 0.0) loose = loose.with(i);
@@ -215,7 +216,7 @@ void Execution::collide(ContactSet landing) {
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
     record_.impact(next_.state, v_after, speed, exchange, landing, surfaces_->count() > 1 ? std::move(joint) : nullptr);
     next_.state.v = v_after;
-    // Who leaves at once, and who may be held.
+    // Contacts with hdot+ > 0 leave at once; the others may be held.
     ContactSet left;
     forget_held();
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
@@ -231,15 +232,15 @@ void Execution::collide(ContactSet landing) {
     if (!outcome_) begin_stretch(next_.mode, run_.options.end_time);
 }
 
-// The impact of those that land leads to v_after. Whether one of them comes to rest together with another contact, which is
-// open, or which the impacts would open.
+// Tries to complete the motion of a pair: one of the impacting contacts and another one that is open or that the
+// impacts would open. v_after is the velocity after the impact. Returns whether a pair was completed.
 bool Execution::complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding) {
     if (completing()) return false;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (!landing.contains(i) || !(restitution(i) < 1.0)) continue;
         for (std::size_t j = 0; j < surfaces_->count(); ++j) {
             const ContactSet two = ContactSet::of(i).with(j);
-            // All that is closed but these two has to be held.
+            // All other closed contacts must be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
             if (complete_pair(std::min(i, j), std::max(i, j), next_.mode.without(two), landing, v_after,
                               below_rounding))
@@ -253,7 +254,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, Mode others
                               const Vector& v_after, bool below_rounding) {
     const std::array<std::size_t, 2> pair{first, second};
     PairCollision collision{next_.state, {}, {}};
-    double speed = 0.0, approach = 0.0, height = 0.0;  // of the gap; the others with |dh| = 1, in any unit
+    double speed = 0.0, approach = 0.0, height = 0.0;  // `speed` is the gap rate; the other two refer to |dh| = 1
     for (std::size_t k = 0; k < 2; ++k) {
         const Contact contact = surfaces_->of(pair[k], others).at(next_.state);
         const bool closed =
@@ -266,7 +267,7 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, Mode others
         speed = std::max(speed, -contact.hdot);
         approach = std::max(approach, -contact.hdot / slope);
     }
-    // Quick: what is high above the tolerances needs no look.
+    // Fast check: a pair far above the tolerances is not examined.
     if (!below_rounding && (approach > 1e-2 || height > 1e-4)) return false;
     const ContactSet unpressed = always_unpressed(others);
     const auto same = [&](const PairOf& known) {
@@ -313,15 +314,15 @@ bool Execution::complete_pair(std::size_t first, std::size_t second, Mode others
     return true;
 }
 
-// Whether the flight before, which an impact began and another one ended, was hardly longer than time resolves.
+// Whether the last flight, between two impacts, was close to the resolution of time.
 bool Execution::is_chatter() const {
     constexpr double resolved = 0x1p20;
     return surfaces_->count() > 1 && record_.impacts() > 1 && next_.begins &&
            last_step_ < resolved * ulp(next_.state.t);
 }
 
-// Whether the flight before an impact of this speed was lower than what the gap of another open contact, which is closed but
-// for its rounding, is known to: then roundings decide which of them lands, and may keep them going for ever.
+// Whether the flight before an impact at this speed was lower than the rounding of another open contact's gap that is
+// 0 within that rounding. Roundings would then decide which contact impacts next, possibly forever.
 bool Execution::moves_within_rounding(std::size_t which, double speed) {
     constexpr double few = 16.0;
     const double way = speed * last_step_ / surfaces_->of(which).at(next_.state).g.norm();
@@ -335,7 +336,8 @@ bool Execution::moves_within_rounding(std::size_t which, double speed) {
     return false;
 }
 
-// Nothing proves how a chatter that cannot be resolved any more ends. It is of these contacts and of what is near.
+// Ends the run: a chatter that cannot be resolved any further has no certified limit. The message names these contacts
+// and those that are nearly closed.
 void Execution::end_chatter(ContactSet contacts) {
     constexpr double close = 1e-6;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
@@ -345,7 +347,7 @@ void Execution::end_chatter(ContactSet contacts) {
                      names_of(contacts), where(next_.state)));
 }
 
-// As for one contact: the flight that begins now, to leading order.
+// As for a single contact: the next flight, to leading order.
 bool Execution::too_short_to_resolve(std::size_t which, double hdot) {
     ContactKinematics& surface = surfaces_->of(which);
     const double a = -surface.normal_acceleration(next_.state);

@@ -10,10 +10,10 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t most_under_way = 24;  // so that a line is seldom shorter than the lanes
+constexpr std::size_t most_under_way = 24;  // enough that a queue is seldom shorter than the lanes
 
-// The parameters that stand in what the motion and the gap are derived from, of which all else that is asked of a run is
-// made: by another, runs differ in their restitution alone, or not at all.
+// Indices of the parameters on which the equations of motion and the gaps depend. Runs that agree in these differ at
+// most in their restitutions.
 std::vector<std::size_t> moving_parameters(const Model& model) {
     const Equations& from = model.equations();
     std::vector<Expression> all{from.kinetic, from.potential};
@@ -33,7 +33,7 @@ std::vector<std::size_t> moving_parameters(const Model& model) {
 SideBySide::Member::Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run)
     : index(number),
       surfaces(*model, run),
-      execution(model, run, surfaces, nullptr, Keep::end, Execution::InDoubt::end),  // it is made again as a whole
+      execution(model, run, surfaces, nullptr, Keep::end, Execution::InDoubt::end),  // undecided runs are repeated
       stepper(*model, run, surfaces) {}
 
 SideBySide::SideBySide(const std::shared_ptr<const Model>& model, Vectors vectors)
@@ -111,8 +111,9 @@ std::size_t SideBySide::set_of(const std::vector<double>& parameters) {
     return sets_;
 }
 
-// From the surface, slower than the bounce before: it is shorter as it is slower. The gap's tolerance goes with the height,
-// so what a brief flight may take falls with it, as the root of the speed at most where terms of order 4 and more tell.
+// Whether the next flight will be brief, because it starts slower than the last bounce and therefore is shorter. The
+// tolerance of the gap scales with its height. The length allowed for a brief flight thus falls with the speed, at most
+// like its square root if terms of order 4 and higher matter.
 bool SideBySide::Member::is_brief() const {
     const EventStart& start = request->starts.front();
     if (start.multiplicity != 1 || !(0.0 < start.gap.hdot && start.gap.hdot <= before.hdot)) return false;
@@ -121,9 +122,9 @@ bool SideBySide::Member::is_brief() const {
     return room * slower * before.duration * before.duration <= before.brief * before.brief;
 }
 
-// Puts the run into a line for lanes, or lets its own stepper answer until a line will do. A step in contact that lanes
-// refused is made alone once, except on the way to a Zeno point; a flight that leaves the surface, until its gap is known
-// to be open; else the rest of the stretch is (Member::alone).
+// Puts the run into a queue for the lanes, or steps it by its own stepper until a queue can take it. A step in contact
+// that the lanes refused is made alone once, except on the way to a Zeno point. A flight from the surface is stepped
+// alone until its gap is known to be open. Otherwise the rest of the segment is (Member::alone).
 void SideBySide::go_on(Member& member, bool refused) {
     Execution& run = member.execution;
     while ((member.request = run.next()) != nullptr) {
@@ -136,10 +137,10 @@ void SideBySide::go_on(Member& member, bool refused) {
         member.before = {};
         StepRequest& own = member.own;
         own = *member.request;
-        if (!member.alone) own.begins = true;  // for this stepper: the step before was not its own
+        if (!member.alone) own.begins = true;  // its own stepper did not make the last step
         member.leaves = member.leaves || (flying && !refused && member.request->starts.front().multiplicity > 1);
         member.alone = !refused || flying || run.completing();
-        refused = false;  // it was said of the first request
+        refused = false;  // it concerned only the first request
         run.accept(member.stepper.step(own));
     }
     finish(member);
@@ -147,14 +148,14 @@ void SideBySide::go_on(Member& member, bool refused) {
 
 void SideBySide::finish(Member& member) {
     Trajectory trajectory = member.execution.finish();
-    // The longer steps of a run alone may know enough.
+    // The longer steps of simulate() may be accurate enough to decide.
     if (trajectory.outcome.kind == Outcome::Kind::undecided)
         trajectory = simulate(model_, member.execution.run(), nullptr, Keep::end);
     share_->take(member.index, std::move(trajectory));
     spare_.push_back(&member);
 }
 
-// The first of the line, and those of its tolerance: steps have one order.
+// Takes runs with the tolerance of the first one in the queue, because a vector step has one order.
 void SideBySide::choose(Line& line) {
     members_.clear();
     const double tolerance = line.front()->execution.run().options.tolerance;
@@ -186,7 +187,7 @@ void SideBySide::step(Kind kind) {
     }
 }
 
-// The stepper for these, with their parameters in its lanes. Lanes without a run repeat the first.
+// The stepper for these runs, with their parameters in its lanes. Unused lanes repeat the first.
 LaneStepper& SideBySide::prepare() {
     const double tolerance = members_.front()->execution.run().options.tolerance;
     auto found = steppers_.find(tolerance);
@@ -228,14 +229,14 @@ void SideBySide::gather(bool flying) {
     }
 }
 
-// The fewest that one of the runs may still make.
+// The smallest number of steps that one of these runs may still make.
 long SideBySide::most_steps() const {
     long most = std::numeric_limits<long>::max();
     for (const Member* member : members_) most = std::min(most, member->request->most);
     return most;
 }
 
-// What came of the steps in a lane, as far as they were plain; false if none was.
+// Reads the result of the plain steps in a lane; false if there was none.
 bool SideBySide::read(std::size_t lane, bool flying) {
     const bool plain = step_.end[lane] != LaneStep::End::not_plain;
     result_.steps = flying ? (plain ? 1 : 0) : (plain ? step_.steps : step_.steps - 1);
@@ -276,7 +277,7 @@ void SideBySide::read_contact(std::size_t lane) {
     }
 }
 
-// The gap at the end of a step without event: by its series, or as it stands there where that is known better.
+// The gap at the end of a step without event: from its series, or evaluated there if that is more accurate.
 void SideBySide::read_gap(std::size_t lane) {
     Gap& gap = result_.starts.front().gap;
     gap = {step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};

@@ -1,4 +1,4 @@
-// Runs whose ends are wanted, eight at a time.
+// Batch simulation: eight runs at a time in the lanes of a vector, for final states.
 #pragma once
 
 #include <array>
@@ -12,37 +12,40 @@
 
 namespace achilles {
 
-// One thread's share of them. A few dozen runs are under way; the requests of those in flight, in brief flight and in contact
-// wait in three lines, and eight of whichever is longest are answered by one vector step. What is not plain is answered by
-// the run's own stepper.
+// The runs of one thread. A few dozen runs are in progress. Their requests wait in three queues: free flight, brief
+// flight and contact. The longest queue supplies eight requests to one vector step. A request that is not plain is
+// served by the stepper of its own run.
 class SideBySide {
  public:
-    // The results are the same whatever the vectors.
+    // The results do not depend on `vectors`.
     explicit SideBySide(const std::shared_ptr<const Model>& model, Vectors vectors = possible_vectors().front());
 
-    // For 0 <= i < count, as next.fetch_add(1) gives them: take(i, what run_of(i) came to).
+    // A source of runs: for every i < count from next.fetch_add(1), the result of run_of(i) is passed to take(i,
+    // result).
     struct Share {
         std::size_t count;
         std::atomic<std::size_t>& next;
         const std::function<Run(std::size_t)>& run_of;
         const std::function<void(std::size_t, Attempt&&)>& take;
     };
-    // Until no run is left, here or to be begun. What run_of or take throws leaves this of no further use.
+    // Works until no run is left, in progress or to start. After an exception from run_of or take, this object must not
+    // be used again.
     void work(const Share& share);
 
  private:
     struct Member {
         Member(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run);
         std::size_t index;
-        std::size_t set = 0;  // of parameters: no two members with one number differ in those that move them
+        std::size_t set = 0;  // number of its parameter set: members with equal numbers have equal motions
         Surfaces surfaces;
         Execution execution;
         EventStepper stepper;
-        const StepRequest* request = nullptr;  // that waits in line
-        StepRequest own;                       // as its own stepper is asked
-        bool alone = false;                    // the rest of this stretch is left to its own stepper,
-        bool leaves = false;                   // or but what is not plain where it leaves the surface
-        // Of the bounce before, in one step: how long it was, how fast it began, and how long a brief one might have been.
+        const StepRequest* request = nullptr;  // waiting in a queue
+        StepRequest own;                       // the request for its own stepper
+        bool alone = false;                    // the rest of this segment is left to its own stepper
+        bool leaves = false;                   // its own stepper serves it until the gap is known to be open
+        // The last bounce, made in one step: its duration, its initial gap rate, and the length that a brief step could
+        // have had.
         struct Bounce {
             double duration = 0.0, hdot = 0.0, brief = 0.0;
         } before;
@@ -59,7 +62,7 @@ class SideBySide {
     void finish(Member& member);
     void step(Kind kind);
     void choose(Line& line);
-    // The run in a lane; lanes without one repeat the first.
+    // The run in a lane; unused lanes repeat the first.
     Member& member_in(std::size_t lane) const { return *members_[lane < members_.size() ? lane : 0]; }
     LaneStepper& prepare();
     void gather(bool flying);
@@ -69,23 +72,23 @@ class SideBySide {
     void read_gap(std::size_t lane);
 
     LaneStep step_;
-    // The same of one lane, as it is told.
+    // The result for one lane.
     State end_;
     StepResult result_;
-    Line members_;  // of the step that is made: a lane each
+    Line members_;  // the runs in the lanes of the current step
     std::shared_ptr<const Model> model_;
-    bool has_lanes_;                // the model can be stepped in lanes,
-    Vectors vectors_;               // which are these
-    const Share* share_ = nullptr;  // while it works
+    bool has_lanes_;                // the model can be stepped in lanes
+    Vectors vectors_;               // of the lanes
+    const Share* share_ = nullptr;  // set during work()
     std::vector<std::unique_ptr<Member>> all_;
-    std::array<Line, 3> lines_;  // by Kind
+    std::array<Line, 3> lines_;  // queues, by Kind
     Line spare_;
-    std::vector<std::size_t> moving_;  // the parameters that the motion depends on
+    std::vector<std::size_t> moving_;  // indices of the parameters that the motion depends on
     std::size_t sets_ = 0;
-    std::vector<double> last_parameters_;  // of the last set
+    std::vector<double> last_parameters_;  // of the last parameter set
     struct Prepared {
         std::unique_ptr<LaneStepper> stepper;
-        std::array<std::size_t, Eight::count> sets{};  // whose parameters its lanes have
+        std::array<std::size_t, Eight::count> sets{};  // parameter sets in its lanes
     };
     std::map<double, Prepared> steppers_;  // by tolerance
 };

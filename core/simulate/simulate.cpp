@@ -28,8 +28,8 @@ Trajectory execute(const std::shared_ptr<const Model>& model, const Run& run, Wa
 
 }  // namespace
 
-// What is undecided may be so since the state had become wrong before, by steps or by a cut: then the whole run is made
-// once more, as exactly as double precision allows.
+// A run may be undecided because the state has become inaccurate before, by steps or by truncations. Such a run is
+// repeated once from its start at exact_tolerance.
 Trajectory simulate(const std::shared_ptr<const Model>& model, const Run& run, Watch* watch, Keep keep) {
     const Ground ground;
     model->check(run);

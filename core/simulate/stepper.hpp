@@ -1,8 +1,8 @@
-// One step of a smooth motion after the other, with dense output: what an integrator must offer to the flow.
+// Interface of the integrators: steps of a smooth motion with dense output.
 //
-// The calls bear the names that Boost.Odeint gives to those of a dense-output stepper. Time runs from 0 in every step,
-// so that the shortest flight late in a run has all its digits; what depends on the time is told when a step begins. Besides (q, v), every step carries the event function of
-// each contact: the gap where it is open, hddot of the free motion where it is held.
+// The functions are named as in a dense-output stepper of Boost.Odeint. Time runs from 0 in every step, so that a short
+// flight late in a run keeps all its digits; the start time is passed when a step begins. Each step carries (q, v) and
+// the event function of each contact: the gap if it is open, hddot of the mode without it if it is held.
 #pragma once
 
 #include <memory>
@@ -24,32 +24,34 @@ class Stepper {
  public:
     virtual ~Stepper() = default;
 
-    // Stands at a state, ready to step on from there in this mode. One gap for each contact; of a held
-    // one's only the state_error counts.
+    // Sets the state and the mode for the next step. `gaps` has one entry for each contact; of a held contact, only
+    // state_error is used.
     virtual void initialize(Mode mode, const State& state, std::span<const Gap> gaps) = 0;
-    // One accepted step from where the stepper stands, at this time, not longer than `longest`; `first` > 0 is a step that
-    // is known to be sensible after an impact. `least` is the shortest that time can resolve.
+    // Makes one accepted step from the current state, at this time, not longer than `longest` (s). `first` > 0 is a
+    // reasonable length for a step after an impact. `least` is the shortest step that time can resolve.
     virtual StepFailure do_step(double time, double longest, double first, double least) = 0;
-    // The last step again, from the same state, with this duration.
+    // Repeats the last step from the same state with this duration (s).
     virtual StepFailure redo_step(double duration, double least) = 0;
 
-    // The last step: [0, current_time], and what is reached there (its t has no meaning).
+    // The last step, [0, current_time], and the state at its end (whose t is not set).
     virtual double current_time() const = 0;
     virtual const State& current_state() = 0;
 
-    // Along the last step, polynomials in theta = t/current_time: a contact's event function, and (q, v) as blocks of
-    // ascending powers, appended to `coefficients`; their degree is returned.
+    // Along the last step, as polynomials in theta = t/current_time: the event function of a contact; and (q, v) as
+    // blocks of ascending powers, appended to `coefficients`. The latter returns their degree.
     virtual void event_function(std::size_t contact, Polynomial& p) const = 0;
     virtual std::uint32_t coefficients(std::vector<double>& coefficients) const = 0;
-    // Whether it is known to stay below zero along the last step, by more than its remainder. False says nothing.
+    // Whether the event function is known to stay below zero along the last step by more than its remainder. False
+    // means unknown.
     virtual bool stays_negative(std::size_t) const { return false; }
-    // Bound, as good as the method knows one, on how far it is from the motion that starts at the same state.
+    // Estimated bound on the difference from the exact solution that starts at the same state.
     virtual double remainder(std::size_t contact, const Polynomial& event_function) const = 0;
-    // Adds to a contact's gap at the end of the last step what later steps must take it to be wrong by.
+    // Adds the errors of this step to the error bounds of a contact's gap at its end.
     virtual void add_error(std::size_t contact, const Polynomial& event_function, Gap& end) const = 0;
-    // True if a step is an expansion about its start: any part of it is as good as the whole, event functions are those
-    // of the state's own values, and no first guess is needed. False if it is integrated to its end: an event function
-    // then drifts from its value at (q, v) within the tolerance, and between the ends it is interpolated.
+    // True if a step is a series expansion about its start. Any part of it is then as accurate as the whole, event
+    // functions start at the values of the state itself, and no first step is guessed. False if a step is integrated to
+    // its end. An event function may then differ from its value at (q, v) within the tolerance, and is interpolated
+    // between the ends.
     virtual bool is_expansion() const = 0;
 
     virtual long evaluations() const = 0;

@@ -9,7 +9,7 @@ namespace achilles {
 
 namespace {
 
-// W^-1 b; of least norm where gradients depend on one another.
+// W^-1 b; the solution of least norm if gradients are linearly dependent.
 ContactVector<double> solve(const ContactMatrix<double>& W, const ContactVector<double>& b) {
     ContactSet all;
     for (Eigen::Index i = 0; i < W.rows(); ++i) all = with(all, i);
@@ -84,7 +84,7 @@ Closed Surfaces::at(const State& state, ContactSet contacts) {
 }
 
 bool Surfaces::is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale) {
-    constexpr double roundings = 0x1p-26;  // far more than a projection leaves
+    constexpr double roundings = 0x1p-26;  // far more than the errors that a projection leaves
     const State distances{roundings * scale.q, roundings * scale.v, roundings * scale.t};
     const Interval hddot = of(contact, mode).hddot_within(distances, state);
     return !certainly_positive(hddot) && !certainly_negative(hddot);
@@ -105,7 +105,7 @@ UnpressedContacts& Surfaces::unpressed() {
     return *unpressed_;
 }
 
-// Newton's method, as ContactKinematics::project().
+// Newton's method, as in ContactKinematics::project().
 std::optional<double> Surfaces::project_several(State& state, ContactSet onto, ContactSet still) {
     if (onto.count() > most_contacts) return std::nullopt;
     constexpr int rounds = 8;
@@ -122,7 +122,7 @@ std::optional<double> Surfaces::project_several(State& state, ContactSet onto, C
             h[static_cast<Eigen::Index>(i)] = c.h;
             largest = std::max(largest, std::abs(c.h));
             least = std::min(least, c.h);
-            // A correction that others needed leaves its own rounding, which may be large beside that of this gap.
+            // A correction required by other gaps has its own rounding, which may be large for this gap.
             const double left = 0x1p-50 * closed.W.row(static_cast<Eigen::Index>(i)).cwiseAbs().dot(p.cwiseAbs());
             near = near && regular &&
                    (std::abs(c.h) <= left ||
@@ -150,7 +150,7 @@ bool Surfaces::land_beside(State& state, std::size_t contact, Mode mode, Contact
 
 namespace {
 
-// |dh|, or how much h changes in a unit of way along dh, where that is much less: as of sin(1e9 x).
+// |dh|, or the change of h per unit length along dh if that is much smaller, as for sin(1e9 x).
 double size_of(ContactKinematics& surface, const State& start) {
     constexpr double much = 16.0;
     const Contact contact = surface.at(start);
@@ -173,7 +173,7 @@ GapUnits::GapUnits(const Model& model, const Run& run) : units_(model.contacts()
 }
 
 void GapUnits::find(const State& state) {
-    constexpr double step = 8.0;  // of the exponent: a size of about 1 gives 1
+    constexpr double step = 8.0;  // of the exponent, so that sizes around 1 give the unit 1
     place_ = state.q;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         const double size = size_of(surfaces_[i], state);

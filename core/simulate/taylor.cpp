@@ -7,9 +7,9 @@ namespace achilles {
 
 namespace {
 
-constexpr double longest_near = 0x1p29;  // s: all powers up to the highest order are numbers
+constexpr double longest_near = 0x1p29;  // s; up to here no power overflows
 
-// The even and the odd terms by themselves.
+// The sums of the even and the odd terms.
 TermSizes<double> sizes_of(const Polynomial& p) {
     double even = 0.0, odd = 0.0;
     const auto last = static_cast<std::size_t>(p.degree);
@@ -48,7 +48,7 @@ void Taylor::initialize(Mode mode, const State& state, std::span<const Gap> gaps
     evaluated_ = true;
 }
 
-// The series at the state where the stepper stands, to the order that is needed.
+// Expands the series at the current state to the required order.
 StepFailure Taylor::expand(double longest) {
     ++evaluations_;
     current_state();
@@ -83,13 +83,13 @@ StepFailure Taylor::do_step(double time, double longest, double, double least) {
     return StepFailure::none;
 }
 
-// An end that nobody asks for, since the step is made again, is not evaluated.
+// The end of a step is evaluated on demand, because the step may be repeated with another length.
 const State& Taylor::current_state() {
     if (!evaluated_) evaluate(span_);
     return to_;
 }
 
-// Row k at t, where powers of t may overflow: nothing times infinity is no number, but nothing.
+// Row k times t^k if the power may overflow: 0 times infinity must give 0.
 double Taylor::far_term(int k, std::size_t component, double t) const {
     const double c = step_.row(k)[component];
     return c == 0.0 ? 0.0 : c * std::pow(t, k);
@@ -107,8 +107,8 @@ void Taylor::evaluate_far(double duration) {
     }
 }
 
-// A step this long, which only what is nearly a straight line has, or as much of it as stays among the numbers that
-// expand() takes. Zero where next to nothing of it does.
+// Limits the length of a very long step, which only a nearly straight motion has, so that the state stays in the range
+// that expand() accepts. Returns 0 if almost nothing of the step does.
 double Taylor::within_numbers(double step) {
     constexpr double shorter = 0x1p-8;
     const auto size_at = [&](double t) {
@@ -165,7 +165,7 @@ void Taylor::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     step_.add_error(contact, span_, sizes, step_.doubt(contact, span_, sizes), end);
 }
 
-// Without the polynomial.
+// Evaluated without forming the polynomial.
 bool Taylor::stays_negative(std::size_t contact) const {
     double power = 1.0;
     return step_.stays_negative(contact, span_, [&](int k) {

@@ -1,4 +1,4 @@
-// A Taylor series of the motion, of high order, as a stepper: the step ends where the series stops being exact.
+// High-order Taylor series of the motion as a stepper; a step ends where the series stops being accurate.
 #pragma once
 
 #include <map>
@@ -10,8 +10,8 @@
 
 namespace achilles {
 
-// The step itself is TaylorStep's, its order AdaptiveOrder's. Here it meets the flow: states, and steps so long that the
-// powers of their length are no numbers.
+// TaylorStep makes the step and AdaptiveOrder chooses its order. This class adapts them to states, and handles steps so
+// long that powers of their length overflow.
 class Taylor : public Stepper {
  public:
     Taylor(const Model& model, const Run& run);
@@ -30,7 +30,7 @@ class Taylor : public Stepper {
     long evaluations() const override { return evaluations_; }
 
  private:
-    // What one motion is expanded by.
+    // The series of one mode and its order control.
     struct Expansion {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
@@ -45,13 +45,13 @@ class Taylor : public Stepper {
     double tolerance_;
     const Model* model_;
     std::vector<double> parameters_;
-    std::map<Mode, Expansion> motions_;  // those met so far
-    Expansion* motion_ = nullptr;        // of them, that of mode_
+    std::map<Mode, Expansion> motions_;  // created at first use
+    Expansion* motion_ = nullptr;        // the entry of mode_
     Mode mode_;
     TaylorStep<double> step_;
     GapUnits gap_units_;
     State to_;
-    bool evaluated_ = true;  // to_ is the step's end, not its start
+    bool evaluated_ = true;  // to_ is the end of the step, not its start
     double span_ = 0.0;
     long evaluations_ = 0;
 };

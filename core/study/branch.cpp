@@ -1,4 +1,4 @@
-// The branch of a periodic run in a parameter.
+// Continuation of a periodic orbit in a parameter.
 #include "study/orbit.hpp"
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ class Walk {
     Walk(const ReturnMap& map, const Newton& newton, Branch& branch, double low, double high)
         : map_(map), newton_(newton), branch_(branch), p_(branch.parameter), low_(low), high_(high) {}
 
-    // From a lap that closes, along its tangent. Adds the points past it; why it ends.
+    // Follows the branch from a converged orbit along its tangent. Adds the points, and returns the reason for its end.
     std::string go(ClosedLap from) {
         at_ = std::move(from);
         point_ = orbit_of(map_, at_);
@@ -78,7 +78,7 @@ class Walk {
         const VectorXd predicted = newton_.scaled(at_.lap) + ds * at_.tangent;
         return newton_.close(newton_.lap_at(at_.lap, predicted), at_.tangent, predicted, at_.tangent, 8);
     }
-    // With the parameter at a value; `like`: what is near.
+    // A converged orbit at this value of the parameter; `like` is a nearby one.
     ClosedLap at_value(const ClosedLap& like, double value) const {
         const Index last = like.tangent.size() - 1;
         VectorXd y = newton_.scaled(like.lap);
@@ -89,7 +89,7 @@ class Walk {
         return newton_.close(lap, {}, {}, like.tangent, 12);
     }
 
-    // The end of the range, where the step would lead past it.
+    // The end of the range, if the step would pass it.
     std::optional<double> beyond(double ds) const {
         const double predicted = value_of(at_) + ds * lambda(at_) * (high_ - low_);
         if (predicted < low_) return low_;
@@ -104,7 +104,7 @@ class Walk {
         points_.push_back(point);
     }
 
-    // The largest value of any gap at step ends, in the middle of steps and at events.
+    // The largest value of any gap at step ends and in the middle of steps.
     double largest_gap() const {
         const Trajectory& run = at_.shot.run;
         const Model& model = *run.model;
@@ -121,15 +121,16 @@ class Walk {
         return largest;
     }
 
-    // Why no step leads further: the flights shrink to nothing as the parameter approaches its value, or what the search says.
+    // The reason why no step succeeds: the flights shrink to zero at this value of the parameter, or the message of the
+    // search.
     std::string end_reason(const NoOrbit& none) const {
-        constexpr double low = 1e-7;  // of the way that the system moves in a period
+        constexpr double low = 1e-7;  // relative to the distance that the system moves in a period
         const double way = at_.shot.run.run.v.cwiseAbs().maxCoeff() * at_.lap.period, gap = largest_gap();
         if (!(gap < low * way)) return none.what();
         return fmt::format("the flights shrink to zero: the gap never exceeds {:.1e} at {:.6g}", gap, value_of(at_));
     }
 
-    // ---- what happens between two points ----
+    // ---- events between two points ----
 
     using Test = std::function<double(const ClosedLap&)>;
     double of_multipliers(const ClosedLap& closed, bool pairs) const {
@@ -156,7 +157,7 @@ class Walk {
                 OrbitPoint at = orbit_of(map_, there);
                 if (is_so(at)) found.push_back(std::move(at));
             } catch (const NoOrbit&) {
-                // It jumps over: there is none.
+                // The test function jumps across zero: there is no such event.
             }
         };
         const auto always = [](const OrbitPoint&) { return true; };
@@ -166,7 +167,7 @@ class Walk {
              [&](const OrbitPoint& at) { return is_circle(at); });
     }
 
-    // The zero of a test, by the Illinois method over the length of the step, or over the parameter.
+    // The zero of a test function by the Illinois method, over the step length or over the parameter.
     template <class At>
     static ClosedLap zero(const Test& test, double low, double high, double a, double b, double resolution,
                           const At& at) {
@@ -198,18 +199,19 @@ class Walk {
 
     // ---- the loss of a Zeno point ----
 
-    // Where psi, linear in the parameter, would be zero within some steps.
+    // Whether psi, which is linear in the parameter, would reach zero within a few steps.
     bool about_to_be_lost(double ds) const {
         if (!before_ || !point_.psi || not_lost_) return false;
         const double x0 = (*before_)[0], psi0 = (*before_)[1], x1 = value_of(at_), psi1 = *point_.psi;
         if (!(psi1 < psi0) || x0 == x1) return false;
-        const double left = psi1 * (x1 - x0) / (psi0 - psi1);  // of the parameter, until it is 0
+        const double left = psi1 * (x1 - x0) / (psi0 - psi1);  // change of the parameter until psi is 0
         const double reach = 3.0 * ds * std::abs(lambda(at_)) * (high_ - low_);
         const double there = x1 + left;
         return std::abs(left) < reach && there > low_ && there < high_;
     }
 
-    // By the secant, always from the side where there is one. Nothing where there is no loss after all.
+    // Finds the loss of a Zeno point by the secant method, from the side where the orbit exists. Returns nullopt if
+    // there is no loss.
     std::optional<std::string> lose() {
         double x0 = (*before_)[0], psi0 = (*before_)[1], x1 = value_of(at_), psi1 = *point_.psi;
         ClosedLap near = at_;
@@ -239,18 +241,19 @@ class Walk {
             point = std::move(reached);
             passed.push_back(point);
             share = std::min(0.9, 1.5 * share);
-            // The next from here is the same to all digits that runs have.
+            // Converged: a further point would agree to all digits of the runs.
             const double there = x1 + psi1 * (x1 - x0) / (psi0 - psi1);
             if (std::abs(there - before) < 1e-13 * range || psi1 < 1e-10 * *first.psi) break;
             before = there;
         }
         where = x1 + psi1 * (x1 - x0) / (psi0 - psi1);
-        // The contact becomes as short as that is near; else what vanishes is something else, all motion say.
+        // At a loss, the contact time vanishes together with psi. Otherwise something else vanishes, such as the whole
+        // motion.
         if (psi1 > 1e-3 * *first.psi || !(point.shortest_contact < 0.2 * first.shortest_contact)) {
             not_lost_ = true;
             return std::nullopt;
         }
-        // All else goes on to there as it went; it is as near as can be computed.
+        // The other data are extrapolated linearly to the loss, from points as close as can be computed.
         OrbitPoint lost = point;
         const OrbitPoint& by = passed.size() > 1 ? passed[passed.size() - 2] : first;
         const double share_left = (where - x1) / (x1 - by.parameters[p_]);
@@ -269,14 +272,14 @@ class Walk {
         lost.psi = 0.0;
         lost.margins.a_inf = 0.0;
         lost.shortest_contact = 0.0;
-        // Those that lie too near to be told apart in a picture are left out.
+        // Points too close to be distinguished in a plot are left out.
         for (std::size_t i = 0; i < passed.size() && i < 6; ++i) points_.push_back(passed[i]);
         points_.push_back(lost);
         branch_.lost.push_back(lost);
         return fmt::format("a Zeno point is lost: a_inf = 0 at {:.12g}", where);
     }
 
-    // Near an event the start moves to the middle of its flight, or of another one.
+    // If the start of the period is close to an event, moves it to the middle of its flight, or of another one.
     void rebase() {
         const Trajectory& run = at_.shot.run;
         if (run.events.empty()) return;
@@ -298,7 +301,7 @@ class Walk {
             at_ = newton_.close(moved, {}, {}, before_it, 12);
             if (at_.tangent.dot(before_it) < 0.0) at_.tangent = -at_.tangent;
         } catch (const NoOrbit&) {
-            // Where it was it closes, too.
+            // The orbit is also valid where it started before.
         }
     }
     const ReturnMap& map_;
@@ -308,7 +311,7 @@ class Walk {
     double low_, high_;
     ClosedLap at_;
     OrbitPoint point_;
-    std::optional<std::array<double, 2>> before_;  // the value and psi of the point before
+    std::optional<std::array<double, 2>> before_;  // parameter value and psi of the last point
     bool not_lost_ = false;
     std::vector<OrbitPoint> points_;
 };

@@ -36,7 +36,7 @@ void work_on(ChunkSource& source, int threads, const ChunkTask& task) {
     std::vector<std::jthread> others;
     try {
         while (static_cast<int>(others.size()) + 1 < threads) others.emplace_back(work);
-    } catch (const std::system_error&) {  // there are no more
+    } catch (const std::system_error&) {  // continue with fewer threads
     }
     work();
 }
@@ -56,7 +56,7 @@ bool ChunkQueue::has_room() const { return started_ < (threads_ > 1 ? 3 * thread
 
 std::optional<Chunk> ChunkQueue::take() {
     std::unique_lock lock(mutex_);
-    // Nobody tells that it is to stop.
+    // Wait with a timeout, because setting stop_ sends no notification.
     while (!is_over() && !has_room()) changed_.wait_for(lock, std::chrono::milliseconds(50));
     if (is_over()) return {};
     return cut();
@@ -74,7 +74,7 @@ std::uint64_t ChunkQueue::next_length() const {
     const std::uint64_t left = end_ - next_, length = rate_ > 0.0 ? static_cast<std::uint64_t>(std::clamp(
                                                                         rate_ * seconds, double{least}, double{most}))
                                                                   : at_first;
-    // Near the end they are shorter, so that no thread waits long for the last one.
+    // Toward the end, chunks are shorter, so that no thread waits long for the last one.
     const std::uint64_t share = std::max(few, left / (2 * std::max<std::uint64_t>(1, threads_)));
     return std::min({length, share, left});
 }

@@ -1,4 +1,4 @@
-// A long work in chunks that follow one another, done by several threads and written by one.
+// Parallel work in consecutive chunks, written in order.
 #pragma once
 
 #include <atomic>
@@ -18,55 +18,55 @@ struct Chunk {
     std::uint64_t first = 0, count = 0;
 };
 
-// What a chunk comes to, as bytes that depend on it alone. Asked of several threads at once, of this process or of others
-// (study/ranks.hpp).
+// Computes a chunk: returns bytes that depend only on the chunk. Called on several threads at once, of this process or
+// of others (study/ranks.hpp).
 using ChunkTask = std::function<std::string(Chunk)>;
-// Takes the bytes in the order of the chunks, one after the other.
+// Receives the bytes in the order of the chunks, one call at a time.
 using ChunkWriter = std::function<void(Chunk, const std::string&)>;
 
-// Does items [first, end) on so many threads (0: one for every core). Chunks are as long as they take a quarter of a second,
-// but for the first ones, as nothing depends on where they are cut; beside the one of each thread two more may wait for
-// one before them, and no more. Once `stop` is set no chunk is begun, and those under way are finished and written. Whether
-// all is done. What task or write throws ends it, and is thrown again.
+// Processes items [first, end) on this many threads (0: one for every core). After the first ones, chunks last about a
+// quarter of a second; results do not depend on how items are divided. For each thread, at most one chunk is in
+// progress and two wait to be written. Once `stop` is set, no further chunk starts; those in progress are finished and
+// written. Returns whether all is done. An exception from task or write ends the work and is rethrown.
 bool do_chunks(std::uint64_t first, std::uint64_t end, int threads, const ChunkTask& task, const ChunkWriter& write,
                const std::atomic<bool>& stop);
 
-// As many threads as asked for; 0: one for every core that this process may use.
+// The number of threads to use; 0: one for every core that this process may use.
 int threads_for(int asked);
 
-// Where chunks come from and where what they come to goes: what threads, and other processes, take their work from.
+// ---- chunks to work on: the source of threads and of other processes ----
 
-// Asked of several threads at once.
+// Called from several threads at once.
 class ChunkSource {
  public:
     virtual ~ChunkSource() = default;
-    // The next chunk; waits while there is none yet. Nothing: there will be no other.
+    // The next chunk; waits if there is none yet. nullopt: there are no further chunks.
     virtual std::optional<Chunk> take() = 0;
-    // What a chunk came to, and how long that took (s).
+    // The result of a chunk, and the time that it took (s).
     virtual void put(Chunk chunk, std::string bytes, double seconds) = 0;
-    // What a task has thrown: no chunk is handed out after it.
+    // Reports an exception of a task; no further chunk is handed out.
     virtual void fail(std::exception_ptr problem) = 0;
 };
 
-// Takes chunks and does them, on the thread that asks and so many others, until there are no more. Where the machine has
-// no more threads, on fewer.
+// Processes chunks until there are no more, on the calling thread and threads - 1 others; on fewer if no more can be
+// created.
 void work_on(ChunkSource& source, int threads, const ChunkTask& task);
 
-// Items [first, end), cut into chunks and written in order. Whoever puts the chunk that is next writes it, and those that waited
-// for it; the others go on meanwhile.
+// Divides items [first, end) into chunks and writes their results in order. The thread that delivers the next chunk to
+// be written writes it and those that waited for it; the other threads continue meanwhile.
 class ChunkQueue final : public ChunkSource {
  public:
     ChunkQueue(std::uint64_t first, std::uint64_t end, const ChunkWriter& write, const std::atomic<bool>& stop);
 
-    // So many more threads will take from it: for each a chunk may be under way, and two wait for one before them.
+    // Announces further threads: for each, one chunk may be in progress and two may wait to be written.
     void add_threads(int threads);
     std::optional<Chunk> take() override;
-    // The same without waiting: nothing, where there is none now.
+    // The same without waiting: nullopt if there is none now.
     std::optional<Chunk> take_at_once();
     void put(Chunk chunk, std::string bytes, double seconds) override;
     void fail(std::exception_ptr problem) override;
     bool has_failed() const;
-    // Whether all is written. Throws the first problem.
+    // Whether all is written. Throws the first exception.
     bool finish();
 
  private:
@@ -84,11 +84,11 @@ class ChunkQueue final : public ChunkSource {
     const std::atomic<bool>& stop_;
     mutable std::mutex mutex_;
     std::condition_variable changed_;
-    std::uint64_t next_, written_, end_;       // items: of the next chunk, and up to which all are written
-    std::uint64_t threads_ = 0, started_ = 0;  // chunks that are handed out and not written
-    std::map<std::uint64_t, Done> waiting_;    // done, by their first item
+    std::uint64_t next_, written_, end_;       // items: start of the next chunk; all before written_ are written
+    std::uint64_t threads_ = 0, started_ = 0;  // started_: chunks handed out and not written
+    std::map<std::uint64_t, Done> waiting_;    // finished chunks, by their first item
     bool is_writing_ = false;
-    double rate_ = 0.0;  // items a second, of one thread
+    double rate_ = 0.0;  // items per second, for one thread
     std::exception_ptr problem_;
 };
 

@@ -26,7 +26,7 @@ bool is_settable(const SystemDescription& description, std::string_view name) {
     return find_value(description, run, name) != nullptr;
 }
 
-// A unit that the expression alone does not tell: of times, speeds and gaps.
+// The unit of a print, including times, speeds and gaps, whose unit does not follow from the expression.
 std::string unit_of_print(const SystemDescription& description, const std::string& print) {
     const std::string word = print.substr(0, print.find('('));
     if (word.size() < print.size() && print.find(')') + 1 != print.size()) return "";
@@ -40,7 +40,7 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
 
 // ---- derivatives ----
 
-// What a print asks the derivative of, and by what.
+// The quantity and the name in a print d(QUANTITY, NAME).
 struct AskedSlope {
     std::string quantity, name;
 };
@@ -56,7 +56,7 @@ std::string without_spaces(const std::string& text) {
     return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
 
-// Of "d(QUANTITY, NAME)"; nothing of another print.
+// Parses "d(QUANTITY, NAME)"; nullopt for any other print.
 std::optional<AskedSlope> read_slope(const std::string& print) {
     const std::size_t open = print.find('(');
     if (open == print.npos || without_spaces(print.substr(0, open)) != "d") return std::nullopt;
@@ -78,7 +78,7 @@ std::optional<AskedSlope> read_slope(const std::string& print) {
     return asked;
 }
 
-// Throws InputError where a quantity has no derivative in any run.
+// Throws InputError if the quantity never has derivatives.
 void check_quantity(const SystemDescription& description, const std::string& print, const AskedSlope& asked) {
     if (read_slope(asked.quantity))
         throw refused_slope(print, "second derivatives are not computed",
@@ -96,7 +96,7 @@ void check_quantity(const SystemDescription& description, const std::string& pri
     }
 }
 
-// The direction of differentiate() that a name stands for. Throws InputError.
+// The direction of differentiate() for a name. Throws InputError.
 std::size_t direction_of(const SystemDescription& description, const std::string& print, const std::string& name) {
     std::vector<std::string> names;
     for (const auto& coordinate : description.coordinates) names.push_back(coordinate.name);
@@ -112,7 +112,7 @@ std::size_t direction_of(const SystemDescription& description, const std::string
                         "derivatives are with respect to a coordinate or rate at the start, or a parameter");
 }
 
-// Throws InputError where no run of the sweep has derivatives.
+// Throws InputError if no run of the sweep has derivatives.
 void check_slopes(const Sweep& sweep, const std::string& print) {
     if (sweep.at && !sweep.at->event)
         throw refused_slope(print, fmt::format("there are no derivatives at the zeros of '{}'", sweep.at->expression),
@@ -120,7 +120,7 @@ void check_slopes(const Sweep& sweep, const std::string& print) {
     Chain::check(sweep.base);
 }
 
-// Whether all runs end before anything is asked.
+// Throws InputError if all runs end before the section begins.
 void refuse_late(const Sweep& sweep) {
     const bool varies = std::any_of(sweep.axes.begin(), sweep.axes.end(),
                                     [](const SweepAxis& axis) { return !options_of_axis(axis.name).empty(); });
@@ -129,7 +129,8 @@ void refuse_late(const Sweep& sweep) {
         throw InputError(fmt::format("--after {}", *sweep.at->after), {}, fmt::format("the runs end at {}", end));
 }
 
-// What passes zero along a run. A word that is nearly that of an event was meant to be it.
+// The program of a section's expression. If it does not compile, a word similar to the name of an event is reported as
+// such.
 Program section_program(const Model& model, const std::string& zero) {
     try {
         return behind("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
@@ -166,7 +167,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const Sweep& sweep)
         const std::vector<std::string> more = names_in(print);
         names.insert(names.end(), more.begin(), more.end());
     }
-    for (const Text& text : texts)  // so that what is wrong is told of one
+    for (const Text& text : texts)  // one by one, so that an error refers to its text
         behind("--print", text.text, [&](std::span<const Text> one) { return model_->compile_measures(one); });
     measures_ = model_->compile_measures(texts);
     if (!quantities.empty()) quantities_.emplace(model_, quantities, "--print");
@@ -205,7 +206,7 @@ Measuring::Measuring(const RunMeasures& measures) : measures_(&measures), number
     if (measures.zero_) zero_.emplace(*measures.zero_);
 }
 
-// Its parameters, and what is of the whole run.
+// Sets the parameters and the quantities of the whole run.
 void Measuring::begin(const Trajectory& trajectory) {
     const Run& run = trajectory.run;
     if (!forces_ || parameters_ != run.parameters) {
@@ -245,7 +246,7 @@ void Measuring::measure(const Sample& sample, std::span<const Passage> passed, s
         }
     }
     forces_->run_view(numbers_, sample);
-    std::size_t next = 0;  // output
+    std::size_t next = 0;  // output of the program
     for (const auto& slope : measures_->slopes_) {
         const double number =
             slope ? differentiated[slope->quantity].derivatives[static_cast<Eigen::Index>(slope->direction)]
@@ -270,7 +271,7 @@ void Measuring::at_end(const Trajectory& trajectory, std::vector<double>& number
     std::vector<Quantity> differentiated;
     if (measures_->quantities_) {
         derivatives_ = differentiate(trajectory);
-        // When a run stops early depends on everything.
+        // The time of an early stop depends on all variables, so the end has no derivatives.
         if (trajectory.outcome.kind != Outcome::Kind::end_time) derivatives_->end.reset();
         differentiated = measures_->quantities_->of(trajectory, *derivatives_);
     }
@@ -309,7 +310,7 @@ std::string_view RunEnd::text() const {
 
 std::uint64_t signature_of(std::span<const Passage> sequence, RunEnd end) {
     std::uint64_t hash = mixed(end.code());
-    ContactSet settling;  // that come to rest before anything else happens
+    ContactSet settling;  // contacts that come to rest without another event in between
     for (std::size_t i = sequence.size(); i-- > 0;) {
         const Passage& passage = sequence[i];
         if (passage.is_zeno())

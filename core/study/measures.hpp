@@ -1,4 +1,5 @@
-// What is asked of each of many runs: expressions, and the words `held` and `outcome`, over its end or over a section.
+// The quantities printed for each of many runs: expressions, and the words `held` and `outcome`, at the end or at a
+// section.
 #pragma once
 
 #include <cstdint>
@@ -18,13 +19,14 @@
 
 namespace achilles {
 
-// The prints of a sweep, compiled. An expression may have what a view may (t, coordinates, rates, parameters, gaps, lambda,
-// energy, power, work, loss), zeno_time(k), impact_time(k), impact_speed(k) and release_time(k) with k from 1 on (without
-// (k): of the last one), zeno_points, impacts, releases, and least_gap. What does not exist is not a number.
+// The compiled prints of a sweep. An expression may contain the names of a view (t, coordinates, rates, parameters,
+// gaps, lambda, energy, power, work, loss). It may also contain zeno_time(k), impact_time(k), impact_speed(k) and
+// release_time(k), with k from 1 (without (k): the last one), zeno_points, impacts, releases, and least_gap. A quantity
+// that does not exist is NaN.
 //
-// d(QUANTITY, NAME) is the derivative of such a quantity by a start x, a rate x' or a parameter, through all impacts and Zeno
-// points (theory-derivatives.md 7): at the end at fixed time, at an event following it as it moves. A run that stopped early has
-// no derivatives of its end.
+// d(QUANTITY, NAME) is the derivative of such a quantity by an initial coordinate x, an initial rate x' or a parameter,
+// through all impacts and Zeno points (theory-derivatives.md 7). At the end, time is fixed; at an event, the derivative
+// follows the event. A run that stopped early has no derivatives of its end.
 class RunMeasures {
  public:
     // Throws InputError with the place in the expression.
@@ -34,14 +36,14 @@ class RunMeasures {
         enum class Kind { number, held, outcome };
         Kind kind;
         std::string name;              // as typed
-        std::string unit;              // "" where it is not known
+        std::string unit;              // "" if unknown
         std::string quantity{}, by{};  // of a derivative; else empty
     };
     const std::vector<Column>& columns() const { return columns_; }
-    // Of the columns, those with numbers.
+    // Number of columns with numbers.
     std::size_t numbers() const { return slopes_.size(); }
-    // Whether the ends of runs and their sequences of events do not tell: for sections, the least gap, and what work and
-    // impacts have done where only whole trajectories know it.
+    // Whether runs must be recorded in full: for sections, derivatives and the smallest gap, and for work and loss if
+    // they cannot be computed otherwise.
     bool needs_everything() const { return needs_everything_; }
     bool needs_least_gap() const { return needs_least_gap_; }
 
@@ -52,31 +54,31 @@ class RunMeasures {
     std::shared_ptr<const Model> model_;
     std::vector<Column> columns_;
     Model::MeasureProgram measures_;
-    // Of a number that is a derivative: of which quantity, by which direction of differentiate(). Nothing: the next output of the
-    // program.
+    // For a number that is a derivative: its quantity, and its direction in differentiate(). nullopt: the number is the
+    // next output of the program.
     struct Slope {
         std::size_t quantity, direction;
     };
     std::vector<std::optional<Slope>> slopes_;
-    std::optional<Quantities> quantities_;      // those of the slopes; none where there are no slopes
-    std::optional<Program> zero_, zero_along_;  // the expression of a section; with its derivatives
+    std::optional<Quantities> quantities_;      // quantities of the derivatives; empty if there are none
+    std::optional<Program> zero_, zero_along_;  // expression of a section; with its derivatives
     bool needs_everything_ = false, needs_least_gap_ = false, zero_has_work_ = false;
 };
 
-// Takes the measures of runs, one after the other. One per thread; refers to the measures.
+// Evaluates the measures of one run after another. Use one object per thread; refers to the measures.
 class Measuring {
  public:
     explicit Measuring(const RunMeasures& measures);
 
-    // The numbers of a run at its end: so many as there are, appended.
+    // Appends the numbers of a run at its end.
     void at_end(const Trajectory& trajectory, std::vector<double>& numbers);
-    // The same at moments of it; what its events are, counts and times, is as it was until then.
+    // The same at the points of a section; counts and times of events are those up to the point.
     std::vector<Moment> moments(const Trajectory& trajectory, const Section& section);
     void at(const Trajectory& trajectory, const Moment& moment, std::vector<double>& numbers);
 
  private:
     void begin(const Trajectory& trajectory);
-    // `differentiated`: the quantities of the slopes, there.
+    // `differentiated`: the quantities of the derivatives at this point.
     void measure(const Sample& sample, std::span<const Passage> passed, std::span<const Quantity> differentiated,
                  std::vector<double>& numbers);
     const RunMeasures* measures_;
@@ -84,15 +86,16 @@ class Measuring {
     std::optional<Evaluator<double>> zero_;
     std::optional<BoundsAlong> zero_bounds_;
     std::optional<ContactForces> forces_;
-    std::vector<double> parameters_;          // of both
-    std::vector<Passage> sequence_;           // of the run at whose moments it is asked
-    std::optional<Derivatives> derivatives_;  // of the same
+    std::vector<double> parameters_;          // of both evaluators
+    std::vector<Passage> sequence_;           // events of the current run
+    std::optional<Derivatives> derivatives_;  // of the current run
     double least_gap_ = 0.0;
 };
 
-// The sequence of events of a run as one number: two runs of different signatures differ by more than times and places.
+// ---- signature: the sequence of events of a run as one number, which differs between qualitatively different runs
+// ----
 
-// Bits that depend on all bits of a number, well mixed: what random points and signatures are made of.
+// Hash function for random points and signatures.
 
 // One step of splitmix64.
 constexpr std::uint64_t mixed(std::uint64_t x) {
@@ -102,7 +105,7 @@ constexpr std::uint64_t mixed(std::uint64_t x) {
     return x ^ (x >> 31);
 }
 
-// How the run of a point ended: the kind of an Outcome, or a start that it cannot have.
+// How the run of a point ended: the kind of an Outcome, or "cannot start".
 class RunEnd {
  public:
     RunEnd() = default;  // cannot start
@@ -116,9 +119,9 @@ class RunEnd {
     std::uint8_t code_ = 0;
 };
 
-// A hash of the events in their order, of each its kind and contacts, and of how the run ended. Left out are the impacts by
-// which contacts come to rest: those after which, until the Zeno points of all their contacts, nothing else happens than such
-// impacts and Zeno points. How many of them there are depends on where the bouncing is cut, and not on the motion.
+// A hash of the kinds and contacts of the events in their order, and of how the run ended. Impacts that only precede a
+// Zeno point are left out: those after which nothing else happens, until the Zeno points of all their contacts, than
+// such impacts and Zeno points. Their number depends on where the bouncing is truncated, not on the motion.
 std::uint64_t signature_of(std::span<const Passage> sequence, RunEnd end);
 
 }  // namespace achilles

@@ -15,7 +15,8 @@ namespace achilles {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 double loss_exponent(double e) {
-    // The first flight theta in units of the time to sigma: e (3 - 2 theta) = (3 - theta) (1 - theta)^2 falls from 3 (1 - e) to -e.
+    // The first flight theta in units of the time to sigma: e (3 - 2 theta) = (3 - theta) (1 - theta)^2. The difference
+    // falls from 3 (1 - e) to -e.
     double low = 0.0, high = 1.0;
     for (int round = 0; round < 100; ++round) {
         const double theta = 0.5 * (low + high), rho = 1.0 - theta;
@@ -38,8 +39,8 @@ Options exact_options() {
 
 namespace {
 
-// The least psi of the Zeno points of a run, and the shortest contact past one; nothing where it has none, or where e = 0 leaves no
-// bouncing.
+// Sets the smallest psi over the Zeno points of a run, and the shortest contact after one. Leaves them unset if the run
+// has no Zeno point, or if e = 0 leaves no bouncing.
 void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
     for (std::size_t i = 0; i < run.events.size(); ++i) {
         const Event& event = run.events[i];
@@ -58,7 +59,7 @@ void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
     }
 }
 
-// Two for every contact held at one time, and for an impact that takes the whole speed.
+// Number of zero multipliers: two for every contact held at one time, and two for a plastic impact.
 std::size_t forgotten(const Model& model, const Trajectory& run) {
     int most = 0;
     for (const Phase& phase : run.phases) most = std::max(most, phase.mode.held().count());
@@ -75,11 +76,12 @@ std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const S
     zeros = forgotten(*map.model(), shot.run);
     const Index r = m - static_cast<Index>(zeros), flow = map.is_driven() ? 0 : 1;
     if (r <= flow) return {};
-    // What M reaches has r dimensions; its multipliers there are all but the zeros. The flow's direction first: its column is 1, 0, ...
+    // The image of M has r dimensions and contains all nonzero multipliers. The direction of the flow comes first; its
+    // column is 1, 0, ...
     MatrixXd reached(m, flow + r);
     if (flow > 0) reached.col(0) = shot.F1.normalized();
     reached.rightCols(r) = range_of(shot.M, r);
-    // Of the basis, what lies across the flow.
+    // Remove the flow's direction from the basis.
     for (Index round = 0; flow > 0 && round < 2; ++round)
         reached.rightCols(r) -= reached.col(0) * (reached.col(0).transpose() * reached.rightCols(r));
     const MatrixXd across = range_of(reached.rightCols(r), r - flow);
@@ -90,16 +92,16 @@ std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const S
     return all;
 }
 
-// ---- what there is ----
+// ---- data of a converged orbit ----
 
 namespace {
 
-// The state where the period is said to begin, and how it and the period depend on the parameters.
+// Sets the initial state of the period, and its derivatives and those of the period by the parameters.
 void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
     const Index n = map.dof(), P = static_cast<Index>(orbit.parameters.size());
     const Shot& shot = closed.shot;
     const Lap& lap = closed.lap;
-    // (dx, dT)/dp, of the start of the lap, across the motion where there is no drive.
+    // (dx, dT)/dp of the start; without a drive, perpendicular to the flow.
     MatrixXd A = MatrixXd::Zero(2 * n + 1, 2 * n + 1), r = MatrixXd::Zero(2 * n + 1, P);
     A.topLeftCorner(2 * n, 2 * n) = shot.M - MatrixXd::Identity(2 * n, 2 * n);
     A.topRightCorner(2 * n, 1) = shot.F1;
@@ -110,7 +112,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
     } else {
         A.row(2 * n).head(2 * n) = shot.F0.transpose();
     }
-    // Without parameters there is nothing to solve, and Eigen would look at what is not there.
+    // Without parameters there is nothing to solve, and Eigen would access an empty matrix.
     const MatrixXd by = P > 0 ? least_solution(A, r) : r;
     orbit.by_parameters = by;
     orbit.state = shot.run.run.start();
@@ -139,7 +141,7 @@ void set_section(const ReturnMap& map, const ClosedLap& closed, Orbit& orbit) {
         MatrixXd there(2 * n, 2 * n + P);
         there << d.end->q, d.end->v;
         orbit.by_parameters.topRows(2 * n) = there.leftCols(2 * n) * by.topRows(2 * n) + there.rightCols(P);
-        // At a start time that stands, the end time moves with the period.
+        // At a fixed start time, the end time changes with the period.
         const VectorXd F = map.rate(lap.parameters, run.end, run.end_mode);
         if (P > 0) orbit.by_parameters.topRows(2 * n) += F * by.row(2 * n);
         orbit.state = run.end;
@@ -174,7 +176,7 @@ Orbit orbit_of(const ReturnMap& map, const ClosedLap& closed) {
 
 namespace {
 
-// So many shifts lie between where the period begins and where the search did.
+// The number of shifts between the initial state of the period and the start of the search.
 double shifts_from_start(const ReturnMap& map, const ClosedLap& closed) {
     double along = 0.0, square = 0.0;
     const auto& events = closed.shot.run.events;
@@ -188,8 +190,8 @@ double shifts_from_start(const ReturnMap& map, const ClosedLap& closed) {
     return square > 0.0 ? std::round(along / square) : 0.0;
 }
 
-// The same periodic run where it is told: moved by shifts to where the search began, and without a drive with a clock by which it
-// begins at the start time, at a release where there is one.
+// Moves the orbit by shifts to where the search began. Without a drive, it also sets the start time so that the period
+// begins at a release, if there is one, at the start time of the run.
 ClosedLap put_in_place(const ReturnMap& map, const Newton& newton, ClosedLap closed) {
     const auto last_is_release = [&] {
         const auto& events = closed.shot.run.events;
@@ -226,7 +228,7 @@ ClosedLap search(const ReturnMap& map, int periods) {
     return closed;
 }
 
-// A guess that lies below a surface is put to rest on it.
+// Projects a guess with a negative gap onto the contact surface.
 void lift(const Model& model, Run& run) {
     State state = run.start();
     Surfaces surfaces(model, run);
@@ -247,7 +249,7 @@ OrbitSearch find_orbit(const std::shared_ptr<const Model>& model, const OrbitAsk
     model->check(run);
     const ReturnMap map(model, run, asked.closing, asked.watch);
     OrbitSearch found;
-    // What forgets its start comes nearer to where it repeats by itself.
+    // A run that forgets its start approaches the orbit by itself, so further attempts start after several periods.
     for (const int periods : {0, 1, 3, 8, 20}) {
         try {
             found.orbit = orbit_of(map, search(map, periods));

@@ -1,4 +1,4 @@
-// A question about a periodic run: read, and answered.
+// Parses and solves orbit requests.
 #include "study/orbit.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-// NAME=REST. Throws InputError about the flag.
+// Splits NAME=REST. Throws InputError about the flag.
 std::pair<std::string, std::string> named(const std::string& where, const std::string& text, const char* example) {
     const std::size_t equals = text.find('=');
     if (equals == text.npos || equals == 0) throw InputError(where, {}, "a name and a value are expected", example);
@@ -27,7 +27,7 @@ std::pair<std::string, std::string> named(const std::string& where, const std::s
     return {name, text.substr(equals + 1)};
 }
 
-// The place of a name among what has one.
+// The index of a name in a list. Throws InputError if it is not there.
 template <class Named>
 std::size_t place_of(const std::string& where, const std::string& name, const std::vector<Named>& all,
                      const char* what) {
@@ -67,7 +67,7 @@ OrbitQuestion::Along read_along(const std::string& text, const SystemDescription
     return along;
 }
 
-// A run from that state on, as long as it was.
+// Starts the run at this state, with the same duration.
 void begin_at(Run& run, const State& state, bool with_time) {
     run.q = state.q;
     run.v = state.v;
@@ -76,7 +76,8 @@ void begin_at(Run& run, const State& state, bool with_time) {
     run.options.start_time = state.t;
 }
 
-// An orbit is as exact as its runs: they are made as exactly as double precision allows, unless somebody says otherwise.
+// Tightens the tolerances that were not set explicitly to those of exact_options(), because they determine the accuracy
+// of the orbit.
 void make_exact(Options& options, const std::set<std::string_view>& said) {
     const Options exact = exact_options();
     for (const Option& option : all_options())
@@ -162,14 +163,14 @@ OrbitQuestion make_orbit_question(const AskedOrbit& asked, const Run& run, const
         }
         guess.t = orbit->t.value_or(guess.t);
         begin_at(whole.run, guess, has_clock);
-        // What is set goes over the guess as well.
+        // Explicit settings take precedence over the guess.
         for (const std::string& setting : asked.settings) assign(whole.run, description, setting);
     }
     whole.is_guess = asked.guess || question.from_end || (orbit && asked.from.empty());
     read_closing(asked, *model, whole.closing);
     if (!asked.along.empty()) question.along = read_along(asked.along, description, whole.run);
     Chain::check(whole.run);
-    // What is wrong with the question is told before the work.
+    // Reports errors in the request before the search.
     [[maybe_unused]] const ReturnMap possible(model, whole.run, whole.closing);
     return question;
 }

@@ -17,11 +17,11 @@ namespace achilles {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-// How long nothing is looked for: long beside what looking costs, short beside a chunk.
+// Polling interval: long compared with the cost of polling, short compared with a chunk.
 constexpr std::chrono::microseconds pause(1000);
 
-// The first byte of a message. From rank 0: what the work is, a chunk of it, that nothing more is wanted.
-// To it: so many threads are there, what a chunk came to, what went wrong.
+// The first byte of a message. From rank 0: the order, a chunk, dismissal. To rank 0: ready with a number of threads,
+// the result of a chunk, a failure.
 enum class Kind : char { order = 'o', chunk = 'c', dismissed = 'x', ready = 'r', done = 'd', failed = 'f' };
 
 Kind kind_of(const Messages::Letter& letter) { return static_cast<Kind>(letter.bytes.empty() ? 'x' : letter.bytes[0]); }
@@ -39,7 +39,7 @@ std::string_view as_bytes(const Value& value) {
     return {reinterpret_cast<const char*>(&value), sizeof value};
 }
 
-// Takes a value off the front.
+// Removes a value from the front of the bytes.
 template <class Value>
 Value take(std::string_view& bytes) {
     Value value{};
@@ -49,7 +49,7 @@ Value take(std::string_view& bytes) {
     return value;
 }
 
-// The others, as rank 0 has them.
+// The other ranks, as seen by rank 0.
 class Crew {
  public:
     Crew(Messages& messages, ChunkQueue& queue, const std::string& order)
@@ -57,10 +57,10 @@ class Crew {
         for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(Kind::order, order));
     }
 
-    // Takes what has come, and hands out what is wanted.
+    // Receives all messages that have arrived, and sends chunks to ranks that can take them.
     void serve() {
         while (const auto letter = messages_.receive()) read(*letter);
-        for (bool goes_on = true; goes_on;) {  // in turn, so that each has one before any has two
+        for (bool goes_on = true; goes_on;) {  // in turn: each rank gets one chunk before any gets two
             goes_on = false;
             for (std::size_t rank = 1; rank < wanted_.size(); ++rank) goes_on = hand_to(rank) || goes_on;
         }
@@ -105,10 +105,10 @@ class Crew {
 
     Messages& messages_;
     ChunkQueue& queue_;
-    std::vector<int> wanted_, out_;  // chunks: that each could take, and that it has
+    std::vector<int> wanted_, out_;  // numbers of chunks: that each rank could take, and that it has
 };
 
-// What comes to another rank for its threads, and what they send.
+// The chunks received by another rank for its threads, and their results to be sent.
 class Inbox final : public ChunkSource {
  public:
     void add(Chunk chunk) {
@@ -116,7 +116,7 @@ class Inbox final : public ChunkSource {
         chunks_.push_back(chunk);
         changed_.notify_one();
     }
-    // Chunks that are not begun are not.
+    // Chunks that have not started are discarded.
     void close() {
         const std::scoped_lock lock(mutex_);
         is_closed_ = true;

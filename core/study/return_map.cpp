@@ -38,7 +38,7 @@ ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const C
     if (is_driven()) check_repeats();
 }
 
-// What depends on the time does so with the period: seen at instants that have nothing to do with it.
+// Checks that forces and gaps repeat with the period, at instants unrelated to it.
 void ReturnMap::check_repeats() const {
     const double T = period(run_.parameters).value;
     for (int i = 1; i <= 5; ++i) {
@@ -162,7 +162,8 @@ Lap Newton::lap_at(const Lap& like, const VectorXd& scaled) const {
     return lap;
 }
 
-// Of the steps of (x, T, p), scaled: that it closes; that it stays on the section, or has the drive's period; the plane.
+// The Jacobian for steps of (x, T, p), scaled. Rows: the return condition; the section, or the period of the drive; the
+// plane.
 MatrixXd Newton::matrix(const Shot& shot, const Lap& lap, const VectorXd& F_ref, const VectorXd& normal) const {
     const Index m = lap.x.size();
     const auto p = static_cast<Index>(parameter_);
@@ -194,7 +195,7 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
     const Index m = lap.x.size();
     ClosedLap closed;
     Shot shot = map_.shoot(lap, parameter_);
-    const VectorXd F_ref = shot.F0;  // the section is across the motion at the first guess
+    const VectorXd F_ref = shot.F0;  // the section is perpendicular to the flow at the first guess
     const std::uint64_t word = shot.word;
     bool same_word = true;
     int slow = 0;
@@ -209,13 +210,14 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
         const VectorXd step = least_solution(A, r);
         const double size = step.norm();
         if (!std::isfinite(size)) break;
-        // It is quadratic, but towards what is no isolated orbit: a family of them, or one that shrinks to rest.
+        // Convergence is quadratic, except toward an orbit that is not isolated: one of a family, or one that shrinks
+        // to an equilibrium.
         slow = size > 0.1 * last && last < 0.1 ? slow + 1 : 0;
         if (slow == 6)
             throw NoOrbit(
                 "Newton's method converges too slowly: the periodic orbit is not isolated, or shrinks to an "
                 "equilibrium");
-        // At the rounding of the runs: no step is smaller any more.
+        // Converged to the rounding of the runs: steps do not become smaller.
         if (size < 1e-15 || (size < 1e-10 && size > 0.25 * last)) {
             closed = {lap, shot, round, size, {}};
             VectorXd along = VectorXd::Zero(m + 2);
@@ -225,11 +227,11 @@ ClosedLap Newton::close(Lap lap, const VectorXd& normal, const VectorXd& predict
             return closed;
         }
         last = size;
-        // Where the whole step makes it worse, or leaves what can be run, a part of it.
+        // If the full step increases the defect or leads to a run that fails, use a part of it.
         double part = 1.0;
         for (int half = 0;; ++half) {
             Lap tried = lap_at(lap, scaled(lap) + part * step);
-            if (normal.size() == 0) tried.parameters = lap.parameters;  // to the last bit
+            if (normal.size() == 0) tried.parameters = lap.parameters;  // exactly equal
             try {
                 Shot there = map_.shoot(tried, parameter_);
                 if (size_of(there) < 2.0 * size_of(shot) + 1e-9 || half == 6) {
@@ -259,7 +261,7 @@ VectorXd stacked(const State& state) {
     return x;
 }
 
-// A stretch of flight, between two events.
+// A flight between two events.
 struct Flight {
     double start = 0.0, end = 0.0;
     bool after_release = false;
@@ -273,7 +275,7 @@ std::vector<Flight> flights_of(const Trajectory& run) {
         if (mode.is_free() && to > from) flights.push_back({from, to, released});
     };
     for (const Event& event : run.events) {
-        // What follows the collision at which a bouncing is cut is its Zeno point.
+        // The last impact before a truncation is followed by its Zeno point; there is no flight between them.
         add(event.is_zeno() ? from : event.t);
         from = event.t;
         mode = event.mode;
@@ -293,7 +295,7 @@ Lap lap_from(const ReturnMap& map, const State& state, double period) {
     return {stacked(state), state.t, period, map.run().parameters};
 }
 
-// The longest flight of a stretch of the run.
+// The longest flight that starts before this time.
 std::optional<Flight> longest(const std::vector<Flight>& flights, double before) {
     std::optional<Flight> best;
     for (const Flight& flight : flights)
@@ -301,13 +303,13 @@ std::optional<Flight> longest(const std::vector<Flight>& flights, double before)
     return best;
 }
 
-// Whether the run begins well inside a flight.
+// Whether the run starts in a flight that is not too short.
 bool begins_in_flight(const std::vector<Flight>& flights, const Trajectory& run, double period) {
     return !flights.empty() && flights.front().start == run.run.options.start_time &&
            flights.front().end - flights.front().start > 1e-3 * period;
 }
 
-// The start, or the middle of a flight behind it; from a time on, for a period at most.
+// A guess at the start, or in the middle of the longest flight that starts in [from, from + period].
 Lap in_flight(const ReturnMap& map, const Trajectory& run, double period, double from) {
     std::vector<Flight> flights = flights_of(run);
     const bool at_start = from == run.run.options.start_time;
@@ -318,20 +320,20 @@ Lap in_flight(const ReturnMap& map, const Trajectory& run, double period, double
     return lap_from(map, state_at(run, 0.5 * (flight->start + flight->end)), period);
 }
 
-// How far two states are from one being the other moved on, by their size.
+// The distance between state b and state a moved by the shift, relative to the size of the states.
 double missed(const ReturnMap& map, const State& scale, const State& a, const State& b) {
     double sum = 0.0;
     const double q = std::max(scale.q.maxCoeff(), 1e-300), v = std::max(scale.v.maxCoeff(), 1e-300);
     for (Index i = 0; i < a.q.size(); ++i) {
         const double shift = map.shift(static_cast<std::size_t>(i), map.run().parameters).value;
-        // A coordinate that is moved on is as large as it has come far.
+        // A shifted coordinate is measured by its shift.
         const double size = shift != 0.0 ? std::abs(shift) : q;
         sum += std::pow((b.q[i] - a.q[i] - shift) / size, 2) + std::pow((b.v[i] - a.v[i]) / v, 2);
     }
     return std::sqrt(sum);
 }
 
-// From one release to that which is most like it.
+// A guess between the two most similar releases.
 std::optional<Lap> from_releases(const ReturnMap& map, const Trajectory& run) {
     std::vector<std::size_t> releases;
     for (std::size_t i = 0; i < run.events.size(); ++i)
@@ -363,7 +365,7 @@ std::optional<Lap> from_releases(const ReturnMap& map, const Trajectory& run) {
     return best;
 }
 
-// From the start to where the run comes nearest to it, once it has been far.
+// A guess from the start to the closest return after the run has been far away.
 Lap from_recurrence(const ReturnMap& map, const Trajectory& run) {
     const Lap begin = in_flight(map, run, run.end_time - run.run.options.start_time, run.run.options.start_time);
     const State first = state_at(run, begin.start_time), scale = scale_of(run);
@@ -427,7 +429,7 @@ Lap guess_of(const ReturnMap& map, int periods) {
 }
 
 Lap rebased(const ReturnMap& map, const Lap& lap, bool past_a_release) {
-    // Two periods: what begins in one and ends in the next is one flight.
+    // Two periods, so that a flight that extends into the next period is complete.
     const Trajectory run = map.run_of(lap, 2.0 * lap.period);
     const double end = lap.start_time + lap.period;
     std::optional<Flight> best;
@@ -435,7 +437,7 @@ Lap rebased(const ReturnMap& map, const Lap& lap, bool past_a_release) {
         if (flight.start == lap.start_time || flight.start >= end) continue;
         constexpr double too_short = 1e-3;
         if (!past_a_release && flight.end > end && flight.end - flight.start > too_short * lap.period) {
-            best = flight;  // that in which it begins now
+            best = flight;  // the flight of the present start
             break;
         }
         const bool better = !best || (past_a_release && flight.after_release != best->after_release

@@ -1,6 +1,6 @@
-// The map from a start over one period, as Newton's method asks for it (theory-derivatives.md 9): where the run comes back to, and
-// how that depends on the start, the period and the parameters. The start is in a flight, so that every direction has a
-// derivative; that two of them are forgotten at a Zeno point makes no difference to the equations.
+// The return map over one period and its derivatives, for Newton's method (theory-derivatives.md 9): the state to which
+// a run returns, as a function of its start, period and parameters. The start is in a flight, so that every direction
+// has a derivative. The equations are not affected by the two dimensions that a Zeno point forgets.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,40 +19,41 @@ namespace achilles {
 struct Closing;
 struct OrbitWatch;
 
-// Why there is no periodic run: a sentence for a person.
+// No periodic orbit was found; the reason is a sentence.
 struct NoOrbit : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-// A start, and how long its period is taken to be.
+// Unknowns of the shooting method: initial state, period, parameters.
 struct Lap {
     Eigen::VectorXd x;  // q, v
     double start_time = 0.0, period = 0.0;
     std::vector<double> parameters;
 };
 
-// A run over one period.
+// A run over one period, with its derivatives.
 struct Shot {
     Trajectory run;
     Eigen::VectorXd defect;  // x(T) - x(0) - shift
-    Eigen::MatrixXd M;       // of x(T) by x(0): the monodromy where the defect is 0
-    Eigen::MatrixXd P;       // of x(T) - shift by the parameters, T fixed
+    Eigen::MatrixXd M;       // derivative of x(T) by x(0): the monodromy matrix if the defect is 0
+    Eigen::MatrixXd P;       // derivative of x(T) - shift by the parameters, at fixed T
     Eigen::VectorXd F0, F1;  // dx/dt at the start and at the end
     Derivatives derivatives;
-    std::uint64_t word = 0;  // of its events (study/measures.hpp)
+    std::uint64_t word = 0;  // signature of its events (study/measures.hpp)
 };
 
 class ReturnMap {
  public:
-    // Throws InputError for a closing that is none, also where the system has a drive and no period is given.
-    // What is watched outlives it.
+    // Throws InputError for an ill-posed return condition, for example a driven system without a period. `watch` must
+    // outlive this object.
     ReturnMap(std::shared_ptr<const Model> model, const Run& run, const Closing& closing, OrbitWatch* watch = nullptr);
 
     const std::shared_ptr<const Model>& model() const { return model_; }
     const Run& run() const { return run_; }
     Eigen::Index dof() const { return model_->dof(); }
     bool is_driven() const { return !model_->equations().autonomous; }
-    // What the closing says at these parameters, and its derivatives by them; a period of 0: nothing.
+    // The value of an expression of the return condition at these parameters, and its derivatives by them. A period of
+    // 0 means that none is given.
     struct Value {
         double value = 0.0;
         Eigen::RowVectorXd slope;
@@ -62,9 +63,10 @@ class ReturnMap {
         return value(1 + coordinate, parameters);
     }
 
-    // Throws NoOrbit where the run stops early, starts in contact, or has no derivative. By all parameters, or by one alone.
+    // Simulates one period and differentiates it by all parameters, or by only one. Throws NoOrbit if the run stops
+    // early, starts in contact, or has no derivative.
     Shot shoot(const Lap& lap, std::optional<std::size_t> parameter = {}) const;
-    // The run alone. Throws NoOrbit where it cannot start, or nobody waits any more.
+    // The run without derivatives. Throws NoOrbit if it cannot start or the search was stopped.
     Trajectory run_of(const Lap& lap, double length) const;
     Eigen::VectorXd rate(const std::vector<double>& parameters, const State& state, Mode mode) const;
 
@@ -78,13 +80,13 @@ class ReturnMap {
     OrbitWatch* watch_;
 };
 
-// A lap that closes.
+// A converged orbit.
 struct ClosedLap {
     Lap lap;
     Shot shot;
     int iterations = 0;
     double error = 0.0;       // the last step, scaled
-    Eigen::VectorXd tangent;  // of the branch, scaled, of length 1
+    Eigen::VectorXd tangent;  // unit tangent of the branch, in scaled variables
 };
 
 class Newton {
@@ -92,8 +94,9 @@ class Newton {
     // `scale`: of x, T, and the parameter.
     Newton(const ReturnMap& map, Eigen::VectorXd scale, std::size_t parameter)
         : map_(map), scale_(std::move(scale)), parameter_(parameter) {}
-    // Throws NoOrbit. `normal`, `predicted`: a plane in scaled (x, T, p) that the lap lies in; without them the parameter stands.
-    // `before`: the tangent of which the new one keeps the sense; else the parameter grows along it.
+    // Solves the return condition; throws NoOrbit if it does not converge. `normal` and `predicted` define a plane in
+    // scaled (x, T, p) that contains the solution; without them the parameter is fixed. The new tangent has the
+    // orientation of `before`; without it, the parameter increases along it.
     ClosedLap close(Lap lap, const Eigen::VectorXd& normal = {}, const Eigen::VectorXd& predicted = {},
                     const Eigen::VectorXd& before = {}, int most = 40) const;
     Eigen::VectorXd scaled(const Lap& lap) const;
@@ -108,17 +111,18 @@ class Newton {
     std::size_t parameter_;
 };
 
-// Where a search for a periodic run begins, and where a lap of one may begin as well.
+// ---- initial guesses ----
 
-// Where to begin, once the run has gone on for so many periods: in a flight; of which period, if that is not known, from one
-// release to that which is most like it, or from where the run comes back to most nearly. Throws NoOrbit.
+// An initial guess in a flight, after the run has continued for this many periods. If the period is unknown, it is
+// estimated between the two most similar releases, or from the closest return to the start. Throws NoOrbit.
 Lap guess_of(const ReturnMap& map, int periods = 0);
-// Lengths that the state, the period and a parameter are measured by along such a run.
+// Scales of the state, the period and a parameter along such a run.
 Eigen::VectorXd scale_of(const ReturnMap& map, const Lap& lap, double of_parameter);
 
-// A lap that closes as many periods earlier, as far as the start time.
+// The same orbit, started as many periods earlier as the start time allows.
 Lap earlier(const ReturnMap& map, Lap lap);
-// A lap that closes from the middle of its flight, or where that is too short of the longest; or past a release, where there is one.
+// The same orbit, started in the middle of its flight, or of the longest one if that flight is too short. With
+// past_a_release, it prefers a flight after a release.
 Lap rebased(const ReturnMap& map, const Lap& lap, bool past_a_release = false);
 
 }  // namespace achilles

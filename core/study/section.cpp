@@ -56,7 +56,7 @@ namespace {
 
 bool is_asked(const Section& section, double t) { return !section.after || t >= *section.after; }
 
-// The function along a run, looked at often enough.
+// Evaluates the function along a run at sufficiently many points.
 class Along {
  public:
     Along(const Trajectory& trajectory, const SectionFunction& function, double from)
@@ -85,7 +85,7 @@ class Along {
         }
         return std::move(points_);
     }
-    // What rounding makes of a value that is zero.
+    // Rounding level of a value that is zero.
     double rounding() const { return rounding_; }
 
     Point at(std::size_t piece, double t) {
@@ -98,7 +98,7 @@ class Along {
     static constexpr int deepest = 40, deepest_by_bend = 6;
     static constexpr std::size_t most_looks = std::size_t{1} << 18, looks_per_piece = 32;
 
-    // Whether the values are no more than what rounding makes of them, also inside the pieces, which may all end at zeros.
+    // Whether all values are zero within rounding, also inside the steps, because steps may all end at zeros.
     bool is_nothing(const std::vector<Point>& ends) {
         if (function_.bounds == nullptr) return false;
         constexpr double share = 0.382;
@@ -126,7 +126,7 @@ class Along {
         }
     }
 
-    // Until the bounds say that there is no zero between two points, or one at most, which the points tell then.
+    // Bisects until the bounds exclude a zero between two points, or allow at most one, which then shows in the signs.
     void divide(const Point& a, const Point& b, int depth) {
         if (left_ == 0) return divide_where_it_bends(a, b, std::min(depth, deepest_by_bend));
         --left_;
@@ -141,7 +141,8 @@ class Along {
         divide(middle, b, depth - 1);
     }
 
-    // Two of one sign, between which the function may have come to zero: what it bends by is no less than what is left.
+    // Bisects between two points of equal sign if the curvature of the function is large enough for a zero between
+    // them.
     void divide_where_it_bends(const Point& a, const Point& b, int depth) {
         if (depth == 0 || !((a.value < 0.0) == (b.value < 0.0))) return;
         const double t = 0.5 * (a.t + b.t);
@@ -157,10 +158,10 @@ class Along {
     const Trajectory& trajectory_;
     Sampler sampler_;
     const SectionFunction& function_;
-    std::vector<std::size_t> pieces_;  // that are looked at
+    std::vector<std::size_t> pieces_;  // indices of the steps to examine
     std::vector<Point> points_;
     double rounding_ = 0.0;
-    std::size_t left_ = 0;  // looks at bounds, until what stays about zero is left alone
+    std::size_t left_ = 0;  // remaining number of bound evaluations
 };
 
 std::size_t events_until(const Trajectory& trajectory, double t) {
@@ -169,8 +170,8 @@ std::size_t events_until(const Trajectory& trajectory, double t) {
                                     trajectory.events.begin());
 }
 
-// Between a value below zero and one above it, inside one piece. Nothing where it jumps from one to the other, or runs through
-// a pole: then it is as large as ever just beside.
+// The zero between a negative and a positive value in one step. Returns nullopt for a jump or a pole, where the value
+// next to it stays large.
 std::optional<double> zero_between(Along& along, const Along::Point& below, const Along::Point& above) {
     const auto near = [](double a, double b) { return std::abs(b - a) <= 1e-13 * (1.0 + std::abs(a)); };
     std::uintmax_t most = 100;
@@ -208,19 +209,19 @@ std::vector<Moment> events_of(const Trajectory& trajectory, const Section& secti
 }
 
 std::vector<Moment> zeros_of(const Trajectory& trajectory, const Section& section, const SectionFunction& function) {
-    const Ground ground;  // of the bounds
+    const Ground ground;  // for the bounds
     Along along(trajectory, function, section.after.value_or(trajectory.run.options.start_time));
     const std::vector<Along::Point> points = along.points();
     const double rounding = along.rounding();
     std::vector<Moment> moments;
-    const Along::Point* below = nullptr;  // the last one below zero, where none was above since
+    const Along::Point* below = nullptr;  // the last negative point with no positive one after it
     for (const Along::Point& point : points) {
         const bool jumped = &point != points.data() && point.piece != (&point)[-1].piece &&
                             std::abs(point.value - (&point)[-1].value) > 100.0 * rounding;
         if (jumped || !std::isfinite(point.value)) below = nullptr;
         if (point.value < -rounding) below = &point;
         if (!(point.value > rounding) || below == nullptr) continue;
-        // Where they are of two pieces, the piece of the latter begins with zero to rounding.
+        // If the two points are in different steps, the second step starts at zero within rounding.
         const std::optional<double> t =
             below->piece == point.piece ? zero_between(along, *below, point) : trajectory.pieces[point.piece].start;
         below = nullptr;

@@ -1,4 +1,4 @@
-// Sections of a run: its events of a kind, or the times at which an expression passes zero upwards.
+// Sections of a run: its events of one kind, or the upward zero crossings of an expression.
 #pragma once
 
 #include <functional>
@@ -14,18 +14,18 @@
 
 namespace achilles {
 
-// What an expression can be along a part of a run: bounds of it and of its rate on the dense output, of which a root search knows where it need not look. They hold
-// but for what a state in contact is moved by when it is projected. Stands on a Ground (number/ground.hpp).
+// Bounds of an expression and its rate over a part of a run, from dense output. They show a root search where it need
+// not look. The projection of states in contact is not included. Requires a Ground (number/ground.hpp).
 class BoundsAlong {
  public:
-    // Of Model::compile_section(). Nothing where it asks for forces and accelerations of several contacts, or for the work that
-    // forces have done: those are not known on the way.
+    // `section` is a result of Model::compile_section(). Returns nullopt if it depends on forces or accelerations of
+    // several contacts, or on the work of forces, which dense output does not contain.
     static std::optional<BoundsAlong> of(const Model& model, const Program& section,
                                          std::span<const double> parameters);
 
-    // While the time is between these, within a piece: undefined where the expression need not be.
+    // Bounds for times in [from, to] within a step; undefined if the expression may be undefined there.
     Interval value(const Trajectory& trajectory, const Piece& piece, double from, double to);
-    // Of its rate, 1/s, there where value() was asked last.
+    // Bounds of the rate (1/s) over the interval of the last value().
     Interval rate();
 
  private:
@@ -36,22 +36,23 @@ class BoundsAlong {
     std::vector<Interval> rates_;  // of q and v
 };
 
-// A moment of a run at which it is asked.
+// A point of a run in a section.
 struct Moment {
     Sample sample;           // after the event
-    std::size_t events = 0;  // so many have happened by then, this one included
-    ContactSet contacts;     // of an event: that land, come to rest or leave
+    std::size_t events = 0;  // number of events up to this point, including this one
+    ContactSet contacts;     // for an event: the contacts that impact, come to rest or leave
 };
 
-// The events of this kind, not before `after`.
+// The events of the section's kind, not before `after`.
 std::vector<Moment> events_of(const Trajectory& trajectory, const Section& section);
 
-// The times at which a function of a moment of the run passes zero upwards, found on the dense output to 1e-12 of them. A
-// jump or a pole over zero is no passage, nor is a touch, nor what rounding makes of a value that stays zero.
+// The times at which a function of the run crosses zero upward, found on dense output to a relative 1e-12. A jump or a
+// pole across zero is not a crossing, nor is a touch, nor rounding of a value that stays zero.
 //
-// By its bounds none is missed, but where it stays so close to zero for so long that they cannot tell it from zero. Without
-// them two passages may hide between the instants that are looked at, eight a step and more where the function bends towards
-// zero. The work that forces have done takes long to find: the function is told it where it asks for it.
+// With bounds, no crossing is missed, unless the function stays so close to zero for so long that the bounds cannot
+// separate it from zero. Without bounds, two crossings between neighboring evaluation points may be missed; there are
+// eight per step, and more where the function curves toward zero. Work is provided to the function only on request,
+// because it is slow to compute.
 struct SectionFunction {
     std::function<double(const Sample&)> value;
     bool asks_for_work = false;

@@ -27,7 +27,7 @@ double SweepAxis::between(double share) const {
 
 namespace {
 
-// A number for each point and axis that depends on nothing else: the bits of a counter.
+// A pseudorandom number for each point and axis, from a counter-based hash.
 double share_of(std::uint64_t seed, std::size_t axis, std::uint64_t i) {
     return static_cast<double>(mixed(mixed(mixed(seed) + axis) + i) >> 11) * 0x1p-53;
 }

@@ -1,5 +1,5 @@
-// Many runs of one system as one value: what is varied, and what is asked of each run. It has a text of one line, which is
-// what a person types.
+// A sweep: many runs of one system, defined by what is varied and what is printed. It has a one-line text form, as
+// typed by users.
 #pragma once
 
 #include <array>
@@ -14,87 +14,87 @@
 
 namespace achilles {
 
-// A line of flags, each with a value, as on a command line: what a journal has of a study.
+// ---- a line of flags with values, as on a command line; the form of a study in a journal ----
 
 struct Flag {
     std::string name, value;  // "--over", "e=0:0.95:200"
 };
 
-// What stands in double quotes is one value. Throws InputError, about `whose` or the flag.
+// Text in double quotes is a single value. Throws InputError, which names `whose` or the flag.
 std::vector<Flag> read_flags(std::string_view text, const std::string& whose);
-// As a shell reads it, too.
+// Can also be parsed by a shell.
 std::string to_text(const std::vector<Flag>& flags);
 
-// More points than this are more than anybody can keep.
+// Upper limit on the number of points in one sweep.
 inline constexpr std::uint64_t most_points = 1'000'000'000;
 
-// One quantity that is varied: a parameter, a coordinate x or its rate x' at the start, or an option that is a number, by
-// its flag without the dashes (end, tolerance, eps).
+// A varied quantity: a parameter, an initial coordinate x or initial rate x', or a numeric option, by its flag without
+// the dashes (end, tolerance, eps).
 struct SweepAxis {
     std::string name;
     double low = 0.0, high = 1.0;
-    std::uint64_t count = 0;  // of values from low to high, both included; 0: they are drawn at random
+    std::uint64_t count = 0;  // number of values from low to high, both included; 0: random
     bool logarithmic = false;
 
-    // Value i of `count`: low + (high - low) i/(count - 1), or the same of logarithms; the ends are exact.
+    // Value i of `count`: low + (high - low) i/(count - 1), or the same with logarithms; the ends are exact.
     double value(std::uint64_t i) const;
-    // The value so far on the way from low to high, 0 <= share < 1.
+    // The value at this fraction of the way from low to high, 0 <= share < 1.
     double between(double share) const;
 
     friend bool operator==(const SweepAxis&, const SweepAxis&) = default;
 };
 
-// So many points of the box that the axes span, each coordinate uniform (or its logarithm) and independent of the others.
+// Random points of the box that the axes span; each coordinate (or its logarithm) is uniform and independent.
 struct RandomPoints {
     std::uint64_t count = 0, seed = 1;
     friend bool operator==(const RandomPoints&, const RandomPoints&) = default;
 };
 
-// Where along a run it is asked, in place of its end: at every such event, or where an expression passes zero upwards.
+// Where along a run the prints are evaluated instead of at its end: at every event of a kind, or at upward zero
+// crossings of an expression.
 struct Section {
-    std::optional<Event::Kind> event = Event::Kind::impact;  // nothing: at the zeros of the expression
+    std::optional<Event::Kind> event = Event::Kind::impact;  // empty: zero crossings of the expression
     std::string expression;
-    std::optional<double> after;  // s: not before this time
+    std::optional<double> after;  // s: no earlier
     friend bool operator==(const Section&, const Section&) = default;
 };
 
 struct Sweep {
-    Run base;                            // what is not varied; what an axis varies is as in the file
-    std::vector<SweepAxis> axes;         // the first is slowest
-    std::optional<RandomPoints> random;  // else a grid
-    std::vector<std::string> prints;     // expressions over the end of a run, or a section of it (see RunMeasures)
+    Run base;                            // everything else; values that an axis varies are those of the file
+    std::vector<SweepAxis> axes;         // the first varies slowest
+    std::optional<RandomPoints> random;  // otherwise a grid
+    std::vector<std::string> prints;     // expressions at the end of a run or at a section (see RunMeasures)
     std::optional<Section> at;
 
-    // Of its points.
+    // The number of points.
     std::uint64_t count() const;
-    // What an axis is at point i: the same bits wherever it is asked.
+    // Value of an axis at point i. Bit-identical wherever it is evaluated.
     double value(std::size_t axis, std::uint64_t i) const;
 
     friend bool operator==(const Sweep&, const Sweep&) = default;
 };
 
-// A sweep as a person asks for it: the texts behind --over, --print, --at, --after, --random and --seed.
+// The unparsed options of a sweep: the values of --over, --print, --at, --after, --random and --seed.
 struct AskedSweep {
     std::vector<std::string> over{}, prints{};
     std::optional<std::string> at{}, after{}, random{}, seed{};
-    std::vector<std::string>
-        fixed{};  // names that have one value by --set, and flags of options: no axis may be one of them
+    std::vector<std::string> fixed{};  // names set by --set, and flags of options; none of them may be an axis
 };
-// Throws InputError where it cannot be. Whether the expressions mean something, and a section comes before the end, is for
-// RunMeasures to say.
+// Throws InputError if the options are invalid. Whether the expressions are valid, and a section begins before the end,
+// is checked by RunMeasures.
 Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescription& description);
 
-// "--over e=0:0.95:200 --print "zeno_time(2)"", with --set and the options where the base is not what the description says:
-// a sweep, but for the system. A shell reads it, too.
+// The sweep as text, without the system: "--over e=0:0.95:200 --print "zeno_time(2)"", with --set and options for
+// differences between the base and the description. A shell can parse it, too.
 std::string to_text(const Sweep& sweep, const SystemDescription& description);
-// The sweep of such a text. Throws InputError.
+// Parses such a text. Throws InputError.
 Sweep read_sweep(std::string_view text, const SystemDescription& description);
 
 // The runs of a sweep.
 class SweepPoints {
  public:
     SweepPoints(const Sweep& sweep, const SystemDescription& description);
-    // That of point i.
+    // The run of point i.
     Run run(std::uint64_t i) const;
 
  private:
@@ -108,12 +108,12 @@ class SweepPoints {
     std::vector<Place> places_;
 };
 
-// A run in which everything that an axis varies is as in `file`.
+// A copy of the run with everything that an axis varies set as in `file`.
 Run without_axes(Run run, const std::vector<SweepAxis>& axes, const Run& file, const SystemDescription& description);
 
-// The options that a name stands for on an axis; none where it stands for none.
+// The options that an axis name stands for; empty if there are none.
 std::vector<const Option*> options_of_axis(std::string_view name);
-// "" where it is not known.
+// "" if unknown.
 std::string unit_of_axis(const SystemDescription& description, std::string_view name);
 
 }  // namespace achilles

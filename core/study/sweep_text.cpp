@@ -1,4 +1,4 @@
-// A sweep as a line of text: what a person types, and what is wrong with it.
+// The text form of a sweep: parsing, error messages, and printing.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -19,7 +19,7 @@ namespace {
 constexpr std::string_view unquoted_characters =
     "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./,:@%^";
 
-// No expression has a double quote, nor anything that means something to a shell inside them.
+// Quotes a text if necessary. Expressions contain no double quotes and nothing that a shell interprets inside them.
 std::string quoted(const std::string& text) {
     const bool is_bare = !text.empty() && text.find_first_not_of(unquoted_characters) == text.npos;
     return is_bare ? text : "\"" + text + "\"";
@@ -83,7 +83,7 @@ double number(std::string_view flag, std::string_view whole, std::string_view te
     }
 }
 
-// From `least` to most_points.
+// Parses a whole number from `least` to most_points.
 std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::string_view text, double least) {
     const double value = number(flag, whole, text);
     if (!(value >= least) || value != std::floor(value))
@@ -99,7 +99,8 @@ std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::s
 constexpr const char* how_to_vary =
     "write --over NAME=LOW:HIGH:COUNT, as in --over e=0:0.95:200, or e=log:1e-3:0.9:100";
 
-// "0:0.9:10" for 0..0.9:10, 0,0.9,10, [0,0.9,10] and linspace(0,0.9,10); "" where a text is none of these.
+// Converts other notations, 0..0.9:10, 0,0.9,10, [0,0.9,10] and linspace(0,0.9,10), to "0:0.9:10"; "" if the text is
+// none of these.
 std::string with_colons(std::string text) {
     std::erase(text, ' ');
     for (const char* call : {"np.linspace(", "linspace(", "["})
@@ -115,7 +116,7 @@ std::string with_colons(std::string text) {
     return colons == 1 ? text + ":COUNT" : colons == 2 ? text : "";
 }
 
-// LOW:STEP:HIGH, as Matlab has it, in our order; "" where the numbers cannot be that.
+// Converts LOW:STEP:HIGH (Matlab) to LOW:HIGH:COUNT; "" if the numbers do not fit.
 std::string from_steps(double low, double step, double high) {
     const double steps = (high - low) / step, count = std::round(steps) + 1.0;
     if (!(count >= 2.0 && count <= 1e6) || std::abs(steps - std::round(steps)) > 1e-6) return "";
@@ -150,7 +151,7 @@ void check_name(const SweepAxis& axis, std::string_view text, const SystemDescri
             throw refusal("--over", text, fmt::format("{} must be positive, but {} is not", axis.name, end));
 }
 
-// The words behind one --over: "e 0 0.9 10" as e=0:0.9:10.
+// Error message for an axis given as several words: "e 0 0.9 10" instead of e=0:0.9:10.
 InputError apart(const std::vector<std::string>& words) {
     std::string values;
     for (std::size_t i = 1; i < words.size(); ++i) values += (i == 1 ? "" : ":") + words[i];
@@ -168,7 +169,7 @@ SweepAxis read_axis(std::string_view text, const SystemDescription& description)
     axis.name = trimmed(text.substr(0, equals));
     const std::string right = with_colons(std::string(text.substr(equals + 1)));
     std::vector<std::string_view> parts = parts_of(text.substr(equals + 1));
-    const bool is_decimal = parts.size() > 2 && right.find("COUNT") == right.npos;  // 0,1:1:3
+    const bool is_decimal = parts.size() > 2 && right.find("COUNT") == right.npos;  // a decimal comma, as in 0,1:1:3
     if (!right.empty() && !is_decimal)
         throw refusal("--over", text, "the limits and the number of values must be separated by colons",
                       fmt::format("write --over {}={}", axis.name, right));
@@ -241,7 +242,7 @@ std::optional<RandomPoints> read_random(const AskedSweep& asked, const std::vect
     return random;
 }
 
-// What stands between the commas outside of parentheses; digits around a comma are a decimal.
+// Splits at commas outside of parentheses; a comma between digits is a decimal comma.
 std::vector<std::string> parts_between_commas(const std::string& text) {
     std::vector<std::string> parts(1);
     int depth = 0;
@@ -257,7 +258,7 @@ std::vector<std::string> parts_between_commas(const std::string& text) {
     return parts;
 }
 
-// In one line: a heading of a table has no other.
+// Replaces line breaks, because the print is a column heading.
 std::string read_print(const std::string& text) {
     std::string print = trimmed(text);
     for (char& c : print)
@@ -292,7 +293,7 @@ std::optional<Section> read_section(const AskedSweep& asked) {
     return section;
 }
 
-// A name that has one value already.
+// Refuses an axis whose name is also set to a single value.
 void refuse_fixed(const SweepAxis& axis, const std::vector<std::string>& fixed) {
     for (const std::string& name : fixed) {
         const std::vector<const Option*> options = options_of_axis(axis.name);
@@ -306,7 +307,8 @@ void refuse_fixed(const SweepAxis& axis, const std::vector<std::string>& fixed) 
     }
 }
 
-// A parameter that varies is a column already; of a start it is another quantity at the end.
+// Refuses to print a varied parameter, which already has a column. A varied initial coordinate may be printed, because
+// its value at the end is another quantity.
 void refuse_axis(const std::string& print, const Sweep& sweep, const SystemDescription& description) {
     for (const SweepAxis& axis : sweep.axes)
         if (axis.name == print && std::none_of(description.coordinates.begin(), description.coordinates.end(),
@@ -321,7 +323,7 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
     sweep.axes = read_axes(asked.over, description);
     for (const SweepAxis& axis : sweep.axes) refuse_fixed(axis, asked.fixed);
     sweep.base = without_axes(base, sweep.axes, default_run(description), description);
-    // Of a section one run may be enough.
+    // With a section, a single run may be enough.
     if (sweep.axes.empty() && (!asked.at || asked.random))
         throw InputError("--over", {}, "nothing is varied", how_to_vary);
     sweep.random = read_random(asked, sweep.axes);
@@ -343,7 +345,7 @@ Sweep make_sweep(const AskedSweep& asked, const Run& base, const SystemDescripti
     return sweep;
 }
 
-// ---- one line ----
+// ---- one-line text ----
 
 namespace {
 

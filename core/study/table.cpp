@@ -52,12 +52,12 @@ Rows SweepTable::rows(std::uint64_t first, std::uint64_t count, const std::funct
         return measures_.needs_everything() ? one_by_one(*worker, first, count, run_of)
                                             : ends(*worker, first, count, run_of);
     } catch (...) {
-        worker.reset();  // it stands in the middle of its work
+        worker.reset();  // its state is inconsistent after an exception
         throw;
     }
 }
 
-// Eight at a time. They come to an end in any order, and are put in their places.
+// Eight runs at a time. They finish in any order; each result is stored at its index.
 Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const {
     const std::size_t n = count, width = measures_.numbers();
     Rows rows;

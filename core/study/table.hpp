@@ -1,4 +1,4 @@
-// A sweep as a table: which columns it has, and the rows of some of its points.
+// A sweep as a table: its columns, and the rows of its points.
 #pragma once
 
 #include <functional>
@@ -10,23 +10,23 @@
 
 namespace achilles {
 
-// Rows of points that follow one another: one each, or of a section as many as it has moments, and one with nothing in it
-// where it has none. Column by column.
+// Rows of consecutive points, column by column: one row per point. For a section, one row for each of its points in a
+// run, and one empty row if there are none.
 struct Rows {
     std::vector<std::uint64_t> points;
     std::vector<double> numbers;  // the measures, row by row
     std::vector<ContactSet> held;
     std::vector<RunEnd> ends;
-    std::vector<std::uint64_t> signatures;  // of the whole run, in each of its rows (signature_of)
-    std::vector<double> times;              // of a section; no number in a row without a moment
-    std::vector<ContactSet> contacts;       // of a section, the event's
+    std::vector<std::uint64_t> signatures;  // of the whole run, repeated in each of its rows (signature_of)
+    std::vector<double> times;              // for a section; NaN in an empty row
+    std::vector<ContactSet> contacts;       // for a section: those of the event
     std::size_t count() const { return points.size(); }
     friend bool operator==(const Rows&, const Rows&) = default;
 };
 
 class SweepTable {
  public:
-    // Throws InputError where an expression means nothing.
+    // Throws InputError if an expression is invalid.
     SweepTable(std::shared_ptr<const Model> model, Sweep sweep);
     SweepTable(const SweepTable&) = delete;
     SweepTable& operator=(const SweepTable&) = delete;
@@ -37,14 +37,14 @@ class SweepTable {
     const RunMeasures& measures() const { return measures_; }
     bool is_section() const { return sweep_.at.has_value(); }
 
-    // The rows of points first, ..., first + count - 1: the same whatever others are asked for, before or at once on other
-    // threads. `before_each` run it is called, and may throw: that is how a caller cancels.
+    // The rows of points first, ..., first + count - 1. They do not depend on which other rows are computed, earlier or
+    // concurrently on other threads. `before_each` is called before each run and may throw, to cancel.
     Rows rows(std::uint64_t first, std::uint64_t count, const std::function<void()>& before_each = {}) const;
 
  private:
-    struct Worker;  // what one thread keeps from one question to the next
+    struct Worker;  // data that a thread keeps between calls
     struct Workers;
-    // run_of(i): the run at point first + i.
+    // run_of(i): the run of point first + i.
     using RunOf = std::function<Run(std::size_t)>;
     Rows ends(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const;
     Rows one_by_one(Worker& worker, std::uint64_t first, std::uint64_t count, const RunOf& run_of) const;
@@ -58,28 +58,28 @@ class SweepTable {
     std::unique_ptr<Workers> workers_;
 };
 
-// The table of a sweep, or what is there of it, as a value: what its figures are made from. A coarse grid is the data of a
-// sweep with fewer points.
+// The table of a sweep, or a part of it, as plain data for figures. A coarse grid is the data of a sweep with fewer
+// points.
 struct SweepData {
     SweepData() = default;
     // Without rows.
     explicit SweepData(const SweepTable& table);
 
-    // Rows of points that are not there yet, in any order.
+    // Adds rows of further points, in any order.
     void add(const Rows& more);
-    // One of them.
+    // Adds one of them.
     void add(const Rows& more, std::size_t row);
 
     bool is_section() const { return sweep.at.has_value(); }
     std::size_t count() const { return rows.count(); }
     double number(std::size_t row, std::size_t number) const { return rows.numbers[row * numbers + number]; }
-    // What an axis is in a row.
+    // Value of an axis in a row.
     double value(std::size_t axis, std::size_t row) const { return sweep.value(axis, rows.points[row]); }
 
     Sweep sweep;
-    std::vector<std::string> names, units;  // of its axes: x(0) where x is of the start; "" where no unit is known
+    std::vector<std::string> names, units;  // of its axes: x(0) for an initial coordinate x; "" for an unknown unit
     std::vector<RunMeasures::Column> columns;
-    std::size_t numbers = 0;  // in a row: of the columns, those with numbers
+    std::size_t numbers = 0;  // number of columns with numbers
     std::vector<std::string> contacts;
     Rows rows;
 };

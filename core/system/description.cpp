@@ -100,7 +100,7 @@ std::string unit_of(const SystemDescription& description, std::string_view name)
 
 namespace {
 
-// "8.2 rad"; an angle that no one has typed in radians, 400 deg or 3*pi, in degrees.
+// "8.2 rad". An angle with many decimals in radians, such as 400 deg or 3*pi, is in degrees.
 std::string with_unit(double value, const std::string& unit) {
     constexpr double few_decimals = 1e4;
     if (!is_of_angles(unit) || std::round(value * few_decimals) == value * few_decimals)
@@ -135,13 +135,13 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
 }
 
 std::vector<std::string> unseen_lines(const SystemDescription& description) {
-    constexpr double least = 0.25;  // pixels: fainter than a tenth of what is usual
+    constexpr double least = 0.25;  // pixels: about a tenth of the usual width
     std::vector<std::string> told;
     for (const DrawingDescription& drawing : description.drawings) {
         double width = 0.0;
         try {
             width = read_number(drawing.width.text).value;
-        } catch (const ParseError&) {  // none is written, or one that follows from parameters
+        } catch (const ParseError&) {  // no width given, or one that depends on parameters
             continue;
         }
         if (width > 0.0 && width < least)
@@ -155,7 +155,7 @@ std::vector<std::string> unseen_lines(const SystemDescription& description) {
 
 namespace {
 
-// Several values in one word: "e=0.3,g=9.81", a range, an interval.
+// Rejects several values in one argument: "e=0.3,g=9.81", a range, an interval.
 template <class Refuse>
 void refuse_several(const std::string& name, const std::string& written, const Refuse& refuse) {
     if (const std::size_t equals = written.find('='); equals != written.npos && equals > 0) {

@@ -1,5 +1,5 @@
-// What a person writes: a system file, read but not yet derived. Every error says file, line, column and what would be
-// right.
+// The contents of a system file, read but not yet derived. Every error states file, line and column, and suggests a
+// correction.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@ namespace achilles {
 struct CoordinateDescription {
     std::string name, unit;
     double start = 0.0, rate = 0.0;
-    Text force;                                                     // generalised; empty: none
+    Text force;                                                     // generalized force; empty: none
     std::array<double, 2> range{-1.0, 1.0}, rate_range{-1.0, 1.0};  // of its sliders
-    bool has_range = false, has_rate_range = false;                 // they stand in the file
+    bool has_range = false, has_rate_range = false;                 // given in the file
     Location at, start_at, rate_at;
 };
 
@@ -29,11 +29,11 @@ struct ParameterDescription {
     std::string name, unit, about;
     double value = 0.0;
     std::array<double, 2> range{0.0, 1.0};
-    bool has_range = false;  // it stands in the file
+    bool has_range = false;  // given in the file
     Location at;
 };
 
-// One whose value follows from other parameters: no run sets it.
+// A parameter defined by other parameters; a run cannot set it.
 struct DerivedDescription {
     std::string name, unit, about;
     Text definition;
@@ -42,38 +42,38 @@ struct DerivedDescription {
 struct DrawingDescription {
     enum class Shape { disc, circle, box, segment, spring, damper, ground, curve, polyline, text };
     Shape shape = Shape::disc;
-    std::vector<std::array<Text, 2>> points;  // at, or from and to, or points
+    std::vector<std::array<Text, 2>> points;  // at; or from, to; or points
     Text radius;                              // disc, circle
     std::vector<Text> sizes;                  // box: width, height, angle; spring: coils, across; damper: across
-    std::string over;                         // curve: its own parameter, and the limits
+    std::string over;                         // curve: its variable and its limits
     std::array<Text, 2> over_limits;
     std::string text;   // text
     std::string color;  // "#rrggbb" or ""
     Text width;         // stroke width; empty: default
     bool fill = false;
-    std::optional<std::size_t> contact;  // that is touched there: it stands in this constraint
+    std::optional<std::size_t> contact;  // the constraint that contains this drawing: what is touched
     Location at;
 };
 
-// A disc, or its outline.
+// True for a disc or a circle.
 inline bool is_round(DrawingDescription::Shape shape) {
     return shape == DrawingDescription::Shape::disc || shape == DrawingDescription::Shape::circle;
 }
 
-// A thing with a middle, by which a hand takes it.
+// True for a shape with a center, which can be dragged.
 inline bool is_body(DrawingDescription::Shape shape) {
     return is_round(shape) || shape == DrawingDescription::Shape::box;
 }
 
-// Every expression of a drawing: x and y of its points, then a disc's or circle's radius, the sizes or a curve's limits, then
-// the width if given.
+// All expressions of a drawing: x and y of its points, then the radius of a disc or circle, the sizes or the limits of
+// a curve, then the width if given.
 std::vector<Text> texts_of(const DrawingDescription& drawing);
 
 struct ConstraintDescription {
-    std::string name;  // "contact" where the file gives none, which may have one constraint then
+    std::string name;  // "contact" if a file with one constraint names none
     Text gap, restitution;
-    std::string begins{}, ends{};  // what a person says where contact begins and ends: "knee locks"; may be empty
-    std::vector<DrawingDescription> drawings;  // of what is touched, as written
+    std::string begins{}, ends{};  // sentences for the start and the end of contact: "knee locks"; may be empty
+    std::vector<DrawingDescription> drawings;  // of the touched bodies, as written
     Location at;
 };
 
@@ -81,86 +81,85 @@ struct ViewDescription {
     std::string name;
     Text x;
     std::vector<Text> y;
-    std::string label{},
-        unit{};  // of the y axis, as it is shown; "": what y is, and the unit that follows from the file's
+    std::string label{}, unit{};  // of the y axis; "": derived from y and the units of the file
 };
 
-// A periodic run, or a guess of one (theory-derivatives.md 9).
+// A periodic orbit, or an initial guess of one (theory-derivatives.md 9).
 struct OrbitDescription {
     std::vector<double> q, v;  // at the start of the period, by coordinate
-    std::optional<double> t;   // s, then: of a drive; else the start time of [run]
+    std::optional<double> t;   // start time (s) for a driven system; default: start time of [run]
     Text period;               // s, an expression in the parameters; may be empty
-    std::vector<Text> shift;   // by coordinate: how far it has moved on after a period; empty: nowhere
+    std::vector<Text> shift;   // by coordinate: increment over a period; empty: zero
     Location at;
 };
 
 struct SystemDescription {
-    std::string file;         // as given; "<text>" for typed text
-    std::string source_text;  // the whole file, for carets
+    std::string file;         // path as given; "<text>" for typed text
+    std::string source_text;  // the whole file, to show lines in errors
     std::string title, source;
     std::vector<CoordinateDescription> coordinates;
-    std::vector<ParameterDescription> parameters;  // with values of their own
-    std::vector<DerivedDescription> derived;       // each after those that its definition names
+    std::vector<ParameterDescription> parameters;  // those with values of their own
+    std::vector<DerivedDescription> derived;       // each after those that its definition uses
     Text kinetic, potential;
-    Text dissipation;  // R: minus its derivatives by the rates is added to the forces; may be empty
+    Text dissipation;                                // R: -dR/dv is added to the forces; may be empty
     std::vector<ConstraintDescription> constraints;  // at least one
     Options options;                                 // defaults overridden by [run] and [truncation]
-    std::vector<DrawingDescription> drawings;        // as written; none is a valid answer
+    std::vector<DrawingDescription> drawings;        // as written; may be empty
     std::vector<ViewDescription> views;              // as written, or default_views()
     std::optional<OrbitDescription> orbit;
 
-    // An error at a place in this file, with the line and a caret.
+    // An error at a location in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
 
-// The most bytes of a file: thousands of points of a polyline fit, and whatever else it holds is refused in a second.
+// Maximum size of a file in bytes. Enough for polylines of thousands of points; a larger file is rejected at once.
 inline constexpr std::size_t largest_file = std::size_t{4} << 20;
 
-// What a file holds. Throws InputError if there is none to read. Of a file that is too large it is only so much that
-// the size tells: parse_system will say so.
+// The contents of a file. Throws InputError if it cannot be read. For a file larger than `largest`, returns a prefix
+// that is too long for parse_system, which reports the size.
 std::string read_text(const std::filesystem::path& file, std::size_t largest = largest_file);
 
-// All that is drawn of a system, the constraints' drawings among the others, in the order of the file.
+// All drawings of a system, including those of the constraints, in the order of the file.
 std::vector<DrawingDescription> drawings_of(const SystemDescription& system);
 
-// What views call a quantity of the constraints, gap'' for one: itself, or where there are several gap_knee'', gap_post'',
-// in their order.
+// The names that views use for a quantity of the constraints, such as gap'': the quantity itself, or for several
+// constraints gap_knee'', gap_post'', in their order.
 std::vector<std::string> output_names(const SystemDescription& system, std::string_view quantity);
 
-// A description is never edited: what a person sets is set in a run of it.
+// A description is never edited: values are changed in a run.
 
-// The run that it asks for.
+// The run with the values of the description.
 Run default_run(const SystemDescription& description);
-// What a person may set: coordinates x and their rates x', parameters.
+// Names that can be set: coordinates x, their rates x', parameters.
 std::vector<std::string> settable_names(const SystemDescription& description);
-// Where a run keeps the value of such a name; null if there is none.
+// Pointer to the value with this name in a run; null if the name cannot be set.
 double* find_value(const SystemDescription& description, Run& run, std::string_view name);
-// Why there is none for another name: it is derived, or nothing; with what was probably meant.
+// The reason why a name cannot be set: it is derived, or unknown, with a suggestion.
 std::string why_not_settable(const SystemDescription& description, std::string_view name);
-// The unit of a coordinate's rate; "" where there is none.
+// The unit of a coordinate's rate; "" if the coordinate has no unit.
 std::string rate_unit(const std::string& unit);
-// Whether it is that of an angle or of its rate: degrees may be shown.
+// True for the unit of an angle or an angular rate, which can be shown in degrees.
 inline bool is_of_angles(std::string_view unit) { return unit == "rad" || unit == "rad/s"; }
-// The unit of such a name's value, a rate's with its "/s"; "" where it is not known.
+// The unit of a settable value, for a rate with "/s"; "" if unknown.
 std::string unit_of(const SystemDescription& description, std::string_view name);
-// A sentence for each value outside the range that the file gives it: no mistake, but perhaps not what was meant.
+// Warnings, one sentence for each value outside the range given in the file.
 std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run);
-// A sentence for each line that is drawn too thin to be seen: its width was probably meant in the units of the world.
+// Warnings, one sentence for each line too thin to see, whose width was probably meant in world units.
 std::vector<std::string> unseen_lines(const SystemDescription& description);
-// Assigns "NAME=VALUE" as --set does. Throws InputError without a location, and leaves the run as it is.
+// Sets "NAME=VALUE" like --set. Throws InputError without a location and leaves the run unchanged if it is invalid.
 void assign(Run& run, const SystemDescription& description, std::string_view name_value);
 
-// A run whose values are set by their names, as --set does.
+// A run whose values are set by name, like --set.
 
 class NamedRun : public Run {
  public:
-    // The run that the description asks for.
+    // The run with the values of the description.
     explicit NamedRun(const SystemDescription& description);
 
-    // Sets a parameter, a coordinate x or its rate x' at the start; angles in rad. Throws InputError where there is no such name,
-    // with what was probably meant. May be chained.
+    // Sets a parameter, a coordinate x or its rate x' at the start; angles in rad. Throws InputError, with a
+    // suggestion, if the name is unknown. Returns *this.
     NamedRun& set(std::string_view name, double value);
-    // Its value. Throws as set() does.
+    // The value with this name. Throws like set().
     double get(std::string_view name) const;
 
  private:

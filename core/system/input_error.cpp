@@ -12,7 +12,7 @@ namespace achilles {
 
 namespace {
 
-// Bytes of the UTF-8 character at the start of a text; 0 if it is none.
+// Size in bytes of the UTF-8 character at the start of a text; 0 if it is invalid.
 std::size_t character_size(std::string_view text) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
     const std::size_t size = byte(0) < 0x80 ? 1 : byte(0) < 0xC2 ? 0 : byte(0) < 0xE0 ? 2 : byte(0) < 0xF0 ? 3 : 4;
@@ -23,7 +23,7 @@ std::size_t character_size(std::string_view text) {
     return size;
 }
 
-// Of a character of at most three bytes.
+// Code point of a character of at most three bytes.
 unsigned code_point(std::string_view character) {
     unsigned code = static_cast<unsigned char>(character[0]);
     if (character.size() > 1) code &= character.size() == 2 ? 0x1FU : 0x0FU;
@@ -31,7 +31,8 @@ unsigned code_point(std::string_view character) {
     return code;
 }
 
-// A terminal obeys it: C0 and C1 control characters, DEL, and U+202A to 202E, U+2066 to 2069, which turn the direction.
+// True for characters that control a terminal: C0 and C1 control characters, DEL, and U+202A to 202E, U+2066 to 2069,
+// which change the writing direction.
 bool steers_terminal(std::string_view character) {
     const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
     if (character.size() == 1) return byte(0) < 0x20 || byte(0) == 0x7F;
@@ -41,7 +42,8 @@ bool steers_terminal(std::string_view character) {
            (byte(1) == 0x81 && byte(2) >= 0xA6 && byte(2) <= 0xA9);
 }
 
-// One printable character each: a tab is a space so that a caret below stays in step, what cannot be shown is '?'.
+// The text as printable characters. A tab becomes a space, so that the caret below is aligned; invalid characters
+// become '?'.
 std::vector<std::string> characters(std::string_view text) {
     std::vector<std::string> list;
     while (!text.empty()) {
@@ -71,7 +73,7 @@ std::string printable(std::string_view text) {
     return result;
 }
 
-// Below 0x20 there are line breaks between the values alone; within a string the writer has escaped them.
+// Below 0x20 there are only line breaks between values; the JSON writer has escaped those inside strings.
 std::string printable_json(std::string_view json) {
     std::string result;
     while (!json.empty()) {
@@ -88,11 +90,11 @@ std::string printable_json(std::string_view json) {
 
 namespace {
 
-// The line and a caret under the column. Of a long line, what is near the caret.
+// The line, and a caret below the column. A long line is cut to the part near the caret.
 std::string with_caret(std::string_view line, int column) {
     constexpr std::size_t around = 56;
     const std::size_t target = byte_of_column(line, column);
-    // Four bytes a character are enough to reach as far as is shown.
+    // A character has at most four bytes.
     std::size_t first = target > 4 * around ? target - 4 * around : 0;
     while (first > 0 && (static_cast<unsigned char>(line[first]) & 0xC0) == 0x80) --first;
     std::vector<std::string> before = characters(line.substr(first, target - first));
@@ -195,7 +197,7 @@ Location place_in(const Text& text, std::size_t offset) {
 
 namespace {
 
-constexpr std::size_t most_kept = 1000;  // in the order of reading; nobody corrects more at once
+constexpr std::size_t most_kept = 1000;  // in the order of reading; more are of no use
 constexpr std::size_t most_told = 10;
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What is wrong with a file or a value, and where: errors, the mistakes gathered while a file is read, and how names and lines
-// are shown in their messages.
+// Errors in files and values, with their locations: exceptions, the collection of mistakes while a file is read, and
+// the formatting of names and lines in messages.
 #pragma once
 
 #include <stdexcept>
@@ -12,63 +12,63 @@ namespace achilles {
 
 struct SystemDescription;
 
-// Where something stands in a file, from 1; 0: nowhere.
+// A position in a file, counted from 1; 0: none.
 struct Location {
     int line = 0;
     int column = 0;
 };
 
-// Bad input, told to a person: "FILE:LINE:COLUMN: message", the offending line with a caret where there is one, a hint.
+// Invalid input. what() is "FILE:LINE:COLUMN: message", the line with a caret if there is one, and a hint.
 struct InputError : std::runtime_error {
     InputError(std::string file, Location at, std::string message, std::string hint = {}, const std::string& line = {});
-    std::string file, message, hint;  // hint: what would be right; may be empty
+    std::string file, message, hint;  // hint: a correction; may be empty
     Location at;
 
  protected:
-    // One that stands for several: the first of them, but for what() a text of its own.
+    // For a collection of errors: the data of the first, with its own what().
     InputError(const InputError& first, const std::string& told);
 };
 
-// The mistakes of one file, in order of position. Caught as an InputError it is the first of them; what() tells all,
-// each as it would be told alone, with an empty line between them and a last line "and N more" where there are more.
+// The mistakes of one file, ordered by position. As an InputError it is the first of them. what() lists all, separated
+// by empty lines, with a last line "and N more" if some are not shown.
 struct InputErrors : InputError {
-    // `all`: at least one, in order; `more`: how many others there are.
+    // `all` has at least one, ordered; `more` is the number of others.
     explicit InputErrors(std::vector<InputError> all, std::size_t more = 0);
-    std::vector<InputError> all;  // at most ten, each with its line and column
+    std::vector<InputError> all;  // at most ten, each with line and column
     std::size_t more;
 };
 
-// What an error consists of: the mistakes of an InputErrors, or itself.
+// The mistakes of an InputErrors, or the error itself.
 std::vector<InputError> each_of(const InputError& error);
 
-// An expression (or a number) of a file. `at` is the place of its first character.
+// An expression or number in a file. `at` is the location of its first character.
 struct Text {
     std::string text;
     Location at;
-    bool is_written = true;  // false: the reader made it from what stands at `at` (rewrite.hpp)
+    bool is_written = true;  // false: created by the reader from what is at `at` (rewrite.hpp)
 };
 
-// The place of a byte inside a text that starts at `text.at`; of one that the reader made, `text.at` itself.
+// The location of a byte of a text. For a text created by the reader it is `text.at`.
 Location place_in(const Text& text, std::size_t offset);
 
-// The mistakes of one system file, gathered while it is read: what is independent of a mistake is read on, what depends on it
-// is skipped, and in the end all are told in order of position.
+// Collects the mistakes of one system file while it is read. Parts independent of a mistake are still read; parts that
+// depend on it are skipped. All mistakes are reported at the end, ordered by position.
 
-// One mistake, thrown while a file is read and caught by Mistakes::attempt. It holds no line yet: a hostile file has
-// very many, and only ten are shown.
+// One mistake, thrown while a file is read and caught by Mistakes::attempt. It does not store its line, because a
+// hostile file has very many mistakes and only ten are shown.
 struct Mistake {
     Location at;
-    std::string message, hint;  // hint: what would be right; may be empty
-    bool has_line = true;       // false: no line can be blamed, something is missing
+    std::string message, hint;  // hint: a correction; may be empty
+    bool has_line = true;       // false: something is missing, so no line is shown
 };
 
-// Thrown where reading cannot go on because of a mistake that was added already.
+// Thrown to stop reading because of a mistake that was already added.
 struct AlreadyTold {};
 
 class Mistakes {
  public:
     void add(Mistake mistake);
-    // Runs read() and keeps the Mistake it throws. True if it threw none.
+    // Calls read() and adds the Mistake that it throws. Returns true if it throws none.
     template <class Read>
     bool attempt(const Read& read) {
         try {
@@ -81,7 +81,7 @@ class Mistakes {
         return false;
     }
     std::size_t count() const { return count_; }
-    // Throws InputErrors if there are any: the first ten by position, and how many more.
+    // Throws InputErrors if there are any mistakes: the first ten by position, and the number of others.
     void raise(const SystemDescription& system) const;
 
  private:
@@ -89,24 +89,23 @@ class Mistakes {
     std::size_t count_ = 0;
 };
 
-// The line with that number, from 1, without its line break; "" where there is none.
+// The line with this number, from 1, without its line break; "" if there is none.
 std::string line_of(std::string_view text, int line);
 
-// The byte at which the character of that column (from 1, UTF-8 characters) starts; the line's size if there is none.
+// The byte offset of a column (from 1, in UTF-8 characters); the line's size if there is no such column.
 std::size_t byte_of_column(std::string_view line, int column);
 
-// What a person typed, fit for a message: control characters and broken UTF-8 become '?', and at most about 60
-// characters stay.
+// User input for a message: control characters and invalid UTF-8 become '?', and it is cut to about 60 characters.
 std::string shown(std::string_view text);
 
-// Text from a file, a journal or a picture, fit for a terminal: what would steer it becomes '?' (control characters but
-// the line break and the tab, broken UTF-8, marks that turn the direction of reading). The rest stays.
+// Text from a file, a journal or a picture for a terminal. What could control the terminal becomes '?': control
+// characters except line breaks and tabs, invalid UTF-8, and marks that change the writing direction.
 std::string printable(std::string_view text);
 
-// JSON in UTF-8, fit for a terminal and still the same value: what would steer one is written as \u009b.
+// UTF-8 JSON for a terminal, with the same value: control characters are escaped, as in \u009b.
 std::string printable_json(std::string_view json);
 
-// What is wrong with a subnormal parameter, and what would be right.
+// Error message for a subnormal parameter value, and the hint for it.
 std::string subnormal_parameter(std::string_view name, double value);
 inline constexpr const char* subnormal_hint = "use 0, or choose units in which it is at least 2.3e-308 in size";
 

@@ -102,7 +102,7 @@ std::span<const FileTable> file_tables() {
 std::string other_key(std::string_view word, const std::vector<std::string>& keys) {
     struct Other {
         std::string_view key,
-            words;  // of the words one stands for another key elsewhere, the first that is known here counts
+            words;  // names in other programs; the first entry with a key from `keys` counts
     };
     static constexpr Other others[] = {
         {"gap", "h distance g phi condition expression height clearance"},

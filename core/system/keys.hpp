@@ -1,4 +1,4 @@
-// Every key that a system file may have, said once: reading refuses any other, and the manual lists these.
+// All keys of system files, defined once: the reader rejects other keys, and the manual lists these.
 #pragma once
 
 #include <span>
@@ -10,25 +10,25 @@ namespace achilles {
 
 struct FileKey {
     std::string_view name;
-    std::string_view value;  // what may stand there, and what does where nothing does
+    std::string_view value;  // allowed values and default
     std::string_view about;
 };
 
-// The keys of one table of the file; [run] and [truncation] have those of all_options(). Of the shapes of [[drawing]],
-// the keys that one has beside those of all, under the shape's name.
+// The keys of one table of the file; [run] and [truncation] have those of all_options(). Each shape of [[drawing]] has
+// a table with its own keys, in addition to the common ones.
 struct FileTable {
-    std::string_view heading;  // as it is written, "[[coordinate]]"; "" before the first heading
+    std::string_view heading;  // as written: "[[coordinate]]"; "" before the first heading
     std::vector<FileKey> keys;
 };
 
 std::span<const FileTable> file_tables();
-// The names in one of them. There must be such a table.
+// The names of the keys in a table, which must exist.
 std::vector<std::string> keys_of(std::string_view heading);
 
-// Which of some keys is meant by another word, of those that people write who know other programs: restitution by e; "" where none is.
+// The key that a word of another program stands for, such as restitution for e; "" if there is none.
 std::string other_key(std::string_view word, const std::vector<std::string>& keys);
 
-// What stands for a key of other programs where no key does: friction, gravity, dt; "" where there is nothing to say.
+// Advice on a word of another program without a corresponding key: friction, gravity, dt; "" if there is none.
 std::string_view instead_of_key(std::string_view word);
 
 }  // namespace achilles

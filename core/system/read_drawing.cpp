@@ -1,4 +1,4 @@
-// What a system file says is drawn and plotted: [[drawing]] and [[view]].
+// Reads the drawings and plots of a system file: [[drawing]] and [[view]].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,7 +33,7 @@ bool is_between_two(Shape shape) {
     return shape == Shape::segment || shape == Shape::spring || shape == Shape::damper || shape == Shape::ground;
 }
 
-// One that is misspelt is told, and read on as what it was meant to be. Throws Mistake where that cannot be guessed.
+// The shape. A misspelled one adds a mistake, and the nearest shape is used. Throws Mistake if there is none near.
 const NamedShape& shape_of(const Fields& fields, Mistakes& mistakes) {
     const Text name = fields.string("shape");
     std::vector<std::string> names;
@@ -79,7 +79,7 @@ void read_points(const Fields& fields, DrawingDescription& drawing, Mistakes& mi
         mistakes.attempt([&] { drawing.points.push_back(fields.point("points", item)); });
 }
 
-// The numbers of a shape's own, besides its points. 0 is as large as fits: what has a size of its own need not say it.
+// The sizes of a shape besides its points. 0 means as large as fits: a shape with a default size need not give it.
 void read_sizes(const Fields& fields, DrawingDescription& drawing, Mistakes& mistakes) {
     const auto size = [&](const char* key) {
         mistakes.attempt([&] { drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}}); });

@@ -1,4 +1,4 @@
-// Reading from disk.
+// Reads files from disk, and recognizes files that are not system files.
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -21,7 +21,7 @@ namespace achilles {
 
 namespace {
 
-// The error of a missing file: it names the file with the nearest name beside it, or the folder that is missing.
+// The error for a missing file: suggests the file with the nearest name in its folder, or names the missing folder.
 InputError no_file(const std::filesystem::path& file) {
     std::error_code problem;
     const std::filesystem::path folder = file.parent_path();
@@ -49,7 +49,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
     struct Close {
         void operator()(std::FILE* open) const { std::fclose(open); }
     };
-    // Without waiting: whoever opens a pipe that nobody writes to waits for ever.
+    // Does not block: opening a pipe without a writer would wait forever.
     const int descriptor = ::open(name.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
     if (descriptor < 0 && errno == ENOENT) throw no_file(file);
     if (descriptor < 0) throw refuse(reason());
@@ -78,7 +78,7 @@ struct Kind {
 constexpr std::string_view reproduce = "achilles reproduce FILE prints the command that made it",
                            start_from_new = "achilles new NAME writes a system file to start from";
 
-// The first bytes of files that are no text.
+// First bytes of binary files.
 constexpr Kind of_bytes[] = {
     {"\x89PNG", "a PNG picture", reproduce},
     {"%PDF", "a PDF document", reproduce},
@@ -93,7 +93,7 @@ constexpr Kind of_bytes[] = {
     {"MATLAB 5.0", "a MAT file", start_from_new},
 };
 
-// The first letters of texts, behind blanks.
+// First characters of text files, after white space.
 constexpr Kind of_texts[] = {
     {"<svg", "an SVG picture", reproduce},
     {"<?xml", "an SVG picture or other XML", reproduce},
@@ -116,7 +116,7 @@ constexpr Kind of_texts[] = {
     throw InputError(name, {}, fmt::format("this is {}", what), std::string(advice));
 }
 
-// t,phase,x,... as CSV begins; numbers with commas between, too.
+// True for CSV, which starts like t,phase,x,... or with numbers separated by commas.
 bool is_table(std::string_view text) {
     const std::string_view line = text.substr(0, text.find('\n'));
     return std::count(line.begin(), line.end(), ',') >= 2 && line.find_first_of("=[#\"'") == line.npos;

@@ -20,12 +20,12 @@ namespace achilles {
 
 namespace {
 
-// Of what no line can be blamed for.
+// A mistake without a line: something is missing.
 Mistake missing_part(const std::string& part) {
     return {{1, 1}, fmt::format("missing {}", part), "assets/systems has complete examples", false};
 }
 
-// "mine" of some/folder/mine.toml: the title of a system whose file states none.
+// "mine" for some/folder/mine.toml: the default title of a system.
 std::string name_without_folder(const std::string& file) {
     const std::string name = file.substr(file.find_last_of('/') + 1);
     return name.ends_with(".toml") && name.size() > 5 ? name.substr(0, name.size() - 5) : name;
@@ -35,7 +35,7 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-// The slider's default: 0 to twice the value, -1 to 1 at 0.
+// Default range of a slider: 0 to twice the value, or -1 to 1 if the value is 0.
 std::array<double, 2> range_around(double value) {
     if (value == 0.0) return {-1.0, 1.0};
     return {std::min(0.0, 2.0 * value), std::max(0.0, 2.0 * value)};
@@ -46,7 +46,7 @@ struct Reading {
     SystemDescription& system;
     const TomlValue& root;
     Mistakes& mistakes;
-    Names& names;                          // of the coordinates and parameters, whatever else is wrong with these
+    Names& names;                          // of coordinates and parameters, including invalid ones
     std::vector<Fields> constraints = {};  // the tables of system.constraints
 };
 
@@ -62,9 +62,9 @@ Mistake used_twice(const Text& name, const Location& other) {
             fmt::format("it is already the name at line {}", other.line)};
 }
 
-// A name that nothing else has. Throws Mistake.
+// Reads a name that is not used yet. Throws Mistake.
 Text read_name(Names& names, const Fields& fields) {
-    const bool was_complete = std::exchange(names.complete, false);  // until this one is known
+    const bool was_complete = std::exchange(names.complete, false);  // until this name is read
     const Text name = fields.string("name");
     if (!is_name(name.text)) throw no_name(name);
     const bool is_of_a_gap =
@@ -84,7 +84,7 @@ Text read_name(Names& names, const Fields& fields) {
     return name;
 }
 
-// The tables of coordinates or parameters: where they cannot be had, neither can their names.
+// The tables of coordinates or parameters. If they contain a mistake, their names are incomplete.
 std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
     const std::size_t before = reading.mistakes.count();
     std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
@@ -130,7 +130,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
         throw missing_part("[[coordinate]]: a system needs at least one");
 }
 
-// One whose value is an expression in other parameters.
+// A parameter defined by an expression in other parameters.
 void read_derived(Reading& reading, const Fields& fields, DerivedDescription derived) {
     reading.mistakes.attempt([&] { derived.definition = fields.expression("value"); });
     reading.system.derived.push_back(std::move(derived));
@@ -141,7 +141,7 @@ void read_derived(Reading& reading, const Fields& fields, DerivedDescription der
                               {}});
 }
 
-// Whether every name in an expression is that of a parameter, so that "2*m" is twice the mass m and not two meters.
+// True if all names in the expression are parameters, so that "2*m" is twice the mass m and not two meters.
 bool has_parameters_alone(const std::string& expression, const TomlValue& root) {
     std::vector<std::string> known;
     for (const TomlEntry& entry : root.entries)
@@ -191,7 +191,7 @@ void read_lagrangian(Reading& reading, const Fields& root) {
     reading.mistakes.attempt([&] { reading.system.dissipation = fields.expression_or_none("dissipation"); });
 }
 
-// What outputs call a constraint, as in gap_knee: several need a name each. Throws Mistake.
+// The name of a constraint in outputs, as in gap_knee; required if there are several. Throws Mistake.
 void read_constraint_name(const Fields& fields, bool is_only, std::map<std::string, Location>& places,
                           std::string& name) {
     if (is_only && !fields.find("name")) {
@@ -224,7 +224,7 @@ void read_constraints(Reading& reading, const Fields& root) {
         constraint.at = fields.table().at;
         const bool is_named =
             mistakes.attempt([&] { read_constraint_name(fields, list.size() == 1, places, constraint.name); });
-        if (!is_named) reading.names.complete = false;  // nor are those of its gap and its force
+        if (!is_named) reading.names.complete = false;  // nor are the names of its gap and force
         mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
         mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
         mistakes.attempt([&] { constraint.begins = fields.string_or("begins", ""); });
@@ -232,7 +232,7 @@ void read_constraints(Reading& reading, const Fields& root) {
     }
 }
 
-// The option's value. Throws Mistake: with the nearest word where it is none of them.
+// The value of an option. Throws Mistake; for an unknown word it suggests the nearest.
 OptionValue read_option(const Option& option, const Fields& fields) {
     const OptionValue usual = option.get({});
     if (!option.words.empty()) {
@@ -272,7 +272,7 @@ void read_options(const TomlValue& table, const std::string& name, Options& opti
     if (fault && end != nullptr && mistakes.count() == before) mistakes.add({end->at, *fault, {}});
 }
 
-// As many as there are coordinates: each is read where it stands.
+// Reads one item per coordinate.
 template <class Read>
 void read_by_coordinate(const Reading& reading, const Fields& fields, std::string_view key, const Read& read) {
     const TomlValue& value = fields.need(key);
@@ -345,7 +345,7 @@ void read_pictures(Reading& reading) {
 }  // namespace
 
 FileReading read_tables(std::string text, std::string name) {
-    const Ground ground;  // decimals are read to nearest
+    const Ground ground;  // decimals are rounded to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("the file is larger than {} MB", largest_file >> 20));
     refuse_other_files(text, name);
@@ -369,7 +369,7 @@ FileReading read_tables(std::string text, std::string name) {
     mistakes.attempt([&] { read_coordinates(reading, fields); });
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
     mistakes.attempt([&] { read_constraints(reading, fields); });
-    read_parameters(reading);  // after the constraints: the restitution's slider has a range of its own
+    read_parameters(reading);  // after the constraints, because the restitution's slider has its own range
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });

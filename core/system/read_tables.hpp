@@ -1,5 +1,5 @@
-// The first step of reading a system file: its tables, keys and names. What its expressions mean is the second
-// (model/read_expressions.hpp); model/read_system.hpp does both.
+// First step of reading a system file: its tables, keys and names. The second interprets its expressions
+// (model/read_expressions.hpp). model/read_system.hpp does both.
 #pragma once
 
 #include <map>
@@ -12,30 +12,28 @@
 
 namespace achilles {
 
-// The names of the coordinates and parameters of a file that may have mistakes.
+// The names of the coordinates and parameters in a file, which may contain mistakes.
 struct Names {
     std::map<std::string, Location> places;
-    bool complete = true;           // false: there may be names that could not be read, so none can be called unknown
-    bool has_several_gaps = false;  // then names that begin with gap_ or lambda_ are theirs
-    std::set<std::string> excused;  // refused or unknown, and told once: they may stand for anything
+    bool complete = true;           // false: some names could not be read, so no name is reported as unknown
+    bool has_several_gaps = false;  // names that start with gap_ or lambda_ are then reserved
+    std::set<std::string> excused;  // rejected or unknown names, reported once; they may stand for anything
 };
 
-// What was read, and what was wrong with it so far.
+// The contents of a file and its mistakes so far.
 struct FileReading {
     SystemDescription system;
     Names names;
     Mistakes mistakes;
-    bool has_system = false;  // what is wrong so far is wrong with drawings and views alone
+    bool has_system = false;  // any mistakes so far are in drawings and views only
 };
 
-// Reads the tables of a system file from its text; `name` stands for the file in messages. Throws InputError where
-// there is nothing to read (it is no TOML, or too large).
+// Reads the tables of a system file from its text; `name` is the file's name in messages. Throws InputError if nothing
+// can be read (the text is not TOML, or too large).
 FileReading read_tables(std::string text, std::string name);
 
-// What a file holds that is no system file: a picture, a result, another encoding.
-
-// Throws InputError, about `name`, where the first bytes show that a text is no TOML: a picture, an archive, JSON, a table,
-// UTF-16, a program in another language, nothing at all.
+// Throws InputError, with the file's `name`, if the first bytes show that the text is not TOML: a picture, an archive,
+// JSON, a table, UTF-16, another programming language, or nothing.
 void refuse_other_files(std::string_view text, const std::string& name);
 
 }  // namespace achilles

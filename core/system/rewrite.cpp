@@ -12,7 +12,7 @@ namespace achilles {
 
 namespace {
 
-// A walk along the definitions, deepest first.
+// Depth-first search along the definitions.
 class Walk {
  public:
     Walk(std::vector<DerivedDescription>& derived, Names& names, Mistakes& mistakes)
@@ -38,7 +38,7 @@ class Walk {
         if (!names_.excused.contains(derived_[i].name)) ordered.push_back(derived_[i]);
     }
 
-    // The way from where it is met again: "J -> K -> J", from the one that stands first in the file.
+    // Reports a circular definition, from the parameter that comes first in the file: "J -> K -> J".
     void tell_circle(std::size_t again) {
         std::vector<std::size_t> circle(std::find(way_.begin(), way_.end(), again), way_.end());
         const bool is_told = std::any_of(circle.begin(), circle.end(),
@@ -63,8 +63,8 @@ class Walk {
     std::vector<std::size_t> way_;
 };
 
-// Brings each derived parameter after those that its definition names. Adds a mistake for every circle of them, and leaves out
-// those that are part of one.
+// Sorts derived parameters so that each follows those in its definition. Adds a mistake for every circular definition
+// and removes its parameters.
 void order_derived(FileReading& reading) {
     std::vector<DerivedDescription>& derived = reading.system.derived;
     derived = std::move(Walk(derived, reading.names, reading.mistakes).ordered);

@@ -42,8 +42,7 @@ std::size_t skip(const std::string& text, std::size_t i) {
     return text.size() - 1;
 }
 
-// Refuses a key of very many dotted parts: toml++ would build tables nested so deep that freeing them overflows the
-// stack.
+// Rejects keys with very many dotted parts: toml++ would nest tables so deeply that freeing them overflows the stack.
 void refuse_deep_keys(const std::string& text, const std::string& name) {
     constexpr int most = 16;
     int dots = 0, line = 1;
@@ -73,8 +72,8 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
     }
 }
 
-// The rest of a text from a line and column on, found without reading it from its start: a file may hold a million
-// strings, all of them in one line.
+// Finds the rest of a text from a line and column on, without a search from its start: a file may have a million
+// strings, all in one line.
 class Places {
  public:
     explicit Places(std::string_view text) : text_(text) {
@@ -106,11 +105,11 @@ class Places {
  private:
     static constexpr int stride = 64;
     std::string_view text_;
-    std::vector<std::size_t> marks_;  // the bytes where every 64th character of each line starts
-    std::vector<std::size_t> lines_;  // the first mark of each line, and the end
+    std::vector<std::size_t> marks_;  // byte offset of every 64th character of each line
+    std::vector<std::size_t> lines_;  // index of the first mark of each line, and the end
 };
 
-// What a conversion needs to know of its surroundings.
+// Context of a conversion.
 struct Source {
     const std::string& text;
     const std::string& name;
@@ -118,7 +117,7 @@ struct Source {
     int depth = 0;
 };
 
-// Where the characters of a string start: behind its quotes, and behind a first line break that TOML drops.
+// Location of a string's first character: after its quotes, and after a first line break that TOML removes.
 Location inside(const Places& places, Location at) {
     std::string_view rest = places.from(at);
     for (const std::string_view quotes : {"\"\"\"", "'''"}) {
@@ -185,7 +184,8 @@ std::string trimmed(std::string part) {
     return part;
 }
 
-// The number that a text was meant to be, as TOML has it: 0,4 is 0.4, .5 is 0.5, 1. is 1, −1 has another minus; "" for what is none.
+// The number that a text was meant to be, in TOML notation: 0,4 is 0.4, .5 is 0.5, 1. is 1, −1 has a Unicode minus; ""
+// for anything else.
 std::string number_meant(std::string text) {
     constexpr std::string_view other_minus = "\u2212";
     if (text.starts_with(other_minus)) text.replace(0, other_minus.size(), "-");
@@ -199,7 +199,7 @@ std::string number_meant(std::string text) {
     return text;
 }
 
-// What would be right in a value with quotes that do not fit; "" where that is not what is wrong.
+// Advice on a value with wrong quotes; "" if the quotes are right.
 std::string right_quotes(const std::string& key, const std::string& value) {
     const auto count = std::count(value.begin(), value.end(), '"');
     if (value[0] == '\'' && value.find('\'', 1) < value.size() - 1)
@@ -219,20 +219,20 @@ bool has_heading(const std::string& heading) {
     return std::any_of(all.begin(), all.end(), [&](const FileTable& table) { return table.heading == heading; });
 }
 
-// "[lagrangian]", or "[[coordinate]]" where there may be several.
+// "[lagrangian]", or "[[coordinate]]" for tables that may be repeated.
 std::string heading_of(const std::string& name) {
     for (const std::string& heading : {"[" + name + "]", "[[" + name + "]]"})
         if (has_heading(heading)) return "write " + heading;
     return name == "run" || name == "truncation" ? fmt::format("write [{}]", name) : "";
 }
 
-// [lagrangian and [[constraint] with all their brackets.
+// Completes the brackets of [lagrangian and [[constraint].
 std::string right_brackets(const std::string& line) {
     const std::size_t begin = std::min(line.find_first_not_of("[ "), line.size());
     return heading_of(line.substr(begin, std::min(line.find_first_of("] #", begin), line.size()) - begin));
 }
 
-// The entry of an inline table at this byte of a line, "value = 9,81"; the whole line where there is none.
+// The entry of an inline table at this byte of a line, such as "value = 9,81"; the whole line if there is none.
 std::string entry_at(const std::string& line, std::size_t byte) {
     std::size_t begin = 0, end = line.size();
     for (std::size_t i = 0; i < line.size(); ++i) {
@@ -251,7 +251,7 @@ std::string entry_at(const std::string& line, std::size_t byte) {
     return std::count(entry.begin(), entry.end(), '"') % 2 == 0 ? entry : "";
 }
 
-// A comment of another language behind a value.
+// True if the value is followed by a comment of another language.
 bool has_other_comment(const std::string& value) {
     for (std::size_t i = 0; i < value.size(); ++i) {
         if (value[i] == '"' || value[i] == '\'') i = skip(value, i);
@@ -262,7 +262,7 @@ bool has_other_comment(const std::string& value) {
     return false;
 }
 
-// What would be right in a line like gap = y - sin(x), or start = 0,4; "" where that is not what is wrong.
+// Advice on a line such as gap = y - sin(x) or start = 0,4; "" if there is none.
 std::string right_value(const std::string& line) {
     const std::size_t equals = line.find('=');
     const std::string begin = trimmed(line);
@@ -330,7 +330,7 @@ std::string right_value(const std::string& line) {
     return fmt::format("put it in quotes: {} = \"{}\"", key, shown(value));
 }
 
-// The same where a list lacks its closing bracket or a comma.
+// Advice on a list without a closing bracket or with a missing comma.
 std::string right_list(std::string_view message, const std::string& line, std::size_t byte) {
     if (message.starts_with("encountered end-of-file"))
         return "a list or a table in the file is not closed: ] or } is missing";
@@ -352,7 +352,7 @@ std::string right_list(std::string_view message, const std::string& line, std::s
     return wants_comma && (begins_with_key(rest) || rest.starts_with('{')) ? "a comma is missing here" : "";
 }
 
-// The same of a table that stands twice, or of which there may be several.
+// Advice on a repeated table, or on one that may be repeated.
 std::string right_heading(std::string_view message, const std::string& line) {
     if (!message.starts_with("cannot redefine existing")) return "";
     const std::string heading = trimmed(line.substr(0, line.find('#')));
@@ -409,7 +409,7 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
         if (hint.empty()) hint = right_value(entry_at(line, byte));
         if (hint.empty() && message.find("escape sequence") != message.npos)
             hint = "expressions are not LaTeX: write x' for \\dot{x}, (a)/(b) for \\frac{a}{b}, sin(x) for \\sin x";
-        // A line break that it shows where it ends: "saw 't\n'".
+        // toml++ shows a line break where the text ends: "saw 't\n'".
         std::string plain(message);
         std::erase_if(plain, [](char c) { return static_cast<unsigned char>(c) < 0x20; });
         throw InputError(name, at, fmt::format("not valid TOML: {}", plain), hint, line);

@@ -1,4 +1,4 @@
-// A TOML file as a plain tree in which everything knows its place. Its .cpp is the only file that includes toml++.
+// A TOML file as a tree of values with their locations. Only its .cpp file includes toml++.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ struct TomlEntry;
 struct TomlValue {
     enum class Kind { string, number, boolean, date, array, table };
     Kind kind = Kind::table;
-    Location at;           // where it starts: the quote of a string, the bracket of a [table]
-    Text text;             // string: its first character's place is inside the quotes; number: shortest form
+    Location at;           // of its start: the quote of a string, the bracket of a [table]
+    Text text;             // string: located inside the quotes; number: in shortest form
     double number = 0.0;   // integers too
-    bool integer = false;  // a number without point or exponent
+    bool integer = false;  // a number without decimal point or exponent
     bool boolean = false;
     std::vector<TomlValue> items;    // array
     std::vector<TomlEntry> entries;  // table, in the order of the file
@@ -32,7 +32,7 @@ struct TomlEntry {
 // "a string", "a number", "an array", ...
 std::string_view kind_name(TomlValue::Kind kind);
 
-// Reads TOML. Throws InputError at the place of a syntax error; `name` stands for the file.
+// Parses TOML. Throws InputError at the location of a syntax error; `name` is the file's name in messages.
 TomlValue read_toml(const std::string& text, const std::string& name);
 
 }  // namespace achilles

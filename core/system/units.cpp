@@ -23,7 +23,7 @@ struct Unit {
     friend bool operator==(const Unit&, const Unit&) = default;
     bool is_plain() const { return *this == Unit{}; }
 };
-// Nothing: not known.
+// nullopt: unknown.
 using MaybeUnit = std::optional<Unit>;
 constexpr std::array<const char*, 4> base_names{"kg", "m", "s", "rad"};
 
@@ -35,7 +35,7 @@ const std::map<std::string, Unit, std::less<>>& known_units() {
     return units;
 }
 
-// a b^exponent. What has a mass or a length in it does not say that it was turned through an angle.
+// a b^exponent. The angle is dropped from units with a mass or a length.
 MaybeUnit product(const MaybeUnit& a, const MaybeUnit& b, double exponent) {
     if (!a || !b) return std::nullopt;
     Unit result = *a;
@@ -50,7 +50,7 @@ MaybeUnit sum(const MaybeUnit& a, const MaybeUnit& b) {
     return b->is_plain() || *a == *b ? a : std::nullopt;
 }
 
-// "kg*m^2/s^2", "N m", "1/m": factors one after the other, each after a slash below the line.
+// Reads "kg*m^2/s^2", "N m", "1/m": each slash applies to the next factor only.
 MaybeUnit read(std::string_view text) {
     if (text.empty()) return std::nullopt;
     MaybeUnit result = Unit{};
@@ -105,10 +105,10 @@ std::string written(const Unit& unit) {
     return (above.empty() ? "1" : above) + "/" + (factors_below > 1 ? "(" + below + ")" : below);
 }
 
-// What the names of a file stand for, as symbols of a graph of their own, and the unit of each.
+// The names of a system as symbols of a separate graph, with the unit of each.
 class SymbolUnits {
  public:
-    // Of what is derived only what the expression may name: kinetic energies are long.
+    // Of the derived quantities, reads only those that the expression may name, because kinetic energies are long.
     SymbolUnits(const SystemDescription& description, std::string_view expression) {
         const auto names = [&](std::string_view name) { return expression.find(name) != std::string_view::npos; };
         const MaybeUnit second = read("s");
@@ -156,7 +156,7 @@ class SymbolUnits {
     }
 
     MaybeUnit unit_of(Expression expression) {
-        // Operands come before what they are operands of.
+        // Operands have smaller ids than their node.
         for (auto id = static_cast<std::uint32_t>(nodes_.size()); id <= expression.id(); ++id)
             nodes_.push_back(unit_of(graph_.node(id)));
         return nodes_[expression.id()];
@@ -218,7 +218,7 @@ std::string unit_of_quotient(std::string_view above, std::string_view below) {
 
 namespace {
 
-// m/s^2 for m/s².
+// m/s² becomes m/s^2.
 std::string with_plain_powers(std::string unit) {
     for (const auto& [sign, right] : {std::pair{"\u00b2", "^2"}, std::pair{"\u00b3", "^3"}, std::pair{"\u00b7", "*"}})
         for (std::size_t i = unit.find(sign); i != std::string::npos; i = unit.find(sign))

@@ -16,15 +16,15 @@ namespace achilles {
 
 namespace {
 
-// Curves of what is still to come.
+// Opacity (of 255) of curves that are still to come.
 constexpr std::uint8_t pale_alpha = 70;
 
-// Pixels for a unit of a world of this shape and of height 1.
+// Pixels per unit of length, in a world of height 1 and width `shape`.
 double unit_in(const Rectangle& area, double shape) { return std::min(area.width / shape, double{area.height}); }
 
 float heading_height(double scale) { return static_cast<float>(std::round(2.0 * still_title_size * scale)); }
 
-// What moves between two instants changes the last digit of the clock at least.
+// Decimals of the clock. Successive frames differ at least in the last one.
 int decimals_for(double step) { return std::clamp(static_cast<int>(std::ceil(-std::log10(step) - 1e-9)), 2, 9); }
 
 bool has_units(const SystemDescription& description) {
@@ -37,7 +37,7 @@ void append(std::vector<Thing>& all, const std::vector<Thing>& more) {
     all.insert(all.end(), more.begin(), more.end());
 }
 
-// What a run will show, without what has happened.
+// Figure of a whole run in pale colors, without events.
 Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription> views, int columns, bool dark,
                    std::optional<double> horizon) {
     PublicationStyle style;
@@ -55,7 +55,7 @@ Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription
     return figure;
 }
 
-// The first two coordinates; of a single one its phase plane.
+// The plane of the first two coordinates; for a single coordinate its phase plane.
 ViewDescription plane_of(const SystemDescription& description) {
     const std::string& first = description.coordinates[0].name;
     ViewDescription view;
@@ -68,9 +68,9 @@ ViewDescription plane_of(const SystemDescription& description) {
 
 namespace {
 
-// The number of columns in which plots are nearest to a pleasant shape and few places are empty.
+// The number of columns that gives plots nearly the preferred shape and leaves few cells empty.
 int columns_in(const Rectangle& area, std::size_t plots) {
-    constexpr double pleasant = 1.6, empty = 0.3;  // width over height; what an empty place costs
+    constexpr double pleasant = 1.6, empty = 0.3;  // width / height; cost of an empty cell
     std::size_t best = 1;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t columns = 1; columns <= plots; ++columns) {
@@ -97,7 +97,7 @@ StillAreas still_areas(double shape, std::size_t plots, Rectangle area) {
     StillAreas areas;
     areas.world = area;
     if (plots == 0) return areas;
-    constexpr float least = 0.4F, most = 0.62F, beside = 0.56F;  // of the picture, for the world
+    constexpr float least = 0.4F, most = 0.62F, beside = 0.56F;  // fractions of the picture, for the mechanism
     const float right = std::round(beside * area.width);
     const float below =
         std::round(std::clamp(static_cast<float>(area.width / shape), least * area.height, most * area.height));
@@ -138,7 +138,7 @@ Animation::Animation(const Trajectory& trajectory, std::span<const ViewDescripti
     if (!views.empty()) plane_.keys.clear();
 }
 
-// The curves until now in full colour, what happened until now, and a dot where the run is.
+// Adds the curves and events up to the present in full color, and a dot at the present state.
 void Animation::add_present(Panel& panel, const PreparedView& view, const Sample& now) const {
     const Theme theme = size_.dark ? dark_theme() : light_theme();
     const auto end = std::upper_bound(samples_.begin(), samples_.end(), now.t,
@@ -157,7 +157,7 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     append(panel.beyond.curves, present.beyond.curves);
     append(panel.beyond.markers, present.beyond.markers);
     for (std::size_t i = 0; i < present.curves.size(); ++i) {
-        // The legend shows the full colour.
+        // The legend shows the full color.
         panel.curves.push_back(present.curves[i]);
         panel.curves.back().label = panel.curves[i].label;
         panel.curves[i].label.clear();
@@ -194,7 +194,8 @@ Still Animation::at(double t) {
     const double room = std::round(still_margin * scale);
     const double wide = double{areas_.world.width} - 2.0 * room, high = double{areas_.world.height} - room;
     Drawing seen = widened(stage_.camera().at(camera_, now, {wide, high}), wide, high);
-    const double edge = room * (seen.x_high - seen.x_low) / wide;  // only the ground goes on there
+    const double edge = room * (seen.x_high - seen.x_low) / wide;  // this margin shows only the continuation of the
+                                                                   // ground
     seen.x_low -= edge, seen.x_high += edge, seen.y_low -= edge;
     still.world = stage_.draw(now, seen, theme, {});
     still.unit = stage_.unit();
@@ -211,7 +212,7 @@ Still Animation::at(double t) {
     const std::string clock = fmt::format("{} = {:.{}f}", typeset("t"), t, decimals_);
     still.heading.emplace_back(
         TextRun{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
-    // Left of the longest clock.
+    // To the left of the longest clock text.
     const float clock_room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
     const PhaseLabel phase = phase_label(now);
     still.heading.emplace_back(

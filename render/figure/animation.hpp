@@ -1,5 +1,5 @@
-// An animation of a run, still by still: the mechanism with its trail, and beside or below it plots that fill as time
-// passes. Whatever does not move stands in every still at the same place.
+// Frames of an animation of a run: the mechanism with its trail, and beside or below it plots that fill as time passes.
+// Static parts have the same position in every frame.
 #pragma once
 
 #include "figure/compose.hpp"
@@ -10,55 +10,57 @@
 
 namespace achilles {
 
-// Two parts of a picture, in pixels.
+// Areas of the mechanism view and of the plots in a frame, in pixels.
 struct StillAreas {
-    Rectangle world, plots;  // plots without extent: there are none
-    int columns = 1;         // of the plots
+    Rectangle world, plots;  // plots: zero size if there are none
+    int columns = 1;         // columns of the plot grid
 };
 
-// The plots to the right of a world or below it, as shows a world of this shape (width over height) larger.
+// Places the plots to the right of the mechanism view or below it, whichever shows the view larger. `shape`: width /
+// height of the visible world.
 StillAreas still_areas(double shape, std::size_t plots, Rectangle area);
 
 struct StillSize {
     int width = 1600, height = 1000;  // pixels
-    double scale = 1.0;               // of text and strokes, over what fits the size
+    double scale = 1.0;               // of text and strokes, relative to the automatic scale
     bool dark = false;
 };
 constexpr double still_title_size = 17.0;  // pixels at scale 1
-constexpr double still_margin = 16.0;      // the same, around the mechanism but above it
+constexpr double still_margin = 16.0;      // pixels at scale 1, on all sides of the mechanism but the top
 
-// The scale of everything in a still: a small film is a large one made smaller, as long as it can be read.
+// Scale of text and strokes in a frame. It grows with the picture, so that a small film is a large one reduced, but
+// never drops below a readable size.
 double still_scale(const StillSize& size);
 
-// One picture of an animation.
+// One frame of an animation.
 struct Still {
     Sheet heading;  // and the background
     Drawing world;
-    Figure plane;  // in place of a world that nothing draws: that of two coordinates, with the boundary; else empty
+    Figure plane;  // the plane of two coordinates with the boundary, if the system has no drawing; else empty
     Figure plots;
     StillAreas areas;
     double scale = 1.0;
-    std::string unit;  // of lengths in the world
-    Color faint;       // of its scale bar
+    std::string unit;  // unit of length in the world
+    Color faint;       // color of the scale bar
 };
 
-// The still as text, what moves with 9 significant digits: for tests.
+// The frame as text for tests. Moving parts have 9 significant digits.
 std::string to_text(const Still& still);
 
 class Animation {
  public:
-    // Refers to the trajectory. `step`: seconds of the run from one still to the next, which decide the digits of the
-    // clock. Throws InputError for a view that cannot be evaluated.
+    // Keeps a reference to the trajectory. `step`: time between two frames (s of the run), which decides the digits of
+    // the clock. Throws InputError if a view cannot be evaluated.
     Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size, double step,
               CameraMode camera = CameraMode::fit);
-    // At a time within the run.
+    // The frame at time t (s), which must lie within the run.
     Still at(double t);
 
  private:
     void add_present(Panel& panel, const PreparedView& view, const Sample& now) const;
 
     const Trajectory& trajectory_;
-    std::optional<double> horizon_;  // of the run, where it comes before its end
+    std::optional<double> horizon_;  // horizon of the run (s), if it comes before the end
     StillSize size_;
     int decimals_;
     Sampler sampler_;
@@ -67,7 +69,7 @@ class Animation {
     Mechanism mechanism_;
     Stage stage_;
     CameraMode camera_;
-    Figure figure_;  // the whole run, pale
+    Figure figure_;  // plots of the whole run, pale
     std::optional<PreparedView> plane_view_;
     Figure plane_;
     StillAreas areas_;

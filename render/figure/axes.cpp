@@ -15,10 +15,10 @@ namespace {
 
 struct Step {
     double size = 1.0;
-    int minor = 5;  // the parts it is cut into by minor ticks
+    int minor = 5;  // number of intervals between two ticks that minor ticks mark
 };
 
-// The finest of 1, 2, 5 times a power of ten that puts at most `most` multiples between the limits.
+// The smallest step 1, 2 or 5 times a power of ten with at most `most` multiples between the limits.
 Step nice_step(double low, double high, int most) {
     const double slack = 1e-9 * (high - low);
     double power = std::pow(10.0, std::floor(std::log10((high - low) / most)));
@@ -30,7 +30,7 @@ Step nice_step(double low, double high, int most) {
     }
 }
 
-// i * step without the error of the product: 3 * 0.1 is 0.3.
+// i * step without the rounding error of the product: 3 * 0.1 is 0.3.
 double multiple(double i, double step) {
     if (step >= 1.0) return i * step;
     return i / std::round(1.0 / step);
@@ -64,7 +64,7 @@ std::string tick_label(double value, double step, double largest) {
     const double scale = std::max(std::abs(value), largest);
     const int finest = static_cast<int>(std::floor(std::log10(step) + 1e-9));
     int exponent = static_cast<int>(std::floor(std::log10(scale) + 1e-12));
-    // 2, 4, ... 10 times a power reads better than 0.2, 0.4, ... 1.0 times the next.
+    // 2, 4, ... 10 times a power reads better than 0.2, 0.4, ... 1.0 times the next power.
     if (exponent == finest + 1) exponent = finest;
     const double mantissa = value / std::pow(10.0, exponent);
     const int decimals = std::max(0, exponent - finest);
@@ -73,14 +73,14 @@ std::string tick_label(double value, double step, double largest) {
 
 namespace {
 
-// 10^exponent, as exact as a number can be.
+// 10^exponent, accurate to rounding.
 double decade(int exponent) { return std::pow(10.0, exponent); }
 
 void set_linear(Axis& axis, double low, double high, double margin, int most) {
-    // Beyond these sizes the width of the range, or a step, would overflow or vanish.
+    // Beyond these magnitudes the width of the range or a step would overflow or underflow.
     low = std::clamp(low, -1e300, 1e300);
     high = std::clamp(high, -1e300, 1e300);
-    // A range below the resolution of its numbers is a constant: it gets room to be seen as one.
+    // A range below the resolution of its numbers is a constant. It is widened so that it shows as one.
     const double size = std::max(std::abs(low), std::abs(high));
     double room = margin * (high - low);
     if (high - low <= std::max(1e-9 * size, 1e-300)) room = size > 1e-290 ? 0.1 * size : 1.0;
@@ -97,14 +97,14 @@ void set_linear(Axis& axis, double low, double high, double margin, int most) {
     }
 }
 
-// The label of 10^exponent; `plain` where a whole axis is short enough to write out.
+// Label of 10^exponent, written out if `plain`.
 std::string decade_label(int exponent, bool plain) {
     if (plain) return fmt::format("{:.{}f}", decade(exponent), std::max(0, -exponent));
     return power_of_ten(exponent);
 }
 
-// Powers of ten, every k-th one labelled, and 2 to 9 between them. Few powers of ten say little: 2 and 5 are labelled
-// as well where there is room.
+// Ticks at powers of ten, every k-th one labeled, with minor ticks at 2 to 9 times each. If there are few powers of
+// ten, 2 and 5 are labeled too.
 void set_decades(Axis& axis, int first, int last, int most) {
     const double least = axis.low * (1.0 - 1e-12), greatest = axis.high * (1.0 + 1e-12);
     const auto inside = [&](double value) { return value >= least && value <= greatest; };
@@ -127,7 +127,7 @@ void set_decades(Axis& axis, int first, int last, int most) {
 
 void set_logarithmic(Axis& axis, double low, double high, double margin, int most) {
     high = high > 1e-290 ? std::min(high, 1e300) : 1.0;
-    // What is not positive has no place on this axis.
+    // Values that are not positive cannot be shown on this axis.
     low = low > 0.0 ? std::clamp(low, std::min(1e-300, high), high) : 1e-6 * high;
     double from = std::log10(low), to = std::log10(high);
     const double room = to - from < 1e-9 ? 0.5 : margin * (to - from);
@@ -139,7 +139,7 @@ void set_logarithmic(Axis& axis, double low, double high, double margin, int mos
     const auto labels =
         std::count_if(axis.ticks.begin(), axis.ticks.end(), [](const Tick& t) { return !t.label.empty(); });
     if (labels >= 2) return;
-    // Less than a factor of three or so: the ticks of a linear axis.
+    // A range of less than a factor of about three gets the ticks of a linear axis.
     Axis linear;
     set_linear(linear, axis.low, axis.high, 0.0, most);
     axis.ticks = linear.ticks;
@@ -161,7 +161,7 @@ void set_ticks(Axis& axis, double low, double high, double margin, int most) {
 
 namespace {
 
-// A rectangle on whole pixels: sharp, where a smoothed line would be grey.
+// A rectangle on whole pixels. It is sharp, while an anti-aliased line would be gray.
 void bar(Sheet& sheet, float x, float y, float width, float height, Color color) {
     sheet.emplace_back(Fill{{x, y, width, height}, color});
 }
@@ -177,18 +177,18 @@ bool has_tick_labels(const Axis& axis) {
            std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
 }
 
-// How near ticks may stand, as a share of the text.
+// Minimum distance between ticks, as a fraction of the text size.
 constexpr float closest_ticks = 0.38F;
 
-// A tick with its place on the screen.
+// A tick with its position on the screen, pixels.
 struct Placed {
     const Tick* tick;
     float at;       // the first pixel of its line
-    bool labelled;  // false also where its label would touch another
+    bool labelled;  // false also if its label would touch another one
 };
 
-// Of ticks with labels `length` long only every second, third, ... keeps its label, as room demands; zero does, unless it
-// would be the only one: two tell the scale.
+// Drops labels so that only every second, third, ... tick keeps its label, if labels of this length need it. Zero keeps
+// its label, unless it would be the only one: a scale needs two.
 void drop_labels(std::vector<Placed>& ticks, float length) {
     std::vector<Placed*> labelled;
     for (Placed& p : ticks)
@@ -206,7 +206,7 @@ void drop_labels(std::vector<Placed>& ticks, float length) {
     for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == first;
 }
 
-// Ticks without labels go where they would be a comb.
+// Drops ticks without labels if they are too dense.
 void drop_minor(std::vector<Placed>& ticks, float closest) {
     bool crowded = false;
     for (std::size_t i = 1; i < ticks.size(); ++i)
@@ -215,15 +215,15 @@ void drop_minor(std::vector<Placed>& ticks, float closest) {
     std::erase_if(ticks, [](const Placed& p) { return p.tick->label.empty(); });
 }
 
-// The ticks within the plot's side, which runs from `from` to `to` in pixels.
-// `length`: of the labels along the axis. `closest`: how near ticks may be. No label stands beyond `last`.
+// The ticks within the side of the plot from `from` to `to`, pixels. `length`: of labels along the axis. `closest`:
+// minimum distance between ticks. No label lies beyond `last`.
 std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
                            float closest, float last = std::numeric_limits<float>::infinity()) {
     std::vector<Placed> result;
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
         if (!(at >= from - 0.5 && at <= to + 0.5)) continue;
-        // Next to a corner a tick continues the box, rather than lie beside its line.
+        // Near a corner a tick continues the line of the box instead of lying beside it.
         const auto first = static_cast<float>(std::round(at - line / 2.0));
         const float snapped = first < from + line ? from - line : first > to - 2.0F * line ? to : first;
         result.push_back({&tick, snapped, !tick.label.empty() && snapped <= last});
@@ -238,17 +238,17 @@ std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m
                   widest_label(panel.x, m) + m.text * 0.7F, m.text * closest_ticks);
 }
 
-// Above time bars the lowest numbers keep clear of the first name.
+// Above time bars, the lowest labels must not touch the first name.
 std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
     const float bottom = plot.y + plot.height;
     return placed(panel.y, PanelMap(panel, plot).y, plot.y, bottom, m.line, m.text * 1.2F, m.text * closest_ticks,
                   panel.time_bars.empty() ? bottom + m.text : bottom - 0.35F * m.text);
 }
 
-// Of the names of time bars: smaller than what is on the axes.
+// Text size of the names of time bars, smaller than on the axes.
 float name_size(const Metrics& m) { return std::max(std::round(0.9F * m.text), m.smallest_text); }
 
-// Long ones are cut: the plot is what the room is for.
+// Long names are shortened so that the plot keeps its width.
 std::string bar_name(const TimeBar& one, const Metrics& m) {
     const float most = 6.0F * m.text;
     return shortened(one.label, [&](const std::string& label) { return m.width(label, name_size(m)) <= most; });
@@ -260,18 +260,18 @@ float widest_name(const Panel& panel, const Metrics& m) {
     return width;
 }
 
-// Of the colours of numbers, and from the box to them.
+// Width of the color scale, and its distance from the box.
 float bar_width(const Metrics& m) { return std::round(1.1F * m.text); }
 float bar_distance(const Metrics& m) { return std::round(1.1F * m.text); }
 
-// A label that is at most `room` long.
+// A label shortened or shrunk to a given length.
 struct Fitted {
     std::string label;
     float size;
 };
 
-// Smaller, if need be: the size of indices, for which there are letters, and other sizes, for which letters are
-// stretched, only below it. What is too long at the smallest size is shortened.
+// Fits a label into `room` pixels. First it shrinks to the size of subscripts, which the font has; only below that to
+// other sizes, for which glyphs are scaled. At the minimum size it is shortened.
 Fitted fitting(const std::string& label, const Metrics& m, float room) {
     const float width = m.width(label, m.text), small = std::round(m.text * script_size);
     if (width <= room) return {label, m.text};
@@ -292,7 +292,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     if (panel.x.label.empty() || !panel.x.labelled) return;
     const auto [label, size] = fitting(panel.x.label, m, plot.width + room.left + room.right);
     const float half = m.width(label, size) / 2.0F;
-    // Centred below the plot, but never beyond the panel.
+    // Centered below the plot, but within the panel.
     const float least = plot.x - room.left + half, most = plot.x + plot.width + room.right - half;
     const float at = std::clamp(plot.x + plot.width / 2.0F, least, std::max(most, least));
     sheet.emplace_back(
@@ -305,7 +305,7 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     for (const Placed& p : ticks_y(panel, plot, m)) {
         const float length = p.labelled ? m.tick : m.minor_tick;
         bar(sheet, left - length, p.at, length, m.line, style.ink);
-        // Digits have no descenders: their middle is a little above the middle of the line.
+        // Digits have no descenders, so that their center is slightly above the center of the line.
         if (p.labelled && panel.y.labelled)
             sheet.emplace_back(TextRun{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F,
                                        p.tick->label, style.ink, m.text});
@@ -313,7 +313,7 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     if (panel.y.label.empty() || !panel.y.labelled) return;
     const auto [label, size] = fitting(panel.y.label, m, plot.height + strip + room.top);
     const float half = m.width(label, size) / 2.0F;
-    // It ends above the line of the x axis' label.
+    // The label ends above the x axis' label.
     const bool above = panel.x.label.empty() || !panel.x.labelled;
     const float lowest = plot.y + plot.height + strip + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
     const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
@@ -341,7 +341,7 @@ Margins margins(const Panel& panel, const Metrics& m) {
     room.bottom = m.line + m.tick;
     if (has_tick_labels(panel.x)) room.bottom += m.gap + m.text;
     if (!panel.x.label.empty() && panel.x.labelled) room.bottom += m.text * 1.1F + m.gap;
-    // The outermost labels stand out by half their size.
+    // The outermost labels extend by half their width.
     room.right = std::max(widest_label(panel.x, m) / 2.0F, m.line);
     room.left = std::max(room.left, room.right);
     if (!panel.color_bar.colors.empty()) {
@@ -378,7 +378,7 @@ PanelMap::PanelMap(const Panel& panel, Rectangle plot)
 
 void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
     if (style.grid.a == 0) return;
-    // Not beside the box, which has lines of its own.
+    // No grid line beside the box, which has lines of its own.
     for (const Placed& p : ticks_x(panel, plot, m))
         if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
             bar(sheet, p.at, plot.y, m.line, plot.height, style.grid);
@@ -416,7 +416,7 @@ void lay_color_bar(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
 
 float strip_height(const Panel& panel, Rectangle area, const Metrics& m) {
     if (panel.time_bars.empty()) return 0.0F;
-    constexpr float most = 0.4F;  // of the area
+    constexpr float most = 0.4F;  // maximum fraction of the area
     const auto count = static_cast<float>(panel.time_bars.size());
     const float row = std::min(std::round(1.1F * name_size(m)), std::floor(most * area.height / count));
     return row < 2.0F * m.line ? 0.0F : count * row + 3.0F * m.line;
@@ -429,7 +429,7 @@ void lay_time_bars(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
     const float left = plot.x, right = plot.x + plot.width, size = name_size(m);
     const float row = (strip - 3.0F * m.line) / static_cast<float>(panel.time_bars.size());
     const float thick = std::max(std::round(0.55F * row), m.line);
-    const auto place = [&](double value) {  // what has no place on a logarithmic axis is left of it
+    const auto place = [&](double value) {  // values that a logarithmic axis cannot show are to the left of it
         const double at = map(value);
         return std::round(at >= left ? static_cast<float>(std::min(at, double{right})) : left);
     };

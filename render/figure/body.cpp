@@ -12,8 +12,8 @@ namespace achilles {
 
 namespace {
 
-// Solves A x = b for the two unknowns of a symmetric 2 x 2 matrix, in the directions that it has: of a body that moves
-// on a line only that direction counts.
+// Solves A x = b for a symmetric positive semidefinite 2 x 2 matrix A, in the range of A only: for a body that moves on
+// a line, only that direction counts.
 Eigen::Vector2d solved(const Eigen::Matrix2d& A, const Eigen::Vector2d& b) {
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> parts(A);
     Eigen::Vector2d x = Eigen::Vector2d::Zero();
@@ -87,7 +87,7 @@ std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& pl
         const Vector zero = Vector::Zero(state.q.size());
         const auto step = body->rates(zero, missing);
         if (!step) return std::nullopt;
-        // Half a turn at most in one step: far beyond, an angle's first order means nothing.
+        // At most one unit (radian) per step, because the linearization of an angle is useless beyond that.
         state.q += *step / std::max(1.0, step->norm());
     }
     return state.q;
@@ -188,7 +188,7 @@ void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t
         lines.back().points.push_back(here.at);
         before = &here;
     }
-    // What is to come under what has passed.
+    // The future part lies below the past part.
     std::stable_partition(lines.begin(), lines.end(),
                           [&](const Shape& line) { return line.stroke.color.a == to_come; });
     const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });

@@ -41,7 +41,7 @@ Drawing square(const Drawing& like, const Point& middle, double size) {
 
 Point middle_of(const Drawing& d) { return {0.5 * (d.x_low + d.x_high), 0.5 * (d.y_low + d.y_high)}; }
 
-// 0 to 1, without a jerk at either end.
+// Smooth step from 0 to 1 with zero slope at both ends.
 double eased(double s) { return s * s * (3.0 - 2.0 * s); }
 
 }  // namespace
@@ -87,7 +87,7 @@ Camera::Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory&
             if (auto approach = approach_to(i)) approaches_.push_back(std::move(*approach));
 }
 
-// ---- the way to a Zeno point ----
+// ---- the bouncing sequence before a Zeno point ----
 
 Camera::Bounce Camera::bounce(std::size_t grip, std::size_t contact, const Sample& sample) const {
     Grip asked = grips_[grip];
@@ -106,7 +106,8 @@ Camera::Bounce Camera::bounce(std::size_t grip, std::size_t contact, const Sampl
     return is_known ? Bounce{terms.h(), carried} : Bounce{};
 }
 
-// The point that comes onto the ground; else the one that the bouncing moves most, the first of those that it moves as much.
+// The point that meets the ground; else the point that moves most per change of the gap, the first one if several move
+// equally.
 std::size_t Camera::grip_for(std::size_t contact, const Sample& near) const {
     if (const auto tip = touch_.tip_of(contact)) return *tip;
     std::size_t best = 0;
@@ -157,14 +158,15 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
         if (std::isfinite(height) && height > 0.0 && zeno.t > times[k])
             approach.flights.push_back({zeno.t - times[k], height});
     }
-    // From behind: none reaches higher than those before.
+    // Make the heights nonincreasing, from the last flight to the first.
     for (std::size_t k = approach.flights.size(); k-- > 1;)
         approach.flights[k - 1].height = std::max(approach.flights[k - 1].height, approach.flights[k].height);
     if (approach.flights.empty()) return std::nullopt;
     return approach;
 }
 
-// Between flights as a power of the time that is left, after the last as its square, as under constant acceleration.
+// Interpolates the height between flights as a power of the time left, and after the last flight as its square, as
+// under constant acceleration.
 double Camera::Approach::height(double t) const {
     const double left = std::max(0.0, zeno - t);
     const auto next = std::find_if(flights.begin(), flights.end(), [&](const Flight& f) { return f.left <= left; });
@@ -181,7 +183,7 @@ std::optional<double> Camera::height_left(double t) const {
     return std::nullopt;
 }
 
-// ---- what is seen ----
+// ---- the visible part of the world ----
 
 Drawing Camera::at(CameraMode mode, const Sample& now, const CameraPicture& picture) const {
     if (mode == CameraMode::follow && !trail_.points.empty()) return follow(now, picture);
@@ -189,7 +191,8 @@ Drawing Camera::at(CameraMode mode, const Sample& now, const CameraPicture& pict
     return fit(picture);
 }
 
-// The arrows are so many pixels long, and so longer in the world where more of it is seen.
+// Arrows have a fixed length in pixels, hence a length in the world that grows with the visible part; the limits are
+// iterated.
 Drawing Camera::fit(const CameraPicture& picture) const {
     Drawing seen = limits_;
     if (!(picture.velocity > 0.0) && !(picture.force > 0.0)) return seen;
@@ -206,7 +209,7 @@ Drawing Camera::fit(const CameraPicture& picture) const {
     return seen;
 }
 
-// The mean over [t - reach, t + reach], or what of it the run has.
+// Mean position of the body over [t - reach, t + reach], clipped to the run.
 Point Camera::mean_place(double t, double reach) const {
     const double low = std::max(t - reach, samples_.front().t), high = std::min(t + reach, samples_.back().t);
     const auto until = [&](double time) {
@@ -238,7 +241,7 @@ Drawing Camera::follow(const Sample& now, const CameraPicture& picture) const {
     constexpr double share = 0.4, radii = 20.0, window = 0.04;
     const double size = std::min(std::max(share * largest, radii * body.radius), largest);
     Point middle = mean_place(now.t, window * (trajectory_.end_time - trajectory_.run.options.start_time));
-    // With its arrow inside: as far from the edge as the longest.
+    // The arrow stays inside: the margin is that of the longest arrow.
     const double unit = std::min(picture.width, picture.height) / size;
     const double room = std::max(0.1, 0.44 - std::max(picture.velocity, picture.force) / (unit * size)) * size;
     middle.x = std::clamp(middle.x, body.at.x - room, body.at.x + room);
@@ -246,9 +249,9 @@ Drawing Camera::follow(const Sample& now, const CameraPicture& picture) const {
     return square(limits_, middle, size);
 }
 
-// How much is seen (world units) on the way to a Zeno point and after it, of so much at other times.
+// Size of the visible world before and after a Zeno point; `full` is the size at other times.
 double Camera::size_at(std::size_t which, double t, double full) const {
-    constexpr double heights = 4.0;  // of the highest bounce that is left fit into the picture
+    constexpr double heights = 4.0;  // the picture is this many times the highest remaining bounce
     const Approach& approach = approaches_[which];
     const auto sized = [&](double height) { return std::clamp(heights * height, smallest(approach), full); };
     const double first = approach.zeno - approach.flights.front().left;
@@ -267,14 +270,14 @@ double Camera::size_at(std::size_t which, double t, double full) const {
     return full * std::pow(sized(0.0) / full, 1.0 - eased((t - approach.zeno) / lasts));
 }
 
-// What is looked at: the ground that is touched, in the lower part of the picture.
+// Center of the zoomed view: the contact point on the ground, in the lower part of the picture.
 Point Camera::focus(const Approach& approach, const Sample& now, double size) const {
     Grip grip = grips_[approach.grip];
     if (const auto touched = touch_.ground_below(grip, approach.contact, now.t, now.state)) {
         constexpr double above = 0.2;
         return {touched->foot.x + above * size * touched->away.x, touched->foot.y + above * size * touched->away.y};
     }
-    // The drawing does not tell where: of a joint's stop, say. The body is near it.
+    // The drawing does not show the contact point, for example at the stop of a joint. The body is near it.
     Grip body = grips_.front();
     return body.at(now.t, now.state).at;
 }
@@ -287,7 +290,8 @@ Drawing Camera::near_zeno(const Sample& now, const CameraPicture& picture) const
     for (std::size_t i = 0; i < approaches_.size(); ++i)
         if (const double here = size_at(i, now.t, full); here < size) size = here, on_way = &approaches_[i];
     if (on_way == nullptr) return all;
-    // As if one came nearer to it: it goes to the middle, and what was in the middle out of the picture.
+    // As if the viewer approached the contact point: it moves to the center of the picture, and the previous center
+    // moves out.
     const double left = std::max(0.0, (size - smallest(*on_way)) / (full - smallest(*on_way)));
     const Point looked_at = focus(*on_way, now, size * (1.0 - left)), middle = middle_of(all);
     const Point there{looked_at.x + left * left * (middle.x - looked_at.x),
@@ -295,7 +299,7 @@ Drawing Camera::near_zeno(const Sample& now, const CameraPicture& picture) const
     return widened(square(limits_, there, size), picture.width, picture.height);
 }
 
-// ---- a scale bar: round lengths and their unit ----
+// ---- scale bar: round lengths and their unit ----
 
 double round_length(double most) {
     if (!(most > 0.0) || !std::isfinite(most)) return 0.0;

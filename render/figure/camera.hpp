@@ -1,4 +1,5 @@
-// Where the picture of a mechanism looks, and how closely: a function of the run, the time and the picture's size alone.
+// The part of the world that a picture of a mechanism shows: a function of the run, the time and the picture's size
+// only.
 #pragma once
 
 #include <optional>
@@ -11,20 +12,21 @@
 
 namespace achilles {
 
-// The ways to look at a mechanism.
+// Camera modes.
 //
-//     fit     all that the run needs, arrows included
-//     fixed   where the user looks
-//     follow  a part of the world, so large that the body is seen well; it moves with the body's mean place, and never
-//             loses it
-//     zeno    fit, but towards a Zeno point the picture shrinks about the place that is touched, by the height that
-//             the bounces still reach, so that they look the same all the way; after it the picture grows back
+//     fit     everything the run needs, including arrows
+//     fixed   the view that the user has chosen
+//     follow  a part of the world in which the body is well visible; it moves with the mean position of the body and
+//             always contains the body
+//     zeno    as fit, but before a Zeno point the picture zooms in on the contact point in proportion to the remaining
+//             bounce height, so that all bounces look alike; after the Zeno point it zooms out again
 
 enum class CameraMode { fit, fixed, follow, zeno };
 std::string_view to_text(CameraMode mode);
 std::optional<CameraMode> camera_mode_from(std::string_view text);
 
-// A picture in pixels, and how long the longest arrow of the run is in it; 0 where none is drawn.
+// Size of a picture and lengths of the run's longest velocity and force arrows, all in pixels; 0 if such arrows are not
+// drawn.
 struct CameraPicture {
     double width = 1.0, height = 1.0;
     double velocity = 0.0, force = 0.0;
@@ -32,25 +34,25 @@ struct CameraPicture {
 
 class Camera {
  public:
-    // Refers to what it is given.
+    // Keeps references to its arguments.
     Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory& trajectory,
            std::span<const Sample> samples, const Trail& trail, const Drawing& limits);
 
-    // What is to be seen, as limits of a drawing without shapes. Fixed: as fit.
+    // The visible part of the world, as limits of a drawing without shapes. Mode `fixed` is treated as `fit`.
     Drawing at(CameraMode mode, const Sample& now, const CameraPicture& picture) const;
 
-    // The height (world units) that the bounces on the way to the next Zeno point still reach; nothing where the run is on no
-    // such way.
+    // Height (world units) that the bounces before the next Zeno point still reach at time t. nullopt outside a
+    // bouncing sequence.
     std::optional<double> height_left(double t) const;
 
  private:
-    // The way to a Zeno point.
+    // A bouncing sequence that ends in a Zeno point.
     struct Approach {
         double begin = 0.0, zeno = 0.0;
         std::size_t contact = 0, grip = 0;
-        bool on_ground = false;  // that is drawn: there is something to see however near
-        // Of every flight on the way the time that is left when it begins and the height it reaches, first to last; none
-        // reaches higher than the one before.
+        bool on_ground = false;  // the ground is drawn, so that the picture may zoom in without limit
+        // For every flight of the sequence, in order: time from its start to the Zeno point (s), and height. Heights do
+        // not increase.
         struct Flight {
             double left, height;
         };
@@ -60,8 +62,8 @@ class Camera {
     std::optional<Approach> approach_to(std::size_t event) const;
     std::size_t grip_for(std::size_t contact, const Sample& near) const;
     struct Bounce {
-        double gap = 0.0;  // h
-        Point rise;        // dp/dh of a point of the mechanism, along the direction of the impact
+        double gap = 0.0;  // gap h
+        Point rise;        // dp/dh of a point of the mechanism along the impact direction
     };
     Bounce bounce(std::size_t grip, std::size_t contact, const Sample& sample) const;
     Point focus(const Approach& approach, const Sample& now, double size) const;
@@ -77,18 +79,18 @@ class Camera {
     std::span<const Sample> samples_;
     const Trail& trail_;
     const Drawing& limits_;
-    std::vector<Grip> grips_;      // of the mechanism; a copy of one is asked
-    std::vector<Point> integral_;  // of the body's place over the time, sample by sample
+    std::vector<Grip> grips_;      // of the mechanism; copied before use, because evaluation changes them
+    std::vector<Point> integral_;  // time integral of the body position, sample by sample
     std::vector<Approach> approaches_;
 };
 
-// The part of the world that a picture of this size shows around limits that must be seen, with equal axes.
+// Limits widened to the aspect ratio of a picture of this size (pixels), with equal axes.
 Drawing widened(const Drawing& limits, double width, double height);
 
-// A length that is 1, 2 or 5 times a power of ten, at most `most`.
+// The largest length 1, 2 or 5 times a power of ten that is at most `most`.
 double round_length(double most);
-// The unit of lengths in a system's drawing: that of the coordinates and parameters that it names, if these are of one
-// unit of length; else none.
+// Unit of length of a system's drawing: the unit of the coordinates and parameters that it names, if all of them have
+// the same unit of length; else "".
 std::string length_unit(const SystemDescription& description);
 // "0.5 m", "2·10⁻⁹ m".
 std::string length_label(double length, const std::string& unit);

@@ -20,7 +20,7 @@ namespace achilles {
 
 namespace {
 
-// The range of all finite values; of the positive ones where the axis is logarithmic.
+// Range of all finite values; on a logarithmic axis, of the positive ones.
 struct Range {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
     bool positive = false;
@@ -77,7 +77,7 @@ std::vector<double> errors_at(const Trajectory& trajectory, const Sample& sample
 
 namespace {
 
-// Two curves for each quantity: its hybrid and its constrained parts.
+// Two curves for each quantity: hybrid phases and constrained phases.
 void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
     const auto& quantities = view.quantities();
     const std::size_t curves = quantities.size() - 1;
@@ -86,7 +86,7 @@ void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
             Curve& curve = panel.curves.emplace_back();
             curve.stroke = phase_stroke(theme, kind, i, curves);
             const bool first = kind == Phase::Kind::hybrid;
-            // Units that differ have no other place.
+            // If units differ, the legend is the only place for them.
             const std::string name =
                 with_unit(quantities[i + 1].label, view.unit().empty() ? quantities[i + 1].unit : "");
             curve.label = curves == 1 ? legend_text(kind) : first ? name : "";
@@ -96,7 +96,7 @@ void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
 
 Point point_of(double x, double y) { return std::isfinite(x) && std::isfinite(y) ? Point{x, y} : break_of_curve; }
 
-// Some instants of a part of a run, and some of its events.
+// Samples of a part of a run: evenly spaced, and at some of its events.
 std::vector<Sample> some_samples(const Trajectory& trajectory, double from, double to) {
     constexpr int evenly = 200;
     Sampler sampler(trajectory);
@@ -114,7 +114,7 @@ std::vector<Sample> some_samples(const Trajectory& trajectory, double from, doub
     return samples;
 }
 
-// The ranges of x and of all y that are shown.
+// Adds the values of x and of all visible y to the ranges.
 void include(std::span<const Sample> samples, Values& values, std::size_t curves, const Framing& framing,
              Range& x_range, Range& y_range) {
     for (const Sample& sample : samples) {
@@ -125,7 +125,7 @@ void include(std::span<const Sample> samples, Values& values, std::size_t curves
     }
 }
 
-// Of some of the events.
+// Adds the markers of these events.
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
@@ -146,7 +146,7 @@ void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Eve
     }
 }
 
-// Where a held contact was opened, above the impact that did it.
+// Markers where an impact opened a held contact, above the marker of that impact.
 void add_opened(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                 const Framing& framing, const Theme& theme) {
     Markers& markers = panel.markers.emplace_back(opened_markers(theme));
@@ -160,17 +160,18 @@ void add_opened(Panel& panel, const Trajectory& trajectory, std::span<const Even
     }
 }
 
-// A curve of several is named where it is drawn: one that is in contact all the time is not dashed in the legend.
+// Gives the name of each of several curves to the part that is drawn: a curve in contact at all times is not dashed in
+// the legend.
 void name_drawn(Panel& panel) {
     for (std::size_t i = 0; i + 1 < panel.curves.size(); i += 2)
         if (panel.curves[i].points.empty() && panel.curves[i + 1].label.empty())
             std::swap(panel.curves[i].label, panel.curves[i + 1].label);
 }
 
-// How far quantities are off where coordinates and rates are off by the rounding of their ranges' size: what varies by
-// less is at rest.
+// Error of the quantities due to the rounding of coordinates and rates, relative to their ranges. A quantity that
+// varies by less is constant.
 struct Noise {
-    double x = 0.0, y = 0.0;  // the largest of all that are drawn upwards
+    double x = 0.0, y = 0.0;  // maximum over all y quantities
 };
 
 Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Values& values, std::size_t count) {
@@ -203,7 +204,7 @@ Noise noise_of(const Trajectory& trajectory, std::span<const Sample> samples, Va
     return noise;
 }
 
-// Of markers of which there are very many, one in each place that can be told apart.
+// Keeps one of very many markers at each distinguishable position.
 void thin(Markers& markers, const Panel& panel, const Resolution& size) {
     constexpr std::size_t many = 4000;
     if (markers.points.size() <= many) return;
@@ -216,8 +217,8 @@ void thin(Markers& markers, const Panel& panel, const Resolution& size) {
     });
 }
 
-// Moves the points of each curve after the horizon into `pale`, a panel of the same curves; the point at which a curve crosses it
-// belongs to both. `times` has the instant of each point (s).
+// Moves the points of each curve after the horizon into `pale`, a panel with the same curves. The point at which a
+// curve crosses the horizon belongs to both. `times`: time of each point (s).
 void split_curves(Panel& panel, Panel& pale, const std::vector<std::vector<double>>& times, double horizon) {
     for (std::size_t i = 0; i < panel.curves.size(); ++i) {
         std::vector<Point>& points = panel.curves[i].points;
@@ -228,7 +229,7 @@ void split_curves(Panel& panel, Panel& pale, const std::vector<std::vector<doubl
     }
 }
 
-// The curves and markers of a panel as what lies after the horizon.
+// Converts the curves and markers of a panel to the pale part after the horizon.
 Beyond beyond_of(Panel panel, double horizon) {
     const auto fade = [](Color& color) { color.a = std::min(color.a, pale_beyond); };
     for (Curve& curve : panel.curves) curve.label.clear(), fade(curve.stroke.color);
@@ -236,7 +237,7 @@ Beyond beyond_of(Panel panel, double horizon) {
     return {beyond_text(horizon), std::move(panel.curves), std::move(panel.markers)};
 }
 
-// What lies after the horizon is pale.
+// Makes the marks after the horizon pale.
 void fade(std::vector<TimeBar>& bars, double horizon) {
     for (TimeBar& bar : bars) {
         std::vector<TimeBar::Mark> marks;
@@ -259,7 +260,7 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
         set_ticks(axis, range.low, range.high, margin);
 }
 
-// A quantity that varies by its noise alone is constant.
+// Treats a quantity that varies by its noise only as constant.
 Range without_noise(Range range, double noise) {
     if (range.high - range.low > noise) return range;
     const double middle = 0.5 * (range.low + range.high);
@@ -277,11 +278,11 @@ void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& vi
     set_limits(panel.y, framing.y, y_range, 0.07);
 }
 
-// The part of a run that a panel shows, and samples that show where it goes.
+// The time interval of a run that a panel shows (s), and samples that outline it.
 struct Extent {
     double from = 0.0, to = 0.0;
-    std::vector<Sample> close{};        // of a part
-    std::span<const Sample> samples{};  // those, or of the whole run
+    std::vector<Sample> close{};        // samples of a part of the run
+    std::span<const Sample> samples{};  // `close`, or samples of the whole run
 };
 
 Extent extent_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
@@ -305,8 +306,8 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
     return {first, last};
 }
 
-// Fills the curves and sets the axes. The samples say about how large the picture is; the curves, exactly. Returns the instant of
-// each point of each curve (s).
+// Fills the curves and sets the axes. Samples give the approximate limits, the traced curves the exact ones. Returns
+// the time of each point of each curve (s).
 std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent,
                                              const PreparedView& view, Values& values, const Framing& framing) {
     const std::size_t curves = panel.curves.size() / 2;
@@ -345,14 +346,15 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     return times;
 }
 
-// Widens an axis about its middle until it is at least a part of the other one: what is true to shape is no thread.
+// Widens an axis about its center to a minimum fraction of the other axis, so that a path with equal axes is not a
+// thread.
 void widen(Axis& axis, const Axis& other) {
     constexpr double least = 0.3;
     const double more = 0.5 * (least * (other.high - other.low) - (axis.high - axis.low));
     if (more > 0.0) set_ticks(axis, axis.low - more, axis.high + more, 0.0);
 }
 
-// What the path cannot cross is seen whole where little of it would be cut off: a ring is round.
+// Extends an axis to show the whole boundary if little of it would be cut off: a ring appears round.
 void show_whole(Axis& axis, double low, double high) {
     constexpr double margin = 0.04, rounding = 1e-6;
     const double span = axis.high - axis.low;
@@ -362,7 +364,7 @@ void show_whole(Axis& axis, double low, double high) {
 }
 
 void show_whole(Panel& panel, const std::vector<Point>& line) {
-    constexpr double little = 0.15;  // of the axis
+    constexpr double little = 0.15;  // fraction of the axis
     Range x, y;
     for (const Point& point : line) x.include(point.x), y.include(point.y);
     const auto is_near = [](const Axis& axis, const Range& range) {
@@ -374,13 +376,13 @@ void show_whole(Panel& panel, const std::vector<Point>& line) {
     show_whole(panel.y, y.low, y.high);
 }
 
-// A path in a plane: with one unit on both axes it is true to shape, unless it is so long that nothing would be seen.
+// Finishes a path in a plane. With the same unit on both axes it has equal axes, unless it is too elongated.
 void make_picture(Panel& panel, const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
                   const Framing& framing, const Theme& theme) {
     constexpr double longest = 12.0;
     const auto& quantities = view.quantities();
     const double shape = (panel.x.high - panel.x.low) / (panel.y.high - panel.y.low);
-    const bool is_asked = framing.x && framing.y;  // then the limits stand
+    const bool is_asked = framing.x && framing.y;  // then the limits are kept
     panel.equal_axes = !framing.log_x && !framing.log_y && !quantities[0].unit.empty() &&
                        quantities[0].unit == view.unit() && (is_asked || std::max(shape, 1.0 / shape) <= longest);
     if (panel.equal_axes && !framing.x) widen(panel.x, panel.y);
@@ -409,7 +411,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     panel.x.logarithmic = framing.log_x;
     panel.y.logarithmic = framing.log_y;
     add_curves(panel, view, theme);
-    Panel pale = panel;  // what lies after the horizon
+    Panel pale = panel;  // the part after the horizon
     const bool several = trajectory.model->contacts() > 1 && !samples.empty();
     const bool has_beyond = horizon && !samples.empty() && *horizon < samples.back().t;
     const auto mark = [&](Panel& marked, std::span<const Event> events) {
@@ -448,14 +450,14 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
 
 namespace {
 
-// Where a value is along an axis, 0 to 1 from its low to its high end.
+// Position of a value along an axis, 0 at its low end and 1 at its high end.
 double share_of(const Axis& axis, double value) {
     if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
     return std::log(value / axis.low) / std::log(axis.high / axis.low);
 }
 
-// How many places evenly along a chord are nearer to a corner than that, in shares of the panel. Where the chord is broken,
-// of its end.
+// Counts equally spaced points of the chord from a to b that lie within width x height of a corner, in fractions of the
+// panel. If the chord is broken, only its end counts.
 std::size_t places_in_corner(const Panel& panel, const Point& a, const Point& b, const std::array<double, 2>& corner,
                              double width, double height) {
     constexpr double step = 0.02;
@@ -478,7 +480,7 @@ std::size_t places_in_corner(const Panel& panel, const Point& a, const Point& b,
 
 void place_legend(Panel& panel) {
     panel.legend = true;
-    constexpr double width = 0.3, height = 0.3;  // the part of a panel that a legend covers, at most
+    constexpr double width = 0.3, height = 0.3;  // maximum fractions of a panel that a legend covers
     std::size_t least = std::numeric_limits<std::size_t>::max();
     for (const std::array<double, 2> corner : {std::array{1.0, 1.0}, {0.0, 1.0}, {1.0, 0.0}, {0.0, 0.0}}) {
         std::size_t covered = 0;
@@ -510,7 +512,7 @@ Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> vi
     return figure;
 }
 
-// What a view plots: its expressions, what they are called and in which units they are shown.
+// ---- what a view plots: its expressions, their names and displayed units ----
 
 std::string name_of(const ViewDescription& view) {
     std::string name;
@@ -519,7 +521,7 @@ std::string name_of(const ViewDescription& view) {
 }
 
 std::string title_of(const ViewDescription& view) {
-    const bool is_word = view.name == "gap";  // and is read as one
+    const bool is_word = view.name == "gap";  // an ordinary word, shown as it is
     return view.name == name_of(view) && !is_word ? typeset(view.name) : view.name;
 }
 
@@ -550,7 +552,7 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const CoordinateDescription& c = description.coordinates[i];
         if (text == c.name) result.coordinate = i;
-        // Whatever the unit is called, a rate's is so much a second.
+        // The unit of a coordinate's rate is its unit per second, whatever that unit is called.
         if (unit.empty() && (text == c.name || text == c.name + "'")) result.unit = unit_of(description, text);
     }
     if (result.unit.empty()) result.unit = unit_of_expression(description, text);
@@ -561,7 +563,7 @@ PreparedView::Quantity PreparedView::quantity(const SystemDescription& descripti
 }
 
 std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme) {
-    constexpr double parts = 4000.0;  // of an axis that can be told apart
+    constexpr double parts = 4000.0;  // distinguishable positions on an axis
     const double near = (time.high - time.low) / parts;
     const Color held = phase_color(theme, Phase::Kind::constrained), impact = phase_color(theme, Phase::Kind::hybrid);
     const auto& constraints = trajectory.model->description().constraints;

@@ -1,4 +1,4 @@
-// From a trajectory and a view to a panel: every limit, tick, colour and marker is decided here.
+// Composes a panel from a trajectory and a view: decides every limit, tick, color and marker.
 #pragma once
 
 #include <array>
@@ -18,26 +18,26 @@ namespace achilles {
 
 class Precision;
 
-// A view compiled for its model, once; composing again for another run parses nothing. It refers to the model.
+// A view compiled once for its model, so that another run needs no parsing. Keeps a reference to the model.
 class PreparedView {
  public:
-    // Throws InputError for an expression that is none.
+    // Throws InputError for an invalid expression.
     PreparedView(const Model& model, const ViewDescription& view);
 
-    // What one expression is called and by what its values are multiplied (180/pi for an angle shown in degrees).
+    // Label, unit and conversion factor of one expression (180/pi for an angle shown in degrees).
     struct Quantity {
         std::string label, unit;
         double factor = 1.0;
         bool is_time = false;
-        std::optional<std::size_t> coordinate{};  // if it is one: its number
-        std::string text{};                       // as it is written
+        std::optional<std::size_t> coordinate{};  // its number, if the expression is a coordinate
+        std::string text{};                       // the expression as typed
     };
     const std::string& title() const { return title_; }
     const Program& program() const { return program_; }
     const std::vector<Quantity>& quantities() const { return quantities_; }  // x, then every y
-    // What the y axis is called: as the file says, else a curve's name, or those of two or three.
+    // Label of the y axis: the one in the file, else the name of the only curve, or the names of two or three.
     const std::string& label() const { return label_; }
-    // The unit of all curves, as it is shown; "" where they have several.
+    // Displayed unit of all curves; "" if they differ.
     std::string unit() const;
 
  private:
@@ -48,60 +48,60 @@ class PreparedView {
     std::vector<Quantity> quantities_;
 };
 
-// What a view is called that no file names: "y, z over x", as they are written.
+// Default name of a view without one: "y, z over x", as typed.
 std::string name_of(const ViewDescription& view);
-// What stands over its plot: its name, set as a formula where that is what is plotted.
+// Title above the plot: the name, typeset as a formula if the name is the expression that is plotted.
 std::string title_of(const ViewDescription& view);
 
-// Samples that show where a run goes: its steps, of a short run with more between them, of a very long one some of them.
-// Curves are sampled by themselves (trace.hpp).
+// Samples that outline a run: its steps, with more between them for a short run, a selection for a very long one.
+// Curves have their own sampling (trace.hpp).
 std::vector<Sample> plot_samples(const Trajectory& trajectory);
 
-// How a panel is looked at. Limits are in the units that are shown; without them the data fits. On a logarithmic axis
-// only what is positive is seen.
+// How a panel is viewed. Limits are in displayed units; without limits the axes fit the data. A logarithmic axis shows
+// positive values only.
 struct Framing {
     using Limits = std::optional<std::array<double, 2>>;
     Limits x, y;
     bool log_x = false, log_y = false;
-    std::set<std::size_t> hidden;  // curves, counted from 0 as the view's y
-    bool legend = true;            // where there are several curves
-    // For print a path is true to shape, h = 0 is drawn in it, and what lies on what is there already is not drawn again;
-    // a legend stands above the panel, where it needs no room of the data.
+    std::set<std::size_t> hidden;  // hidden curves, counted from 0 in the order of the view's y
+    bool legend = true;            // if there are several curves
+    // Print style: paths have equal axes, h = 0 is drawn, and parts that retrace an earlier part are left out. The
+    // legend stands above the panel, where it hides no data.
     bool for_print = false;
-    // Not the quantities but how far those of other runs are from them, over time (difference.hpp).
+    // Plot the distance between this run and other runs over time (difference.hpp).
     bool difference = false;
-    Resolution size{};  // of the plot area, about
+    Resolution size{};  // approximate size of the plot area
     friend bool operator==(const Framing&, const Framing&) = default;
 };
 
-// The panel of one view until the last of the samples: hybrid phases dashed, constrained ones solid, squares at
-// impacts, markers at Zeno points and releases. Over time a run of several contacts has a bar for each.
-// What lies after the horizon of the run (s), where that comes before its end, is pale.
+// The panel of one view up to the last sample: hybrid phases dashed, constrained ones solid, squares at impacts,
+// markers at Zeno points and releases. Plots over time of a system with several contacts have a bar for each. Whatever
+// lies after the horizon of the run (s), if that comes before its end, is pale.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme, const Framing& framing = {}, std::optional<double> horizon = {});
 
-// How opaque it is then, of 255; and what its legend says.
+// Opacity (of 255) of the curves after the horizon, and their legend text.
 inline constexpr std::uint8_t pale_beyond = 70;
 std::string beyond_text(double horizon);
 
-// What the view's quantities are at one sample, x first, in the units that are shown.
+// Values of the view's quantities at one sample, x first, in displayed units.
 std::vector<double> values_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view);
 
-// How well they are known; infinite where the estimate says that nothing is.
+// Estimated errors of these values; infinite where nothing is known about them.
 std::vector<double> errors_at(const Trajectory& trajectory, const Sample& sample, const PreparedView& view,
                               const Precision& precision);
 
-// What is drawn at an event: the state after it.
+// The sample drawn at an event: the state after it.
 Sample sample_at(const Trajectory& trajectory, const Event& event);
 
-// Switches the legend on and puts it into the corner that hides least; where every corner has a curve in it, the panel
-// gets room at the top.
+// Shows the legend in the corner where it hides least. If every corner has a curve in it, the panel is extended at the
+// top.
 void place_legend(Panel& panel);
 
 // A grid of panels.
 Figure compose(const Trajectory& trajectory, std::span<const ViewDescription> views, const Theme& theme, int columns);
 
-// Evaluates all of a view's quantities at a sample, x first, in the units they are shown in. Refers to view and trajectory.
+// Evaluates all quantities of a view at a sample, x first, in displayed units. Keeps references to view and trajectory.
 class Values {
  public:
     Values(const PreparedView& view, const Trajectory& trajectory)
@@ -116,13 +116,13 @@ class Values {
 
  private:
     Evaluator<double> evaluator_;
-    std::vector<bool> reads_;  // by slot
+    std::vector<bool> reads_;  // for each input slot: whether the program reads it
     std::span<const PreparedView::Quantity> quantities_;
     ContactForces forces_;
 };
 
-// A bar for each contact of a run until a time: filled in the colour of constrained phases while it is held, ticked at
-// its impacts. What is nearer together than can be seen on this axis is one.
+// A bar for each contact of a run up to the time `end` (s): filled in the color of constrained phases while the contact
+// is held, with ticks at its impacts. Marks closer than the resolution of this axis are merged.
 std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme);
 
 }  // namespace achilles

@@ -13,8 +13,8 @@ namespace achilles {
 
 namespace {
 
-// Evenly, and at the events of both, just before each as well, where the rates jump. Events beyond so many are too close to
-// one another for a screen.
+// Times at which runs are compared: equally spaced, and at and just before the events of both runs, where rates jump.
+// Events beyond a maximum number are too close to be distinguished on a screen.
 std::vector<double> instants(const Trajectory& a, const Trajectory& b, double from, double to) {
     constexpr int evenly = 1000;
     constexpr std::size_t most_events = 400;
@@ -33,7 +33,7 @@ std::vector<double> instants(const Trajectory& a, const Trajectory& b, double fr
     return times;
 }
 
-// A run's quantities at any time.
+// Quantities of a run at any time.
 class Along {
  public:
     Along(const Trajectory& run, const PreparedView& view) : sampler_(run), values_(view, run) {}
@@ -50,7 +50,7 @@ Stroke stroke_of(const Color& color, std::size_t quantity) {
     return {color, 1.6, dashes[quantity % dashes.size()]};
 }
 
-// The power of ten below which nothing is known of quantities of such a size.
+// The largest power of ten that does not exceed the rounding noise of quantities of this magnitude.
 double floor_of(double largest) {
     return largest > 0.0 && std::isfinite(largest) ? std::pow(10.0, std::floor(std::log10(noise * largest))) : noise;
 }
@@ -92,7 +92,7 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
             beyond.stroke.color.a = pale_beyond;
         }
         std::vector<double> times = instants(present, *other.run, from, to);
-        if (known > from && known < to)  // both parts meet there
+        if (known > from && known < to)  // the parts before and after the horizon share this point
             times.insert(std::lower_bound(times.begin(), times.end(), known), known);
         for (const double t : times) {
             now.go_to(t);
@@ -129,7 +129,7 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
         with_unit(quantities.size() == 1 ? "|\u0394" + all[quantities.front()].label + "|" : "|\u0394|", unit);
     if (panel.curves.empty()) return panel;
     panel.legend = panel.legend_above = framing.for_print;
-    // On a screen, where there is less room, many runs are named elsewhere.
+    // On a screen, which has less space, the legend of many runs is shown elsewhere.
     constexpr std::size_t most_named = 4;
     if (!framing.for_print && panel.curves.size() <= most_named) place_legend(panel);
     return panel;

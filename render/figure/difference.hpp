@@ -1,4 +1,4 @@
-// How far other runs of a system are from the present one, quantity by quantity, over time and on a logarithmic axis.
+// Distance between the present run of a system and other runs, for each quantity, over time and on a logarithmic axis.
 #pragma once
 
 #include <span>
@@ -9,23 +9,23 @@
 
 namespace achilles {
 
-// A run that is compared with the present one, of a model with the same coordinates and parameters.
+// A run compared with the present one. Both models have the same coordinates and parameters.
 struct ComparedRun {
     const Trajectory* run = nullptr;
     std::string name;  // for the legend
     Color color;
-    std::optional<double> horizon{};  // s, where it comes before the end of the run
+    std::optional<double> horizon{};  // s, if it comes before the end of the run
 };
 
-// |q_other(t) - q_present(t)| of every y of a view (and of its x where that is no time), both runs completed past their Zeno
-// points, as long as both last; in the units that are shown. A run is told by its colour, where there are several quantities
-// each by its dash. What is less than the rounding noise of the quantities' sizes is drawn there, at the lower end of the
-// axis. Of `framing` the limits and what is hidden count. Without another run the panel is empty. What lies after the horizon of
-// either run is pale.
+// Panel of |q_other(t) - q_present(t)| for every y of a view (and its x unless that is time), in displayed units, while
+// both runs last.
+// Both runs continue past their Zeno points. Colors identify runs; dashes identify quantities, if there are several.
+// Values below the rounding noise of the quantities are drawn at the lower end of the axis. Of `framing`, the limits
+// and `hidden` apply. The panel is empty without another run. Curves are pale after the horizon of either run.
 Panel difference(const Trajectory& present, std::span<const ComparedRun> others, const PreparedView& view,
                  const Framing& framing, std::optional<double> horizon = {});
 
-// Which of a view's quantities such a panel has.
+// The quantities of a view that such a panel shows.
 std::vector<std::size_t> compared_quantities(const PreparedView& view, const Framing& framing);
 
 }  // namespace achilles

@@ -12,7 +12,7 @@ namespace achilles {
 
 namespace {
 
-// Where a straight line between two corners of different signs is zero.
+// Zero of the linear interpolation between two corners with different signs.
 template <class Corner>
 Point crossing(const Corner& a, const Corner& b) {
     const double s = a.value / (a.value - b.value);
@@ -60,8 +60,8 @@ Field::Square Field::cell(int column, int row) const {
     return {corner(column, row), corner(column + 1, row), corner(column + 1, row + 1), corner(column, row + 1)};
 }
 
-// Whether zero is crossed between the corners of a cell, or as far from it as the values bend in the length of a cell, so that
-// a crest may reach into the cell.
+// Whether the zero line may cross a cell. Either the values at its corners change sign, or they are so close to zero
+// compared with their curvature over a cell that a crest may reach into the cell.
 bool Field::may_be_crossed(int column, int row) const {
     const auto at = [&](int i, int j) { return values_[static_cast<std::size_t>(j * (columns_ + 1) + i)]; };
     double low = std::numeric_limits<double>::infinity(), high = -low, bend = 0.0;
@@ -74,7 +74,7 @@ bool Field::may_be_crossed(int column, int row) const {
             const double upwards = j > 0 && j < rows_ ? std::abs(at(i, j - 1) - 2.0 * here + at(i, j + 1)) : 0.0;
             bend = std::max(bend, across + upwards);
         }
-    constexpr double share = 0.25;  // an eighth in a parabola
+    constexpr double share = 0.25;  // 1/8 for a parabola
     return low <= share * bend && high >= -share * bend;
 }
 
@@ -84,7 +84,7 @@ std::vector<Field::Square> Field::parts_of(const Square& cell) const {
     const Point &from = cell[0].at, &to = cell[2].at;
     for (int j = 0; j <= n; ++j)
         for (int i = 0; i <= n; ++i) {
-            // The corners themselves, so that what is in cells side by side meets.
+            // The corners themselves, so that lines in adjacent cells meet.
             const bool is_corner = (i == 0 || i == n) && (j == 0 || j == n);
             const std::size_t which = j == 0 ? (i == 0 ? 0 : 1) : (i == 0 ? 3 : 2);
             Corner& corner = grid[static_cast<std::size_t>(j)][static_cast<std::size_t>(i)];
@@ -99,7 +99,8 @@ std::vector<Field::Square> Field::parts_of(const Square& cell) const {
     return parts;
 }
 
-// On the edge between two corners of different signs. By regula falsi, as Illinois has it; from the same end in both cells.
+// Zero on the edge between two corners with different signs, by regula falsi (Illinois). The direction is independent
+// of the cell.
 Point Field::zero_between(const Corner& a, const Corner& b) const {
     constexpr int rounds = 6;
     const bool turned = a.at.x > b.at.x || (a.at.x == b.at.x && a.at.y > b.at.y);
@@ -126,7 +127,7 @@ std::vector<Point> Field::zero_line() const {
                 std::vector<Point> zeros;
                 for (std::size_t k = 0; k < 4; ++k)
                     if (crosses(part[k], part[(k + 1) % 4])) zeros.push_back(zero_between(part[k], part[(k + 1) % 4]));
-                // Two of them, or four in a saddle, which is two segments.
+                // Two zeros, or four in a saddle, which form two segments.
                 for (std::size_t k = 0; k + 1 < zeros.size(); k += 2)
                     line.insert(line.end(), {zeros[k], zeros[k + 1], break_of_curve});
             }
@@ -140,7 +141,7 @@ std::vector<Point> Field::level_line(double level) const {
         const double* const low = values_.data() + static_cast<std::ptrdiff_t>(j) * (columns_ + 1);
         const double* const high = low + columns_ + 1;
         for (int i = 0; i < columns_; ++i) {
-            const bool is_below = low[i] < level;  // as the three others, nearly everywhere
+            const bool is_below = low[i] < level;  // the other three corners are alike in nearly all cells
             if ((low[i + 1] < level) == is_below && (high[i] < level) == is_below && (high[i + 1] < level) == is_below)
                 continue;
             std::array cell{corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)};
@@ -148,7 +149,7 @@ std::vector<Point> Field::level_line(double level) const {
             std::vector<Point> crossings;
             for (std::size_t k = 0; k < 4; ++k)
                 if (crosses(cell[k], cell[(k + 1) % 4])) crossings.push_back(crossing(cell[k], cell[(k + 1) % 4]));
-            // Two of them, or four in a saddle, which is two segments.
+            // Two crossings, or four in a saddle, which form two segments.
             for (std::size_t k = 0; k + 1 < crossings.size(); k += 2)
                 line.insert(line.end(), {crossings[k], crossings[k + 1], break_of_curve});
         }
@@ -158,8 +159,8 @@ std::vector<Point> Field::level_line(double level) const {
 
 std::vector<std::vector<Point>> Field::not_negative() const {
     std::vector<std::vector<Point>> parts;
-    // Squares side by side of which all is inside are one rectangle.
-    std::optional<std::pair<Square, Square>> run;  // the first and the last
+    // Adjacent squares that are entirely inside are merged into one rectangle.
+    std::optional<std::pair<Square, Square>> run;  // the first and the last square of a row
     const auto close = [&] {
         if (run) parts.push_back({run->first[0].at, run->second[1].at, run->second[2].at, run->first[3].at});
         run.reset();
@@ -227,7 +228,8 @@ std::array<double, 2> Field::range() const {
 }
 
 std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> values) {
-    constexpr double rounding = 1e-3;  // of a line made of chords: where functions touch, or are the same, both count
+    constexpr double rounding = 1e-3;  // chord error relative to the largest value: where zero lines touch or coincide,
+                                       // both are kept
     std::vector<double> below;
     for (const Field& field : fields) below.push_back(-rounding * field.largest());
     std::vector<std::vector<Point>> all(fields.size());
@@ -248,7 +250,7 @@ std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span
 
 namespace {
 
-// Segments by their ends.
+// Joins segments by their ends.
 class Chains {
  public:
     explicit Chains(const std::vector<Point>& segments) {
@@ -259,7 +261,7 @@ class Chains {
         used_.assign(ends_.size(), false);
     }
     std::vector<Point> lines() {
-        for (std::size_t i = 0; i < ends_.size(); ++i)  // from where a line begins
+        for (std::size_t i = 0; i < ends_.size(); ++i)  // starting at the ends of open lines
             for (const std::size_t end : {std::size_t{0}, std::size_t{1}})
                 if (!used_[i] && at_[key(ends_[i][end])].size() != 2) follow(i, end);
         for (std::size_t i = 0; i < ends_.size(); ++i)

@@ -1,4 +1,5 @@
-// A function over a part of a plane, sampled on a grid: its lines of equal value, and where it is not negative.
+// A scalar function sampled on a grid over a rectangle of a plane: its level lines, and the region where it is
+// nonnegative.
 #pragma once
 
 #include <array>
@@ -14,21 +15,21 @@ using PlaneFunction = std::function<double(const Point&)>;
 
 class Field {
  public:
-    // Samples over the limits: at the corners of so many cells across and upwards.
+    // Samples the function at the corners of columns x rows cells over the limits.
     Field(const Drawing& limits, const PlaneFunction& value, int columns = 160, int rows = 120);
 
-    // The least of several over the same part, of which there is one at least.
+    // Pointwise minimum of one or more fields over the same rectangle and grid.
     static Field least(std::span<const Field> fields);
 
-    // By marching squares on the grid: segments, separated by NaN points.
+    // Level line by marching squares: segments, separated by NaN points.
     std::vector<Point> level_line(double level) const;
-    // The same for zero, with a finer grid wherever the line may be and its points on the zero itself.
+    // Zero line on a grid that is refined wherever the line may pass. Its points lie on the zero itself.
     std::vector<Point> zero_line() const;
-    // Convex polygons that fill the part where the function is zero or above; none covers another.
+    // Disjoint convex polygons that fill the region where the function is nonnegative.
     std::vector<std::vector<Point>> not_negative() const;
-    double largest() const;  // size of a value
-    // Where its values lie, all of them but the highest and the lowest where these are far from the others; low > high where
-    // there are none.
+    double largest() const;  // largest absolute value
+    // Range of the values without outliers: extreme values far from all others are left out. low > high if no value is
+    // finite.
     std::array<double, 2> range() const;
 
  private:
@@ -37,7 +38,7 @@ class Field {
         double value = 0.0;
     };
     Corner corner(int column, int row) const;
-    using Square = std::array<Corner, 4>;  // against the clock, from the lower left
+    using Square = std::array<Corner, 4>;  // counterclockwise from the lower left
     Square cell(int column, int row) const;
     Corner corner_at(const Point& at) const { return {at, value_(at)}; }
     bool may_be_crossed(int column, int row) const;
@@ -50,12 +51,12 @@ class Field {
     std::vector<double> values_;  // row by row
 };
 
-// The border of where none of several functions is negative: the zero line of each, less where another is negative. Lines,
-// separated by NaN points.
+// Border of the region where all functions are nonnegative: the zero line of each function, without the parts where
+// another is negative. Lines, separated by NaN points.
 std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> functions);
 std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions, int columns = 160,
                           int rows = 120);
-// Segments, separated by NaN points, as lines: those that share an end follow one another.
+// Joins segments that share an end into lines. Both formats are separated by NaN points.
 std::vector<Point> joined(const std::vector<Point>& segments);
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// A figure as text: what golden tests compare before they compare pixels.
+// A figure as text, which golden tests compare before they compare pixels.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,7 +22,7 @@ std::string axis_text(const char* name, const Axis& axis) {
 
 std::string number_text(double x) { return std::isnan(x) ? "nan" : fmt::format("{:.9g}", x + 0.0); }  // no "-0"
 
-// At most forty of the points, the first and the last among them.
+// At most forty of the points, including the first and the last.
 std::string points_text(const std::vector<Point>& points) {
     constexpr std::size_t most = 40;
     const std::size_t shown = std::min(most, points.size());
@@ -34,7 +34,7 @@ std::string points_text(const std::vector<Point>& points) {
     return text;
 }
 
-// Every colour in turn with how many cells of it follow one another, at most forty such runs; a sum tells of the rest.
+// Run-length encoding of the colors, at most forty runs, and a checksum of all of them.
 std::string cells_text(const Cells& cells) {
     constexpr int most = 40;
     std::string text;
@@ -68,7 +68,7 @@ std::string many_text(const Panel& panel) {
     return text;
 }
 
-// At most forty of its slices.
+// At most forty slices of the tube.
 std::string tube_text(const Tube& tube) {
     constexpr std::size_t most = 40;
     const std::size_t shown = std::min(most, tube.slices.size());

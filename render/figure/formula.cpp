@@ -1,4 +1,4 @@
-// How formulas are set: each piece in a box, boxes in a row, rows in lines.
+// Typesetting of formulas: pieces into boxes, boxes into rows, rows into lines.
 #include "figure/formula.hpp"
 
 #include <algorithm>
@@ -13,17 +13,17 @@ namespace {
 
 using Kind = FormulaPiece::Kind;
 
-// Shares of the letters' size.
-constexpr float axis_height = 0.25F;      // above the base line: where a fraction's bar and a minus sign are
-constexpr float rule_thickness = 0.065F;  // of a rule
-constexpr float bar_gap = 0.13F;          // between a bar and what stands over and under it
+// Fractions of the letter size.
+constexpr float axis_height = 0.25F;      // above the baseline: height of fraction bars and minus signs
+constexpr float rule_thickness = 0.065F;  // of lines
+constexpr float bar_gap = 0.13F;          // between a fraction bar and numerator or denominator
 constexpr float bar_overhang = 0.06F;
-constexpr float small_size = 0.74F;  // of powers and of fractions in fractions
+constexpr float small_size = 0.74F;  // of powers, and of fractions inside fractions
 constexpr float thin_space = 0.13F, wide_space = 0.24F;
 
 float rule_width(float size) { return std::max(1.0F, std::round(rule_thickness * size)); }
 
-// Where the index of a name begins: a power stands above it.
+// Position at which the subscript of a name begins; a power is placed above it.
 std::size_t index_at(const std::string& label) {
     for (std::size_t i = 0; i + 1 < label.size(); ++i) {
         if (label[i] == '_' && label[i + 1] == '{') return i;
@@ -74,11 +74,12 @@ FormulaBox root(const FormulaPiece& piece, float size, const FormulaFont& font) 
     return box;
 }
 
-// A bracket as high as what it encloses: a letter, or a bow that is drawn.
+// A bracket as high as its content: a letter, or a drawn arc.
 FormulaBox bracket(const FormulaPiece& piece, const FormulaBox& inside, float size, const FormulaFont& font) {
     const float high = std::max(inside.ascent, 0.0F), low = std::max(inside.descent, 0.0F);
     FormulaBox letter = letters_of(piece.label, -1, size, font);
-    constexpr float highest = 0.98F, lowest = 0.36F;  // what a letter encloses: a power, no fraction
+    constexpr float highest = 0.98F, lowest = 0.36F;  // of the content of a letter-sized bracket: a power fits, a
+                                                      // fraction does not
     if (high <= highest * size && low <= lowest * size) return letter;
     FormulaBox box;
     box.width = 0.36F * size;
@@ -100,21 +101,21 @@ FormulaBox bracket(const FormulaPiece& piece, const FormulaBox& inside, float si
 void raise(FormulaBox& box, const FormulaPiece& piece, float size, const FormulaFont& font) {
     if (piece.power.is_empty()) return;
     const FormulaBox power = set(piece.power, size * small_size, font);
-    // Over an index, beside everything else; as high as what it raises.
+    // Above a subscript, to the right of everything else, at a height that depends on the base.
     const bool is_name = piece.kind == Kind::letters || piece.kind == Kind::function;
     const float x = is_name ? font.width(piece.label.substr(0, index_at(piece.label)), size) : box.width;
     const float up = std::max(box.ascent - 0.45F * power.ascent, power.descent + 0.30F * size);
     box.put(power, x, -up);
 }
 
-// A row while it is set: boxes with the space before each.
+// An element of a row: a box and the space before it.
 struct Set {
     FormulaBox box;
-    float space = 0.0F;  // before it, unless it begins a line
+    float space = 0.0F;  // before it, unless it starts a line
     Kind kind = Kind::letters;
-    bool is_prefix = false;  // a sign that belongs to what follows
-    bool is_brick = false;   // a function's argument stands beside it
-    int depth = 0;           // of brackets around it
+    bool is_prefix = false;  // a sign that belongs to the following element
+    bool is_brick = false;   // the argument of a function, which stays beside its name
+    int depth = 0;           // number of brackets around it
 };
 
 bool is_prefix(const std::vector<FormulaPiece>& row, std::size_t i) {
@@ -137,7 +138,7 @@ float space_between(const FormulaPiece& a, bool a_is_prefix, const FormulaPiece&
     return thin_space;
 }
 
-// Where each bracket's partner is; its own place if it has none.
+// Index of each bracket's partner; its own index without a partner.
 std::vector<std::size_t> partners(const std::vector<FormulaPiece>& row) {
     std::vector<std::size_t> result(row.size()), open;
     for (std::size_t i = 0; i < row.size(); ++i) {
@@ -173,7 +174,7 @@ std::vector<Set> set_pieces(const Formula& formula, float size, const FormulaFon
             one.box = letters_of(row[i].label, row[i].name, size, font);
         if (row[i].kind != Kind::open && row[i].kind != Kind::close) raise(one.box, row[i], size, font);
     }
-    // Brackets from the inner ones outwards: a closing one comes after all that it encloses.
+    // Inner brackets first: a closing bracket comes after everything that it encloses.
     const std::vector<std::size_t> partner = partners(row);
     for (std::size_t i = 0; i < row.size(); ++i) {
         const bool is_alone = partner[i] == i;
@@ -206,7 +207,8 @@ float width_of(const std::vector<Set>& all, std::size_t begin, std::size_t end) 
     return width;
 }
 
-// Whether a line may begin here, and how much is torn apart by that: brackets, and a product more than they.
+// Cost of a line break before element i: the depth of brackets, plus a penalty for breaking a product; `never` if no
+// break is allowed.
 constexpr int never = 1000, of_product = 100;
 int cost_of_break(const std::vector<Set>& all, std::size_t i) {
     const Set& here = all[i];
@@ -251,7 +253,8 @@ std::vector<FormulaBox> set_in_lines(const Formula& formula, float size, const F
         const float room = width - (lines.empty() ? 0.0F : indent);
         std::size_t end = all.size();
         if (width_of(all, begin, end) > room) {
-            // The break that tears least apart and leaves the line fullest, of those that fit; else the first there is.
+            // Of the breaks that fit, take the one with the lowest cost and the fullest line; if none fits, take the
+            // first.
             float least = never;
             for (std::size_t i = begin + 1; i < all.size(); ++i) {
                 const int cost = cost_of_break(all, i);
@@ -292,7 +295,7 @@ FormulaBox set_matrix(const std::vector<std::vector<Formula>>& rows, float size,
         base.push_back(height + (base.empty() ? 0.0F : between) + ascent);
         height = base.back() + descent;
     }
-    // Its middle is on the axis.
+    // The center of the matrix is on the axis.
     const float top = std::round(-0.5F * height - axis_height * size);
     FormulaBox box;
     for (std::size_t r = 0; r < boxes.size(); ++r) {

@@ -1,7 +1,8 @@
-// Formulas as boxes: read from the LaTeX that the library itself writes (expression/notation.hpp), measured and set
-// with fractions, roots, powers and indices, in lines that fit a width. Numbers only: paint/paint.hpp draws them.
+// Formulas as boxes. They are read from the LaTeX that the library writes (expression/notation.hpp), then measured and
+// typeset with fractions, roots, powers and indices, in lines that fit a width. Only geometry is computed here;
+// paint/paint.hpp draws it.
 //
-// Letters are labels (label.hpp), so a name looks the same here as at an axis.
+// Names are labels (label.hpp), so that they look the same here as on an axis.
 #pragma once
 
 #include <functional>
@@ -15,7 +16,7 @@ namespace achilles {
 
 struct FormulaPiece;
 
-// What stands in a row, from left to right.
+// A row of pieces, from left to right.
 struct Formula {
     std::vector<FormulaPiece> pieces;
     bool is_empty() const { return pieces.empty(); }
@@ -24,47 +25,47 @@ struct Formula {
 struct FormulaPiece {
     enum class Kind {
         letters,   // a name, a number, a word
-        function,  // sin: its argument follows
-        sign,      // + and -, between two terms or in front of one; a product's dot
+        function,  // function name, such as sin; its argument follows
+        sign,      // + and -, binary or unary; the dot of a product
         relation,  // = and <
         comma,
-        open,  // brackets: they stand in the row that they enclose, so that it can be broken
+        open,  // brackets: they stay in the row that they enclose, so that lines can break inside
         close,
-        fraction,  // parts: top, bottom
-        root,      // parts: what it is taken of
+        fraction,  // parts: numerator, denominator
+        root,      // parts: the radicand
         space
     } kind = Kind::letters;
-    std::string label;      // of what is letters
-    int name = -1;          // which of the names; -1: none
-    bool is_small = false;  // a number in front of a product: set small
+    std::string label;      // text, if the kind is `letters`
+    int name = -1;          // index into the list of names; -1: not a name
+    bool is_small = false;  // a numeric coefficient, typeset small
     std::vector<Formula> parts;
     Formula power;
 };
 
-// A name as formulas write it, and as it is shown.
+// A name in LaTeX and as a label.
 struct FormulaName {
     std::string latex, label;
 };
 
-// Any text is read: what is not known stands there as it is.
+// Reads a formula. Accepts any text: unknown commands are kept as they are.
 Formula read_formula(std::string_view latex, const std::vector<FormulaName>& names);
-// A sentence with formulas between dollar signs, word by word.
+// Reads a sentence with formulas between dollar signs, word by word.
 Formula read_sentence(std::string_view text, const std::vector<FormulaName>& names);
-// A row of formulas, one after the other.
+// Concatenates formulas into one row.
 Formula joined(std::vector<Formula> parts);
-// The formula in one line of plain text, for tests and for the clipboard: (a + b)/(2 c), x_1^2, sqrt(x).
+// The formula in one line of plain text, for tests and the clipboard: (a + b)/(2 c), x_1^2, sqrt(x).
 std::string to_text(const Formula& formula);
 
-// What setting needs to know of a font. Lengths are shares of the letters' size, but for width's.
+// Font metrics for typesetting. ascent and descent are fractions of the letter size; width() is in units of `size`.
 struct FormulaFont {
     std::function<float(const std::string& label, float size)> width;
-    float ascent = 0.66F, descent = 0.18F;  // of letters, from their base line
+    float ascent = 0.66F, descent = 0.18F;  // of letters, from the baseline
 };
 
-// A formula in its place: x to the right of its left end, y downwards from its base line.
+// A typeset formula. Coordinates: x to the right from its left end, y downward from its baseline.
 struct FormulaBox {
     struct Letters {
-        float x = 0.0F, y = 0.0F, width = 0.0F, size = 0.0F;  // of the base line's left end
+        float x = 0.0F, y = 0.0F, width = 0.0F, size = 0.0F;  // x, y: left end of the baseline
         std::string label;
         int name = -1;
     };
@@ -81,16 +82,17 @@ struct FormulaBox {
     std::vector<Stroke> strokes;
 
     float height() const { return ascent + descent; }
-    // Puts another box there; this one grows.
+    // Adds another box at (x, y), and extends this one.
     void put(const FormulaBox& other, float x, float y);
 };
 
 FormulaBox set(const Formula& formula, float size, const FormulaFont& font);
-// In lines no wider than `width` wherever they can be broken: at + and - outside of brackets, then inside, at last
-// between factors. Those after the first are to stand `indent` further right, and have so much less room.
+// Typesets in lines no wider than `width`, as far as breaks exist. Breaks are at + and - outside brackets, then inside
+// brackets, and last between factors. Lines after the first are `indent` narrower, because they are drawn that much
+// further right.
 std::vector<FormulaBox> set_in_lines(const Formula& formula, float size, const FormulaFont& font, float width,
                                      float indent);
-// Rows and columns in brackets.
+// A matrix in brackets.
 FormulaBox set_matrix(const std::vector<std::vector<Formula>>& rows, float size, const FormulaFont& font);
 
 }  // namespace achilles

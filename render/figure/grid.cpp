@@ -10,7 +10,7 @@ std::vector<Cell> cells_of(const Figure& figure) {
     const auto columns = static_cast<std::size_t>(std::max(figure.columns, 1));
     std::vector<std::size_t> free_from(columns, 0);  // the first free row of each column
     std::vector<Cell> cells;
-    std::size_t next = 0;  // cell, counted row by row
+    std::size_t next = 0;  // cell index, row by row
     for (const Panel& panel : figure.panels) {
         while (free_from[next % columns] > next / columns) ++next;
         const Cell cell{next / columns, next % columns, static_cast<std::size_t>(std::max(panel.rows, 1))};
@@ -76,7 +76,7 @@ void Grid::add_margins(const std::vector<Panel>& panels, const Metrics& m) {
     if (!panels.empty() && !panels.back().color_bar.colors.empty()) last_bar_ = needed_.back().right;
 }
 
-// The last row is higher where paths alone share it; no more than half as much again as the others.
+// A last row with paths only is higher, up to 1.5 times the height of the others.
 void Grid::set_heights(const std::vector<Panel>& panels, float all) {
     constexpr float most = 1.5F;
     const auto rows = static_cast<float>(down_.size());
@@ -94,11 +94,11 @@ void Grid::set_heights(const std::vector<Panel>& panels, float all) {
     heights_.back() = last;
 }
 
-// A path of several rows is as wide as they are high allows. Alone in its column it may be narrow; what stands below
-// another is as wide as that.
+// A path over several rows gets the width that its height allows. It may be narrow if it is alone in its column;
+// otherwise the panels below it have the same width.
 void Grid::set_widths(const std::vector<Panel>& panels, float all) {
     const float even = widths_.front(), columns = static_cast<float>(widths_.size());
-    constexpr float least_alone = 0.4F, least = 0.84F, most = 1.24F;  // of the others' width, if all were equal
+    constexpr float least_alone = 0.4F, least = 0.84F, most = 1.24F;  // fractions of the width of equal columns
     for (std::size_t i = 0; i < panels.size(); ++i) {
         const double shape = shape_of(panels[i]);
         if (!is_tall(i) || !(shape > 0.0) || widths_.size() < 2) continue;
@@ -124,7 +124,7 @@ float Grid::short_row_gap() const {
     for (const Margins& room : across_) widest = both(widest, room);
     float gap = widest.left + widest.right;
     if (across_.size() < 2) return gap;
-    float apart = 0.0F;  // on average
+    float apart = 0.0F;  // average
     for (std::size_t i = 1; i < across_.size(); ++i) apart += across_[i - 1].right + between_ + across_[i].left;
     return std::max(gap, apart / static_cast<float>(across_.size() - 1));
 }
@@ -149,7 +149,7 @@ Margins Grid::room(std::size_t i) const {
     const Cell& cell = cells_[i];
     const std::size_t end = cell.row + cell.rows;
     const float bottom = is_tall(i) && end < down_.size() ? needed_[i].bottom : down_[end - 1].bottom;
-    // The last panel of a short row ends where the last column does, whose room is not made for its bar.
+    // The last panel of a short row ends where the last column does, whose margin has no space for its color scale.
     const bool ends_in_bar = last_bar_ > 0.0F && is_in_short_row(i) && i + 1 == cells_.size();
     const float right = ends_in_bar ? std::max(across_.back().right, last_bar_) : across_[cell.column].right;
     return {across_[cell.column].left, right, down_[cell.row].top, bottom};

@@ -16,7 +16,7 @@ namespace {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_name_part(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
-// Where the number ends that begins at i. Its exponent is part of it: the e of 1e3 is no name with an index.
+// End of the number that begins at i, including its exponent: the e of 1e3 is not a name with an index.
 std::size_t end_of_number(std::string_view text, std::size_t i) {
     while (i < text.size() && (is_digit(text[i]) || text[i] == '.')) ++i;
     std::size_t exponent = i;
@@ -32,7 +32,7 @@ std::size_t end_of_number(std::string_view text, std::size_t i) {
 
 namespace {
 
-// theta1'' is the letter theta, the index 1 and two primes; x_ball has an index of letters.
+// theta1'' is the letter theta, the index 1 and two primes; x_ball has a subscript of letters.
 struct Name {
     explicit Name(std::string_view text) {
         const std::size_t primes_at = std::min(text.find('\''), text.size());
@@ -64,18 +64,19 @@ std::string index_of(std::string_view digits) {
     return text;
 }
 
-// Unicode's italic alphabets: where each begins, and what its first letter is.
+// Unicode's italic alphabets: first code, and the plain letter that it stands for.
 struct Alphabet {
     char32_t italic, first;
     char32_t count;
 };
 constexpr std::array<Alphabet, 5> alphabets{{{0x1D434, 'A', 26},
                                              {0x1D44E, 'a', 26},
-                                             {0x210E, 'h', 1},  // older than the rest, whose place for it is empty
+                                             {0x210E, 'h', 1},  // older than the others, whose position for it is
+                                                                // unassigned
                                              {0x1D6E2, 0x0391, 25},
                                              {0x1D6FC, 0x03B1, 25}}};
 
-// A word of one letter in italics; longer ones, and the number pi, stay upright.
+// A one-letter word in italics; longer words and the number pi stay upright.
 std::string italic(const std::string& word) {
     const std::vector<Letter> all = letters(word);
     if (all.size() != 1 || word == "\u03C0") return word;
@@ -87,15 +88,15 @@ std::string italic(const std::string& word) {
     return word;
 }
 
-// Where the index of letters of x_ball or lambda_knee begins; 0 where there is none. In front of it stands one letter: a
-// word with a bar in it is a word.
+// Position of the underscore before a subscript of letters, as in x_ball or lambda_knee; 0 if there is none. Exactly
+// one letter must precede it: other words with an underscore are kept as words.
 std::size_t bar_of(const Name& name) {
     const std::size_t bar = name.word.find('_');
     if (bar == std::string_view::npos || bar + 1 == name.word.size()) return 0;
     return letters(sign_of(name.word.substr(0, bar))).size() == 1 ? bar : 0;
 }
 
-// A name in a label.
+// A name as a label.
 std::string variable(std::string_view text) {
     const Name name(text);
     const std::size_t bar = bar_of(name);
@@ -107,7 +108,7 @@ std::string variable(std::string_view text) {
 constexpr std::array<std::string_view, 10> powers{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
                                                   "\u2075", "\u2076", "\u2077", "\u2078", "\u2079"};
 
-// Where a whole power that begins at i ('^' and digits alone) ends; i if there is none.
+// End of an integer power that begins at i ('^' and digits only); i if there is none.
 std::size_t end_of_power(std::string_view text, std::size_t i) {
     std::size_t end = i + 1;
     while (text[i] == '^' && end < text.size() && is_digit(text[end])) ++end;
@@ -176,7 +177,7 @@ std::string with_unit(const std::string& label, const std::string& unit) {
 
 namespace {
 
-// The first `size` bytes of a label, with an ellipsis; an index that is cut is closed.
+// The first `size` bytes of a label with an ellipsis. A truncated subscript is closed.
 std::string beginning(const std::string& label, std::size_t size) {
     std::string text = label.substr(0, size);
     const std::size_t open = text.rfind('{');
@@ -224,14 +225,14 @@ char32_t next_code_point(std::string_view text, std::size_t& at) {
 
 bool is_utf8(std::string_view text) {
     for (std::size_t i = 0; i < text.size();) {
-        if (static_cast<unsigned char>(text[i]) < 0x80) {  // most of any text
+        if (static_cast<unsigned char>(text[i]) < 0x80) {  // most bytes of any text
             ++i;
             continue;
         }
         const std::size_t begin = i;
         const char32_t code = next_code_point(text, i);
         const bool is_surrogate = code >= 0xD800 && code <= 0xDFFF;
-        // Written anew it must be the same: that refuses what is broken, too long for its code, or out of range.
+        // Encoding it again must give the same bytes. This rejects invalid and overlong forms and codes out of range.
         if (is_surrogate || code > 0x10FFFF || (code & 0xFFFE) == 0xFFFE || utf8(code) != text.substr(begin, i - begin))
             return false;
     }
@@ -240,7 +241,7 @@ bool is_utf8(std::string_view text) {
 
 namespace {
 
-// The plain letter behind one of Unicode's own styles.
+// The plain letter of one of Unicode's styled letters.
 Letter plain(char32_t c) {
     for (const Alphabet& alphabet : alphabets)
         if (c >= alphabet.italic && c < alphabet.italic + alphabet.count)

@@ -17,8 +17,8 @@ Rectangle on_pixels(Rectangle r) {
     return {x, y, std::max(std::round(r.x + r.width) - x, 1.0F), std::max(std::round(r.y + r.height) - y, 1.0F)};
 }
 
-// Shrinks the plot area until one unit is the same length on both axes; its middle stays, or, beside several rows, the
-// corner where reading begins.
+// Shrinks the plot area until one unit has the same length on both axes. Its center is kept, or, beside several rows,
+// its upper left corner.
 Rectangle with_equal_units(const Panel& panel, Rectangle plot) {
     const double wide = panel.x.high - panel.x.low, high = panel.y.high - panel.y.low;
     const double unit = std::min(plot.width / wide, plot.height / high);
@@ -53,7 +53,7 @@ Stroke scaled(Stroke stroke, double scale) {
     return stroke;
 }
 
-// How thick a strip is across its way, in pixels: where it leads up steeply that is less than it is high.
+// Thickness of a strip perpendicular to its direction, pixels. Where the strip is steep this is less than its height.
 double thickness(const Strip& strip, std::size_t i) {
     const std::size_t before = i > 0 ? i - 1 : i, after = std::min(i + 1, strip.upper.size() - 1);
     const auto middle = [&](std::size_t k) { return 0.5 * (strip.upper[k].y + strip.lower[k].y); };
@@ -62,7 +62,8 @@ double thickness(const Strip& strip, std::size_t i) {
     return way > 0.0 ? (strip.lower[i].y - strip.upper[i].y) * along / way : 0.0;
 }
 
-// The parts of a tube that are seen beside its curve: lines along one that is thinner would be taken for another curve.
+// Adds the parts of a tube that are visible beside its curve. The edges of a thinner tube would look like another
+// curve.
 void lay_strip(const Strip& strip, const Stroke& edge, double least, Sheet& sheet) {
     const std::size_t n = strip.upper.size();
     std::vector<bool> seen(n, false);
@@ -81,7 +82,7 @@ void lay_strip(const Strip& strip, const Stroke& edge, double least, Sheet& shee
     }
 }
 
-// Pixels far outside the plot area would be far off in single precision; none of them is seen.
+// Points are clamped, because coordinates far outside the plot area would be inaccurate in single precision.
 void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
     const double above = plot.y - 2.0 * plot.height, below = plot.y + 3.0 * plot.height, least = 1.2 * m.scale;
     Strip strip{{}, {}, tube.fill, plot};
@@ -117,12 +118,12 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
         for (const Point& point : curve.points) path.points.push_back(map(point));
         sheet.emplace_back(std::move(path));
     };
-    if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is not seen on a screen
+    if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is invisible on a screen
     for (const Curve& curve : panel.beyond.curves) lay(curve);
     for (const Curve& curve : panel.curves) lay(curve);
 }
 
-// Above the box: what happened at the end of an axis is not crossed out by it.
+// Event markers are drawn above the box, so that the box does not cross out those at the end of an axis.
 void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
     for (const std::vector<Markers>& all : {std::cref(panel.beyond.markers), std::cref(panel.markers)})
@@ -142,7 +143,7 @@ std::vector<Key> keys_of(const Panel& panel) {
     return keys;
 }
 
-// The sign of a key in `length` pixels from x on, its middle at height y.
+// Draws the symbol of a legend entry in `length` pixels from x on, vertically centered at y.
 void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, const Metrics& m) {
     if (const auto* stroke = std::get_if<Stroke>(&key.sign)) {
         const Rectangle around{x - m.text, y - m.text, length + 2.0F * m.text, 2.0F * m.text};
@@ -173,7 +174,7 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
         sheet.emplace_back(mark_of(markers, {x + length / 2.0F, y}, m));
 }
 
-// A legend in the corner that the panel names.
+// Draws a legend in the corner that the panel specifies.
 void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const std::vector<Key> keys = keys_of(panel);
     if (keys.empty()) return;
@@ -183,7 +184,8 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
     for (const Key& key : keys) longest = std::max(longest, m.width(key.label, m.text));
     const auto rows = static_cast<float>(keys.size());
     const float wanted_x = 3.0F * pad + 2.0F * m.text + longest, wanted_y = 2.0F * pad + rows * 1.3F * m.text;
-    // In a small panel the legend shrinks rather than hide the data, as long as it can be read; without room it goes.
+    // In a small panel the legend shrinks to save space for data while it is readable. Without enough space it is left
+    // out.
     constexpr float largest_share = 0.3F, readable_pixels = 11.0F;
     const float smallest = std::clamp(readable_pixels / m.text, 0.6F, 1.0F);
     const float share = std::sqrt(largest_share * plot.width * plot.height / (wanted_x * wanted_y));
@@ -205,7 +207,7 @@ void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle
     }
 }
 
-// Keys in lines beside one another, as few lines as the room allows, and those about equally long.
+// Legend entries in lines: as few lines as fit, of about equal length.
 struct KeyLines {
     KeyLines(const std::vector<Key>& wanted, float room, const Metrics& m) : keys(wanted), lines(fill(room, m)) {
         for (float narrower = longest() - m.text; narrower > m.text; narrower -= m.text) {
@@ -220,7 +222,7 @@ struct KeyLines {
         for (const Line& line : lines) most = std::max(most, line.length);
         return most;
     }
-    // From the top on; `anchor` 0.5: centred about x, 1: ending there.
+    // Draws from the top down; `anchor` 0.5: centered at x, 1: ending at x.
     void lay(Sheet& sheet, float x, float y, float anchor, const Figure& style, const Metrics& m) const {
         std::size_t next = 0;
         for (const Line& line : lines) {
@@ -240,7 +242,7 @@ struct KeyLines {
         std::size_t count;
         float length;
     };
-    // One key after the other, a new line where the room ends; a single key may be longer.
+    // Fills line by line and starts a new line when the width is used up. A single entry may be longer.
     std::vector<Line> fill(float room, const Metrics& m) const {
         std::vector<Line> filled;
         for (const Key& key : keys) {
@@ -264,7 +266,8 @@ struct KeyLines {
     std::vector<Line> lines;
 };
 
-// The legend above the plot, ending at its right side; the title stands to its left where there is room, else above.
+// Whether the title fits on the left of the legend above the plot, which ends at its right side; else the title is
+// above the legend.
 bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, const Metrics& m) {
     const float title = panel.title.empty() ? 0.0F : m.width(panel.title, m.text) + m.text;
     return title + keys.longest() <= plot_width;
@@ -277,7 +280,7 @@ float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     return std::max(keys.height(m) - spare, 0.0F);
 }
 
-// The panel with its plot area given.
+// Lays out a panel whose plot area is given.
 Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room,
                  const Metrics& m) {
     Rectangle inner = with_equal_units(panel, plot);
@@ -295,7 +298,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
         if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }
     lay_time_bars(panel, style, sheet, inner, strip, m);
-    for (const Markers& markers : panel.markers)  // an instant is one on these bars, too
+    for (const Markers& markers : panel.markers)  // a bar marker at an instant continues across the time bars
         if (strip > 0.0F && markers.shape == Markers::Shape::bar)
             lay_bars(markers, sheet, {inner.x, inner.y + inner.height + m.line, inner.width, strip - m.line},
                      PanelMap(panel, inner), m);
@@ -307,7 +310,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
 }
 
 Grid grid_of(const Figure& figure, Rectangle area, const Metrics& m) {
-    // The first line of a legend stands where a title would; in a card there is room for it.
+    // The first line of a legend takes the place of a title; panels in cards have space for it.
     const auto instead_of_title = [&](const Panel& panel) {
         return panel.legend && panel.legend_above && panel.title.empty() ? 0.8F * m.text + m.gap : 0.0F;
     };
@@ -315,10 +318,10 @@ Grid grid_of(const Figure& figure, Rectangle area, const Metrics& m) {
             [&](const Panel& panel, float width) { return room_of_legend(panel, width, m) + instead_of_title(panel); }};
 }
 
-// Takes the lines of the figure's own legend off the top of the area.
+// Reserves the lines of the figure's own legend at the top of the area.
 KeyLines take_legend(const Figure& figure, Rectangle& area, const Metrics& m) {
     const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
-    // A small picture shows its data rather than what they mean.
+    // A small picture shows data rather than a legend.
     constexpr float most_of_height = 0.3F;
     if (figure.keys.empty() || keys.height(m) >= most_of_height * area.height) return KeyLines({}, area.width, m);
     const float above = std::round(m.text * 0.5F) + keys.height(m);

@@ -1,5 +1,5 @@
-// A figure laid out: every area, path, marker and line of words with its place in pixels, in the order of painting.
-// What is left to do is strokes, onto a screen or into a file. No ImGui here.
+// A figure after layout: every area, path, marker and line of text with its position in pixels, in painting order.
+// Painters only draw it, onto a screen or into a file. No ImGui here.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ struct Rectangle {
     float x = 0, y = 0, width = 0, height = 0;  // pixels
 };
 
-// How wide a label of a size will be: each kind of drawing has letters of its own.
+// Width of a label at a text size, in pixels. Each kind of output has its own font.
 using Measure = std::function<float(const std::string& label, float size)>;
 
 struct Fill {
@@ -24,12 +24,12 @@ struct Fill {
 };
 
 struct Path {
-    std::vector<Point> points;  // pixels; points that are not finite break it
-    Stroke stroke;              // in pixels
+    std::vector<Point> points;  // pixels; points that are not finite break the path
+    Stroke stroke;              // lengths in pixels
     Rectangle clip;
 };
 
-// What lies between two lines that have as many points, each above its own.
+// Region between two lines with the same number of points, each upper point above its lower point.
 struct Strip {
     std::vector<Point> upper, lower;  // pixels
     Color color;
@@ -43,36 +43,36 @@ struct Mark {
     double size = 6.0, edge_width = 1.0;
 };
 
-// Cells as rectangles, all of them in the area; those that are clear show what is behind.
+// Cells as rectangles that fill the area. Transparent cells show the background.
 struct Tiles {
     Rectangle area, clip;
     std::shared_ptr<const Cells> cells;
 };
 
 struct TextRun {
-    float x = 0, y = 0;  // the top of the line where `anchor` of its length is behind: 0 its start, 0.5 its middle
+    float x = 0, y = 0;  // y: top of the line; x: the point at fraction `anchor` of its length (0: start, 0.5: middle)
     float anchor = 0;
     std::string label;
     Color color;
     float size = 14;
-    bool upwards = false;  // turned by 90 degrees to the left; x is then the top of the letters
+    bool upwards = false;  // rotated by 90 degrees counterclockwise; x is then the top of the letters
 };
 
 using Sheet = std::vector<std::variant<Fill, Path, Strip, Mark, Tiles, TextRun>>;
 
-// From a figure to a sheet: where the axes, legends and labels of every panel stand. The only home of a figure's
-// typography, for the window, PNG and SVG alike.
+// From a figure to a sheet: positions of the axes, legends and labels of every panel. All typography of figures is
+// decided here, for the window, PNG and SVG.
 
-// The whole figure in the area; scale multiplies text sizes and stroke widths.
+// Lays out the whole figure in the area; `scale` multiplies text sizes and stroke widths.
 Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double scale);
 
-// The plot area inside the axes of every panel, and the place that it could have filled.
+// Plot area inside the axes of a panel, and the area before it was shrunk to equal axes.
 struct PlotArea {
     Rectangle plot, place;
 };
 std::vector<PlotArea> plot_areas(const Figure& figure, const Measure& width, Rectangle area, double scale);
 
-// One panel in the style of a figure, added to the sheet; returns the plot area inside the axes.
+// Adds one panel in the style of a figure to the sheet. Returns the plot area inside the axes.
 Rectangle layout(const Panel& panel, const Figure& style, const Measure& width, Rectangle area, double scale,
                  Sheet& sheet);
 

@@ -14,15 +14,15 @@ namespace {
 
 constexpr int points_a_flight = 48;
 
-// The gap at u in [0, 1] of a flight of this length between two impacts, from the normal velocities at its ends. The
-// cubic is off by O(length^4); evaluating h(q) instead would lose h ~ speed^2 in the rounding of q ~ 1.
+// Gap at u in [0, 1] of a flight of duration `length` between two impacts, from the normal velocities at its ends. The
+// cubic has an error of O(length^4). Evaluating h(q) instead would lose h ~ speed^2 in the rounding of q ~ 1.
 double cubic_gap(double u, double length, double up, double down) {
     return length * u * (1.0 - u) * (up * (1.0 - u) + down * u);
 }
 
 double share(int i) { return static_cast<double>(i) / points_a_flight; }
 
-// Powers of ten of the time left, as many as have room, and their 2 to 9 between them where all have.
+// Ticks at powers of ten of the time left, as many as fit, with minor ticks at 2 to 9 times each if all are labeled.
 void set_time_left(Axis& axis, double low, double high) {
     constexpr double most = 8.0;
     axis.low = low;
@@ -37,7 +37,7 @@ void set_time_left(Axis& axis, double low, double high) {
     }
 }
 
-// Of a Zeno event: what bounces, and what was held all the while.
+// The contact that bounces before a Zeno event.
 std::size_t the_contact(const Event& zeno) {
     std::size_t contact = 0;
     while (!zeno.contacts.contains(contact)) ++contact;
@@ -46,7 +46,8 @@ std::size_t the_contact(const Event& zeno) {
 
 Mode mode_while_bouncing(const Event& zeno) { return zeno.mode.without(zeno.contacts); }
 
-// Where the row begins: the impacts of that contact alone that nothing else interrupts, while the same others are held.
+// First impact of the row: the impacts of that contact without other events between them, while the same other contacts
+// are held.
 std::size_t first_impact(const Trajectory& trajectory, std::size_t zeno) {
     const ContactSet contact = trajectory.events[zeno].contacts;
     const Mode mode = mode_while_bouncing(trajectory.events[zeno]);
@@ -85,7 +86,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
 
     auto gap = model.evaluator(model.gap(contact), trajectory.run.parameters);
     Sampler sampler(trajectory);
-    for (std::size_t i = first; i + 1 < event; ++i) {  // to the impact at which the bouncing is cut
+    for (std::size_t i = first; i + 1 < event; ++i) {  // up to the impact at which the sequence is truncated
         const Event &impact = trajectory.events[i], &next = trajectory.events[i + 1];
         const double w = impact.impact_speed, down = next.impact_speed, length = next.t - impact.t;
         Flight& drawn = lens.flights_.emplace_back(Flight{x(impact.t), w, {}});
@@ -104,7 +105,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
 }
 
 Lens::Part Lens::overview() const {
-    constexpr double least = 4.0, most = 12.0, before = 0.3, between = 0.45;  // decades; shares of the width
+    constexpr double least = 4.0, most = 12.0, before = 0.3, between = 0.45;  // decades; fractions of the width
     const double far = interval_ ? (*interval_ - cut_) / between : 0.0;
     const double width = std::clamp(far, least * std::max(1.0, spacing_), most * std::max(1.0, spacing_));
     const double low = std::max(first() - 0.05 * width, cut_ - before * width);
@@ -129,7 +130,7 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
         impacts.points.push_back({flight.x, 0.0});
         run.points.insert(run.points.end(), flight.points.begin(), flight.points.end());
     }
-    // Flight number k of the limit takes e^k of the time left at the cut; only what is seen is drawn.
+    // Flight number k of the limit starts when e^k of the time left at the cut is left. Only visible flights are drawn.
     const double begin = std::max(0.0, std::floor((low - cut_) / spacing_));
     for (double k = begin; cut_ + k * spacing_ <= high; ++k) {
         const double x = cut_ + k * spacing_;
@@ -155,8 +156,8 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
         panel.bands.push_back({"certified", color, *interval_, std::numeric_limits<double>::max()});
     }
     set_time_left(panel.x, low, high);
-    // By the limit, not by what is seen: nothing jumps while the row is scrolled. An early flight over ground that is
-    // not yet flat may leave the picture.
+    // The y range follows from the limit instead of the visible part, so that nothing jumps while scrolling. An early
+    // flight over ground that is not yet flat may leave the picture.
     set_ticks(panel.y, 0.0, 1.5 * height_, 0.0, 4);
     panel.y.low = -0.08 * height_;
     return panel;

@@ -11,12 +11,12 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t few_markers = 150;   // with edges, each drawn
-constexpr std::size_t most_markers = 250;  // in a plot
-constexpr std::size_t most_events = 8;     // to a marker: more of them are a band
+constexpr std::size_t few_markers = 150;   // up to this number, all are drawn with edges
+constexpr std::size_t most_markers = 250;  // maximum in a plot
+constexpr std::size_t most_events = 8;     // events per marker; more of them are drawn as a band
 
-// Where the markers are that lie inside the plot area: whole or not at all, lest half a marker at the rim be another shape;
-// what is on the rim may miss it by rounding.
+// Positions of the markers inside the plot area. Markers are drawn entirely or not at all, because half a marker at the
+// edge would look like another shape. Positions may miss the edge by rounding.
 std::vector<Point> places_of(const Markers& markers, Rectangle plot, const PanelMap& map, const Metrics& m) {
     constexpr double slack = 0.5;
     std::vector<Point> places;
@@ -30,7 +30,7 @@ std::vector<Point> places_of(const Markers& markers, Rectangle plot, const Panel
     return places;
 }
 
-// Impacts crowd before a Zeno point; of the last ones on every curve of the panel those that stand apart are drawn.
+// Markers at a minimum distance from the last 32 that are kept: impacts accumulate before a Zeno point.
 std::vector<Point> standing_apart(const std::vector<Point>& places, double apart) {
     constexpr std::size_t remembered = 32;
     std::vector<Point> laid;
@@ -43,7 +43,7 @@ std::vector<Point> standing_apart(const std::vector<Point>& places, double apart
     return laid;
 }
 
-// The first in each square of this side, unless one in a square beside it is nearer than that.
+// The first marker in each square of this side, unless one in an adjacent square is closer than that.
 std::vector<Point> far_apart(const std::vector<Point>& places, double side) {
     std::map<std::array<long, 2>, Point> taken;
     std::vector<Point> laid;
@@ -62,7 +62,8 @@ std::vector<Point> far_apart(const std::vector<Point>& places, double side) {
     return laid;
 }
 
-// Kinds of events that happen at one place, as at the end of a contact and at its beginning, show as stripes.
+// Dot size, different for each kind, so that events at one position, such as the end of one contact phase and the start
+// of the next, show as stripes.
 double dot_of(Markers::Shape shape) {
     switch (shape) {
         case Markers::Shape::square:
@@ -121,7 +122,7 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
             sheet.emplace_back(mark_of(markers, at, m));
         return;
     }
-    constexpr double between = 1.3;  // of a marker's size
+    constexpr double between = 1.3;  // distance in marker sizes
     const std::vector<Point> laid = far_apart(places, std::max(between * markers.size, markers.apart) * m.scale);
     if (laid.size() > most_markers || places.size() > most_events * laid.size())
         return lay_band(markers, places, sheet, plot, m);
@@ -134,9 +135,9 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
 
 namespace {
 
-constexpr double apart = 5.0;  // strokes of a hatch, along the x axis
+constexpr double apart = 5.0;  // distance of hatch strokes along the x axis, layout points
 
-// At 45 degrees, on one lattice for all areas.
+// Strokes at 45 degrees, on one lattice for all areas.
 Path hatching_of(const Hatch& hatch, Rectangle area, const Metrics& m) {
     Path path{{}, {hatch.color, std::max(0.8 * m.scale, 0.8), {}}, area};
     const double nan = std::numeric_limits<double>::quiet_NaN(), step = apart * m.scale;
@@ -195,10 +196,11 @@ void lay_raster(const Raster& raster, Sheet& sheet, Rectangle plot, const PanelM
 
 namespace {
 
-// The dots of a plot area: a raster as wide as the places of the points, or as fine as a pen.
+// Grid of dots in a plot area: as wide as the spacing of the points, or as fine as a pen.
 struct DotGrid {
     DotGrid(const Dots& dots, Rectangle plot, const PanelMap& map, const Metrics& m) {
-        // A dot of 0.7 points is the finest pen of a page 1200 pixels wide. Where places are far apart it is twice as large.
+        // A dot of 0.7 points is the finest pen on a page 1200 pixels wide. If positions are far apart, it is twice as
+        // large.
         const double pen = std::max(1.0, std::round(0.7 * m.scale)), widest = 3.0 * pen;
         const double from = map.x(dots.left),
                      place = dots.columns > 0 ? (map.x(dots.right) - from) / dots.columns : 0.0;
@@ -209,7 +211,7 @@ struct DotGrid {
         left = from, width = place;
         columns = static_cast<std::size_t>(dots.columns);
     }
-    // What is on the rim may miss it by rounding.
+    // Positions at the edge may miss it by rounding.
     std::optional<std::size_t> place(const Point& at) const {
         constexpr double slack = 0.5;
         const double x = (at.x - left) / width, y = (at.y - top) / height;
@@ -226,7 +228,7 @@ struct DotGrid {
                 static_cast<float>(height * static_cast<double>(rows))};
     }
 
-    double left, top, width, height;  // of the area, and of a dot
+    double left, top, width, height;  // of the area; of a dot
     std::size_t columns, rows;
 
  private:
@@ -255,7 +257,7 @@ void lay_dots(const Dots& dots, Sheet& sheet, Rectangle plot, const PanelMap& ma
     }
     std::uint32_t most = 1;
     for (const std::uint32_t count : counts) most = std::max(most, count);
-    constexpr double faintest = 0.5;  // of one point in a dot, where others have more
+    constexpr double faintest = 0.5;  // opacity of a dot with one point, if others have more
     for (std::size_t i = 0; i < counts.size(); ++i) {
         if (counts[i] == 0) continue;
         const double share = most > 1 ? std::log(counts[i]) / std::log(most) : 1.0;

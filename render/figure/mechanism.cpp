@@ -15,14 +15,15 @@ namespace achilles {
 namespace {
 
 constexpr int most_halvings = 56;
-constexpr std::size_t most_points = 20000;  // of a curve that turns in the picture without end
+constexpr std::size_t most_points = 20000;  // limit for a curve that never ends inside the picture
 
 struct At {
     double s;
     Point p;
 };
 
-// Whether a chord may be seen, or what of the curve is between its ends: within its own length of the picture.
+// Whether a chord, or the part of the curve between its ends, may be visible: it is within its own length of the
+// picture.
 bool is_near(const Point& a, const Point& b, const Drawing& seen) {
     const double reach = std::hypot(b.x - a.x, b.y - a.y);
     return std::max(a.x, b.x) + reach >= seen.x_low && std::min(a.x, b.x) - reach <= seen.x_high &&
@@ -40,7 +41,7 @@ class Refiner {
     Refiner(const ParametricCurve& curve, const Drawing& seen)
         : curve_(curve), seen_(seen), size_(std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low)) {}
 
-    // What is between two points, less the first.
+    // Adds the points between a and b, including b but not a.
     void add(const At& a, const At& b, int halvings) {
         const bool is_short = std::hypot(b.p.x - a.p.x, b.p.y - a.p.y) <= 0.1 * size_;
         if (halvings < most_halvings && points_.size() < most_points && is_near(a.p, b.p, seen_)) {
@@ -82,9 +83,9 @@ namespace {
 using DrawingShape = DrawingDescription::Shape;
 
 constexpr int curve_points = 400;
-constexpr double hatch_of_world = 0.022;  // between the strokes under a ground
+constexpr double hatch_of_world = 0.022;  // fraction of the world, between hatch strokes of a ground
 
-// "#8f96a0", as the file was read.
+// Color from text like "#8f96a0", which the file reader has checked.
 Color color_of(const std::string& text) {
     const auto part = [&](std::size_t at) {
         return static_cast<std::uint8_t>(std::stoi(text.substr(at, 2), nullptr, 16));
@@ -113,14 +114,14 @@ struct Box {
     }
     bool empty() const { return x_low > x_high; }
     double size() const { return std::max(x_high - x_low, y_high - y_low); }
-    // How far a point is outside, in the direction where it is farther.
+    // Distance of a point from the box, in the maximum norm.
     double distance(const Point& p) const {
         return std::max({x_low - p.x, p.x - x_high, y_low - p.y, p.y - y_high, 0.0});
     }
 };
 
-// A curve that stands still: a ground counts where the motion is above it, not far below; a thing not much larger than
-// the motion (a bowl, a ring) is seen whole.
+// Includes a static curve. Of a ground, the part below the motion counts; an object not much larger than the motion (a
+// bowl, a ring) is shown entirely.
 void include_under(Box& all, const Box& motion, const std::vector<Point>& curve) {
     Box whole;
     for (const Point& p : curve) whole.include(p);
@@ -134,7 +135,7 @@ void include_under(Box& all, const Box& motion, const std::vector<Point>& curve)
             all.include(p);
 }
 
-// Of a wall with hatching, or a block, that is not much larger than the motion all is shown.
+// Whether a wall with hatching, or a block, is shown entirely because it is near and not much larger than the motion.
 bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Point>& points) {
     Box whole;
     for (const Point& p : points) whole.include(p);
@@ -143,7 +144,7 @@ bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Poi
            std::any_of(points.begin(), points.end(), is_near);
 }
 
-// Of a floor, a wall or a pivot the place nearest to the motion is shown, unless it is far away.
+// Includes the point of a floor, wall or pivot that is nearest to the motion, unless it is far away.
 template <class Placed>
 void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     constexpr int parts = 100;
@@ -163,8 +164,8 @@ void include_nearest(Box& all, const Box& motion, const Placed& placed) {
     if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
 }
 
-// What is touched, while a contact is held there: its lines have the colour of constrained phases and are a little bolder;
-// what is filled keeps its own colour, with such a rim.
+// Highlights a surface while a contact is held on it: lines get the color of constrained phases and become bolder.
+// Filled shapes keep their color and get such an outline.
 void light(Shape& shape, const Theme& theme) {
     shape.stroke.color = phase_color(theme, Phase::Kind::constrained);
     if (shape.stroke.width > 0.0) shape.stroke.width += shape.fill ? 1.5 : 0.75;
@@ -172,14 +173,14 @@ void light(Shape& shape, const Theme& theme) {
 
 double diagonal(const Drawing& seen) { return std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low); }
 
-// Of a ground that goes right through the picture all behind it is solid, not only a strip.
+// Whether a ground crosses the whole picture. Then everything behind it is solid, not only a strip.
 bool ends_are_outside(const Drawing& seen, const std::vector<Point>& line) {
     return std::all_of(line.begin(), line.end(), [&](const Point& p) {
         return p.x < seen.x_low || p.x > seen.x_high || p.y < seen.y_low || p.y > seen.y_high;
     });
 }
 
-// Whether an expression names one of the coordinates, or t.
+// Whether an expression names a coordinate or t.
 bool names_what_moves(const SystemDescription& description, std::string_view text) {
     const std::vector<std::string> names = names_in(text);
     return std::any_of(names.begin(), names.end(), [&](const std::string& name) {
@@ -240,8 +241,8 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
     return placed;
 }
 
-// A spring, a damper, or the hatching of a ground, in a world of this size. What has no size of its own gets one that looks
-// right at the file's start, so that it stays the same while the part moves.
+// A spring, a damper, or the hatching of a ground, in a world of this size. A size that the file does not give is
+// chosen from the initial state, so that it is constant while the part moves.
 std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& run, const Placed& placed,
                                            double world) const {
     const Point &from = placed.points.front(), &to = placed.points.back();
@@ -267,7 +268,7 @@ Grip::Hold Grip::at(double t, const State& state) {
     return {{run_->output(first_), run_->output(first_ + 1)}, radius};
 }
 
-// What a hand takes hold of first; null where nothing but texts, curves and what lies between others moves.
+// The body, which the mouse drags first; null if only texts, curves and connecting parts move.
 const Mechanism::Item* Mechanism::body() const {
     const Item *body = nullptr, *line = nullptr;
     for (const Item& item : items_) {
@@ -330,7 +331,8 @@ Shape& add(Drawing& drawing, Shape::Kind kind, const Color& color, double width)
 
 }  // namespace
 
-// Of a system without a drawing, whose coordinates are x and y: the border of where the gaps are open, and where it is.
+// Draws a system without a drawing whose coordinates are x and y: the border of the region where all gaps are open, and
+// the point.
 void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::span<const double> parameters,
                           const Theme& theme) const {
     std::vector<PlaneFunction> gaps;
@@ -416,7 +418,7 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
         for (std::size_t i = 0; i < samples.size(); i += stride)
             box.include(place(item, run, samples[i].t, samples[i].state));
     }
-    const bool still = box.empty();  // then all there is must be seen
+    const bool still = box.empty();  // then all static shapes must be visible
     Box all = box;
     for (const Item& item : items_) {
         if (item.moves) continue;

@@ -1,4 +1,4 @@
-// The mechanism that a system file draws, evaluated at a state.
+// The drawing of a mechanism from its system file, evaluated at a state.
 #pragma once
 
 #include <functional>
@@ -14,57 +14,58 @@
 
 namespace achilles {
 
-// The point by which a mechanism is held: the centre of the last disc or box that moves, else the end of the last line
-// that does. Evaluates its program, so one per thread.
+// The reference point of a mechanism: the center of the last moving disc or box, else the end of the last moving line.
+// It evaluates its program, so use one per thread.
 class Grip {
  public:
     struct Hold {
         Point at;
-        double radius = 0.0;  // of the disc, or the largest in the box; 0 without one
+        double radius = 0.0;  // of the disc, or of the largest disc in the box; 0 for a point of a line
     };
     Hold at(double t, const State& state);
 
  private:
     friend class Mechanism;
-    std::optional<Evaluator<double>> run_;  // none: the coordinates are the place
-    std::size_t t_ = 0;                     // input
-    std::size_t first_ = 0;                 // output
-    std::size_t sizes_ = 0;                 // so many outputs after it are sizes: a radius, or width and height
+    std::optional<Evaluator<double>> run_;  // nullopt: the coordinates are the position
+    std::size_t t_ = 0;                     // input slot of t
+    std::size_t first_ = 0;                 // output slot of the point's x
+    std::size_t sizes_ = 0;                 // number of size outputs after the point: a radius, or width and height
 };
 
 class Mechanism {
  public:
-    // Compiles every [[drawing]]. Where the file has none: a disc and the zero line of the gap for coordinates x and y,
-    // else a note. Throws InputError for an expression that is none. Refers to the model.
+    // Compiles every [[drawing]]. A file without any gets a disc and the zero line of the gap if its coordinates are x
+    // and y, else a note. Throws InputError for an invalid expression. Keeps a reference to the model.
     explicit Mechanism(const Model& model);
 
-    // The shapes at a time and a state, seen within given limits (see limits()): curves are smooth there. What belongs to a
-    // contact that is held is lit, and the body (grip()) for one to which nothing belongs.
+    // The shapes at a time and a state. Curves are smooth within `limits`, the visible part (see limits()). Shapes that
+    // belong to a held contact are highlighted; if none belongs to it, the body (grip()) is highlighted.
     enum class Part { all, what_moves };
     Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
                  const Theme& theme, ContactSet held = {}, Part part = Part::all) const;
 
-    // The part of the world that a whole run needs, so that a moving picture stands still. Only the limits are set.
+    // The part of the world that a whole run needs, so that the picture need not move. Only the limits of the drawing
+    // are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
 
-    // Nothing where no shape moves but texts, curves and what lies between others.
+    // The body. nullopt if no shape moves except texts, curves and connecting parts.
     std::optional<Grip> grip(std::span<const double> parameters) const;
-    // That one, then every other point by which a hand can take hold: centres, and both ends of lines. Some may stand
-    // still.
+    // The body, then every other point that the mouse can drag: centers, and both ends of lines. Some of them may be
+    // static.
     std::vector<Grip> grips(std::span<const double> parameters) const;
-    // Of every disc that moves, and is not what is touched, its centre and radius, with its place among the file's drawings.
+    // Index among the file's drawings, center and radius of every moving disc that is not itself a contact surface.
     std::vector<std::pair<std::size_t, Grip>> discs(std::span<const double> parameters) const;
-    // Whether there is nothing to draw but a note that says so.
+    // Whether the drawing has only a note that there is nothing to draw.
     bool is_empty() const { return items_.empty() && !plane_; }
 
  private:
     struct Item {
         DrawingDescription description;
-        Program program;     // its points' x and y, then radius, sizes or limits of the curve's parameter, then width
-        bool moves = false;  // it names a coordinate, or t
+        Program program;     // x and y of its points, then radius, sizes or parameter limits of the curve, then width
+        bool moves = false;  // it names a coordinate or t
     };
     struct Placed {
-        std::vector<Point> points;  // of a box its corners
+        std::vector<Point> points;  // corners, for a box
         double radius = 0.0, width = 2.0;
         std::vector<double> sizes{};
     };
@@ -77,18 +78,18 @@ class Mechanism {
                    const Theme& theme) const;
 
     const Model& model_;
-    Run start_;  // as the file has it: parts are at rest there
+    Run start_;  // as in the file: springs and dampers are at rest there
     std::vector<Item> items_;
     bool plane_ = false;  // no drawing, but coordinates x and y
 };
 
-// Curves as smooth as a picture needs: dense where it looks, coarse elsewhere.
+// ---- curves refined to the picture: dense in the visible part, coarse elsewhere ----
 
 using ParametricCurve = std::function<Point(double)>;
 
-// Points of a curve over [low, high]: `pieces` + 1 at equal steps of its parameter, and between those in or near what is
-// seen as many more as bring the chords within 5e-5 of the picture's diagonal, so that no corner shows at any zoom. What is
-// seen: the drawing's limits.
+// Points of a curve over [low, high]: `pieces` + 1 points at equal steps of the parameter. In or near `seen`, more
+// points are added until chords are within 5e-5 of the picture's diagonal, so that no corner is visible at any zoom.
+// `seen`: the limits of the drawing.
 std::vector<Point> refined(const ParametricCurve& curve, double low, double high, int pieces, const Drawing& seen);
 
 }  // namespace achilles

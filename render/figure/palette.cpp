@@ -11,7 +11,8 @@ namespace {
 
 constexpr Color blue{0, 114, 178, 255}, vermilion{213, 94, 0, 255}, green{0, 158, 115, 255}, purple{170, 68, 153, 255};
 constexpr Color sky{86, 180, 233, 255}, orange{240, 165, 40, 255}, mint{70, 200, 160, 255}, pink{225, 135, 190, 255};
-// Of several curves in a panel: none is the hue of a phase, which a dash tells there, and the first few are no event's.
+// Hues of several curves in a panel. None is the hue of a phase, which the dash shows there, and the first few are not
+// used for events.
 constexpr Color wine{136, 34, 85, 255}, olive{130, 135, 0, 255}, slate{95, 102, 112, 255}, rose{216, 73, 131, 255},
     forest{17, 91, 15, 255}, lilac{129, 128, 238, 255}, navy{3, 17, 84, 255}, leaf{4, 153, 81, 255};
 constexpr Color blush{255, 130, 150, 255}, straw{220, 220, 110, 255}, silver{185, 192, 200, 255},
@@ -59,7 +60,7 @@ Theme dark_theme() {
 
 namespace {
 
-// The share of light a colour gives back, 0 to 1.
+// Relative luminance of a color, 0 to 1.
 double luminance(const Color& color) {
     const auto linear = [](std::uint8_t byte) {
         const double x = byte / 255.0;
@@ -75,11 +76,11 @@ double contrast(const Color& a, const Color& b) {
     return (std::max(x, y) + 0.05) / (std::min(x, y) + 0.05);
 }
 
-// Towards white or black until the contrast is what it was. Grey stays grey, a hue stays that hue.
+// Moves a color toward white or black until the contrast is the original one. Gray stays gray, and the hue is kept.
 Color on_theme(const Color& color, const Theme& theme) {
     if (!theme.dark) return color;
     const double wanted = contrast(color, {255, 255, 255, 255});
-    const auto mixed = [&](double share) {  // -1: black, 0: the colour, 1: white
+    const auto mixed = [&](double share) {  // -1: black, 0: the color, 1: white
         const auto part = [&](std::uint8_t x) {
             return static_cast<std::uint8_t>(std::lround(share < 0.0 ? x * (1.0 + share) : x + share * (255.0 - x)));
         };
@@ -97,7 +98,7 @@ Color on_theme(const Color& color, const Theme& theme) {
 
 namespace {
 
-// How each kind of event is drawn; its names are in run/trajectory.hpp. An impact has the color of flight.
+// Marker of each kind of event; the names are in run/trajectory.hpp. An impact has the color of flight.
 struct EventSign {
     Event::Kind kind;
     Markers::Shape shape;
@@ -129,7 +130,7 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
 }
 
 Color run_color(const Theme& theme, int place) {
-    // Runs: none is the hue of a phase or of an event's sign, nor what is wrong.
+    // Runs: none has the hue of a phase, an event marker or an error.
     const std::array<Color, most_pinned> light{{{118, 52, 200, 255},
                                                 {140, 84, 12, 255},
                                                 {225, 30, 180, 255},
@@ -147,7 +148,7 @@ Color run_color(const Theme& theme, int place) {
 
 Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above) {
     Stroke wide{run_color(theme, place), 2.9 + 0.6 * static_cast<double>(above), stroke.dash};
-    // Its ends are round: as much as they cover is left free.
+    // The stroke has round ends, so gaps are lengthened by as much as these cover.
     for (std::size_t i = 1; i < wide.dash.size(); i += 2) wide.dash[i] += 0.8 * wide.width;
     return wide;
 }
@@ -177,7 +178,7 @@ std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ?
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind) {
     std::string names;
     for (const Trajectory* run : runs) {
-        if (kind != Event::Kind::zeno) break;  // all are called the same, and impacts may be very many
+        if (kind != Event::Kind::zeno) break;  // other kinds have one name only, and there may be very many impacts
         for (const Event& event : run->events) {
             if (event.kind != kind) continue;
             const std::string name(names_of(event).name);

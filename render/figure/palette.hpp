@@ -1,5 +1,5 @@
-// How things look: the one table from phase and event to colour, dash and marker. Colours are told apart by people with
-// any colour vision (Okabe and Ito); dash and shape say the same again for print.
+// Colors, dashes and markers of phases and events. The colors are distinguishable with any color vision (Okabe and
+// Ito); dashes and shapes repeat the distinction for print.
 #pragma once
 
 #include <span>
@@ -13,59 +13,61 @@ namespace achilles {
 struct Theme {
     bool dark = false;
     Color background, ink, grid;  // of a figure, or of a card in the explorer
-    Color surface;                // what does not move: the contact surface, a pivot
-    Color ground;                 // what is solid behind such a surface
-    Color body;                   // what moves
-    // Of the interface around the figures.
+    Color surface;                // static parts: the contact surface, a pivot
+    Color ground;                 // the solid side of such a surface
+    Color body;                   // moving parts
+    // The interface around the figures.
     Color page;               // behind the cards
-    Color frame;              // of a button or a field that does nothing yet
+    Color frame;              // of an idle button or field
     Color border;             // lines between groups, the track of a slider
     Color faint;              // text that is less important
-    Color accent;             // what the hand can move, and what it changed
+    Color accent;             // what the user can move, and what the user has changed
     Color selected;           // behind the chosen line of a list
-    Color error, error_card;  // what is wrong, and behind it
+    Color error, error_card;  // an error, and the background of its card
 };
 
 Theme light_theme();
 Theme dark_theme();
 
-// How well one colour is seen on another, 1 to 21 (WCAG 2): text wants 4.5, curves and signs want 3.
+// Contrast ratio of two colors, 1 to 21 (WCAG 2). Text needs 4.5, curves and symbols need 3.
 double contrast(const Color& a, const Color& b);
-// A colour that a file chose on white paper, as far from the theme's background as it was from white.
+// A color that a file chose for white paper, changed to the same contrast with the theme's background.
 Color on_theme(const Color& color, const Theme& theme);
 
-// Hybrid phases are dashed, constrained ones solid. One curve in a panel has the phase's colour; the i-th of several
-// has a hue of its own (the ninth has the first's again), and the dash still tells the phase.
+// Stroke of a curve: hybrid phases are dashed, constrained ones solid. A single curve of a panel has the color of the
+// phase. One of several has its own hue (repeated after eight), and the dash shows the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
-// Runs that the present one is compared with have a hue each, by their places from 1 to most_pinned; where they are drawn
-// the present run is in ink, and stroke and dash alone tell its phases.
+// Color of a run in a comparison, by its place from 1 to most_pinned. In a comparison the present run is drawn in ink,
+// and only stroke and dash show its phases.
 inline constexpr int most_pinned = 6;
 Color run_color(const Theme& theme, int place);
-// Of such a run, which lies under `above` others and the present one: so wide that it is seen beside them where they coincide.
+// Stroke of a compared run that lies below `above` others and the present one. It is wide enough to be visible where
+// they coincide.
 Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above);
-// Filled squares at impacts, diamonds at Zeno points, triangles at releases; no points yet.
+// Filled squares at impacts, diamonds at Zeno points, triangles at releases. The markers have no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
-// Hollow triangles above the squares of impacts that open a held contact; no points yet.
+// Hollow triangles above the squares of impacts that open a held contact. The markers have no points yet.
 Markers opened_markers(const Theme& theme);
-// What a legend calls them.
+// Legend text of a phase.
 std::string legend_text(Phase::Kind kind);
-// What the markers of that kind mean in these runs: one name, or both of a run that lands and one that bounces.
+// Legend text of the events of a kind in these runs. It has two names if Zeno points have different names in these
+// runs.
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind);
 
-// Colours for numbers: equal steps of the number look equally far apart, and brighter is more, to people with any colour
-// vision and in grey.
+// ---- colors for numbers ----
+// Equal steps of the number look equally far apart, and brighter is larger, for any color vision and in gray.
 
-// Of a share of the way from the least number to the greatest, clamped to [0, 1]. In OKLab (Ottosson 2020) the table is a
-// screw line: the lightness rises evenly from 0.25 to 0.92 while the hue turns evenly at chroma 0.125 from blue through
-// red to yellow,
-//     L = 0.25 + 0.67 s,   a = 0.125 sin(190 deg s),   b = -0.125 cos(190 deg s),
-// so that every step has the same length. To who lacks a kind of cone (simulated after Machado, Oliveira and Fernandes 2009)
-// the lightness rises in every step, too, and the shortest step is 0.50 (protan), 0.68 (deutan) and 0.41 (tritan) of the
-// longest.
+// The color of `share`, a fraction of the range from 0 to 1 (clamped). In OKLab (Ottosson 2020) the table is a helix.
+// Lightness increases uniformly from 0.25 to 0.92, while the hue turns uniformly at chroma 0.125 from blue through red
+// to yellow:
+//     L = 0.25 + 0.67 s,   a = 0.125 sin(190 deg s),   b = -0.125 cos(190 deg s).
+// Every step has the same length. For viewers who lack one kind of cone (simulated after Machado, Oliveira and
+// Fernandes 2009), lightness also increases in every step. The shortest step is then 0.50 (protan), 0.68 (deutan) and
+// 0.41 (tritan) of the longest.
 Color number_color(double share);
 
-// The table in so many steps.
+// `count` equally spaced colors of the table.
 std::vector<Color> number_colors(std::size_t count);
 
 // From OKLab to sRGB, clamped.

@@ -9,17 +9,17 @@ namespace achilles {
 
 namespace {
 
-// Along a part, and to its left.
+// Local coordinates of a part: along it, and to its left.
 struct Way {
     Point from, along;
     double length = 0.0;
-    // So far along, so far to the left.
+    // The point at these distances along the part and to its left.
     Point operator()(double forward, double left) const {
         return {from.x + forward * along.x - left * along.y, from.y + forward * along.y + left * along.x};
     }
 };
 
-// Nothing where the ends are one point, or none: there is no direction.
+// nullopt if the ends coincide or are not finite, because the part has no direction.
 std::optional<Way> way(const Point& from, const Point& to) {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
@@ -43,7 +43,7 @@ double fitting_across(double rest, double world) {
 
 int fitting_coils(const PartSize& size) {
     constexpr int least = 4, most = 16;
-    constexpr double apart = 0.85;  // of a coil's breadth
+    constexpr double apart = 0.85;  // distance of coils as a fraction of their width
     const double coils = std::round(size.rest / (apart * size.across));
     return std::isfinite(coils) ? static_cast<int>(std::clamp<double>(coils, least, most)) : least;
 }
@@ -67,8 +67,8 @@ std::vector<Point> damper_line(const Point& from, const Point& to, const PartSiz
     const auto at = way(from, to);
     if (!at) return {from, to};
     const double length = at->length, rest = size.rest > 0.0 && std::isfinite(size.rest) ? size.rest : length;
-    // The cup keeps its size while there is room for it. The piston is in its middle at rest, near the bottom where all is
-    // pressed together, near the mouth where it is drawn far out.
+    // The cup keeps its size while it fits. The piston is in the middle of the cup at rest, near its bottom under full
+    // compression, and near its mouth under large extension.
     const double bottom = 0.25 * std::min(length, rest), cup = std::min(0.4 * rest, 0.5 * length);
     const double piston = bottom + cup * (0.1 + 0.8 * length / (length + rest));
     const double wall = 0.5 * size.across, plate = 0.7 * wall;

@@ -65,7 +65,7 @@ Plane::Plane(const Model& model, const PlaneTexts& texts)
       x_(axis_of(model.description(), texts.first, view_.quantities()[0].factor)),
       y_(axis_of(model.description(), texts.second, view_.quantities()[1].factor)) {
     const Equations& equations = model.equations();
-    if (x_.text == y_.text) x_.coordinate.reset(), y_.coordinate.reset();  // a line is no plane
+    if (x_.text == y_.text) x_.coordinate.reset(), y_.coordinate.reset();  // two equal axes span a line only
     std::vector<std::uint32_t> of_axes;
     for (const PlaneAxis* axis : {&x_, &y_})
         if (is_of_states() && !axis->is_rate) of_axes.push_back(static_cast<std::uint32_t>(*axis->coordinate));
@@ -79,7 +79,7 @@ Plane::Plane(const Model& model, const PlaneTexts& texts)
         level_slots_ = slots_of(std::array{is_of_coordinates() ? equations.potential : equations.energy});
 }
 
-// Of the state, other than the axes.
+// Input slots of the state that expressions depend on, except those of the axes.
 std::vector<std::size_t> Plane::slots_of(std::span<const Expression> expressions) const {
     const Layout& layout = model_->layout();
     std::vector<std::size_t> slots;
@@ -110,7 +110,7 @@ std::vector<double> Plane::values_at(const State& state, const std::vector<std::
     return values;
 }
 
-// Over the plane; nothing if the plane does not tell it.
+// The gap as a function over the plane; nullopt if it does not depend on the axes.
 std::optional<PlaneFunction> Plane::gap(std::size_t contact, std::span<const double> parameters,
                                         const State& state) const {
     if (x_.gap == contact) return [factor = x_.factor](const Point& p) { return p.x / factor; };
@@ -151,7 +151,7 @@ std::vector<Plane::Level> Plane::levels(std::span<const double> parameters, cons
     auto energy = model_->evaluator(model_->energy(), parameters);
     const bool is_potential = is_of_coordinates();
     State here = state;
-    constexpr int columns = 80, rows = 60;  // while time passes, a frame makes them anew
+    constexpr int columns = 80, rows = 60;  // coarse, because it is recomputed in every frame of a playback
     const PlaneFunction value = [&](const Point& p) {
         x_.of(here) = p.x / x_.factor;
         y_.of(here) = p.y / y_.factor;
@@ -161,7 +161,7 @@ std::vector<Plane::Level> Plane::levels(std::span<const double> parameters, cons
     };
     const Field field(limits, value, columns, rows);
     const auto [low, high] = field.range();
-    constexpr double rounding = 1e-12;  // of what is the same everywhere
+    constexpr double rounding = 1e-12;  // relative rounding error of a constant function
     if (!(high - low > rounding * std::max(std::abs(low), std::abs(high)))) return {};
     Axis axis;
     constexpr int most = 12;
@@ -177,7 +177,7 @@ std::vector<Plane::Level> Plane::levels(std::span<const double> parameters, cons
 
 std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const PreparedView& view, const Panel& panel,
                                        double width, double height, double least) {
-    constexpr std::size_t most = 20000;  // looked at
+    constexpr std::size_t most = 20000;  // maximum number of impacts that are examined
     Values values(view, trajectory);
     Sampler sampler(trajectory);
     const auto point = [&](const Sample& sample) {
@@ -188,11 +188,11 @@ std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const Prepa
     std::set<std::array<long, 4>> taken;
     std::vector<ImpactArrow> arrows;
     std::size_t looked_at = 0;
-    double last = trajectory.run.options.start_time;  // when an impact was
+    double last = trajectory.run.options.start_time;  // time of the previous impact, s
     for (const Event& event : trajectory.events) {
         if (!event.is_impact()) continue;
         if (++looked_at > most) break;
-        constexpr double little = 0.1;  // of a flight
+        constexpr double little = 0.1;  // fraction of a flight
         const Point coming = point(sampler.at(event.t - little * (event.t - last)));
         last = event.t;
         Sample before = sampler.at(std::nextafter(event.t, -std::numeric_limits<double>::infinity()));
@@ -200,7 +200,7 @@ std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const Prepa
         const ImpactArrow arrow{point(before), point(sample_at(trajectory, event)), coming};
         const std::array in_plot{arrow.from.x * unit_x, arrow.from.y * unit_y, arrow.to.x * unit_x,
                                  arrow.to.y * unit_y};
-        // What is not finite is not as long as that either.
+        // Also rejects arrows that are not finite.
         if (!(std::hypot(in_plot[2] - in_plot[0], in_plot[3] - in_plot[1]) >= least)) continue;
         std::array<long, 4> cell{};
         std::transform(in_plot.begin(), in_plot.end(), cell.begin(), [&](double x) { return std::lround(x / least); });
@@ -215,7 +215,7 @@ namespace {
 
 using Pair = std::array<std::size_t, 2>;
 
-// Where two coordinates are looked at.
+// Two coordinates and the rectangle in which they are sampled.
 struct Part {
     Pair pair;
     Drawing box;
@@ -226,7 +226,7 @@ bool moves(const Model& model, std::size_t contact) {
     return depends_on(model.equations().gaps[contact], {&t, 1});
 }
 
-// Those whose gaps depend on no other coordinates than these, and not on time unless moving ones are asked for.
+// Contacts whose gaps depend on no other coordinates, and on time only if `also_moving`.
 std::vector<std::size_t> contacts_of(const Model& model, const Pair& pair, bool also_moving) {
     std::vector<std::uint32_t> others;
     for (std::size_t i = 0; i < model.layout().dof; ++i)
@@ -237,7 +237,7 @@ std::vector<std::size_t> contacts_of(const Model& model, const Pair& pair, bool 
     return found;
 }
 
-// The values of a view's first two quantities at a state of rest with these two coordinates.
+// Evaluates the first two quantities of a view at given values of two coordinates and zero rates.
 class Place {
  public:
     Place(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
@@ -265,7 +265,7 @@ class Place {
     Pair pair_;
 };
 
-// What of a coordinate the samples show, and half as much on either side; all around if it is an angle.
+// Range of a coordinate in the samples, extended by half on each side; a full turn if it is an angle.
 std::array<double, 2> reach(std::span<const Sample> samples, const CoordinateDescription& coordinate, Eigen::Index i) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const Sample& sample : samples) {
@@ -297,7 +297,8 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
     const auto first = reach(samples, coordinates[0], 0), second = reach(samples, coordinates[1], 1);
     part.box.x_low = first[0], part.box.x_high = first[1];
     part.box.y_low = second[0], part.box.y_high = second[1];
-    // A function of the coordinates alone, and of both: it says the same at other times and rates, another elsewhere.
+    // The quantities must depend on the coordinates only, and on both: equal values at other times and rates, different
+    // ones elsewhere.
     Place place(trajectory, view, part.pair);
     const Point here{trajectory.run.q[0], trajectory.run.q[1]};
     const Point at_rest = place(here), moving = place(here, 1.25, 0.75);
@@ -305,14 +306,15 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
     return is_place ? std::optional(part) : std::nullopt;
 }
 
-// The line h = 0 between two of its points, less the first, until its chords are straight in the picture.
+// Refines the line h = 0 between two of its points until its chords look straight in the picture. The first point is
+// not added.
 class Straightener {
  public:
     Straightener(PlaneFunction gap, Place& place, const Panel& panel)
         : gap_(std::move(gap)), place_(place), panel_(panel) {}
     void add(const Point& a, const Point& b, std::vector<Point>& line, int halvings = 0) {
         constexpr int most = 8;
-        constexpr double flat = 1e-4;  // of the picture: a tenth of a pixel
+        constexpr double flat = 1e-4;  // fraction of the picture: a tenth of a pixel
         const auto middle = zero_near(a, b);
         if (middle && halvings < most) {
             const Point p = in_picture(a), q = in_picture(*middle), r = in_picture(b);
@@ -332,14 +334,15 @@ class Straightener {
         return {(p.x - panel_.x.low) / (panel_.x.high - panel_.x.low),
                 (p.y - panel_.y.low) / (panel_.y.high - panel_.y.low)};
     }
-    // Straight aside from the middle, no farther than the ends are apart; nothing where it is not there.
+    // Zero of the gap perpendicular to the chord at its midpoint, at most a chord length away. nullopt if the secant
+    // method does not find one.
     std::optional<Point> zero_near(const Point& a, const Point& b) {
         const Point middle{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)}, aside{a.y - b.y, b.x - a.x};
         const auto at = [&](double s) { return Point{middle.x + s * aside.x, middle.y + s * aside.y}; };
         constexpr int rounds = 20;
         constexpr double near = 1e-6;
         double s = 0.0, before = 1e-2, h = gap_(at(s)), h_before = gap_(at(before));
-        for (int round = 0; round < rounds; ++round) {  // secants
+        for (int round = 0; round < rounds; ++round) {  // secant method
             const double step = -h * (s - before) / (h - h_before);
             if (!std::isfinite(step)) return h == 0.0 ? std::optional(at(s)) : std::nullopt;
             before = s, h_before = h;
@@ -381,7 +384,7 @@ std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample
             return gap.output(0);
         });
     }
-    // A crest that is narrower than a few cells would be cut off.
+    // A crest narrower than a few cells would be cut off.
     constexpr double cell = 2.5;  // pixels
     constexpr int least_columns = 160, least_rows = 120, most = 640;
     const int columns = std::clamp(static_cast<int>(size.width / cell), least_columns, most),

@@ -1,5 +1,5 @@
-// What a plane of two quantities shows besides the run in it: where each gap is zero and all are open, lines of equal
-// energy, impacts as arrows. All of it in the units that are shown.
+// Content of a plane of two quantities besides the run: zero lines of the gaps, the region where all gaps are open,
+// lines of equal energy, and arrows at impacts. All are in displayed units.
 #pragma once
 
 #include <optional>
@@ -13,56 +13,56 @@
 
 namespace achilles {
 
-// What an axis of a plane measures, as it is written.
+// The quantity on an axis of a plane.
 struct PlaneAxis {
     std::string text;
-    double factor = 1.0;                       // to the units that are shown
-    std::optional<Eigen::Index> coordinate{};  // that it is, or whose rate
+    double factor = 1.0;                       // to displayed units
+    std::optional<Eigen::Index> coordinate{};  // the coordinate that it is, or whose rate it is
     bool is_rate = false;
     std::optional<std::size_t> gap{};  // the contact whose gap it is
-    // Of an axis that is a coordinate or a rate.
+    // The component of the state on this axis, which must be a coordinate or a rate.
     double& of(State& state) const { return (is_rate ? state.v : state.q)[*coordinate]; }
 };
 
 using PlaneTexts = std::pair<std::string, std::string>;
 
-// The planes that any system has, the one that is shown first at first: two coordinates; a coordinate and its rate; a gap
-// and its rate.
+// The planes of any system, the default first: two coordinates; a coordinate and its rate; a gap and its rate.
 std::vector<PlaneTexts> planes_of(const SystemDescription& description);
 
-// Two quantities, compiled for a model, to which it refers.
+// A plane of two quantities, compiled for a model. Keeps a reference to the model.
 class Plane {
  public:
-    // Throws InputError for an expression that is none.
+    // Throws InputError for an invalid expression.
     Plane(const Model& model, const PlaneTexts& texts);
 
     const PreparedView& view() const { return view_; }
     const PlaneAxis& x() const { return x_; }
     const PlaneAxis& y() const { return y_; }
-    // Whether a point of it, with the other coordinates and rates, is a state.
+    // Whether a point of the plane, with the other coordinates and rates, is a state.
     bool is_of_states() const { return x_.coordinate && y_.coordinate; }
-    // Whether both are coordinates.
+    // Whether both axes are coordinates.
     bool is_of_coordinates() const { return is_of_states() && !x_.is_rate && !y_.is_rate; }
-    // Of a plane of states: where a state is.
+    // Position of a state in a plane of states.
     Point at(State state) const { return {x_.of(state) * x_.factor, y_.of(state) * y_.factor}; }
 
-    // A line h = 0, less where another gap is negative: segments, separated by NaN points.
+    // A line h = 0, without the parts where another gap is negative: segments, separated by NaN points.
     struct Surface {
         std::size_t contact = 0;
         std::vector<Point> points;
     };
     struct Surfaces {
         std::vector<Surface> lines;
-        std::vector<std::vector<Point>> open;  // convex parts, none over another: no gap is negative there
+        std::vector<std::vector<Point>> open;  // disjoint convex polygons where no gap is negative
     };
-    // Within the limits, of those gaps that depend on what the plane shows; the others are as in the state. Of axes that are no
-    // coordinates, a gap that is one of them.
+    // Surfaces within the limits, of the gaps that depend on the axes; other coordinates are those of `state`. If the
+    // axes are not coordinates, only a gap that is itself an axis has a surface.
     Surfaces surfaces(std::span<const double> parameters, const State& state, const Drawing& limits) const;
-    // All of a state that these depend on: while it is the same, so are they.
+    // The components of a state that the surfaces depend on. The surfaces are unchanged while these are.
     std::vector<double> surfaces_key(const State& state) const { return values_at(state, surface_slots_); }
 
-    // Where the energy has round values: in a plane of two coordinates the potential one, with a rate the total one, of the
-    // state in whose other coordinates and rates the plane lies. Nothing where the axes are no coordinates and rates.
+    // Lines of equal energy at round values: potential energy in a plane of two coordinates, total energy in a plane
+    // with a rate. The other coordinates and rates are those of `state`. Empty if the axes are not coordinates or
+    // rates.
     struct Level {
         std::string label;
         std::vector<Point> points;  // segments, separated by NaN points
@@ -78,30 +78,31 @@ class Plane {
     const Model* model_;
     PreparedView view_;
     PlaneAxis x_, y_;
-    std::vector<bool> is_shown_;  // of each contact: its gap depends on an axis
+    std::vector<bool> is_shown_;  // for each contact: whether its gap depends on an axis
     std::vector<std::size_t> surface_slots_, level_slots_;
 };
 
-// From the state before an impact to the one after it, and where the motion was a little earlier.
+// From the state before an impact to the state after it; `coming` is the position shortly before.
 struct ImpactArrow {
     Point from, to, coming;
 };
-// Of the impacts at which something jumps that the view shows, those that are seen in a plot so large (pixels) between the
-// limits of its panel: none shorter than `least`, none nearer than that to another at both its ends. Of a run with very many
-// impacts the first.
+// Arrows of the impacts at which a quantity of the view jumps, in a plot of width x height pixels between the limits of
+// its panel. No arrow is shorter than `least` pixels, nor closer than that to another at both ends. Only the first of
+// very many impacts are considered.
 std::vector<ImpactArrow> impact_arrows(const Trajectory& trajectory, const PreparedView& view, const Panel& panel,
                                        double width, double height, double least);
 
-// The line h = 0 of every gap as a view shows it, less where another gap is negative, in the units that are shown;
-// segments, separated by NaN points. The view's axes are two coordinates, of the gaps that depend on them alone, seen
-// between the limits of `panel`; or, in a system of two coordinates, any functions of them (a point of a mechanism), seen
-// where the run goes and half as far again. Empty for every other view. A gap that depends on time is drawn as it is at t:
-// of a whole run, where there is no such time, it is left out, since any line of it would be one that the path may cross.
+// The lines h = 0 of all gaps as a view shows them, without the parts where another gap is negative, in displayed
+// units: segments, separated by NaN points.
+// The axes of the view may be two coordinates. Then the gaps that depend on these only are drawn, between the limits of
+// `panel`. In a system of two coordinates they may be any functions of these (a point of a mechanism). Then the range
+// of the run is drawn, extended by half on each side. The result is empty for every other view. A gap that depends on
+// time is drawn at time t. Without t (a whole run) it is left out, because the path may cross any one of its lines.
 // `size`: of the plot area.
 std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
                             const Panel& panel, std::optional<double> t = {}, const Resolution& size = {400.0, 300.0});
 
-// Whether a gap of the model depends on time.
+// Whether any gap of the model depends on time.
 bool has_moving_gap(const Model& model);
 
 }  // namespace achilles

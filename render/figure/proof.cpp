@@ -16,12 +16,13 @@ namespace achilles {
 
 namespace {
 
-constexpr double least_seen = 1.0 / 150.0;  // of the panel's height, across: a narrower tube is behind its curve
+constexpr double least_seen = 1.0 / 150.0;  // fraction of the panel's height, perpendicular to the curve: a narrower
+                                            // tube is hidden by its curve
 
-// Whether the members are in contact at a time.
+// Whether the members of the enclosure are in contact at an instant.
 enum class Contact { no, yes, either };
 
-// A view's quantities over the boxes of a proof, x first, in the units that are shown.
+// Quantities of a view over the boxes of a proof, x first, in displayed units.
 class EnclosedValues {
  public:
     EnclosedValues(const Trajectory& run, const Proof& proof, const PreparedView& view)
@@ -63,13 +64,13 @@ class EnclosedValues {
         }
         evaluator_.clock() = Interval(state.t);
         evaluator_.input(layout_.contact()) = Interval(in_contact ? 1.0 : 0.0);
-        // A proof says nothing of these.
+        // A proof has no bounds on these.
         evaluator_.input(layout_.work()) = evaluator_.input(layout_.loss()) = Interval::everything();
         evaluator_.run();
         std::vector<Interval> values;
         for (std::size_t i = 0; i < view_.quantities().size(); ++i) {
             Interval value = evaluator_.output(i);
-            // No member goes through the surface; in contact its gap is 0 and the force presses.
+            // No member penetrates the surface; in contact the gap is 0 and the force is not negative.
             const std::string& text = view_.quantities()[i].text;
             if (in_contact && (text == gap_ || text == gap_ + "'")) value = Interval(0.0);
             if (in_contact && text == force_) value = Interval(std::max(value.lo(), 0.0), std::max(value.hi(), 0.0));
@@ -90,12 +91,13 @@ class EnclosedValues {
 
 bool is_within(const Axis& axis, double x) { return x >= axis.low && x <= axis.high; }
 
-// What is proved of the quantities at an instant, and what the run has just before and just after it, which differ at an event.
+// Proved bounds of the quantities at an instant, and the values of the run just before and just after it, which differ
+// at an event.
 struct Known {
     double t = 0.0;
     std::vector<Interval> proved;
     std::vector<double> before, after;
-    bool is_event = false;  // some members have had it by then, and others not yet
+    bool is_event = false;  // some members have had the event by then, others have not
 };
 
 std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const PreparedView& view) {
@@ -116,13 +118,13 @@ std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const Pre
         known.push_back({state.t, enclosed.at(state), at(std::nextafter(state.t, -HUGE_VAL)), at(state.t), is_event});
     };
     for (const EnclosedState& state : proof.enclosure.samples) add(state);
-    // A run that stopped early has no curve from there to the end.
+    // A run that stopped early has no curve after its end.
     const auto& end = proof.enclosure.end;
     if (end && run.end_time >= end->t) add(*end);
     return known;
 }
 
-// The points of one quantity in a panel over time, both kinds of phases.
+// Points of one quantity in a panel over time, in both kinds of phases.
 std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
     std::vector<Point> course;
     for (const std::size_t curve : {2 * quantity, 2 * quantity + 1})
@@ -132,8 +134,9 @@ std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
     return course;
 }
 
-// At the instants what is proved there; between them, where a panel shows more of the curve, as far from it as it is at both, or
-// beside an event at the other one; never below the least that it can be.
+// Slices of the tube of one quantity. At the instants they have the proved bounds. Between two instants the distance of
+// the bounds from the curve is interpolated; beside an event it is that at the other end. These interpolated bounds are
+// at least `least`.
 std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t quantity,
                                    const std::vector<Point>& course, double least) {
     const std::size_t y = quantity + 1;
@@ -162,7 +165,7 @@ std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t 
     return slices;
 }
 
-// Gaps and forces of contact are not negative.
+// Lower bound of a quantity: gaps and contact forces are not negative.
 double least_of(const PreparedView& view, const Trajectory& run, std::size_t quantity) {
     const std::string& text = view.quantities()[quantity].text;
     const SystemDescription& description = run.model->description();
@@ -171,14 +174,14 @@ double least_of(const PreparedView& view, const Trajectory& run, std::size_t qua
     return is_positive ? 0.0 : -HUGE_VAL;
 }
 
-// Where along an axis a value is, 0 to 1.
+// Position of a value along an axis, 0 to 1.
 double share_of(const Axis& axis, double value) {
     if (!axis.logarithmic) return (value - axis.low) / (axis.high - axis.low);
     return std::log(std::max(value, axis.low) / axis.low) / std::log(axis.high / axis.low);
 }
 
-// How thick it is across its way, as a share of the panel's height, where that is about half its width: a jump is as thick as
-// it lasts.
+// Whether a tube is wide enough to be visible somewhere. Its thickness is measured perpendicular to its direction, as a
+// fraction of the panel's height, for a panel about twice as wide as high. The thickness of a jump is its duration.
 bool is_seen(const Tube& tube, const Panel& panel) {
     constexpr double wide = 2.0;
     const auto middle = [&](const Tube::Slice& at) {
@@ -194,7 +197,8 @@ bool is_seen(const Tube& tube, const Panel& panel) {
     return false;
 }
 
-// Room for tubes beyond the limits. At an event the whole jump is enclosed, which is no reason.
+// Widens the limits for tubes that exceed them, up to a maximum. Slices at events are ignored, because they enclose the
+// whole jump.
 void give_room(Panel& panel, const std::vector<Known>& known) {
     constexpr double most = 0.5, margin = 0.02;
     const auto is_event = [&](double t) {
@@ -224,7 +228,7 @@ Markers undecided_mark(const Theme& theme, const Enclosure& proof) {
 
 bool is_undecided(const Enclosure& proof) { return proof.outcome.kind == Enclosure::Outcome::Kind::undecided; }
 
-// As those of the curves, the same time once.
+// The sample times of the curves, each once, at most 2000 of them.
 std::vector<double> instants_of(const Trajectory& run) {
     constexpr std::size_t most = 2000;
     std::vector<double> times;

@@ -29,7 +29,8 @@ int columns_for(const std::vector<Panel>& panels) {
     return panels.size() <= 6 ? 2 : 3;
 }
 
-// Smaller than on a screen. Impacts crowd: rims would leave odd shapes of those that others cover.
+// Markers smaller than on a screen. Impact markers have no edges, because edges of covered markers would leave odd
+// shapes.
 Markers for_print(Markers markers) {
     const bool is_impact = markers.shape == Markers::Shape::square;
     markers.size = is_impact ? 5.5 : 9.0;
@@ -38,7 +39,7 @@ Markers for_print(Markers markers) {
     return markers;
 }
 
-// Whether a phase or an event of that kind occurs in any of the runs.
+// Whether a phase or an event of this kind occurs in any of the runs.
 template <class Thing>
 bool any_of(std::span<const Trajectory* const> runs, std::vector<Thing> Trajectory::*things,
             typename Thing::Kind kind) {
@@ -48,7 +49,7 @@ bool any_of(std::span<const Trajectory* const> runs, std::vector<Thing> Trajecto
     });
 }
 
-// Of several contacts: what a phase says of them. Which ones are held is told under what is plotted over time.
+// Legend text about the contacts in a phase, for systems with several contacts. Time bars show which of them are held.
 std::string about_contacts(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
                            Phase::Kind kind) {
     if (std::none_of(runs.begin(), runs.end(), [](const Trajectory* run) { return run->model->contacts() > 1; }))
@@ -59,11 +60,11 @@ std::string about_contacts(std::span<const Trajectory* const> runs, const std::v
     return has_bars ? ": the bars name the contacts held" : ": some are held";
 }
 
-// Markers and dashes mean the same in every panel, so one legend tells them all; what does not occur is not in it.
+// One legend for all panels, because markers and dashes mean the same in each. It has only what occurs in the runs.
 std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
                          const Theme& theme) {
     std::vector<Key> keys;
-    // Panels of several curves have hues of their own: there only the dash tells the phase.
+    // Panels with several curves have their own hues; only the dash shows the phase there.
     const bool hues = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.legend; });
     for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
         if (!any_of(runs, &Trajectory::phases, kind)) continue;
@@ -100,8 +101,8 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
     return keys;
 }
 
-// How well the panels of a figure stand: the sum of the logarithms of their areas, so that twice the area of one makes
-// up for half of another's, and of the shares of their places that they fill.
+// Quality of the arrangement of a figure's panels: the sum of the logarithms of their areas and of the fractions of
+// their cells that they fill. With logarithms, doubling one area balances halving another.
 double ease(Figure figure, double shape) {
     constexpr float height = 800.0F;
     const auto measure = [](const std::string& label, float size) {
@@ -123,8 +124,8 @@ Figure with_path(Figure figure, std::size_t from, std::size_t to, int rows) {
     return figure;
 }
 
-// A lone path that is true to shape stands beside several rows of the others, which fill the places that are left, if
-// the panels have more room so.
+// Places a single path with equal axes beside several rows of other panels, which fill the remaining cells, if this
+// gives the panels more space.
 void set_path(Figure& figure, const PublicationStyle& style) {
     constexpr double worth_it = 0.1;
     const auto is_path = [](const Panel& panel) { return panel.equal_axes; };
@@ -133,7 +134,7 @@ void set_path(Figure& figure, const PublicationStyle& style) {
     if (n < 3 || columns < 2 || std::count_if(panels.begin(), panels.end(), is_path) != 1) return;
     const auto path = static_cast<std::size_t>(std::find_if(panels.begin(), panels.end(), is_path) - panels.begin());
     const std::size_t place = style.ordered ? path : 0;
-    Figure bare = figure;  // to be copied for every arrangement: without what has no say
+    Figure bare = figure;  // copied for each arrangement, so without content that has no effect on the layout
     for (Panel& panel : bare.panels)
         panel.boundary = {}, panel.beyond = {}, panel.curves.clear(), panel.markers.clear();
     double best = ease(bare, style.shape) + worth_it;
@@ -165,7 +166,8 @@ void share_axes(Figure& figure) {
         return false;
     };
     std::map<std::size_t, bool> shared;  // by row
-    // A row with room for one panel's labels has it for all: then they stay, and the grid looks even.
+    // If one panel of a row needs space for its labels, the whole row has it. Then all labels are kept for a regular
+    // grid.
     for (std::size_t i = 0; i < cells.size(); ++i)
         if (cells[i].rows == 1)
             shared[cells[i].row] = shared.try_emplace(cells[i].row, true).first->second && shares(i);
@@ -227,20 +229,20 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
     return figure;
 }
 
-// ---- a periodic run and its branch ----
+// ---- a periodic orbit and its branch ----
 
 namespace {
 
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<double> unstable_dash{5.0, 3.0};
 
-// What happens along a branch, each with its sign.
+// Special points of one kind along a branch, and their marker.
 struct Happening {
     const std::vector<OrbitPoint>* points;
     Markers markers;
 };
 
-// Hollow, so that none is taken for an event of a run.
+// Hollow markers, to be distinct from events of a run.
 Markers marked(const Theme& theme, const char* label, Markers::Shape shape, double size) {
     Markers markers;
     markers.label = label;
@@ -261,7 +263,8 @@ std::vector<Happening> happenings(const Branch& branch, const Theme& theme) {
 
 using Value = std::function<double(const OrbitPoint&)>;
 
-// One quantity along the branch: two curves, one of what is stable, one of what is not, that meet where it changes.
+// One quantity along the branch as two curves, one for stable and one for unstable orbits. They meet where stability
+// changes.
 void trace(Panel& panel, const Branch& branch, const Color& color, const Value& value) {
     Curve curves[2];
     curves[0].stroke = {color, 1.6, {}};
@@ -290,7 +293,7 @@ void add_happenings(Panel& panel, const Branch& branch, const Theme& theme, cons
     }
 }
 
-// From the least to the greatest of what is drawn.
+// Fits the y axis to the curves.
 void fit(Panel& panel, const std::array<double, 2>& x) {
     double low = nan, high = nan;
     for (const Curve& curve : panel.curves)
@@ -359,7 +362,7 @@ class BranchPanels {
         return of(with_unit(typeset(first.name) + where, unit.text),
                   [factor = unit.factor](const OrbitPoint& point) { return factor * point.state.q[0]; });
     }
-    // Sizes, of all but the flow's and the zeros.
+    // Magnitudes of the multipliers, without the one along the flow and those that are zero.
     BranchPanel of_multipliers() const {
         Panel panel = begun("|\U0001D707|");
         panel.title = "multipliers";

@@ -1,4 +1,4 @@
-// A figure for print: the views of a run as lettered panels, with one legend above them all and every axis labelled
+// A figure for print: the views of a run as lettered panels, with one legend above all panels and shared axes labeled
 // once.
 #pragma once
 
@@ -9,49 +9,51 @@
 namespace achilles {
 
 struct PublicationStyle {
-    int columns = 0;           // 0: one for up to three views over the same axis, two up to six, else three
+    int columns = 0;           // 0: one for up to three views over the same axis, two for up to six, else three
     bool transparent = false;  // no background
-    bool ordered = false;      // the panels stay in their order, even where a path would stand better as the first
-    double shape = 1.5;        // of the picture: its width over its height
-    bool dark = false;         // for a screen in a dark room, not for paper
-    Resolution size{};         // of the picture, pixels: how fine its curves are
+    bool ordered = false;      // keep the order of the panels, even if a path would fit better as the first
+    double shape = 1.5;        // width / height of the picture
+    bool dark = false;         // for a dark screen instead of paper
+    Resolution size{};         // of the picture, pixels: determines how fine its curves are
 };
 
-// Throws InputError for a view that cannot be evaluated. With a proof of the run where there is one; pale after the horizon of
-// the run (s), where that comes before its end.
+// Composes the figure, with a proof of the run if one is given. Pale after the horizon of the run (s), if that comes
+// before its end. Throws InputError if a view cannot be evaluated.
 Figure publication(const Trajectory& trajectory, std::span<const ViewDescription> views, const PublicationStyle& style,
                    const Proof* proof = nullptr, std::optional<double> horizon = {});
 
-// The same of panels that are composed already, in the colours of the style.
+// The same for panels that are already composed in the colors of the style.
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);
-// What a composed figure looks like in print: no grid, smaller markers, and one legend above all panels that tells what
-// occurs in the runs they show.
+// Converts a composed figure to print style: no grid, smaller markers, and one legend above all panels with the kinds
+// of phases and events that occur in these runs.
 void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme = light_theme());
 
-// "(a)", or "(a) height" where the panel has a name.
+// "(a)", or "(a) height" if the panel has a name.
 std::string lettered(std::size_t i, const std::string& name);
 
-// Takes the labels off the x axes of every row whose panels all stand on others with the same axes. A panel beside
-// several rows keeps its own.
+// Removes the x labels of every row whose panels all stand above others with the same axes. A panel beside several rows
+// keeps its labels.
 void share_axes(Figure& figure);
 
-// Text and strokes of a figure are made for a page about as wide as this many pixels; --scale 1 is that size.
+// Layout scale of a figure for print at --scale 1.
 constexpr double publication_scale = 1.4;
 
-// Figures of a periodic run: one period as the system's views show it, and its branch.
+// ---- figures of a periodic orbit: one period in the system's views, and its branch ----
 
-// One quantity along a branch, with what each of its points is drawn at.
+// One quantity along a branch, and its value at each point of the branch.
 struct BranchPanel {
     Panel panel;
-    std::vector<double> values;  // of the branch's points: not a number where there is none
+    std::vector<double> values;  // NaN at points without a value
 };
-// Over the branch's parameter where the run is on its section, its period where that is free, what is left of a change, and the
-// margin a_inf; solid where it is stable, dashed where it is not, with what happens along it marked.
+// Panels over the parameter of the branch: the state on the section, the period if it is free, the magnitudes of the
+// multipliers, and the margin a_inf. Curves are solid where the orbit is stable, dashed where it is not. Special points
+// along the branch are marked.
 std::vector<BranchPanel> branch_panels(const Orbit& orbit, const Branch& branch, const Theme& theme);
-// What strokes and signs of these mean.
+// Legend of these panels.
 std::vector<Key> branch_keys(const Branch& branch, const Theme& theme);
 
-// These, then the first of the views over one period of the orbit. Throws InputError for a view that cannot be evaluated.
+// The branch panels, then the first of the views over one period of the orbit. Throws InputError if a view cannot be
+// evaluated.
 Figure compose_branch(const Orbit& orbit, const Branch& branch, std::span<const ViewDescription> views,
                       const PublicationStyle& style);
 

@@ -1,4 +1,4 @@
-// The LaTeX that the library writes, as rows of pieces.
+// Parses the LaTeX that the library writes into rows of pieces.
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -37,7 +37,7 @@ class Reader {
         at_ += word.size();
         return true;
     }
-    // What stands in braces, or the one thing that follows.
+    // The content of braces, or the single item that follows.
     Formula argument() {
         while (at_ < text_.size() && text_[at_] == ' ') ++at_;
         Formula result;
@@ -57,7 +57,7 @@ class Reader {
         return result;
     }
 
-    // What is nested deeper nobody reads.
+    // Skips an argument nested too deeply to be readable.
     void skip() {
         int open = 0;
         do {
@@ -68,7 +68,7 @@ class Reader {
         at_ = std::min(at_, text_.size());
     }
 
-    // The longest name that stands here; its end is no letter of a longer word.
+    // Reads the longest name at this position. A name must not end inside a longer word.
     bool name(Formula& row) {
         std::size_t best = names_.size(), length = 0;
         for (std::size_t i = 0; i < names_.size(); ++i) {
@@ -101,7 +101,7 @@ class Reader {
         return std::string(text_.substr(begin, at_ - begin));
     }
 
-    // Behind a backslash.
+    // Reads a command after its backslash.
     void command(Formula& row) {
         if (at_ < text_.size() && !is_letter(text_[at_])) {
             const char c = text_[at_++];
@@ -124,13 +124,13 @@ class Reader {
             if (!inner.is_empty()) inner.pieces.back().label += what == "dot" ? "\u0307" : "\u0308";
             append(row, std::move(inner));
         } else if (what == "left" || what == "right") {
-            // The bracket itself follows: it is as high as what it encloses, anyway.
+            // The bracket itself follows. Its height is adjusted to its content anyway.
         } else if (what == "text" || what == "mathrm" || what == "mathit") {
             take("{");
             const std::size_t end = std::min(text_.find('}', at_), text_.size());
             std::string label(text_.substr(at_, end - at_));
             at_ = std::min(end + 1, text_.size());
-            // A differential is one word with what it is of.
+            // A differential forms one word with its variable.
             if (label == "d" && at_ < text_.size() && is_letter(text_[at_])) label += typeset(text_.substr(at_++, 1));
             row.pieces.push_back(plain(Kind::letters, label));
         } else if (what == "cdot") {
@@ -150,7 +150,7 @@ class Reader {
         for (FormulaPiece& piece : other.pieces) row.pieces.push_back(std::move(piece));
     }
 
-    // _ and ^ belong to what stands before them.
+    // Attaches a subscript or superscript to the preceding piece.
     void script(Formula& row, bool is_power) {
         Formula inside = argument();
         if (row.is_empty()) row.pieces.emplace_back();
@@ -213,7 +213,7 @@ class Reader {
     static constexpr int deepest = 30;
 };
 
-// Words as LaTeX has them: \_ is _, \textbackslash{} a backslash.
+// Unescapes LaTeX text: \_ is _, \textbackslash{} is a backslash.
 std::string unescaped(std::string_view words) {
     std::string text;
     for (std::size_t i = 0; i < words.size(); ++i) {

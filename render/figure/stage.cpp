@@ -11,10 +11,10 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t most_poses = 40;
-constexpr double apart = 0.035;  // of the world: poses that are nearer than this would be a blot
+constexpr double apart = 0.035;  // fraction of the world: closer poses would merge into a blot
 constexpr std::uint8_t pose = 55;
 
-// What moves of a drawing, so pale. Its texts would be unreadable.
+// The moving shapes of a drawing with this opacity. Texts are left out, because they would be unreadable.
 std::vector<Shape> paled(std::vector<Shape> shapes, std::uint8_t alpha) {
     std::erase_if(shapes, [](const Shape& shape) { return !shape.moves || shape.kind == Shape::Kind::text; });
     for (Shape& shape : shapes) shape.stroke.color.a = shape.fill_color.a = alpha;
@@ -26,9 +26,9 @@ void put_under_what_moves(std::vector<Shape>& shapes, const std::vector<Shape>& 
     shapes.insert(first, more.begin(), more.end());
 }
 
-// A disc that is as large as the picture would be a blot: the nearer one comes, the more of it is its rim.
+// Makes a disc as large as the picture transparent: the closer the view, the more of the disc is only its rim.
 void thin_out_large(std::vector<Shape>& shapes, const Drawing& seen) {
-    constexpr double large = 0.4, huge = 1.2;  // radius, of the picture's smaller side
+    constexpr double large = 0.4, huge = 1.2;  // radius as a fraction of the picture's smaller side
     constexpr double least = 26.0, rim = 2.0;
     const double size = std::min(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
     for (Shape& shape : shapes) {
@@ -53,8 +53,9 @@ Stage::Stage(const Mechanism& mechanism, const Trajectory& trajectory, std::span
     find_poses();
 }
 
-// The start, and each event at which some point of the mechanism is far enough from where it was in every pose that is kept:
-// the crowd of impacts before a Zeno point gives one or two. Of very many impacts some are looked at.
+// Selects the strobe poses: the start, and each event at which some point of the mechanism is far enough from its
+// position in every pose kept so far. The impacts that accumulate before a Zeno point give one or two poses. Of very
+// many impacts only some are examined.
 void Stage::find_poses() {
     auto grips = mechanism_.grips(trajectory_.run.parameters);
     std::vector<std::vector<Point>> kept;
@@ -86,7 +87,8 @@ std::vector<double> Stage::poses() const {
     return times;
 }
 
-// As the run's picture needs it; where little of the world is seen, around the present as that needs it.
+// The trail at the resolution of the run's picture. If a small part of the world is visible, the trail around the
+// present has the resolution of that part.
 std::vector<WayPoint> Stage::way(const Sample& now, const Drawing& seen) {
     auto grip = mechanism_.grip(trajectory_.run.parameters);
     if (trail_.way.empty() || !grip) return {};
@@ -119,8 +121,8 @@ PhaseLabel phase_label(const Sample& now) {
     return {now.phase, legend_text(now.phase)};
 }
 
-// The time around the present during which a part of the world is seen that is much smaller than what the run needs; of very
-// many steps not all.
+// Time interval around the present in which the visible part is much smaller than the world that the run needs, limited
+// to a number of steps.
 std::optional<std::pair<double, double>> Stage::close_part(const Sample& now, const Drawing& seen,
                                                            const std::optional<Body>& body) const {
     constexpr double close = 0.3;
@@ -139,7 +141,8 @@ std::optional<std::pair<double, double>> Stage::close_part(const Sample& now, co
     return std::pair{low, high};
 }
 
-// As near as within a disc its lowest point is followed: its centre is far outside.
+// Offset of the trail if the view is smaller than the radius of the body's disc: from the center, which is far outside,
+// to the lowest point. Otherwise zero.
 Point Stage::rest_below(const Sample& now, const Drawing& seen, Grip& grip, const std::optional<Body>& body) const {
     Point aside;
     const double size = std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
@@ -171,7 +174,7 @@ Drawing Stage::draw(const Sample& now, const Drawing& seen, const Theme& theme, 
     return drawing;
 }
 
-// ---- a system in space from two sides ----
+// ---- a system in space in two views ----
 
 namespace {
 
@@ -179,7 +182,7 @@ Point projected(const State& state, const std::array<std::size_t, 2>& pair) {
     return {state.q[static_cast<Eigen::Index>(pair[0])], state.q[static_cast<Eigen::Index>(pair[1])]};
 }
 
-// The unit vector out of what is solid, in the plane; none where the gap does not change there.
+// Unit vector out of the solid, in the plane; zero if the gap does not change in the plane.
 Point away(const PlaneFunction& gap, const Point& p, double step) {
     const double x = gap({p.x + step, p.y}) - gap({p.x - step, p.y}),
                  y = gap({p.x, p.y + step}) - gap({p.x, p.y - step});
@@ -268,7 +271,7 @@ Drawing Sides::draw(std::size_t side, const Sample& now, const Drawing& seen, co
     disc.stroke.width = 0.0;
     disc.fill_color = theme.body;
     if (!with_way) return drawing;
-    // Every frame asks for it: of a run of very many steps the samples will do.
+    // This is computed in every frame. For a run with very many steps, its samples are used instead.
     constexpr std::size_t most_steps = 2000;
     std::vector<WayPoint> way;
     if (trajectory_.pieces.size() <= most_steps)

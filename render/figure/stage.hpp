@@ -1,5 +1,5 @@
-// One run of a mechanism as it is looked at: what is solid, the way of the body, the poses at events, the camera. All that
-// a run decides is found out once.
+// The scene of one run of a mechanism: solid ground, trail of the body, poses at events, camera. What depends on the
+// run only is computed once.
 #pragma once
 
 #include <array>
@@ -18,12 +18,12 @@ namespace achilles {
 
 // What is drawn besides the mechanism.
 struct Layers {
-    bool way = true;      // of the body: passed, and faintly to come
-    bool strobe = false;  // the poses at the events that have passed, as far as they can be told apart
+    bool way = true;      // trail of the body: past, and faintly future
+    bool strobe = false;  // poses at past events, as far as they can be distinguished
 };
 
-// The phase at an instant as a line beside the picture says it, and whose color it has. Between a cut and its Zeno point the
-// hybrid phase goes on, but the motion is the restarted one in contact, and the picture shows that.
+// Color and text of the phase at an instant, for a line beside the picture. Between a cut and its Zeno point the hybrid
+// phase continues, but the motion is the restarted one in contact, and the picture shows that.
 struct PhaseLabel {
     Phase::Kind color = Phase::Kind::hybrid;
     std::string text;
@@ -32,21 +32,21 @@ PhaseLabel phase_label(const Sample& now);
 
 class Stage {
  public:
-    // Refers to what it is given.
+    // Keeps references to its arguments.
     Stage(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
 
-    // The world that the run needs (Mechanism::limits).
+    // The part of the world that the run needs (Mechanism::limits).
     const Drawing& limits() const { return limits_; }
     const Trail& trail() const { return trail_; }
     const Camera& camera() const { return camera_; }
     const Touch& touch() const { return touch_; }
-    const std::string& unit() const { return unit_; }  // of lengths
+    const std::string& unit() const { return unit_; }  // of length
 
-    // The mechanism at an instant of the run, and what else is asked for, in the part of the world that is seen.
+    // The mechanism at an instant of the run with the requested layers, in the visible part of the world.
     Drawing draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers);
-    // The instants of the strobe's poses.
+    // Times of the strobe poses, s.
     std::vector<double> poses() const;
 
  private:
@@ -67,26 +67,26 @@ class Stage {
     std::string unit_;
 };
 
-// A system in space from two sides: of coordinates x, y and z the planes x-z and y-z, cut where the point is.
+// A system with coordinates x, y and z in two views: the planes x-z and y-z, cut at the point.
 //
-// A [[drawing]] has two coordinates; what it shows of a system in space is a picture that its file made up. Here every
-// system of three Cartesian coordinates is seen as it is: what is solid is the side h < 0 of its gaps, in the plane through
-// the point; the way is seen from there whole.
+// A [[drawing]] has two coordinates; for a system in space it is a picture that its file made up. These views show any
+// system of three Cartesian coordinates as it is. The solid is the side h < 0 of its gaps in the plane through the
+// point; the trail is projected as a whole.
 
 class Sides {
  public:
-    // Refers to what it is given.
+    // Keeps references to its arguments.
     Sides(const Trajectory& trajectory, std::span<const Sample> samples);
-    // Whether the system has these coordinates, and no others.
+    // Whether the coordinates of the system are x, y and z.
     bool exist() const { return exist_; }
     struct Side {
-        std::string name;  // "x", "z": what is across, what is up
+        std::string name;  // names of the horizontal and the vertical axis, such as "x", "z"
         std::array<std::size_t, 2> pair;
     };
     static std::array<Side, 2> all();
-    // What the whole run needs of both, of the same size.
+    // Limits that the whole run needs in both views, of equal size.
     std::array<Drawing, 2> limits() const;
-    // One of them in the part of its plane that is seen.
+    // One of the views, in the visible part of its plane.
     Drawing draw(std::size_t side, const Sample& now, const Drawing& seen, const Theme& theme, bool with_way) const;
 
  private:

@@ -87,14 +87,14 @@ std::vector<std::size_t> columns_with_values(const SweepData& data, const SweepL
 
 namespace {
 
-// Of a grid over one axis: numbers of one unit share a panel.
+// Panels of a grid over one axis. Numbers with the same unit share a panel.
 std::vector<Panel> curve_panels(const SweepData& data, const std::vector<std::size_t>& columns, const Theme& theme,
                                 const SweepLook& look) {
     std::vector<std::vector<SweepColumn>> groups;
     for (const std::size_t column : columns) {
         const SweepColumn one(data, column);
         const auto fits = [&](const std::vector<SweepColumn>& group) {
-            constexpr std::size_t most = 8;  // hues
+            constexpr std::size_t most = 8;  // number of hues
             return one.is_number() && group.front().is_number() && group.front().unit().text == one.unit().text &&
                    !one.unit().text.empty() && group.size() < most;
         };
@@ -127,7 +127,7 @@ std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const Sw
     return panels;
 }
 
-// What two panels say stands once above all.
+// Moves legend entries that two panels share into one legend above all panels.
 void share_keys(Figure& figure) {
     const auto is_said_twice = [&](const std::string& label) {
         const auto says = [&](const Panel& panel) {
@@ -160,10 +160,10 @@ void share_keys(Figure& figure) {
     }
 }
 
-// Of a picture 1200 pixels wide, as wide as a page, these are so many.
+// In layout points: 300 and 110 pixels of a picture 1200 pixels wide, the width of a page.
 constexpr double least_map_width = 300.0 / publication_scale, least_panel_height = 110.0 / publication_scale;
 
-// The width and the height that every panel has at least.
+// Minimum width and height over all panels.
 std::array<double, 2> least_sides(const Figure& figure, double width, double height, double scale) {
     const auto measure = [](const std::string& label, float size) {
         return 0.5F * size * static_cast<float>(letters(label).size());
@@ -180,7 +180,7 @@ void set_columns(Figure& figure, int columns) {
     share_axes(figure);
 }
 
-// Below one another where they would be narrow side by side; in a height that is given, only if they are larger so.
+// Places maps below one another if they would be narrow side by side; with a given height, only if they become larger.
 void fit_columns(Figure& figure, const SweepLook& look) {
     if (figure.columns < 2 || look.width <= 0.0) return;
     const bool is_free = look.height <= 0.0;
@@ -199,7 +199,7 @@ int readable_height(const Figure& figure, int width, int height, double scale) {
     constexpr int most = 16384;
     std::size_t rows = 1;
     for (const Cell& cell : cells_of(figure)) rows = std::max(rows, cell.row + cell.rows);
-    // What is too low for anything tells only roughly what it lacks.
+    // For a panel without any height the deficit is only approximate, hence the iteration.
     for (int i = 0; i < 4 && height < most; ++i) {
         const double lack = least_panel_height * scale - least_sides(figure, width, height, scale)[1];
         if (lack < 0.5) break;

@@ -37,7 +37,7 @@ std::string SweepColumn::label() const { return kind_ == Kind::number ? with_uni
 
 namespace {
 
-// What is a word of the field's is one in a label, too: "Zeno time 2" for zeno_time(2).
+// Text of a quantity in a label: "Zeno time 2" for zeno_time(2).
 std::string words_of(const std::string& print) {
     const std::size_t bracket = std::min(print.find('('), print.size());
     const std::string word = print.substr(0, bracket), k = print.substr(bracket);
@@ -78,7 +78,7 @@ std::array<double, 2> SweepColumn::range() const {
 std::optional<std::uint64_t> SweepColumn::code(std::size_t row) const {
     const RunEnd end = data_->rows.ends[row];
     if (kind_ == Kind::outcome) return end.code();
-    if (end == RunEnd()) return std::nullopt;  // there is no run
+    if (end == RunEnd()) return std::nullopt;  // the row has no run
     return kind_ == Kind::held ? std::bit_cast<std::uint32_t>(data_->rows.held[row]) : data_->rows.signatures[row];
 }
 
@@ -101,10 +101,10 @@ std::vector<std::pair<std::uint64_t, std::string>> SweepColumn::classes() const 
     for (std::size_t row = 0; row < data_->count(); ++row)
         if (const auto one = code(row)) ++counts[*one], ++all;
     std::vector<std::pair<std::uint64_t, std::size_t>> sorted(counts.begin(), counts.end());
-    if (kind_ == Kind::held)  // those of few contacts first
+    if (kind_ == Kind::held)  // sets of few contacts first
         std::stable_sort(sorted.begin(), sorted.end(),
                          [](const auto& a, const auto& b) { return std::popcount(a.first) < std::popcount(b.first); });
-    else  // the end that was asked for before all others
+    else  // reaching the end time comes before all other outcomes
         std::stable_sort(sorted.begin(), sorted.end(), [&](const auto& a, const auto& b) {
             const auto is_whole = [&](std::uint64_t one) {
                 return kind_ == Kind::outcome && one == RunEnd(Outcome::Kind::end_time).code();

@@ -1,4 +1,4 @@
-// The panels that figures of a sweep are made of.
+// The panels of which figures of a sweep consist.
 #pragma once
 
 #include <span>
@@ -10,35 +10,35 @@
 
 namespace achilles {
 
-// What a legend says.
+// Texts of the legend.
 inline constexpr const char *sequence_changes = "the sequence of events changes", *no_value = "no value";
-// In place of lines at each change, where there are so many that they would hide what they divide.
+// Replace lines at each change, if there are so many changes that the lines would hide the data.
 inline constexpr const char *broken_at_changes = "broken where the sequence of events changes",
                             *changes_too_often = "the sequence of events changes too often to draw";
 
-// One column of the data, whatever it holds.
+// One column of the data, of any kind.
 class SweepColumn {
  public:
     SweepColumn(const SweepData& data, std::size_t column);
 
     bool is_number() const { return number_.has_value(); }
-    // Of whole numbers, between which there is nothing.
+    // Whether the values are integers, between which nothing is defined.
     bool is_count() const;
-    // As it is read in a label, and with its unit.
+    // Name in a label, without and with the unit.
     std::string name() const;
     std::string label() const;
     const ShownUnit& unit() const { return unit_; }
-    // In that unit.
+    // Value in the displayed unit.
     double number(std::size_t row) const { return unit_.factor * data_->number(row, *number_); }
-    // All that there are, in no order.
+    // All values, in no particular order.
     std::vector<double> numbers() const;
-    // The least and the greatest number; [nan, nan] without any.
+    // Minimum and maximum; [nan, nan] without values.
     std::array<double, 2> range() const;
-    // Of a class, what is the same for rows of one; nothing: it has no value.
+    // Class of a row as a number, equal for rows of the same class; nullopt without a value.
     std::optional<std::uint64_t> code(std::size_t row) const;
     bool has_value(std::size_t row) const;
-    // The classes that occur, most important first, with their names: contacts as in the file, outcomes and sequences by how
-    // many rows they have.
+    // The classes that occur, most important first, with their names: sets of held contacts by size and then in the
+    // order of the file, outcomes and sequences by their number of rows.
     std::vector<std::pair<std::uint64_t, std::string>> classes() const;
 
  private:
@@ -52,7 +52,7 @@ class SweepColumn {
     std::optional<std::size_t> number_;
 };
 
-// The classes of a column, each with its colour: those beyond the palette share one.
+// The classes of a column with their colors. Classes beyond the palette share one color.
 struct SweepClasses {
     SweepClasses(const SweepColumn& column, const Theme& theme);
     struct One {
@@ -63,12 +63,12 @@ struct SweepClasses {
     std::vector<One> all;
     Color color(std::uint64_t code) const;
     std::size_t place(std::uint64_t code) const;
-    // Keys of a legend: markers without points.
+    // Entries of the legend: markers without points.
     std::vector<Markers> keys() const;
-    std::size_t named = 0;  // the others share a key
+    std::size_t named = 0;  // number of classes with an entry of their own; the others share one
 };
 
-// The colours of a column's numbers, and the bar that tells what they mean; without numbers there is no bar.
+// Colors of a column's numbers, and the color scale. Without numbers there is no scale.
 struct NumberColors {
     NumberColors(const SweepColumn& column, const SweepLook& look);
     Color operator()(double value) const;
@@ -76,12 +76,12 @@ struct NumberColors {
     ColorBar bar;
 };
 
-// The colours of a column, whatever it holds.
+// Colors of a column of any kind.
 struct ColumnColors {
     ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look);
-    Color operator()(std::size_t row) const;  // of one that has a value
+    Color operator()(std::size_t row) const;  // of a row that has a value
     void explain(Panel& panel) const;
-    // One of them.
+    // Exactly one of these is set.
     std::optional<NumberColors> numbers;
     std::optional<SweepClasses> classes;
 
@@ -89,19 +89,19 @@ struct ColumnColors {
     const SweepColumn* column_;
 };
 
-// An axis of the sweep in the unit that is shown.
+// An axis of the sweep in its displayed unit.
 SweepAxis shown_axis(const SweepData& data, std::size_t axis);
-// The same along one of a panel, with its limits.
+// The same as an axis of a panel, with its limits.
 Axis axis_of(const SweepData& data, std::size_t axis);
-// The row of every point of a grid; no_row where it is not there yet.
+// The row of every grid point; no_row if it is not computed yet.
 inline constexpr std::uint32_t no_row = ~std::uint32_t{0};
 std::vector<std::uint32_t> rows_of_points(const SweepData& data);
-// Where value i of an axis of the sweep begins and ends: half of the way to its neighbours, on a logarithmic axis as factors.
+// Boundary between values i - 1 and i of an axis: their mean, geometric on a logarithmic axis.
 double edge_of(const SweepAxis& axis, double i);
 
-// "no value": where it occurs.
+// Hatching with the legend text "no value".
 Hatch nothing(const Theme& theme);
-// Without any numbers it has none along it: they would be invented.
+// Sets limits and ticks. Without any numbers the axis gets no ticks, which would be invented.
 void set_limits(Axis& axis, const std::array<double, 2>& range, double margin);
 
 Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, const Theme& theme,

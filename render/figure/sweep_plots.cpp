@@ -1,4 +1,4 @@
-// What the panels of a sweep show: curves and bars over one axis, maps over two, points of sections and samples.
+// Panels of a sweep: curves and bars over one axis, maps over two axes, points of sections and of random samples.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,7 +25,7 @@ bool is_same(const SweepData& data, std::uint32_t a, std::uint32_t b) {
     return has_room(data, a) && has_room(data, b) && data.rows.signatures[a] == data.rows.signatures[b];
 }
 
-// The points that stand alone between breaks are dots.
+// A curve, and markers for its points that are isolated between breaks.
 struct Traced {
     Curve curve;
     Markers alone;
@@ -37,7 +37,7 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
     traced.alone.shape = Markers::Shape::circle;
     std::vector<Point>& points = traced.curve.points;
     std::uint32_t before = no_row;
-    std::size_t length = 0;  // of the piece so far
+    std::size_t length = 0;  // number of points since the last break
     const auto end_piece = [&] {
         if (length == 0) return;
         if (length == 1) traced.alone.points.push_back(points.back());
@@ -60,7 +60,7 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
     return traced;
 }
 
-// Between neighbours of different sequences that have a value.
+// Bars between neighbors with different sequences that both have a value.
 Markers changes(const SweepData& data, std::span<const SweepColumn> columns, const std::vector<std::uint32_t>& rows,
                 const Theme& theme) {
     Markers bars;
@@ -78,7 +78,7 @@ Markers changes(const SweepData& data, std::span<const SweepColumn> columns, con
     return bars;
 }
 
-// More bars could not be told apart: then the curve says why it is broken.
+// Shows the changes as bars. If they are too many to be distinguished, the legend says why the curve is broken.
 void show_changes(Markers bars, const Color& color, Panel& panel) {
     constexpr std::size_t most = 30;
     if (bars.points.empty()) return;
@@ -135,7 +135,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
     const std::size_t lines = classes.named + (classes.named < classes.all.size() ? 1 : 0);
     const std::vector<Markers> keys = classes.keys();
     const SweepAxis axis = shown_axis(data, 0);
-    // The first class stands at the top.
+    // The first class is at the top.
     const auto height = [&](std::size_t place) { return static_cast<double>(lines - 1 - place); };
     panel.y.label = column.label();
     panel.y.low = -0.6;
@@ -169,7 +169,7 @@ Panel classes_panel(const SweepData& data, const SweepColumn& column, const Them
 
 namespace {
 
-// The points of a grid over two axes, each axis from its lower end.
+// The points of a grid over two axes, each axis in increasing order.
 class Grid2 {
  public:
     explicit Grid2(const SweepData& data)
@@ -180,7 +180,7 @@ class Grid2 {
     }
     std::size_t columns() const { return x.count; }
     std::size_t lines() const { return y.count; }
-    // no_row where it is not there yet.
+    // no_row if the point is not computed yet.
     std::uint32_t row(std::size_t i, std::size_t j) const {
         if (x_turned_) i = x.count - 1 - i;
         if (y_turned_) j = y.count - 1 - j;
@@ -195,8 +195,8 @@ class Grid2 {
     bool x_turned_ = false, y_turned_ = false;
 };
 
-// Where neighbours have different sequences: lines between their cells, as long as they go straight on. Nothing where every
-// fifth neighbour is another.
+// Lines between cells with different sequences of events; collinear segments are joined. nullopt if more than a fifth
+// of the neighbors differ.
 std::optional<std::vector<Point>> changes(const SweepData& data, const Grid2& grid) {
     std::vector<Point> lines;
     std::size_t changed = 0;
@@ -247,7 +247,7 @@ void add_contours(const SweepData& data, const Grid2& grid, const Theme& theme, 
     }
     if (points->empty()) return;
     line.points = *points;
-    // Seen on dark cells and on bright ones.
+    // The rim makes the line visible on dark and on bright cells.
     Curve rim = line;
     rim.stroke = {{theme.background.r, theme.background.g, theme.background.b, 150}, 2.0, {}};
     line.label = sequence_changes;
@@ -259,8 +259,8 @@ void add_contours(const SweepData& data, const Grid2& grid, const Theme& theme, 
 
 namespace {
 
-// The limits that colours are given to. A few numbers far from all others would take them from the rest: where the last in a
-// thousand at either end stretch what there is by more than a half, they are left beyond.
+// Limits of the color scale. A few outliers would use up most of the colors. Therefore the outermost 0.1 percent at
+// each end are left out if they extend the range by more than half.
 std::array<double, 2> limits_of_colors(const SweepColumn& column) {
     constexpr double share = 1e-3, stretch = 1.5;
     const std::array<double, 2> all = column.range();
@@ -339,17 +339,17 @@ Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& t
     return panel;
 }
 
-// ---- at points rather than on a grid: diagrams and planes of sections, random samples ----
+// ---- points instead of a grid: section diagrams, section planes, random samples ----
 
 namespace {
 
-constexpr std::size_t most_markers = 3000;  // more points are dots
+constexpr std::size_t most_markers = 3000;  // more points are drawn as dots
 
 std::string word_of(const Section& section) {
     return section.event ? std::string(names_of(*section.event).name) : "upward zero of " + typeset(section.expression);
 }
 
-// Points of one kind: markers where they are few.
+// Adds points of one color: as markers if they are few.
 void add_points(std::vector<Point> points, const Color& color, const Theme& theme, Panel& panel,
                 const std::string& what) {
     const bool has_rows = !points.empty();
@@ -413,7 +413,7 @@ Panel section_panel(const SweepData& data, const SweepColumn& x, const SweepColu
 
 namespace {
 
-// Those of one colour are markers together.
+// Points grouped by color into markers.
 struct Painted {
     std::vector<Point> points;
     std::vector<Color> colors;

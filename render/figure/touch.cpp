@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double within = 0.15;  // of a disc's radius: a line that is so near to a place runs through it
+constexpr double within = 0.15;  // fraction of a disc's radius: a line this close to a point passes through it
 
 double distance_to(const Point& p, const Point& a, const Point& b) {
     const double x = b.x - a.x, y = b.y - a.y, square = x * x + y * y;
@@ -18,19 +18,19 @@ double distance_to(const Point& p, const Point& a, const Point& b) {
     return std::hypot(p.x - a.x - s * x, p.y - a.y - s * y);
 }
 
-// From the nearest line of a shape.
+// Distance to the nearest line of a shape.
 double distance_to(const Point& p, const Shape& shape) {
     double least = std::numeric_limits<double>::infinity();
     if (shape.kind == Shape::Kind::disc)
         return std::abs(std::hypot(p.x - shape.points[0].x, p.y - shape.points[0].y) - shape.radius);
     for (std::size_t i = 1; i < shape.points.size(); ++i) {
         const double distance = distance_to(p, shape.points[i - 1], shape.points[i]);
-        if (distance < least) least = distance;  // not where there is a break
+        if (distance < least) least = distance;  // false at a break, where the distance is NaN
     }
     return least;
 }
 
-// The shape that runs through all of these places; null if none does.
+// The shape that passes through all of these points; null if none does.
 const Shape* line_through(const std::vector<Shape>& shapes, const std::vector<Point>& places, double tolerance) {
     for (const Shape& shape : shapes) {
         const bool is_line = shape.kind == Shape::Kind::polyline || shape.kind == Shape::Kind::disc;
@@ -42,8 +42,8 @@ const Shape* line_through(const std::vector<Shape>& shapes, const std::vector<Po
     return nullptr;
 }
 
-// The least way by which a disc is moved so that it is as far from every gap as it should be: by relaxation, which ends
-// where walls leave no room.
+// Smallest displacement of a disc that gives it the wanted distance from every gap. It is found by relaxation, with a
+// limit on the rounds because walls may leave no space.
 Point least_way(const std::vector<std::pair<Point, double>>& wanted) {
     constexpr int rounds = 60;
     std::vector<double> pushes(wanted.size(), 0.0);
@@ -106,7 +106,7 @@ Touch::Touch(const Mechanism& mechanism, const Trajectory& trajectory, double si
     find_tips(mechanism, trajectory, all.shapes, size);
 }
 
-// Whether the first two numbers of a disc's place are two coordinates, and which.
+// The two coordinates that are the x and y of a point. nullopt if they are not coordinates.
 std::optional<std::array<std::size_t, 2>> Touch::plane_of(Grip& grip, const State& start) const {
     std::array<std::size_t, 2> pair{};
     const auto n = static_cast<std::size_t>(start.q.size());
@@ -136,7 +136,8 @@ bool Touch::is_of(std::size_t contact, const std::array<std::size_t, 2>& pair) c
 
 namespace {
 
-// The states at which a disc would be on h = 0 or so near: straight ahead of where it is, and a little to either side.
+// States with the center of a disc on h = 0 or close to it: straight ahead of its position, and slightly to either
+// side.
 std::vector<Nearness> probes(const Touch& touch, Grip& grip, std::size_t contact, const State& start, double radius) {
     std::vector<Nearness> found;
     State state = start;
@@ -170,7 +171,7 @@ std::vector<Nearness> probes(const Touch& touch, Grip& grip, std::size_t contact
 void Touch::find_tips(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<Shape>& shapes,
                       double size) {
     const State start{trajectory.run.q, trajectory.run.v, trajectory.run.options.start_time};
-    constexpr double step = 0.02;  // of the world, from one probe to the next
+    constexpr double step = 0.02;  // fraction of the world, between probes
     auto grips = mechanism.grips(parameters_);
     for (std::size_t contact = 0; contact < model_->contacts(); ++contact)
         for (std::size_t i = 0; i < grips.size() && !tips_[contact]; ++i) {
@@ -257,7 +258,7 @@ PlaneFunction Touch::function_of(const Solid& solid, double t, const State& stat
         return gap.output(0);
     };
     if (solid.skin == 0.0) return h;
-    // By as much as the centre of the disc stays away.
+    // The solid is smaller by the radius, by which the center of the disc stays away.
     return [h, skin = solid.skin](const Point& p) mutable {
         const double step = 1e-4 * skin;
         const double x = h({p.x + step, p.y}) - h({p.x - step, p.y}), y = h({p.x, p.y + step}) - h({p.x, p.y - step});

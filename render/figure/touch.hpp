@@ -1,11 +1,13 @@
-// How the gaps of a system look in the world of its drawing: which side of a line is solid, and how a disc rests on it.
+// Geometry of contacts in the drawing of a system: which side of a line is solid, and how a disc rests on it.
 //
-// A file says where its discs are and where its lines. Many a gap is of a disc's centre, y - sin(x) with a disc at (x, y):
-// drawn as it is said, the disc would sink into the line by its radius r while it touches. The rule: a disc whose centre
-// would come onto a drawn line when a gap closes is drawn aside, along the gap's gradient, so that its rim rests there; what
-// stands still on the line is its lowest point then, which moves as the file says. With the distance d of the centre from
-// the line it is moved by r exp(-(d/2r)^2): heights near the ground are true at any zoom, and far from it the disc is
-// where the file says. Where several gaps ask, it is moved the least way that satisfies all.
+// The file gives the positions of discs and lines. Many gaps refer to the center of a disc, such as y - sin(x) with a
+// disc at (x, y). Drawn literally, the disc would sink into the line by its radius r in contact. Therefore a disc whose
+// center would meet a drawn line when a gap closes is drawn displaced along the gap's gradient, so that its rim rests
+// on the line. The point on the line is then the lowest point of the disc, and it moves as the file says.
+//
+// If d is the distance of the center from the line, the displacement is r exp(-(d/2r)^2). Heights near the ground are
+// therefore true at any zoom, and far away the disc is where the file says. With several gaps, the smallest
+// displacement that satisfies all of them is used.
 #pragma once
 
 #include <array>
@@ -18,50 +20,50 @@
 
 namespace achilles {
 
-// Where and how a gap is near a point of the world that the coordinates move.
+// A gap at a point of the world that the coordinates move.
 struct Nearness {
     double distance = 0.0;  // h/|dh/dp|, in world units
-    Point away;             // unit vector: dh/dp, out of what is solid
-    Point foot;             // of the perpendicular, on h = 0
+    Point away;             // unit vector along dh/dp, out of the solid
+    Point foot;             // foot of the perpendicular, on h = 0
 };
 
-// One per thread: it evaluates its programs.
+// Evaluates its programs, so use one per thread.
 class Touch {
  public:
-    // Of the run's parameters, in a world of this size (Drawing::size); refers to the model. What is where is found out at the
-    // run's start.
+    // For the parameters of a run, in a world of this size (Drawing::size). Keeps a reference to the model. The
+    // geometry is determined at the start of the run.
     Touch(const Mechanism& mechanism, const Trajectory& trajectory, double size);
 
-    // Puts what is solid behind the shapes, over all that is seen: the drawing's limits. Where no drawing belongs to a contact
-    // that is held, the line of its gap is lit.
+    // Inserts the solid ground behind the shapes, over the limits of the drawing. If no drawing belongs to a held
+    // contact, the line of its gap is highlighted.
     void add_ground(Drawing& drawing, double t, const State& state, ContactSet held, const Theme& theme) const;
     // Moves the discs of a drawing (Shape::item) to where they rest.
     void rest(Drawing& drawing, double t, const State& state) const;
-    // The same as nearness(), but of what is drawn: where that point, or a disc about it, touches the ground.
+    // As nearness(), but for what is drawn: the position where the point, or a disc around it, touches the ground.
     std::optional<Nearness> ground_below(Grip& grip, std::size_t contact, double t, const State& state) const;
-    // Which point of the mechanism (Mechanism::grips) comes onto a drawn line when a gap closes: a rod's end; nothing where
-    // none does.
+    // The point of the mechanism (Mechanism::grips), such as the end of a rod, that meets a drawn line when a gap
+    // closes. nullopt if no point does.
     std::optional<std::size_t> tip_of(std::size_t contact) const { return tips_[contact]; }
-    // A gap seen from a point of the mechanism; nothing where it is no function of that point.
+    // The gap as a function of a point of the mechanism. nullopt if it does not depend on that point alone.
     std::optional<Nearness> nearness(Grip& grip, std::size_t contact, double t, const State& state) const;
 
  private:
     struct Disc {
         std::size_t item;
         Grip grip;
-        std::vector<std::size_t> contacts;  // that are of its centre
+        std::vector<std::size_t> contacts;  // whose gaps refer to its center
     };
-    // What lies beyond h = 0 of a gap of two coordinates that are x and y of the world, less a disc's radius where it
-    // counts that; or beyond a circle.
+    // The solid side of a gap. The gap depends on two coordinates that are x and y of the world; if it includes the
+    // radius of a disc, the solid is smaller by that radius. A solid may also be bounded by a circle.
     struct Solid {
         std::size_t contact = 0;
         double skin = 0.0;
         std::array<std::size_t, 2> pair{};
         std::optional<Point> center{};
-        double radius = 0.0, sign = 1.0;  // of a circle; -1: solid outside
+        double radius = 0.0, sign = 1.0;  // of a circle; sign -1: solid outside
         bool stands_still = true;         // the gap does not depend on time
     };
-    // What was found of one for the part of the world that was seen last, at that time.
+    // Result for one solid, cached for the part of the world that was visible last, at that time.
     struct Seen {
         Drawing limits;
         double t = 0.0;
@@ -77,11 +79,11 @@ class Touch {
 
     const Model* model_;
     std::vector<double> parameters_;
-    mutable std::vector<std::optional<ContactTerms<Evaluator<double>>>> terms_;  // contact by contact, once asked for
+    mutable std::vector<std::optional<ContactTerms<Evaluator<double>>>> terms_;  // by contact, compiled at first use
     std::vector<Disc> discs_;
     std::vector<Solid> solids_;
-    mutable std::vector<std::optional<Seen>> seen_;  // solid by solid
-    std::vector<std::optional<std::size_t>> tips_;   // contact by contact
+    mutable std::vector<std::optional<Seen>> seen_;  // by solid
+    std::vector<std::optional<std::size_t>> tips_;   // by contact
     ContactSet drawn_;                               // contacts to which a drawing belongs
 };
 

@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-constexpr double flat = 0.1;  // pixels: a chord that is off by less is the curve
+constexpr double flat = 0.1;  // pixels: a chord with a smaller error represents the curve
 
 bool is_finite(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
@@ -24,7 +24,7 @@ struct PlacedPoint {
     double t = 0.0;
 };
 
-// Takes the points of one curve in time and keeps those that are needed.
+// Receives the points of one curve in order of time and keeps those that are needed.
 class Thinner {
  public:
     virtual ~Thinner() = default;
@@ -32,10 +32,10 @@ class Thinner {
     Thinner(const Thinner&) = delete;
     Thinner& operator=(const Thinner&) = delete;
     virtual void add(const PlacedPoint& point) = 0;
-    // The curve goes on from another point.
+    // The curve continues from another point.
     virtual void lift() = 0;
     virtual Course take() = 0;
-    // Whether these add nothing to the picture; false where that is not known.
+    // Whether points in this rectangle (pixels) would add nothing to the picture; false if unknown.
     virtual bool covers(double, double, double, double) const { return false; }
 
  protected:
@@ -51,8 +51,8 @@ class Thinner {
     Course course_;
 };
 
-// Over time: what lies in one column of a fraction of a pixel shows as a vertical line there. The first point, the lowest, the
-// highest and the last draw the same.
+// Thinner for curves over time. Points in one column of a fraction of a pixel show as a vertical line, which the first,
+// lowest, highest and last point reproduce.
 class ColumnThinner : public Thinner {
  public:
     void add(const PlacedPoint& point) override {
@@ -67,7 +67,7 @@ class ColumnThinner : public Thinner {
         if (point.data.y < lowest_.point.data.y) lowest_ = last_;
         if (point.data.y > highest_.point.data.y) highest_ = last_;
     }
-    // A break inside a column is not seen: of very many short phases none has points of its own.
+    // A break inside a column is invisible, so that very many short phases add no points.
     void lift() override {
         is_lifted_ = true;
         before_.reset();
@@ -78,7 +78,7 @@ class ColumnThinner : public Thinner {
         course_.is_crowded = crowded_ > 0.3 * windows_;
         return std::move(course_);
     }
-    // x from the column of the last point only, low to high.
+    // Covers only rectangles within the column of the last point.
     bool covers(double x_low, double x_high, double y_low, double y_high) const override {
         constexpr double slack = 0.5 * flat;
         return count_ > 0 && std::floor(x_low * columns_per_pixel) == column_ &&
@@ -101,7 +101,7 @@ class ColumnThinner : public Thinner {
             if (i == 0 || kept[i]->number != kept[i - 1]->number) keep(kept[i]->point);
         count_ = 0;
     }
-    // Where a curve goes up and down the same way several times in the length of a dash.
+    // Detects curves that go up and down several times within the length of a dash.
     void watch_crowding(const Point& pixel) {
         constexpr double window = 8.0;
         if (const double here = std::floor(pixel.x / window); here != window_) {
@@ -121,7 +121,7 @@ class ColumnThinner : public Thinner {
         low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
     }
     double column_ = 0.0;
-    std::size_t count_ = 0;  // points in the column
+    std::size_t count_ = 0;  // number of points in the column
     bool is_lifted_ = false;
     Numbered first_, lowest_, highest_, last_;
     std::optional<Point> before_;
@@ -129,8 +129,8 @@ class ColumnThinner : public Thinner {
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
 };
 
-// In a plane: once there are more points than a picture needs of most paths, what lies in cells through which the curve has
-// gone already is left out.
+// Thinner for paths in a plane. Once there are more points than most paths need, parts inside cells that the curve has
+// already crossed are dropped.
 class PathThinner : public Thinner {
  public:
     explicit PathThinner(const Resolution& size)
@@ -155,7 +155,7 @@ class PathThinner : public Thinner {
     }
 
  private:
-    static constexpr double cell = 0.45;  // pixels: its diagonal is 0.64
+    static constexpr double cell = 0.45;  // pixels; its diagonal is 0.64
     static constexpr std::size_t most_points = 15000;
 
     void start_covering() {
@@ -165,7 +165,7 @@ class PathThinner : public Thinner {
         pixels_ = {};
         is_drawn_ = true;
     }
-    // Whether the way between two points leads through a new cell; marks all of its cells.
+    // Whether the segment between two points crosses a new cell. Marks all of its cells.
     bool cover(const Point& a, const Point& b) {
         const double length = std::hypot(b.x - a.x, b.y - a.y);
         const double longest = 4.0 * static_cast<double>(columns_ + rows_);
@@ -193,10 +193,10 @@ class PathThinner : public Thinner {
         last_ = point;
     }
     std::size_t columns_, rows_;
-    std::vector<Point> pixels_;  // of the points kept, until there are too many
-    std::vector<bool> cells_;    // row by row: the curve has gone through; empty until then
+    std::vector<Point> pixels_;  // of the kept points, while they are few
+    std::vector<bool> cells_;    // by row: whether the curve has crossed the cell; empty while points are few
     std::optional<PlacedPoint> last_;
-    bool is_drawn_ = false;  // the last point is the last one kept
+    bool is_drawn_ = false;  // whether the last point is the last one kept
 };
 
 // Quantities at an instant.
@@ -213,10 +213,11 @@ double distance_to_chord(const Point& p, const Point& a, const Point& b) {
     return std::hypot(p.x - a.x - s * x, p.y - a.y - s * y);
 }
 
-// How far a motion along its chord from a to b may go beyond an end, as where it turns back: at most what it lags at `share` of the
-// time behind an even one, less the lag of a motion that does not turn.
+// Bound on how far a motion along its chord from a to b may overshoot an end where it reverses. It is the lag at the
+// fraction `share` of the time behind uniform motion, less the lag that a motion without reversal may have.
 double overshoot(const Point& p, const Point& a, const Point& b, double share) {
-    constexpr double lag_without_turn = 0.2;  // of the chord; of a parabola that turns at an end 0.23 or more
+    constexpr double lag_without_turn = 0.2;  // fraction of the chord; a parabola that reverses at an end has 0.23 or
+                                              // more
     const double lag = std::hypot(p.x - a.x - share * (b.x - a.x), p.y - a.y - share * (b.y - a.y));
     return lag - lag_without_turn * std::hypot(b.x - a.x, b.y - a.y);
 }
@@ -259,7 +260,7 @@ class Tracer {
 
  private:
     static constexpr int most_halvings = 24;
-    static constexpr int most_of_step = 200000;  // samples of one step
+    static constexpr int most_of_step = 200000;  // maximum number of samples in one step
 
     void read_node(const Sample& sample, Node& node) {
         node.t = sample.t;
@@ -274,7 +275,7 @@ class Tracer {
             include(i + 1, node.values[i + 1], node.pixels[i].y);
         }
     }
-    // What has a place on the axis.
+    // Includes a value in the range of a quantity if its axis can show it.
     void include(std::size_t quantity, double value, double pixel) {
         if (!std::isfinite(pixel)) return;
         auto& [low, high] = result_.ranges[quantity];
@@ -287,7 +288,7 @@ class Tracer {
         read_node(sample, node);
     }
 
-    // How far the curves are off the chord between a and b at m, in units of what they may be.
+    // Largest deviation of the curves at m from the chord between a and b, relative to the tolerance.
     double deviation(const Node& a, const Node& m, const Node& b) const {
         double most = 0.0;
         for (const std::size_t i : request_.shown) {
@@ -306,15 +307,15 @@ class Tracer {
         }
         return most;
     }
-    // Far outside the picture nothing is seen.
+    // Clamps points far outside the picture, where nothing is visible.
     Point visible(const Point& p) const {
         const Resolution& size = request_.size;
         if (!is_finite(p)) return p;
         return {std::clamp(p.x, -size.width, 2.0 * size.width), std::clamp(p.y, -size.height, 2.0 * size.height)};
     }
 
-    // From the last node to the next one inside a step. Two instants that are not evenly spaced tell a motion that repeats
-    // itself from one that is at rest.
+    // Traces from the last node to the next one inside a step. Two interior instants at uneven spacing distinguish a
+    // periodic motion from rest.
     void step(const Piece& piece) {
         const double a = last_.t, b = next_.t;
         samples_of_step_ = 0;
@@ -323,15 +324,16 @@ class Tracer {
         read_at(piece, a + first * (b - a), third_[0]);
         read_at(piece, a + second * (b - a), third_[1]);
         const double off = std::max(deviation(last_, third_[0], next_), deviation(last_, third_[1], next_));
-        constexpr double straight = 0.25, beyond = 0.25;  // of the deviation, that a curve may go beyond these four
+        constexpr double straight = 0.25, beyond = 0.25;  // fractions of the deviation by which a curve may exceed
+                                                          // these four points
         if (off <= straight) return take(next_);
         if (is_covered({&last_, &third_[0], &third_[1], &next_}, beyond * off)) return take(next_);
         refine(piece, last_, third_[0], off, 0);
         refine(piece, third_[0], third_[1], off, 0);
         refine(piece, third_[1], next_, off, 0);
     }
-    // Whether all of these, and what goes so far beyond them (in units of what the curves may be off), lies in a column in which
-    // the curves have been as low and as high.
+    // Whether all of these nodes, extended by `beyond` (relative to the tolerance), lie in a column whose range the
+    // curves have covered already.
     bool is_covered(std::initializer_list<const Node*> nodes, double beyond) const {
         return std::all_of(request_.shown.begin(), request_.shown.end(), [&](std::size_t i) {
             double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -344,8 +346,8 @@ class Tracer {
                 .covers((*nodes.begin())->pixels[i].x, (*std::prev(nodes.end()))->pixels[i].x, low - more, high + more);
         });
     }
-    // What is between two nodes, less the first. Halving makes a smooth curve's deviation a quarter: where it has been small
-    // before, too, both halves are near enough.
+    // Adds the points between a and b, including b but not a. For a smooth curve, halving reduces the deviation to a
+    // quarter. If the deviation was small before as well, both halves are accurate enough.
     void refine(const Piece& piece, const Node& a, const Node& b, double before, int halvings) {
         const double t = 0.5 * (a.t + b.t);
         if (samples_of_step_ > most_of_step) return leave_out(b);
@@ -360,7 +362,7 @@ class Tracer {
         }
         constexpr double beyond = 0.5;
         if (is_covered({&a, &middle, &b}, beyond * off)) return take(b);
-        constexpr int most_to_an_edge = 12;  // of where a quantity is defined
+        constexpr int most_to_an_edge = 12;  // halvings up to the boundary of a quantity's domain
         if (!std::isfinite(off) && halvings >= most_to_an_edge) return take(middle), take(b);
         refine(piece, a, middle, off, halvings + 1);
         refine(piece, middle, b, off, halvings + 1);
@@ -369,12 +371,12 @@ class Tracer {
     Thinner& thinner(std::size_t quantity, Phase::Kind phase) const {
         return *thinners_[2 * quantity + (phase == Phase::Kind::hybrid ? 0 : 1)];
     }
-    // A gap is true; a chord between two samples of a motion that turns many times between them is not.
+    // Interrupts the curves: a break is correct, but a chord across many reversals is not.
     void leave_out(const Node& node) {
         for (const std::size_t i : request_.shown) thinner(i, node.phase).lift();
         take(node);
     }
-    // Where the phase changes one curve ends and the other goes on from the same point.
+    // Adds a node. Where the phase changes, one curve ends and the other starts at the same point.
     void take(const Node& node) {
         const bool changed = !has_taken_ || taken_.phase != node.phase;
         for (const std::size_t i : request_.shown) {
@@ -413,20 +415,20 @@ Trace trace(const Trajectory& trajectory, const TraceRequest& request, const Rea
     return Tracer(trajectory, request, read).run();
 }
 
-// A curve that goes over itself.
+// ---- curves that retrace themselves ----
 
 namespace {
 
 constexpr double cell_size = 0.35;  // pixels
 
-// What has been drawn, on a grid of cells: when a line first came into each, and which way it went.
+// The curve drawn so far on a grid of cells: arc length and direction at its first visit to each cell.
 class Traces {
  public:
     struct Visit {
-        double length;  // of the curve until there, cells
+        double length;  // arc length of the curve up to here, in cells
         Point direction, at;
     };
-    // Whether the curve was near `at` before, well before it came there now, and on its way there or back.
+    // Whether the curve was near `at` clearly earlier, in the same or the opposite direction.
     bool is_retraced(const Point& at, const Visit& now) const {
         constexpr double well_before = 10.0 / cell_size, along = 0.97, near = 0.25 / cell_size;
         for (int i = -2; i <= 2; ++i) {
@@ -464,7 +466,7 @@ std::vector<Point> without_retraced(const std::vector<Point>& points, const Axis
     Traces traces;
     std::vector<Point> kept;
     double length = 0.0;
-    bool is_broken = true;  // the last point kept does not lead to the next
+    bool is_broken = true;  // whether the last point kept is not connected to the next
     std::vector<bool> retraced;
     for (std::size_t i = 0; i + 1 < points.size(); ++i) {
         const Point a = place(points[i]), b = place(points[i + 1]);
@@ -475,7 +477,7 @@ std::vector<Point> without_retraced(const std::vector<Point>& points, const Axis
         }
         if (size == 0.0) continue;
         const Point direction{(b.x - a.x) / size, (b.y - a.y) / size};
-        // In steps of less than a cell; more than these cross no panel.
+        // Steps are shorter than a cell. More steps than this maximum cross no panel.
         const int parts = static_cast<int>(std::fmin(std::ceil(1.5 * size), 4.0 * (columns + rows)));
         retraced.assign(static_cast<std::size_t>(parts), false);
         for (int k = 0; k < parts; ++k) {
@@ -486,7 +488,7 @@ std::vector<Point> without_retraced(const std::vector<Point>& points, const Axis
             traces.add(at, now);
         }
         length += size;
-        // What is new of the chord, which may be a long jump that goes over an earlier one for a part of its way.
+        // Keep the new parts of the chord. A long jump may retrace an earlier line over a part of its length.
         const auto at = [&](int k) {
             const double share = static_cast<double>(k) / parts;
             return Point{points[i].x + share * (points[i + 1].x - points[i].x),

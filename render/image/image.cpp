@@ -16,7 +16,7 @@
 #define STB_IMAGE_IMPLEMENTATION
 #define STBI_ONLY_PNG
 #define STBI_NO_STDIO
-// The package's header leaves functions of its own unused.
+// The package's header has unused functions.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wunused-function"
 #include <stb_image.h>
@@ -31,7 +31,7 @@ std::size_t bytes(const Image& image) {
     return 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
-// Four bytes a pixel.
+// RGBA, four bytes per pixel.
 std::vector<std::uint8_t> with_alpha(const Image& image) {
     std::vector<std::uint8_t> mixed;
     mixed.reserve(4 * image.alpha.size());
@@ -64,7 +64,7 @@ std::string png_bytes(const Image& image, const Compression& compression) {
     const std::vector<std::uint8_t> mixed = opaque ? std::vector<std::uint8_t>{} : with_alpha(image);
     const void* const pixels = opaque ? image.rgb.data() : mixed.data();
     if (stbi_write_png_to_func(append, &out, image.width, image.height, channels, pixels, channels * image.width) == 0)
-        throw std::bad_alloc();  // what it says of itself where it fails
+        throw std::bad_alloc();  // the only cause of failure that stb reports
     return out;
 }
 
@@ -109,7 +109,7 @@ double worst_tile(const Image& a, const Image& b) {
                      ++i)
                     sum += std::abs(int{a.rgb[i]} - int{b.rgb[i]});
             }
-            // A tile cut off by the image's rim still counts as a whole one, or a single pixel there could fail a test.
+            // A tile at the edge of the image is averaged over a full tile, or a single pixel could fail a test.
             worst = std::max(worst, static_cast<double>(sum) / (3.0 * 255.0 * tile * tile));
         }
     }

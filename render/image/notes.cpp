@@ -21,9 +21,9 @@ namespace achilles {
 namespace {
 
 constexpr std::string_view signature("\x89PNG\r\n\x1a\n", 8);
-constexpr std::size_t header_size = 12 + 13;  // of the first chunk, IHDR, with length, name and check sum
+constexpr std::size_t header_size = 12 + 13;  // of the first chunk, IHDR, with length, name and checksum
 constexpr std::size_t longest_chunk = 0x7FFFFFFF, longest_keyword = 79;
-// A note in memory is larger than an empty one in a file: without a limit a file of a gigabyte would take six.
+// A note in memory is larger than an empty note in a file. Without a limit, a file of 1 GB would take 6 GB.
 constexpr const char* too_many = "a PNG file holds at most 65536 notes";
 
 std::uint32_t check_sum(std::string_view bytes) {
@@ -35,7 +35,7 @@ std::string big_endian(std::uint32_t value) {
             static_cast<char>(value)};
 }
 
-// At least four bytes are there.
+// Requires at least four bytes.
 std::uint32_t big_endian(std::string_view bytes) {
     std::uint32_t value = 0;
     for (const char c : bytes.substr(0, 4)) value = value << 8 | static_cast<unsigned char>(c);
@@ -49,7 +49,7 @@ bool is_keyword(std::string_view word) {
 
 bool is_text(std::string_view text) { return text.find('\0') == std::string_view::npos && is_utf8(text); }
 
-// Where the chunks after the header begin.
+// Offset of the first chunk after the header.
 std::size_t header_end(std::string_view png) {
     const std::size_t end = signature.size() + header_size;
     if (png.size() < end || png.substr(0, signature.size()) != signature)
@@ -62,14 +62,14 @@ std::string chunk(const Note& note) {
         throw std::runtime_error("'" + note.keyword + "' is not a valid keyword of a note in a PNG file");
     if (!is_text(note.text)) throw std::runtime_error("only UTF-8 text without zero bytes can be stored in a PNG file");
     const std::string_view zeros("\0\0\0\0\0", 5);
-    // iTXt: keyword, end, not compressed (2 bytes), no language, no translated keyword, text.
+    // iTXt: keyword, zero, not compressed (2 bytes), no language, no translated keyword, text.
     const std::string body = is_ascii(note.text) ? "tEXt" + note.keyword + std::string(zeros.substr(0, 1)) + note.text
                                                  : "iTXt" + note.keyword + std::string(zeros) + note.text;
     if (body.size() - 4 > longest_chunk) throw std::runtime_error("a note is too long for a PNG file");
     return big_endian(static_cast<std::uint32_t>(body.size() - 4)) + body + big_endian(check_sum(body));
 }
 
-// What stands before the next zero byte, which is taken off together with it.
+// The text before the next zero byte. Removes both from `bytes`.
 std::string_view take_word(std::string_view& bytes) {
     const std::size_t end = bytes.find('\0');
     if (end == std::string_view::npos) throw std::runtime_error("the PNG file is damaged: a text chunk has no keyword");
@@ -90,19 +90,20 @@ Note read_text(std::string_view data) {
     return {keyword, utf8_of_latin1(data)};
 }
 
-// Nothing for a compressed one: we write none, and a stranger's may unpack to a thousand times its size.
+// nullopt for a compressed text. This library writes none, and an untrusted one may expand to a thousand times its
+// size.
 std::optional<Note> read_international_text(std::string_view data) {
     const std::string keyword(take_word(data));
     if (data.size() < 2) throw std::runtime_error("the PNG file is damaged: a text chunk is too short");
     const bool compressed = data[0] != 0;
     data.remove_prefix(2);
-    take_word(data);  // the language
-    take_word(data);  // the keyword in it
+    take_word(data);  // language
+    take_word(data);  // translated keyword
     if (compressed) return std::nullopt;
     return Note{keyword, std::string(data)};
 }
 
-// What with_notes could not have written is left out: it is nobody's but the stranger's who wrote it.
+// Skips notes that with_notes() cannot write.
 void read_note(std::string_view name, std::string_view data, Notes& notes) {
     std::optional<Note> note;
     if (name == "tEXt") note = read_text(data);
@@ -130,7 +131,7 @@ std::string with_notes(std::string_view png, const Notes& notes) {
     return result.append(png.substr(begin));
 }
 
-// libpng would be longer: it has to be led past the pixels, which it keeps a copy of, and kept from unpacking.
+// libpng would take more code: it keeps a copy of the pixels that must be skipped, and it decompresses texts.
 Notes png_notes(std::string_view png) {
     if (png.substr(0, signature.size()) != signature) throw std::runtime_error("this is not a PNG file");
     png.remove_prefix(signature.size());
@@ -152,11 +153,12 @@ Notes png_notes(std::string_view png) {
 
 namespace {
 
-// The comment in front of our notes, each of which is a line. What is no letter of a word is written as a number.
+// The comment before the notes, each of which is one line. Characters other than letters and digits are written as
+// numbers.
 constexpr std::string_view notes_begin = "\n%Achilles notes\n", notes_end = ">>\n";
 constexpr std::array<std::pair<std::string_view, std::string_view>, 2> own_names{
     {{"Software", "Creator"}, {"Title", "Title"}}};
-constexpr std::string_view utf16_mark = "\xFE\xFF";  // of UTF-16
+constexpr std::string_view utf16_mark = "\xFE\xFF";  // byte order mark
 
 std::runtime_error damaged() { return std::runtime_error("its notes are damaged"); }
 
@@ -171,7 +173,7 @@ std::string name_of(const std::string& keyword) {
     return name;
 }
 
-// UTF-16 with the larger byte first, after the byte order mark.
+// UTF-16, big-endian, with a byte order mark.
 std::string utf16(std::string_view text) {
     std::string bytes(utf16_mark);
     const auto add = [&](char32_t unit) {
@@ -190,7 +192,7 @@ std::string utf16(std::string_view text) {
     return bytes;
 }
 
-// Back again; what is no UTF-16 is damage.
+// Inverse of utf16(). Throws for invalid UTF-16.
 std::string utf8_of_utf16(std::string_view bytes) {
     std::string text;
     const auto next = [&] {
@@ -211,7 +213,7 @@ std::string utf8_of_utf16(std::string_view bytes) {
     return text;
 }
 
-// A string in parentheses, on one line and in ASCII: readable where the text is.
+// A PDF string in parentheses, on one line and in ASCII: readable if the text is ASCII.
 std::string written(std::string_view text) {
     if (!is_utf8(text)) throw std::runtime_error("text that is not UTF-8 cannot be stored in a PDF file");
     std::string result = "(";
@@ -226,7 +228,7 @@ std::string written(std::string_view text) {
     return result + ")";
 }
 
-// Of a line's rest, from the parenthesis to the one that closes it.
+// The bytes of a PDF string that fills the rest of a line.
 std::string read_string(std::string_view line) {
     if (line.size() < 2 || line.front() != '(' || line.back() != ')') throw damaged();
     line = line.substr(1, line.size() - 2);
@@ -275,13 +277,13 @@ std::string keyword_of(std::string_view name) {
         keyword += c;
         name.remove_prefix(taken);
     }
-    // A dictionary has a key once: the second is "... 2".
+    // A dictionary has unique keys: the second occurrence of a keyword is "... 2".
     const std::size_t last = keyword.find_last_not_of("0123456789");
     if (last != std::string::npos && last + 1 < keyword.size() && keyword[last] == ' ') keyword.resize(last);
     return keyword;
 }
 
-// What follows the last of these words, up to `end`.
+// The text after the last occurrence of `word`, up to `end`.
 std::string_view after_last(std::string_view text, std::string_view word, std::string_view end) {
     const std::size_t at = text.rfind(word);
     const std::size_t stop = at == std::string_view::npos ? at : text.find(end, at + word.size());
@@ -348,7 +350,7 @@ constexpr std::string_view metadata_begin = "<metadata xmlns:a=\"urn:achilles:or
                            metadata_end = "</metadata>\n";
 constexpr std::string_view begin_note = "<a:note keyword=\"", end_keyword = "\">", end_note = "</a:note>\n";
 
-// A carriage return written as itself would come back as a line feed.
+// A literal carriage return would be read as a line feed.
 constexpr std::array<std::pair<char, std::string_view>, 5> entities{
     {{'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\r', "&#13;"}}};
 
@@ -368,7 +370,7 @@ std::string unescaped(std::string_view text) {
     return result;
 }
 
-// What stands before `mark`, which is taken off together with it.
+// The text before `mark`. Removes both from `text`.
 std::string_view take_until(std::string_view& text, std::string_view mark) {
     const std::size_t end = text.find(mark);
     if (end == std::string_view::npos) throw std::runtime_error("its notes are incomplete");
@@ -380,7 +382,7 @@ std::string_view take_until(std::string_view& text, std::string_view mark) {
 }  // namespace
 
 std::string xml_escaped(std::string_view text) {
-    // A sign of its own for broken UTF-8 would come back as another text.
+    // Replacing invalid UTF-8 would change the text.
     if (!is_utf8(text)) throw std::runtime_error("text that is not UTF-8 cannot be stored in an SVG file");
     std::string result;
     for (const char c : text) {

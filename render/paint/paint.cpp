@@ -17,7 +17,7 @@ namespace achilles {
 
 namespace {
 
-// A regular polygon, its first corner at the given angle from straight up.
+// A regular polygon. `first_angle`: clockwise angle of its first corner from straight up (rad).
 std::vector<Point> polygon(const Point& center, double radius, int corners, double first_angle) {
     std::vector<Point> points;
     for (int i = 0; i < corners; ++i) {
@@ -29,7 +29,7 @@ std::vector<Point> polygon(const Point& center, double radius, int corners, doub
 
 }  // namespace
 
-// Shapes of about equal weight: a diamond as wide as a square would look smaller.
+// The shapes have similar visual weight: a diamond as wide as a square would look smaller.
 std::vector<Point> corners(const Mark& mark) {
     switch (mark.shape) {
         case Markers::Shape::square:
@@ -73,7 +73,8 @@ class Brush {
         add_curve(list_, path.points, screen_stroke(path.stroke, 1.0));
         list_->PopClipRect();
     }
-    // Pieces side by side, whose edges are not smoothed: they would be seen where they meet. Lines along it hide the rest.
+    // Adjacent quadrilaterals without anti-aliasing, because anti-aliased edges would be visible where they meet. The
+    // lines along the strip cover its outer edges.
     void operator()(const Strip& strip) const {
         const Rectangle& r = strip.clip;
         const Color& c = strip.color;
@@ -124,19 +125,19 @@ Rectangle paint(const Panel& panel, const Figure& style, ImDrawList* list, Recta
 
 namespace {
 
-// A frame of reference for a line of text: where it starts and which way it runs.
+// Start and direction of a line of text.
 struct Baseline {
     ImVec2 start;
-    bool upright;  // false: turned by 90 degrees, reading upwards
+    bool upright;  // false: rotated by 90 degrees, reading upward
     ImVec2 at(float along, float down) const {
         return upright ? ImVec2(start.x + along, start.y + down) : ImVec2(start.x + down, start.y - along);
     }
 };
 
-// A letter with its font, size and place: `along` the line, `down` from its top.
+// A letter with its font, size and position: `along` the line, `down` from its top.
 struct Set {
     const ImFontGlyph* glyph;
-    float zoom, along, down, base, slant;  // base: of its base line from the top of the letters
+    float zoom, along, down, base, slant;  // base: distance of the baseline from the top of the letters
     float advance() const { return glyph->AdvanceX * zoom; }
 };
 
@@ -145,7 +146,7 @@ void paint_glyph(ImDrawList* list, const Set& set, const Baseline& line, ImU32 c
     if (glyph.Visible == 0) return;
     const float left = set.along + glyph.X0 * set.zoom, right = set.along + glyph.X1 * set.zoom;
     const float top = glyph.Y0 * set.zoom, bottom = glyph.Y1 * set.zoom;
-    // Italics lean about their base line.
+    // Italics are slanted about their baseline.
     const float over = (set.base - top) * set.slant, under = (set.base - bottom) * set.slant;
     list->PrimReserve(6, 4);
     list->PrimQuadUV(line.at(left + over, set.down + top), line.at(right + over, set.down + top),
@@ -153,7 +154,7 @@ void paint_glyph(ImDrawList* list, const Set& set, const Baseline& line, ImU32 c
                      {glyph.U0, glyph.V0}, {glyph.U1, glyph.V0}, {glyph.U1, glyph.V1}, {glyph.U0, glyph.V1}, color);
 }
 
-// Dots over a letter, drawn as discs: the font's own combining dots touch the taller Greek letters.
+// Draws dots above a letter as discs, because the font's combining dots touch the taller Greek letters.
 void paint_dots(ImDrawList* list, const Set& set, const Baseline& line, float size, int dots, ImU32 color) {
     const float radius = std::max(size * 0.066F, 0.8F);
     const float height = set.glyph->Y0 * set.zoom - 1.9F * radius;
@@ -166,7 +167,7 @@ void paint_dots(ImDrawList* list, const Set& set, const Baseline& line, float si
     }
 }
 
-// Sets one letter after the other; returns the length of the line.
+// Places one letter after another and returns the length of the line.
 template <class Draw>
 float set_line(const std::string& label, float size, const Draw& draw) {
     const std::vector<Letter> line = letters(label);
@@ -196,7 +197,7 @@ float label_width(const std::string& label, float size) {
 }
 
 float paint_label(ImDrawList* list, float x, float y, const std::string& label, Color color, float size, int angle) {
-    // On whole pixels letters keep the shape they were made with.
+    // On whole pixels, letters have the shape with which they were rasterized.
     const Baseline line{{std::round(x), std::round(y)}, angle != 90};
     const ImU32 ink = IM_COL32(color.r, color.g, color.b, color.a);
     push_font_texture(list);
@@ -252,8 +253,7 @@ void triangle(ImDrawList* list, const Point& a, const Point& b, const Point& c, 
     for (const Point* p : {&a, &b, &c}) list->PrimVtx(vec(*p), white, color);
 }
 
-// Cuts ears off until nothing is left: right for every simple polygon. Its rim is not smoothed here; whoever fills
-// strokes the outline too.
+// Fills a simple polygon by ear clipping. Its edges are not anti-aliased; callers also stroke the outline.
 void fill_polygon(ImDrawList* list, std::vector<Point> rest, ImU32 color) {
     double area = 0.0;
     for (std::size_t i = 0; i < rest.size(); ++i) area += cross({}, rest[i], rest[(i + 1) % rest.size()]);
@@ -284,12 +284,13 @@ struct Clip {
 };
 
 Clip clip_of(const ImDrawList* list) {
-    constexpr double room = 64.0;  // strokes reach beyond their line
+    constexpr double room = 64.0;  // strokes extend beyond their line
     const ImVec2 low = list->GetClipRectMin(), high = list->GetClipRectMax();
     return {{low.x - room, low.y - room}, {high.x + room, high.y + room}};
 }
 
-// What of a polygon is inside, as one polygon; its edge may run along the clip's in two directions.
+// The part of a polygon inside the clip rectangle, as one polygon. Its edges may run along the clip rectangle back and
+// forth.
 std::vector<Point> clipped(std::vector<Point> polygon, const Clip& clip) {
     for (int side = 0; side < 4; ++side) {
         const auto inside = [&](const Point& p) {
@@ -312,7 +313,7 @@ std::vector<Point> clipped(std::vector<Point> polygon, const Clip& clip) {
     return polygon;
 }
 
-// A circle in pixels, whose corners stay within 0.02 px of it where it is seen.
+// A circle in pixels as a polygon. Within the visible part its chords are within 0.02 pixels of the circle.
 std::vector<Point> circle(const Point& center, double radius, const Clip& clip) {
     std::vector<Point> points;
     if (!(radius > 0.0) || !is_finite({radius, 0.0}) || !is_finite(center)) return points;
@@ -326,7 +327,7 @@ std::vector<Point> circle(const Point& center, double radius, const Clip& clip) 
         for (int i = 0; i < count; ++i) add(2.0 * std::numbers::pi * i / count);
         return points;
     }
-    // The arc that may be seen finely, the others as far as it takes for none of their chords to be seen.
+    // The arc that may be visible is fine; elsewhere only few points are needed, because those chords are invisible.
     const double x = clip.middle().x - center.x, y = clip.middle().y - center.y;
     const double half = std::min(0.25 * std::numbers::pi, 2.0 * clip.reach() / radius);
     const double towards = std::atan2(y, x), step = 2.0 * half * radius > 0.0 ? 2.0 * std::numbers::pi / corners : half;
@@ -349,24 +350,25 @@ std::vector<Point> outline(const Shape& shape, const Placement& placement, const
 
 void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double scale, const Clip& clip) {
     if (rim.size() < 4 || !std::all_of(rim.begin(), rim.end(), is_finite)) return;
-    // Cutting ears takes the square of the number of corners.
+    // Ear clipping takes quadratic time in the number of corners.
     constexpr std::size_t most_corners = 1000;
     double tolerance = 0.05;
     std::vector<Point> corners = thinned(rim, tolerance);
     while (corners.size() > most_corners && tolerance < 10.0) corners = thinned(rim, tolerance *= 2.0);
     if (corners.size() < 4) return;
-    corners.pop_back();  // the first again
+    corners.pop_back();  // it repeats the first point
     const auto is_outside = [&](const Point& p) {
         return p.x < clip.low.x || p.x > clip.high.x || p.y < clip.low.y || p.y > clip.high.y;
     };
     if (std::any_of(corners.begin(), corners.end(), is_outside)) corners = clipped(std::move(corners), clip);
     if (corners.size() < 3) return;
     fill_polygon(list, corners, IM_COL32(color.r, color.g, color.b, color.a));
-    // A translucent rim would show where it overlaps the inside.
+    // A translucent stroke would be visible where it overlaps the interior.
     if (color.a == 255) add_curve(list, rim, {color, scale, {}});
 }
 
-// Convex polygons, each as a fan. Their edges are not smoothed: none shows, but that of all together, which has a line.
+// Fills convex polygons as triangle fans. Edges are not anti-aliased: interior edges must be invisible, and the outer
+// edge has a line.
 void fill_area(ImDrawList* list, const Shape& shape, const Placement& placement, const Clip& clip) {
     const Color& c = shape.fill_color;
     const ImU32 color = IM_COL32(c.r, c.g, c.b, c.a);
@@ -414,7 +416,7 @@ Placement place(const Drawing& drawing, Rectangle area) {
     const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
     Placement placement;
     placement.unit = std::min(double{area.width} / width, double{area.height} / height);
-    // Nothing sensible to show; still draw nothing rather than fail.
+    // The limits are degenerate; still draw nothing instead of failing.
     if (!(placement.unit > 0.0) || !std::isfinite(placement.unit)) placement.unit = 1.0;
     placement.x = area.x + area.width / 2.0 - placement.unit * (drawing.x_low + width / 2.0);
     placement.y = area.y + area.height / 2.0 + placement.unit * (drawing.y_low + height / 2.0);

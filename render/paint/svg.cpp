@@ -1,4 +1,4 @@
-// A figure as SVG. The only file that includes FreeType.
+// Writes figures as SVG. The only file that includes FreeType.
 #include "paint/svg.hpp"
 
 #include <ft2build.h>
@@ -24,24 +24,25 @@
 
 namespace achilles {
 
-// The measures of the one font as its file has them, for drawings whose letters somebody else will set.
+// Metrics of the font from its file, for drawings whose text another program renders.
 
-// All lengths are shares of the em but those of width().
+// All lengths except those of width() are fractions of the em.
 class FontFile {
  public:
-    // `fonts`: the folder that holds DejaVuSans.ttf. Throws std::runtime_error if it cannot be read.
+    // `fonts`: the folder of DejaVuSans.ttf. Throws std::runtime_error if it cannot be read.
     explicit FontFile(const std::filesystem::path& fonts);
     ~FontFile();
     FontFile(const FontFile&) = delete;
     FontFile& operator=(const FontFile&) = delete;
 
     struct Glyph {
-        double advance = 0.0, left = 0.0, right = 0.0, bottom = 0.0, top = 0.0;  // the ink's box, up from the base line
+        double advance = 0.0, left = 0.0, right = 0.0, bottom = 0.0, top = 0.0;  // box of the ink, upward from the
+                                                                                 // baseline
     };
     const Glyph& glyph(char32_t code) const;
-    // Of a line of text of that height, as a painter with this font would set it.
+    // Width of a line of text of height `size`, as a painter with this font would place it.
     float width(const std::string& label, float size) const;
-    // Of a line of text: the em by its height, and the base line from its top by its height.
+    // Fractions of the line height: the em, and the distance of the baseline from the top.
     double em() const { return em_; }
     double base() const { return base_; }
 
@@ -65,7 +66,7 @@ FontFile::FontFile(const std::filesystem::path& fonts) : face_(std::make_unique<
     const std::string file = (fonts / "DejaVuSans.ttf").string();
     if (FT_Init_FreeType(&face_->library) != 0 || FT_New_Face(face_->library, file.c_str(), 0, &face_->face) != 0)
         throw std::runtime_error(file + ": the font cannot be read; install the package fonts-dejavu-core");
-    // A line is as high as the font's ascent and descent together: so do painters of interfaces count.
+    // The height of a line is the font's ascent plus descent, as in ImGui.
     const FT_Face face = face_->face;
     const double height = face->ascender - face->descender;
     em_ = face->units_per_EM / height;
@@ -96,7 +97,7 @@ float FontFile::width(const std::string& label, float size) const {
 
 namespace {
 
-// Curves keep to this distance, in pixels: finer than any print.
+// Maximum error of thinned curves, in pixels: finer than any print.
 constexpr double thinning_tolerance = 0.01;
 
 // Two decimals, no trailing zeros, no "-0".
@@ -113,17 +114,17 @@ std::string color(const char* attribute, Color c) {
     return text;
 }
 
-// Letters of one kind in a row.
+// Consecutive letters of one kind.
 struct Span {
     std::string text;
     bool italic = false;
     int script = 0;
-    double dx = 0.0;  // before it, from where the last one ended
-    double up = 0.0;  // of its base line
+    double dx = 0.0;  // horizontal offset from the end of the previous span
+    double up = 0.0;  // height of its baseline
     bool same_kind(const Letter& letter) const { return italic == letter.italic && script == letter.script; }
 };
 
-// Every cell as several pixels: some programs smooth what they enlarge, whatever they are asked for.
+// Each cell becomes several pixels, because some programs interpolate enlarged images in any case.
 Image image_of(const Cells& cells) {
     constexpr int most = 8, side = 2048;
     const int times = std::clamp(side / std::max({cells.columns, cells.rows, 1}), 1, most);
@@ -138,7 +139,7 @@ Image image_of(const Cells& cells) {
     return image;
 }
 
-// Writes the items of a sheet, one after the other.
+// Writes the items of a sheet in order.
 class Writer {
  public:
     explicit Writer(const FontFile& font) : font_(font) {}
@@ -156,10 +157,10 @@ class Writer {
         if (points.empty()) return;
         body_ += fmt::format("<g clip-path=\"url(#{})\"{} stroke-width=\"{}\">\n", clip(path.clip),
                              color("stroke", stroke.color), number(stroke.width));
-        // Solid pieces are one path: where they lie on one another, as those of a periodic motion do, the soft edges of
-        // many would add up to hard ones.
+        // Solid pieces form one path. Separate paths that overlap, as for a periodic motion, would add up their
+        // anti-aliased edges.
         if (stroke.dash.empty()) body_ += "<path d=\"";
-        double length = 0.0;  // so far, along the curve: dashes do not begin anew after a break
+        double length = 0.0;  // arc length so far: dashes continue across a break
         for (auto begin = points.begin(); begin != points.end();) {
             const auto end = std::find_if_not(begin, points.end(), is_finite);
             if (begin != end) write_piece(begin, end, stroke, length);
@@ -169,7 +170,7 @@ class Writer {
         body_ += "</g>\n";
     }
 
-    // What a closed line encloses.
+    // Fills the interior of a closed line.
     void fill(const std::vector<Point>& rim, const Color& inside, const Rectangle& within) {
         if (rim.size() < 3 || inside.a == 0 || !std::all_of(rim.begin(), rim.end(), is_finite)) return;
         body_ += fmt::format("<path clip-path=\"url(#{})\"{} d=\"M", clip(within), color("fill", inside));
@@ -238,7 +239,7 @@ class Writer {
  private:
     using Points = std::vector<Point>::const_iterator;
 
-    // Renderers count in single precision: what is far outside is cut away.
+    // Renderers use single precision, so the part of a path far outside is clipped.
     static std::vector<Point> nearby(const Path& path) {
         constexpr double far = 1e5;
         const auto is_near = [](const Point& p) {
@@ -248,13 +249,13 @@ class Writer {
         return cut(path.points, {-far, -far, far, far}, {}, 0.0);
     }
 
-    // A part of the path that is open, or a path of its own with its dashes.
+    // Writes a part of the path that is open, or a separate path with dashes.
     void write_piece(Points begin, Points end, const Stroke& stroke, double& length) {
         const bool is_dashed = !stroke.dash.empty();
         body_ += is_dashed ? "<path d=\"M" : body_.back() == '"' ? "M" : " M";
         for (Points p = begin; p != end; ++p) body_ += (p == begin ? "" : " ") + number(p->x) + "," + number(p->y);
         if (!is_dashed) return;
-        // Strokes have round ends, which stick out by half their width: the dashes are that much shorter.
+        // Strokes have round ends, which extend by half the stroke width: dashes are shortened by that.
         body_ += "\" stroke-dasharray=\"";
         for (std::size_t i = 0; i < stroke.dash.size(); ++i)
             body_ +=
@@ -269,7 +270,7 @@ class Writer {
         return name;
     }
 
-    // Dots are letters of their own, put over the middle of the one they belong to.
+    // Splits letters into spans. Dots are separate characters, centered above their letter.
     std::vector<Span> spans(const std::vector<Letter>& line, double em) const {
         std::vector<Span> result;
         double dx = 0.0;
@@ -307,7 +308,7 @@ class Writer {
         }
     }
 
-    static constexpr double dot_gap = 0.08;  // between a letter and its dots, of the em
+    static constexpr double dot_gap = 0.08;  // between a letter and its dots, as a fraction of the em
 
     const FontFile& font_;
     std::string body_;
@@ -315,7 +316,7 @@ class Writer {
     std::map<std::tuple<float, float, float, float>, std::string> clips_;
 };
 
-// The file around what was written into it.
+// The complete file around the written body.
 std::string file_of(const Writer& writer, const SvgSize& size, const Notes& notes) {
     const double height_mm = size.width_mm * size.height / size.width;
     const std::string extent = size.width_mm > 0.0

@@ -1,4 +1,4 @@
-// A figure as SVG: the same sheet as in a PNG, with text as text. And the notes such a file carries.
+// Writes a figure as SVG from the same sheet as a PNG, with text as text. Also reads the notes of such a file.
 #pragma once
 
 #include <filesystem>
@@ -11,19 +11,19 @@
 namespace achilles {
 
 struct SvgSize {
-    int width, height;      // in units of the file: pixels, as whoever opens it takes them
+    int width, height;      // in units of the file, which viewers take as pixels
     double scale;           // of text and strokes
-    double width_mm = 0.0;  // on paper, which the file says then; 0: it says pixels
+    double width_mm = 0.0;  // width on paper, written to the file; 0: sizes are in pixels
 };
 
-// The file's text. `fonts`: the folder of the font that decides how much room a label gets. Throws std::runtime_error
-// if the font is missing, or a note holds what XML cannot (control characters, broken UTF-8).
+// The text of an SVG file. `fonts`: folder of the font that determines the widths of labels. Throws std::runtime_error
+// if the font is missing or a note cannot be stored in XML (control characters, invalid UTF-8).
 std::string svg(const Figure& figure, const SvgSize& size, const std::filesystem::path& fonts, const Notes& notes);
-// The same of a mechanism, with equal axes in the middle of the picture.
+// The same for a mechanism, with equal axes and centered in the picture.
 std::string svg(const Drawing& world, const Color& background, const SvgSize& size, const std::filesystem::path& fonts,
                 const Notes& notes);
 
-// The notes that svg() put into a text, in order. Throws std::runtime_error that says what is wrong.
+// The notes that svg() wrote, in order. Throws std::runtime_error with the reason if they are damaged.
 Notes svg_notes(std::string_view text);
 
 }  // namespace achilles

@@ -14,17 +14,17 @@ namespace achilles {
 
 namespace {
 
-// Beyond what 8-bit coverage can show along a straight edge (0.05 px is 13 of 255 at the rim of a stroke).
+// Below what 8-bit coverage resolves along a straight edge (0.05 px is 13 of 255 at the edge of a stroke).
 constexpr double thinning_tolerance = 0.05;
 
-// Before its points a curve keeps two vertices of its own in the list: the bounding box and colour, then the width and
-// the number of points.
+// Before its points a curve has two header vertices in the list: the bounding box and color, then the width and the
+// number of points.
 constexpr std::size_t header_vertices = 2;
 
-// A vertex's uv.x: whether the edge to the next vertex is drawn.
+// uv.x of a vertex: whether the edge to the next vertex is drawn.
 constexpr float pen_down = 1.0F, pen_up = 0.0F;
 
-// Marks a command as a curve. Another renderer would call it, and draw no curve.
+// Marks a command as a curve. Other renderers would call it and draw nothing.
 void curve_mark(const ImDrawList*, const ImDrawCmd*) {}
 
 const char* edge_vertex = R"(#version 330 core
@@ -46,8 +46,8 @@ void main() {
     gl_Position = pen > 0.5 ? vec4(2.0 * p / region.zw - 1.0, 0.0, 1.0) : vec4(2.0, 2.0, 2.0, 1.0);
 })";
 
-// Coverage of a pixel by a stroke with round ends: the overlap of the stroke's width with the pixel's, both along the
-// line from the nearest point of the edge. Right for strokes thinner than a pixel too.
+// Coverage of a pixel by a stroke with round ends: the overlap of the stroke's width with the pixel's, along the line
+// from the nearest point of the edge. Also correct for strokes thinner than a pixel.
 const char* edge_fragment = R"(#version 330 core
 flat in vec2 a, b;
 uniform vec2 stroke;
@@ -108,7 +108,8 @@ void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenS
         const bool here = is_finite(points[i]), next = i + 1 < points.size() && is_finite(points[i + 1]);
         list->PrimWriteVtx(here ? vec(points[i]) : ImVec2(0.0F, 0.0F), {here && next ? pen_down : pen_up, 0.0F}, 0);
     }
-    // No index points at these vertices: what follows counts from behind them, or a long curve would use up 16 bits.
+    // No index refers to these vertices. Later indices are relative to their end, so that a long curve does not exhaust
+    // 16 bits.
     list->_CmdHeader.VtxOffset = static_cast<unsigned>(list->VtxBuffer.Size);
     list->_OnChangedVtxOffset();
 }
@@ -172,7 +173,7 @@ void CurvePainter::draw_mask(const Region& region, int fineness, double width, s
     gl_.Uniform2f(gl_.GetUniformLocation(edges_, "stroke"), static_cast<float>(width * fineness / 2.0),
                   static_cast<float>(fineness));
 
-    // One instance per edge: the same vertices, read once from this one and once from the next.
+    // One instance per edge: the same vertex array, read from this vertex and from the next one.
     gl_.BindVertexArray(vertices_);
     gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer);
     const auto attribute = [&](GLuint location, GLint components, std::size_t offset) {
@@ -203,14 +204,14 @@ void CurvePainter::composite(const Region& region, int fineness, unsigned color,
     gl_.DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
 }
 
-// ---- pictures of cells ----
+// ---- rasters of cells ----
 
 namespace {
 
-// Marks a command as tiles. Another renderer would call it, and draw none.
+// Marks a command as tiles. Other renderers would call it and draw nothing.
 void tiles_mark(const ImDrawList*, const ImDrawCmd*) {}
 
-// Before its cells a picture keeps this in the list, in as many vertices as it takes.
+// Header in the list before the cells of a picture; it takes as many vertices as needed.
 struct Header {
     Rectangle area;
     std::int32_t columns, rows;
@@ -253,7 +254,7 @@ void add_tiles(ImDrawList* list, const Rectangle& area, const Cells& cells) {
     std::memcpy(reinterpret_cast<char*>(list->_VtxWritePtr) + header_bytes, cells.colors.data(),
                 cells.colors.size() * sizeof(Color));
     list->_VtxWritePtr += vertices;
-    // No index points at these vertices: what follows counts from behind them.
+    // No index refers to these vertices. Later indices are relative to their end.
     list->_CmdHeader.VtxOffset = static_cast<unsigned>(list->VtxBuffer.Size);
     list->_OnChangedVtxOffset();
 }
@@ -303,17 +304,17 @@ double cross(const Point& a, const Point& b) { return a.x * b.y - a.y * b.x; }
 double dot(const Point& a, const Point& b) { return a.x * b.x + a.y * b.y; }
 Point between(const Point& a, const Point& b, double s) { return {a.x + s * (b.x - a.x), a.y + s * (b.y - a.y)}; }
 
-// Williams' cone: seen from an anchor, every point passed so far subtends a small angle; as long as the directions have
-// one in common, a single edge from the anchor passes all of them within the tolerance.
+// Williams' cone algorithm. From an anchor, the tolerance around each point subtends a small angle. As long as these
+// angles have a common direction, a single edge from the anchor passes all points within the tolerance.
 class Cone {
  public:
     Cone(const Point& anchor, double tolerance) : anchor_(anchor), farthest_(anchor), tolerance_(tolerance) {}
 
-    // Takes the point in, or says that the edge must end at farthest().
+    // Accepts the point; false if the edge must end at farthest().
     bool accept(const Point& point) {
         const Point v = point - anchor_;
-        const double r = std::sqrt(dot(v, v));      // neither too large nor small for that: is_finite()
-        if (r < reach_ - tolerance_) return false;  // turned back: an extreme
+        const double r = std::sqrt(dot(v, v));      // is_finite() has excluded overflow and underflow here
+        if (r < reach_ - tolerance_) return false;  // reversal: an extreme
         if (r <= tolerance_) return true;
         if (open_ && (cross(low_, v) < 0.0 || cross(v, high_) < 0.0 || dot(low_, v) < 0.0)) return false;
         narrow(v, tolerance_ / r);
@@ -349,7 +350,7 @@ void thin_run(const std::vector<Point>& points, std::size_t begin, std::size_t e
         if (cone.accept(points[i])) continue;
         out.push_back(cone.farthest());
         cone = Cone(cone.farthest(), tolerance);
-        cone.accept(points[i]);  // a fresh cone takes everything
+        cone.accept(points[i]);  // a new cone accepts every point
     }
     if (end - begin > 1) {
         if (!cone.empty()) out.push_back(cone.farthest());
@@ -357,7 +358,7 @@ void thin_run(const std::vector<Point>& points, std::size_t begin, std::size_t e
     }
 }
 
-// Liang and Barsky: the part of the edge inside the box, as fractions of the edge.
+// Liang-Barsky clipping: the part of the edge inside the box, as fractions of the edge.
 std::optional<std::pair<double, double>> inside(const Point& a, const Point& b, const Box& box) {
     double enter = 0.0, leave = 1.0;
     const auto side = [&](double start, double step, double low, double high) {
@@ -371,7 +372,7 @@ std::optional<std::pair<double, double>> inside(const Point& a, const Point& b, 
     return std::pair{enter, leave};
 }
 
-// Collects edges; joins those that continue one another.
+// Collects edges and joins consecutive ones.
 class Pieces {
  public:
     void add(const Point& a, const Point& b) {
@@ -396,12 +397,12 @@ class Dashes {
     Dashes(const std::vector<double>& lengths, double cap) : lengths_(lengths), cap_(cap) {
         if (lengths_.size() % 2 != 0) lengths_.insert(lengths_.end(), lengths.begin(), lengths.end());
         period_ = std::accumulate(lengths_.begin(), lengths_.end(), 0.0);
-        // A pattern shorter than a pixel cannot be seen, only waited for.
+        // A pattern shorter than a pixel would be invisible but slow.
         if (!(period_ >= 1.0) || !std::isfinite(period_)) lengths_.clear();
     }
     bool solid() const { return lengths_.empty(); }
 
-    // Adds what is on of the stretch [from, to] of an edge of the given length that starts at arc length `start`.
+    // Adds the dashes in the interval [from, to] of an edge with the given length that starts at arc length `start`.
     void stroke(const Point& a, const Point& b, double start, double length, double from, double to,
                 Pieces& pieces) const {
         if (to > farthest_dash)
@@ -422,7 +423,8 @@ class Dashes {
     }
 
  private:
-    // Arc lengths beyond lose the dash's phase to rounding, and far beyond adding a period would change nothing.
+    // Beyond this arc length rounding destroys the phase of the dashes, and far beyond it adding a period has no
+    // effect.
     static constexpr double farthest_dash = 1e12;
 
     std::vector<double> lengths_;
@@ -437,7 +439,7 @@ Point gap_point() {
 }
 
 bool is_finite(const Point& point) {
-    // Beyond this the squares in the formulas would overflow; no screen is that wide.
+    // Beyond this limit the squares in the formulas would overflow. No screen is that wide.
     constexpr double largest = 1e100;
     return std::abs(point.x) < largest && std::abs(point.y) < largest;
 }
@@ -469,12 +471,12 @@ std::vector<Point> cut(const std::vector<Point>& points, const Box& box, const s
             pieces.lift();
             continue;
         }
-        const double length = dashes.solid() ? 0.0 : std::hypot(b.x - a.x, b.y - a.y);  // nobody else asks
+        const double length = dashes.solid() ? 0.0 : std::hypot(b.x - a.x, b.y - a.y);  // not needed for solid lines
         const auto part = inside(a, b, box);
         if (!part) {
             pieces.lift();
         } else if (dashes.solid() || length == 0.0) {
-            // The ends themselves, not a + 1 * (b - a): neighbours must join exactly.
+            // The end points themselves instead of a + 1 * (b - a), because adjacent edges must join exactly.
             pieces.add(part->first > 0.0 ? between(a, b, part->first) : a,
                        part->second < 1.0 ? between(a, b, part->second) : b);
         } else {

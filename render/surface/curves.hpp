@@ -1,9 +1,9 @@
-// Anti-aliased curves inside an ImGui draw list. ImGui's own polylines lose ink and grow spikes at sharp corners, which
-// impacts are; here every edge covers its pixels exactly, overlaps keep the larger coverage, and the whole curve is
-// laid over the picture once.
+// Anti-aliased curves in an ImGui draw list. ImGui's own polylines lose ink and have spikes at sharp corners, such as
+// impacts. Here the coverage of every pixel by every edge is exact, overlapping edges keep the larger coverage, and the
+// whole curve is blended once.
 //
-// A curve travels in the draw list's vertex buffer behind a callback, so it lives exactly as long as the list does, and
-// a frame needs no memory of its own.
+// A curve is stored in the vertex buffer of the draw list, behind a callback. Hence it lives as long as the list, and a
+// frame needs no extra memory.
 #pragma once
 
 #include <vector>
@@ -17,26 +17,26 @@ struct ImDrawList;
 
 namespace achilles {
 
-// How a curve is stroked, in pixels. The dashes count from the first point along the whole curve.
+// Stroke of a curve, in pixels. The dashes continue from the first point along the whole curve.
 struct ScreenStroke {
     Color color;
     double width = 1.5;
     std::vector<double> dash;
 };
 
-// Draws a polyline given in pixels, breaking at points that are not finite, inside the list's current clip rectangle.
+// Draws a polyline given in pixels inside the list's current clip rectangle. Points that are not finite break it.
 void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenStroke& stroke);
 
-// Whether the command was made by add_curve.
+// Whether add_curve() made the command.
 bool is_curve(const ImDrawCmd& command);
 
-// Where a frame goes.
+// Framebuffer that receives a frame.
 struct Target {
     GLuint framebuffer = 0;
     int width = 0, height = 0;
 };
 
-// The graphics side: the mask and its two programs.
+// OpenGL part: the coverage mask and its two programs.
 class CurvePainter {
  public:
     // `fineness` 2: the mask has twice the resolution and is averaged down.
@@ -45,8 +45,8 @@ class CurvePainter {
     CurvePainter(const CurvePainter&) = delete;
     CurvePainter& operator=(const CurvePainter&) = delete;
 
-    // Draws the curve of one command; the list's vertices are in `vertex_buffer`. Leaves the target bound, everything
-    // else about the state changed.
+    // Draws the curve of one command. The vertices of the list are in `vertex_buffer`. The target stays bound; all
+    // other state may change.
     void draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target);
 
  private:
@@ -65,15 +65,15 @@ class CurvePainter {
     int mask_width_ = 0, mask_height_ = 0;
 };
 
-// A picture of cells inside a draw list. Like a curve it travels in the list's vertex buffer behind a callback.
+// ---- rasters of cells: stored like curves, in the list's vertex buffer behind a callback ----
 
 // Draws the cells as rectangles inside the list's current clip rectangle.
 void add_tiles(ImDrawList* list, const Rectangle& area, const Cells& cells);
 
-// Whether the command was made by add_tiles.
+// Whether add_tiles() made the command.
 bool are_tiles(const ImDrawCmd& command);
 
-// The graphics side.
+// OpenGL part.
 class TilesPainter {
  public:
     explicit TilesPainter(const Gl& gl);
@@ -81,7 +81,7 @@ class TilesPainter {
     TilesPainter(const TilesPainter&) = delete;
     TilesPainter& operator=(const TilesPainter&) = delete;
 
-    // Leaves the target bound, everything else about the state changed.
+    // The target stays bound; all other state may change.
     void draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target);
 
  private:
@@ -89,7 +89,7 @@ class TilesPainter {
     GLuint program_ = 0, vertices_ = 0;
 };
 
-// Polylines in pixels, made small before they are drawn: thinned, clipped, cut into dashes. No ImGui, no OpenGL.
+// ---- polylines in pixels, reduced before drawing: thinned, clipped, split into dashes; without ImGui and OpenGL ----
 struct Box {
     double x_low = 0.0, y_low = 0.0, x_high = 0.0, y_high = 0.0;
 };
@@ -98,13 +98,13 @@ struct Box {
 Point gap_point();
 bool is_finite(const Point& point);
 
-// Fewer points, never farther than `tolerance` from the line that is left; extremes and corners stay. Breaks (points
-// that are not finite) stay too, as gap points.
+// Reduces the number of points. No point is farther than `tolerance` from the remaining line; extremes and corners are
+// kept. Breaks (points that are not finite) remain as gap points.
 std::vector<Point> thinned(const std::vector<Point>& points, double tolerance);
 
-// The parts of a polyline inside the box. `dash` is on, off, on, ... in pixels, counted from the first point along the
-// whole curve, in and out of the box, so that dashes do not crawl when the view moves; empty: solid. Of dashes a
-// `cap` is taken off at either end, because strokes have round ends that stick out by half their width.
+// The parts of a polyline inside the box. `dash`: lengths on, off, on, ... in pixels; empty: solid. Dashes continue
+// from the first point along the whole curve, inside and outside the box, so that they do not move with the view. Each
+// dash is shortened by `cap` at both ends, because strokes have round ends that extend by half their width.
 std::vector<Point> cut(const std::vector<Point>& points, const Box& box, const std::vector<double>& dash, double cap);
 
 }  // namespace achilles

@@ -14,7 +14,7 @@ namespace achilles {
 
 namespace {
 
-// The top row of a frame is row 0 of its texture: nothing has to be flipped but the copy to a window.
+// The top row of a frame is row 0 of its texture, so that only the copy to a window must be flipped.
 const char* triangle_vertex = R"(#version 330 core
 layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 texture_at;
@@ -164,7 +164,7 @@ Image Canvas::read(bool transparent) const {
     if (!transparent) return image;
     image.alpha.resize(pixels);
     gl_.ReadPixels(0, 0, image.width, image.height, GL_ALPHA, GL_UNSIGNED_BYTE, image.alpha.data());
-    // Drawn over nothing, colours come out multiplied by their alpha.
+    // On transparency, colors are premultiplied by alpha.
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         const int alpha = image.alpha[i / 3];
         if (alpha > 0)

@@ -1,4 +1,4 @@
-// Draws what ImGui has to say into a framebuffer of its own, so that a window, an image and a test get the same bytes.
+// Draws ImGui's draw data into its own framebuffer, so that a window, an image and a test get the same bytes.
 #pragma once
 
 #include "image/image.hpp"
@@ -11,7 +11,7 @@ struct ImDrawList;
 
 namespace achilles {
 
-// One per OpenGL context; that context must be current whenever a member is called, the destructor included.
+// One per OpenGL context, which must be current for every member call including the destructor.
 class Canvas {
  public:
     // `curve_fineness`: see CurvePainter.
@@ -20,14 +20,14 @@ class Canvas {
     Canvas(const Canvas&) = delete;
     Canvas& operator=(const Canvas&) = delete;
 
-    // Uploads the font atlas of the current ImGui context; again after it was rebuilt.
+    // Uploads the font atlas of the current ImGui context. Call it again after the atlas was rebuilt.
     void load_fonts();
-    // Draws the frame over the opaque colour, or over nothing. Throws std::runtime_error if the frame is too large.
+    // Draws the frame on an opaque color, or on transparency. Throws std::runtime_error if the frame is too large.
     void draw(const ImDrawData& data, const float (&clear)[3]);
     void draw_over_nothing(const ImDrawData& data);
-    // The last frame; `transparent`: with its alpha.
+    // The last frame; with its alpha channel if `transparent`.
     Image read(bool transparent = false) const;
-    // Copies the last frame to the context's own framebuffer, where a window shows it.
+    // Copies the last frame to the default framebuffer of the context, which a window shows.
     void show() const;
 
  private:

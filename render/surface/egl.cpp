@@ -1,4 +1,4 @@
-// Offscreen drawing by EGL on Mesa's surfaceless platform, the successor of OSMesa. The only file that includes EGL.
+// Offscreen rendering via EGL on Mesa's surfaceless platform, the successor of OSMesa. The only file that includes EGL.
 #include <EGL/egl.h>
 #include <EGL/eglext.h>
 
@@ -14,7 +14,7 @@ namespace achilles {
 
 namespace {
 
-// Loaded by hand like OSMesa: the window chooses its own.
+// Loaded at run time like OSMesa, because the window uses its own library.
 struct Egl {
     decltype(&eglGetProcAddress) address;
     decltype(&eglInitialize) initialize;
@@ -25,7 +25,7 @@ struct Egl {
     EGLDisplay display = EGL_NO_DISPLAY;
 };
 
-// A variable of the environment as long as this lives; one that the user has set stays.
+// Sets an environment variable during its lifetime, unless the user has set it.
 class Variable {
  public:
     Variable(const char* name, const char* value) : name_(name), ours_(std::getenv(name) == nullptr) {
@@ -54,7 +54,7 @@ const Egl& egl() {
         library.find("eglMakeCurrent", egl.make_current);
         const auto display = reinterpret_cast<PFNEGLGETPLATFORMDISPLAYEXTPROC>(egl.address("eglGetPlatformDisplayEXT"));
         if (display == nullptr) throw std::runtime_error("libEGL.so.1 does not support platforms");
-        // A graphics card would draw other bytes.
+        // A graphics card would produce other bytes.
         const Variable software("LIBGL_ALWAYS_SOFTWARE", "true");
         egl.display = display(EGL_PLATFORM_SURFACELESS_MESA, nullptr, nullptr);
         if (egl.display == EGL_NO_DISPLAY || egl.initialize(egl.display, nullptr, nullptr) == EGL_FALSE)
@@ -76,7 +76,7 @@ MemoryContext egl_context() {
         made = library.create_context(library.display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
     if (made == EGL_NO_CONTEXT) throw std::runtime_error("libEGL.so.1 cannot make an OpenGL 3.3 context");
     const auto bind = [&library](EGLContext context) {
-        library.bind_api(EGL_OPENGL_API);  // of this thread
+        library.bind_api(EGL_OPENGL_API);  // for this thread
         if (library.make_current(library.display, EGL_NO_SURFACE, EGL_NO_SURFACE, context) == EGL_FALSE)
             throw std::runtime_error("libEGL.so.1 cannot use its OpenGL context in this thread");
     };
@@ -84,7 +84,7 @@ MemoryContext egl_context() {
     context.owned =
         std::shared_ptr<void>(made, [&library](void* ended) { library.destroy_context(library.display, ended); });
     context.make_current = [bind, made] { bind(made); };
-    // Must not throw: it ends scopes. What cannot be released was not ours.
+    // Must not throw, because it is called at the end of scopes. If release fails, the context was not current.
     context.release = [&library] {
         library.bind_api(EGL_OPENGL_API);
         library.make_current(library.display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);

@@ -45,7 +45,7 @@ void Events::release_all() {
     for (const int number : {0, 1, 2}) button(number, false);
 }
 
-// A key that matters only through the character it makes.
+// Whether a key only matters through its character.
 bool Events::is_letter(const Event& event) const {
     const auto is_held = [this](int code) {
         return std::find(held_.keys.begin(), held_.keys.end(), code) != held_.keys.end();
@@ -63,11 +63,12 @@ Input Events::next(bool is_typing) {
     for (; !waiting_.empty(); waiting_.pop_front()) {
         const Event& event = waiting_.front();
         const bool is_button = event.kind == Event::Kind::button, is_key = event.kind == Event::Kind::key;
-        // A move after a click would drag, a click after a move must hit where the mouse went: the one order ImGui can
-        // show in a frame is move, then click.
+        // In a frame ImGui processes a move before a click. A move after a click must therefore wait for the next
+        // frame, or it would drag; a click after a move hits the new position.
         if ((is_button || event.kind == Event::Kind::mouse) && clicked) break;
         if (is_key && pressed) break;
-        // In a text letters come first: what acts on them waits, and they wait for what acted before them.
+        // In a text field characters come first. Keys that act on them wait, and characters wait for keys that came
+        // before.
         const bool is_free = is_typing && is_key && is_letter(event);
         if (is_typing && (is_button || (is_key && !is_free)) && !held_.text.empty()) break;
         if (is_typing && event.kind == Event::Kind::character && (pressed || clicked)) break;

@@ -1,5 +1,5 @@
-// Our own table of the OpenGL 3.3 core functions we use. libGL is never linked: the same names come from OSMesa or from
-// the window system, whichever made the context, and a program may hold both.
+// Table of the OpenGL 3.3 core functions in use. libGL is never linked: the same functions come from OSMesa or from the
+// window system, whichever made the context, and a program may use both.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -8,10 +8,10 @@
 
 namespace achilles {
 
-// The address of an OpenGL function by name, null if unknown: OSMesaGetProcAddress, glfwGetProcAddress.
+// Address of an OpenGL function by name, null if unknown, such as OSMesaGetProcAddress or glfwGetProcAddress.
 using AddressFunction = std::function<void*(const char*)>;
 
-// No side of a picture is longer: llvmpipe's limit, and OSMesa's.
+// Maximum side of a picture in pixels: the limit of llvmpipe and OSMesa.
 constexpr int largest_texture = 16384;
 
 // X(type, name without "gl")
@@ -69,14 +69,14 @@ constexpr int largest_texture = 16384;
     X(PFNGLVIEWPORTPROC, Viewport)
 
 struct Gl {
-    // Throws std::runtime_error naming the first function that is missing.
+    // Throws std::runtime_error with the name of the first missing function.
     explicit Gl(const AddressFunction& address_of);
 
-    // A program from two shaders; throws std::runtime_error with the compiler's words.
+    // Links two shaders; throws std::runtime_error with the compiler's message.
     GLuint program(const char* vertex, const char* fragment) const;
-    // A texture of the given format, nearest neighbour, clamped. `pixels` may be null.
+    // A texture of the given format, nearest-neighbor filtering, clamped. `pixels` may be null.
     GLuint texture(GLint format, int width, int height, GLenum layout, const void* pixels) const;
-    // A framebuffer that draws into the texture; throws std::runtime_error if the driver refuses.
+    // A framebuffer that renders into the texture; throws std::runtime_error if the driver refuses.
     GLuint framebuffer(GLuint texture) const;
 
 #define ACHILLES_GL_MEMBER(type, name) type name = nullptr;

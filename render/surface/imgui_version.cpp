@@ -17,7 +17,7 @@ constexpr ImGuiKey_ keypad_enter = ImGuiKey_KeyPadEnter;
 constexpr ImGuiKey keypad_enter = ImGuiKey_KeypadEnter;
 #endif
 
-// The keys that ImGui's own widgets listen to.
+// The keys that ImGui's widgets use.
 constexpr std::pair<decltype(keypad_enter), int> widget_keys[] = {{ImGuiKey_Tab, key::tab},
                                                                   {ImGuiKey_LeftArrow, key::left},
                                                                   {ImGuiKey_RightArrow, key::right},
@@ -41,7 +41,7 @@ constexpr std::pair<decltype(keypad_enter), int> widget_keys[] = {{ImGuiKey_Tab,
                                                                   {ImGuiKey_Y, 'Y'},
                                                                   {ImGuiKey_Z, 'Z'}};
 
-// ImGui's letters have 16 bits.
+// ImGui's characters have 16 bits.
 ImWchar letter_of(char32_t code) { return static_cast<ImWchar>(code <= 0xFFFF ? code : 0xFFFD); }
 
 }  // namespace
@@ -84,7 +84,7 @@ ImGuiKey name_of(int code) {
 
 }  // namespace
 
-// A frame takes all that it is told: what must not happen within one, Events has parted already.
+// ImGui must process all events of a frame at once, because Events has already separated those that conflict.
 void prepare_keys(ImGuiIO& io) { io.ConfigInputTrickleEventQueue = false; }
 
 void hold_keys(ImGuiIO& io, const std::vector<int>& codes) {
@@ -163,7 +163,7 @@ int line_of_cursor(const ImGuiInputTextState& input, const std::string&) {
 
 namespace {
 
-// The letters of the size with which the font was added: there are no others.
+// The glyphs at the size with which the font was added; there are no other sizes.
 ImFontBaked& letters_of(ImFont* font) { return *font->GetFontBaked(font->LegacySize); }
 
 Clipboard& used_clipboard() { return *static_cast<Clipboard*>(ImGui::GetPlatformIO().Platform_ClipboardUserData); }
@@ -179,10 +179,10 @@ void use_clipboard(Clipboard& clipboard) {
     };
 }
 
-// By the functions under those that 1.92 calls obsolete and may be built without.
+// Uses the functions underneath those that 1.92 declares obsolete and that may be disabled.
 FontTexture font_texture(ImFontAtlas& atlas) {
     if (!atlas.TexIsBuilt) ImFontAtlasBuildMain(&atlas);
-    const ImTextureData& data = *atlas.TexData;  // of 32 bits a pixel, unless somebody asks for less
+    const ImTextureData& data = *atlas.TexData;  // 32 bits per pixel by default
     return {data.Pixels, data.Width, data.Height};
 }
 
@@ -293,7 +293,7 @@ void walk_menus_by_keys(bool walk) {
     int& flags = ImGui::GetIO().ConfigFlags;
     flags = walk ? flags | ImGuiConfigFlags_NavEnableKeyboard : flags & ~ImGuiConfigFlags_NavEnableKeyboard;
 #if IMGUI_VERSION_NUM < 18900
-    // Space alone presses there.
+    // These versions activate items with Space only.
     if (walk && GImGui->NavId != 0 && is_pressed(key::enter, false)) press_item(GImGui->NavId, false);
 #endif
 }

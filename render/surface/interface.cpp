@@ -15,8 +15,8 @@ namespace achilles {
 
 namespace {
 
-// What labels may contain: Latin, combining dots, Greek, punctuation, super- and subscripts, arrows, mathematics, the
-// shapes of play and pause. ImGui reads this while it builds, so it must not be a local.
+// Characters of labels: Latin, combining dots, Greek, punctuation, superscripts and subscripts, arrows, mathematics,
+// play and pause symbols. Static, because ImGui reads it while it builds the fonts.
 constexpr ImWchar glyphs[] = {0x0020, 0x017F, 0x02D9, 0x02D9, 0x0300, 0x0308, 0x0370, 0x03FF, 0x2010,
                               0x206F, 0x2070, 0x209C, 0x2102, 0x2135, 0x2190, 0x21FF, 0x2200, 0x22FF,
                               0x25A0, 0x25FF, 0x2758, 0x275E, 0x27E8, 0x27E9, 0xFFFD, 0xFFFD, 0};
@@ -31,7 +31,7 @@ ImVec4 mixed(const Color& color, const Color& with, float share) {
     return {part(color.r, with.r), part(color.g, with.g), part(color.b, with.b), 1.0F};
 }
 
-// One accent on the theme's greys: what the hand touches turns towards it.
+// A single accent color on the grays of the theme: controls under the mouse are blended toward it.
 void colors(ImGuiStyle& style, const Theme& theme) {
     if (theme.dark)
         ImGui::StyleColorsDark(&style);
@@ -68,7 +68,7 @@ void shape(ImGuiStyle& style) {
     style.WindowRounding = style.ChildRounding = 0.0F;  // panels tile the window
     style.FrameRounding = style.GrabRounding = style.PopupRounding = style.TabRounding = 4.0F;
     style.ScrollbarRounding = 6.0F;
-    style.GrabMinSize = 10.0F;  // ImGui's own is 12 since 1.88
+    style.GrabMinSize = 10.0F;  // ImGui's own value is 12 since 1.88
     style.WindowBorderSize = 1.0F;
     style.FramePadding = {8.0F, 4.0F};
     style.ItemSpacing = {8.0F, 6.0F};
@@ -78,7 +78,7 @@ void shape(ImGuiStyle& style) {
 }  // namespace
 
 Interface::Interface(const SurfaceOptions& options) : options_(options) {
-    // ImGui itself aborts on a missing font.
+    // ImGui aborts if a font is missing.
     for (const char* name : {proportional, monospaced})
         if (const auto file = options.fonts / name; !std::filesystem::is_regular_file(file))
             throw std::runtime_error(file.string() + ": the font is missing; install the package fonts-dejavu-core");
@@ -89,10 +89,10 @@ Interface::Interface(const SurfaceOptions& options) : options_(options) {
     ImGui::SetCurrentContext(before);
     const Active active(*this);
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // nothing is remembered between runs
+    io.IniFilename = nullptr;  // nothing is stored between runs
     io.LogFilename = nullptr;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
-    io.ConfigInputTextCursorBlink = false;  // a window that waits for letters can sleep
+    io.ConfigInputTextCursorBlink = false;  // a window with an active text field can sleep
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     prepare_keys(io);
     restyle(options.scale, options.dark);
@@ -109,7 +109,7 @@ Interface::Active::~Active() { ImGui::SetCurrentContext(before_); }
 void Interface::restyle(double scale, bool dark) {
     const Active active(*this);
     build_fonts(scale);
-    ImGuiStyle style;  // from the defaults: scaling twice would round twice
+    ImGuiStyle style;  // from the defaults, because scaling twice would round twice
     shape(style);
     style.ScaleAllSizes(static_cast<float>(scale));
     ImGui::GetStyle() = style;
@@ -121,12 +121,12 @@ void Interface::build_fonts(double scale) {
     atlas.Clear();
     const auto add = [&](const char* name, double pixels) {
         ImFontConfig config;
-        config.OversampleH = config.OversampleV = 1;  // letters stand on whole pixels
+        config.OversampleH = config.OversampleV = 1;  // letters are at whole pixels
         config.PixelSnapH = true;
         const std::string file = (options_.fonts / name).string();
         atlas.AddFontFromFileTTF(file.c_str(), static_cast<float>(pixels), &config, glyphs);
     };
-    // The first is the interface's own.
+    // The first font is the default font of the interface.
     std::vector<double> sizes;
     for (const double size :
          {options_.text_size, options_.figure_text_size, options_.figure_text_size * double{script_size}}) {
@@ -134,8 +134,8 @@ void Interface::build_fonts(double scale) {
         if (std::find(sizes.begin(), sizes.end(), pixels) == sizes.end()) sizes.push_back(pixels);
     }
     for (const double pixels : sizes) add(proportional, pixels);
-    add(monospaced, std::max(std::round(0.9 * options_.text_size * scale), 4.0));  // the last: monospace_font()
-    font_texture(atlas);  // letters are measured where no canvas draws them, too
+    add(monospaced, std::max(std::round(0.9 * options_.text_size * scale), 4.0));  // the last font: monospace_font()
+    font_texture(atlas);  // letters are also measured where no canvas draws them
 }
 
 const ImDrawData& Interface::frame(const FrameFunction& draw, int width, int height, double seconds) {

@@ -1,5 +1,5 @@
-// ImGui as both surfaces set it up: its fonts, two looks, no file written, no clock read. What depends on
-// ImGui's version is in imgui_version.hpp.
+// ImGui's setup for both surfaces: its fonts and two themes, without writing files or reading the clock. Differences
+// between ImGui versions are in imgui_version.hpp.
 #pragma once
 
 #include "figure/palette.hpp"
@@ -13,13 +13,13 @@ namespace achilles {
 
 class Interface {
  public:
-    // Throws std::runtime_error if the font is missing.
+    // Throws std::runtime_error if a font is missing.
     explicit Interface(const SurfaceOptions& options);
     ~Interface();
     Interface(const Interface&) = delete;
     Interface& operator=(const Interface&) = delete;
 
-    // Makes this ImGui's current context for a while: a frame of one surface may draw a picture on another.
+    // Makes this ImGui's current context during its lifetime. A frame of one surface may draw a picture on another.
     class Active {
      public:
         explicit Active(const Interface& interface);
@@ -30,11 +30,12 @@ class Interface {
      private:
         ImGuiContext* before_;
     };
-    // Rebuilds fonts and style for this scale; the font texture must be loaded again afterwards.
+    // Rebuilds fonts and style for this scale. The font texture must be loaded again afterwards.
     void restyle(double scale, bool dark);
-    // One frame of the draw function, `seconds` after the last. Must be active, like all that follows from it.
+    // Runs the draw function for one frame, `seconds` after the last one. Requires an Active object, as do all
+    // functions below.
     const ImDrawData& frame(const FrameFunction& draw, int width, int height, double seconds);
-    // The colour behind everything in the last frame.
+    // Background color of the last frame.
     const float (&background() const)[3] { return background_; }
 
  private:
@@ -45,16 +46,16 @@ class Interface {
     float background_[3] = {};
 };
 
-// Hands the user's input to ImGui's current context, before a frame.
+// Passes the user's input to ImGui's current context, before a frame.
 void apply(const Input& input);
 
-// From here on everything in the current context has this theme's colours; before a frame's first window.
+// Sets the theme of the current context. Call it before the first window of a frame.
 void use_theme(bool dark);
 const Theme& current_theme();
 
-// The font of the current context made for a size nearest to the one asked for: text at that size is sharp.
+// The font of the current context whose size is closest to `pixels`. Text at the font's own size is sharp.
 ImFont* font_for(double pixels);
-// The font whose letters are all of one width, for text that is edited, a little smaller than the interface's.
+// The monospaced font for text fields, slightly smaller than the interface's font.
 ImFont* monospace_font();
 
 }  // namespace achilles

@@ -25,7 +25,7 @@ namespace {
 bool can_make_code() {
     constexpr std::size_t size = 4096;
     void* const page = mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (page == MAP_FAILED) return true;  // something else is wrong, and will be told
+    if (page == MAP_FAILED) return true;  // another problem, which is reported elsewhere
     const bool can = mprotect(page, size, PROT_READ | PROT_EXEC) == 0;
     munmap(page, size);
     return can;
@@ -39,13 +39,13 @@ void choose_renderer() {
     setenv("DRAW_USE_LLVM", "0", 1);
 }
 
-// Offscreen drawing by OSMesa.
+// ---- offscreen rendering via OSMesa ----
 
 namespace {
 
 constexpr const char* library_name = "libOSMesa.so.8";
 
-// libOSMesa exports the whole of OpenGL; linked, it would take the place of the window's. So it is loaded by hand.
+// libOSMesa exports all of OpenGL. If linked, it would replace the window's OpenGL, so it is loaded at run time.
 struct OsMesa {
     decltype(&osmesa::OSMesaCreateContextAttribs) create;
     decltype(&osmesa::OSMesaDestroyContext) destroy;
@@ -84,7 +84,7 @@ MemoryContext os_mesa_context() {
     MemoryContext context;
     context.owned =
         std::shared_ptr<void>(made, [&library](void* ended) { library.destroy(static_cast<osmesa::Context>(ended)); });
-    // OSMesa wants a picture of its own; we draw into a texture.
+    // OSMesa needs a buffer of its own, but the canvas renders into a texture.
     const auto buffer = std::make_shared<std::array<unsigned char, 4>>();
     context.make_current = [&library, made, buffer] {
         library.make_current(made, buffer->data(), GL_UNSIGNED_BYTE, 1, 1);

@@ -1,4 +1,4 @@
-// A context of OpenGL 3.3 core that draws in memory, by Mesa's software renderer: as much of one as Offscreen needs.
+// OpenGL 3.3 core contexts that render in memory with Mesa's software renderer, for class Offscreen.
 #pragma once
 
 #include <functional>
@@ -7,7 +7,8 @@
 
 #include "surface/gl.hpp"
 
-// What of OSMesa's interface we use, declared here: Mesa no longer has the header, and its library is loaded by hand.
+// The part of OSMesa's interface in use. It is declared here because Mesa no longer has the header and its library is
+// loaded at run time.
 namespace achilles::osmesa {
 
 using Context = struct OpaqueContext*;
@@ -25,14 +26,15 @@ inline constexpr int rgba = 0x1908, format = 0x22, profile = 0x33, core_profile 
 
 namespace achilles {
 
-// A library that is loaded by hand: a machine without it gets a sentence, and its names take nobody else's place.
+// A library loaded with dlopen. If it is missing, the user gets a message; its symbols are not exported to other
+// libraries.
 class LoadedLibrary {
  public:
-    // Loads it for good: what draws keeps threads and exit handlers. Throws std::runtime_error that names it if it is
-    // missing.
+    // Loads the library and never unloads it, because renderers keep threads and exit handlers. Throws
+    // std::runtime_error with its name if it is missing.
     explicit LoadedLibrary(const char* name);
 
-    // The function of this name. Throws std::runtime_error that names both if there is none.
+    // Looks up a function. Throws std::runtime_error with both names if it is missing.
     template <class Function>
     void find(const char* name, Function& function) const {
         function = reinterpret_cast<Function>(address(name));
@@ -46,17 +48,17 @@ class LoadedLibrary {
 };
 
 struct MemoryContext {
-    std::shared_ptr<void> owned;                  // the context ends with it
-    std::function<void()> make_current, release;  // current for the calling thread, and no more
+    std::shared_ptr<void> owned;                  // the context is destroyed with it
+    std::function<void()> make_current, release;  // makes it current for the calling thread, and the inverse
     AddressFunction address;
 };
 
-// All throw std::runtime_error that names the library if it is missing, or what else is.
-MemoryContext os_mesa_context();  // by libOSMesa
-MemoryContext egl_context();      // by libEGL without a surface (egl.cpp)
+// All throw std::runtime_error with the name of the missing library, or with another reason.
+MemoryContext os_mesa_context();  // via libOSMesa
+MemoryContext egl_context();      // via libEGL without a surface (egl.cpp)
 
-// Mesa's renderer compiles what it draws with, and crashes where the system makes no memory executable: then another is
-// chosen, which draws other last bits and takes longer. To be called before a context is made.
+// Mesa's renderer generates machine code and crashes where the system forbids executable memory. In this case another
+// renderer is chosen, which is slower and differs in the last bits. Call it before a context is created.
 void choose_renderer();
 
 }  // namespace achilles

@@ -18,16 +18,17 @@ namespace achilles {
 
 namespace {
 
-// What Mesa and its compiler take of the address space for pictures of this size, bytes. Measured without a limit on two cores:
-// 460 MB and 9 bytes a pixel; each core more has a thread with its stack.
+// Address space (bytes) that Mesa and its compiler need for pictures of this size. Measured without a limit on two
+// cores: 460 MB and 9 bytes per pixel; each further core has a thread with its stack.
 std::size_t room_for(int width, int height) {
     constexpr std::size_t fixed = std::size_t{512} << 20, per_core = std::size_t{8} << 20, per_pixel = 16;
-    const std::size_t cores = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);  // Mesa uses no more
+    const std::size_t cores = std::clamp(std::thread::hardware_concurrency(), 2U, 16U);  // Mesa uses at most 16
     return fixed + (cores - 2) * per_core +
            per_pixel * static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
 }
 
-// OSMesa, or EGL where Debian no longer has it; both draw the same bytes. ACHILLES_OFFSCREEN=osmesa or egl insists.
+// OSMesa, or EGL where Debian no longer has OSMesa; both produce the same bytes. ACHILLES_OFFSCREEN=osmesa or egl
+// forces one.
 MemoryContext memory_context() {
     choose_renderer();
     const char* const given = std::getenv("ACHILLES_OFFSCREEN");
@@ -49,7 +50,7 @@ MemoryContext memory_context() {
     }
 }
 
-// Letters in the middle of a frame would depend on a clock; every frame takes this long.
+// Fixed duration of a frame, so that pictures do not depend on a clock.
 constexpr double frame_seconds = 1.0 / 60.0;
 
 void check_size(int width, int height) {
@@ -75,7 +76,7 @@ struct Offscreen::Implementation {
         canvas.reset();
     }
 
-    // Mesa's drivers share one notion of a current context with a window's, so ours is current only while we use it.
+    // Mesa's drivers and a window share one current context, so this one is current only while it is used.
     struct Current {
         explicit Current(Implementation& owner) : context(owner.context) { context.make_current(); }
         ~Current() { context.release(); }
@@ -104,7 +105,7 @@ Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input
     Input held = input;
     for (int pass = 1; pass < passes; ++pass) {
         step(draw, held);
-        held.wheel = held.wheel_sideways = 0.0;  // what happened once must not happen again
+        held.wheel = held.wheel_sideways = 0.0;  // one-time input must not repeat
         held.text.clear();
     }
     const Interface::Active active(implementation_->interface);

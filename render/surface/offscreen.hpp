@@ -1,5 +1,5 @@
-// Frames without a display: Mesa's software renderer in memory, by OSMesa or, where that is missing, by EGL. Only
-// memory_context.cpp knows OSMesa, only egl.cpp EGL.
+// Frames without a display: Mesa's software renderer in memory, via OSMesa or, if that is missing, EGL. Only
+// memory_context.cpp uses OSMesa, only egl.cpp uses EGL.
 #pragma once
 
 #include <cstddef>
@@ -13,9 +13,9 @@
 
 namespace achilles {
 
-// Memory for libraries that end the process where the system refuses them any.
+// ---- memory for libraries that abort the process if an allocation fails ----
 
-// There is not enough memory, in a sentence.
+// Out of memory, with a message.
 class NotEnoughMemory : public std::bad_alloc {
  public:
     explicit NotEnoughMemory(std::string sentence) : sentence_(std::move(sentence)) {}
@@ -25,25 +25,26 @@ class NotEnoughMemory : public std::bad_alloc {
     std::string sentence_;
 };
 
-// Throws NotEnoughMemory where the process may not have so many bytes more, by its limit of memory (ulimit -v): Mesa and LLVM
-// would end it by a segmentation fault. Nothing stays reserved.
+// Throws NotEnoughMemory if the memory limit of the process (ulimit -v) does not leave room for this many more bytes.
+// Mesa and LLVM would crash with a segmentation fault instead. Nothing stays reserved.
 void check_room(const std::string& purpose, std::size_t bytes);
 
 class Offscreen {
  public:
-    // Loads the library at run time. Throws std::runtime_error naming the packages if both are missing, or what is out
-    // of limits.
+    // Loads the library at run time. Throws std::runtime_error with the names of the packages if both are missing, or
+    // if an option is out of range.
     explicit Offscreen(const SurfaceOptions& options);
     ~Offscreen();
     Offscreen(const Offscreen&) = delete;
     Offscreen& operator=(const Offscreen&) = delete;
-    // Draws `passes` frames (ImGui needs three before windows have settled) with a fixed time step and reads the last.
+    // Draws `passes` frames with a fixed time step and reads the last one. ImGui needs three frames until windows have
+    // settled.
     Image frame(const FrameFunction& draw, int passes = 1);
-    // The same with a mouse and a keyboard.
+    // The same with mouse and keyboard input.
     Image frame(const FrameFunction& draw, int passes, const Input& input);
-    // One frame that nobody looks at: everything happens but the drawing of pixels.
+    // Runs one frame without rendering its pixels.
     void step(const FrameFunction& draw, const Input& input = {});
-    // From the next frame on.
+    // Takes effect from the next frame on.
     void restyle(double scale, bool dark);
 
  private:

@@ -28,12 +28,12 @@ static_assert(key::escape == GLFW_KEY_ESCAPE && key::remove == GLFW_KEY_DELETE &
               key::keypad_enter == GLFW_KEY_KP_ENTER && key::left_shift == GLFW_KEY_LEFT_SHIFT &&
               key::right_super == GLFW_KEY_RIGHT_SUPER && ' ' == GLFW_KEY_SPACE && 'A' == GLFW_KEY_A);
 
-// A minimised window looks up this often.
+// A minimized window checks for events at this interval.
 constexpr double sleep_seconds = 0.5;
-// ImGui needs a few frames after an event before everything has settled.
+// ImGui needs a few frames after an event to settle.
 constexpr int settling_frames = 4;
 
-// By another thread: what it has made is new to the next frames.
+// Set by another thread: the next frames must show its results.
 std::atomic<bool> was_woken = false;
 
 std::string& last_glfw_error() {
@@ -46,15 +46,15 @@ bool display_is_named() {
     return display != nullptr && *display != '\0';
 }
 
-// Starts GLFW, once. It is never stopped: that would unload the graphics driver, which not every driver survives, and
-// the process's end does the same.
+// Starts GLFW once. It is never terminated: that would unload the graphics driver, which some drivers do not survive,
+// and the end of the process has the same effect.
 bool glfw_works() {
     choose_renderer();
     glfwSetErrorCallback([](int, const char* text) { last_glfw_error() = text; });
     return display_is_named() && glfwInit() == GLFW_TRUE;
 }
 
-// The size asked for, or what the monitor has room for. GLFW multiplies it by the monitor's scale.
+// The requested size, limited to the monitor. GLFW multiplies it by the monitor's scale.
 std::pair<int, int> fitting_size(const SurfaceOptions& surface) {
     GLFWmonitor* monitor = glfwGetPrimaryMonitor();
     if (monitor == nullptr) return {surface.width, surface.height};
@@ -68,8 +68,8 @@ std::pair<int, int> fitting_size(const SurfaceOptions& surface) {
     return {fit(surface.width, width, across), fit(surface.height, height, down)};
 }
 
-// A letter key, plus and minus by what is printed on it, not by where it is: Ctrl+Q is Ctrl+Q on every keyboard. The key of
-// plus is that of '=', which it is where it takes Shift.
+// Code of a key. Letters, plus and minus follow the keyboard layout instead of the position: Ctrl+Q is Ctrl+Q on every
+// keyboard. Plus has the code of '=', with which it shares a key on layouts where it needs Shift.
 int code_of(int code, int scancode) {
     const char* name = glfwGetKeyName(code, scancode);
     const bool one_letter = name != nullptr && name[0] != '\0' && name[1] == '\0';
@@ -108,7 +108,7 @@ struct Window::Implementation {
             if (cursor != nullptr) glfwDestroyCursor(cursor);
     }
 
-    // OSMesa and the window's driver share one notion of a current context, so ours is current only while we use it.
+    // OSMesa and the window's driver share one current context, so this one is current only while it is used.
     struct Current {
         explicit Current(GLFWwindow* window) { glfwMakeContextCurrent(window); }
         ~Current() { glfwMakeContextCurrent(nullptr); }
@@ -173,7 +173,7 @@ SurfaceOptions Window::Implementation::with_scale(SurfaceOptions surface, GLFWwi
 void Window::Implementation::listen() {
     glfwSetWindowUserPointer(window, this);
     glfwSetCursorPosCallback(window, [](GLFWwindow* w, double x, double y) {
-        // Where the window system counts in units larger than pixels, we do not.
+        // The window system may use units larger than a pixel; convert to pixels.
         int width = 1, height = 1, pixels_across = 1, pixels_down = 1;
         glfwGetWindowSize(w, &width, &height);
         glfwGetFramebufferSize(w, &pixels_across, &pixels_down);
@@ -204,7 +204,7 @@ void Window::Implementation::listen() {
 
 void Window::Implementation::listen_to_keyboard() {
     glfwSetKeyCallback(window, [](GLFWwindow* w, int code, int scancode, int action, int modifiers) {
-        if (action == GLFW_REPEAT || code == GLFW_KEY_UNKNOWN) return;  // ImGui repeats by itself
+        if (action == GLFW_REPEAT || code == GLFW_KEY_UNKNOWN) return;  // ImGui repeats keys itself
         const int letter = code_of(code, scancode);
         if (action == GLFW_PRESS && letter == 'Q' && (modifiers & GLFW_MOD_CONTROL) != 0)
             glfwSetWindowShouldClose(w, GLFW_TRUE);
@@ -266,9 +266,9 @@ void Window::Implementation::restyle() {
 void Window::Implementation::frame(const FrameFunction& draw) {
     int width = 0, height = 0;
     glfwGetFramebufferSize(window, &width, &height);
-    if (width < 1 || height < 1) return glfwWaitEventsTimeout(sleep_seconds);  // minimised
+    if (width < 1 || height < 1) return glfwWaitEventsTimeout(sleep_seconds);  // minimized
     const double now = glfwGetTime();
-    // ImGui refuses a step of zero; after a sleep nothing must jump.
+    // ImGui rejects a time step of zero. After a sleep nothing must jump.
     const double step = last_frame < 0.0 ? 1.0 / 60.0 : std::clamp(now - last_frame, 1e-4, 0.1);
     last_frame = now;
     unsettled = std::max(unsettled - 1, 0);

@@ -1,4 +1,4 @@
-// A desktop window. The only file that knows GLFW.
+// A desktop window. window.cpp is the only file that uses GLFW.
 #pragma once
 
 #include <functional>
@@ -21,21 +21,21 @@ class Window {
     // Draws frames until the user closes the window or close() is called.
     void run(const FrameFunction& draw);
     void close();
-    // Asked whenever the window is to be closed; if it says no, the window stays.
+    // Called whenever the window is about to close. If it returns false, the window stays open.
     void on_close(std::function<bool()> may_close);
-    // false: nothing moves by itself, so after a few frames the window sleeps until the user does something, or where
-    // `pause` is positive so many seconds at most. true at first.
+    // `moving` false: nothing changes by itself, so the window sleeps after a few frames until user input, or for at
+    // most `pause` seconds if that is positive. Initially true.
     void keep_drawing(bool moving, double pause = 0.0);
-    // For a draw function that has changed what it shows after it drew it: some more frames follow, as after an event.
+    // Requests some more frames, for a draw function that changes its content after drawing it.
     void draw_again();
-    // Wakes a sleeping window, which draws some frames; the only member that another thread may call.
+    // Wakes a sleeping window, which then draws some frames. The only member function that other threads may call.
     static void wake();
-    // From the next frame on; `scale` comes on top of what the monitor asks for.
+    // Takes effect from the next frame on; `scale` multiplies the scale of the monitor.
     void restyle(double scale, bool dark);
     void set_title(const std::string& title);
-    // The last frame as it was drawn, before the window system touched it.
+    // The last frame as drawn, before the window system could change it.
     Image picture();
-    // Files dropped on the window since the last call.
+    // Files dropped onto the window since the last call.
     std::vector<std::string> dropped();
 
     static bool display_available();

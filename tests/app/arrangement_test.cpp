@@ -1,4 +1,4 @@
-// Where the panels stand: none covers another, none leaves the window, all can be hidden and resized.
+// Layout of the panels: no overlap, none outside the window; all can be hidden and resized.
 #include "panels/arrangement.hpp"
 
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ void expect_no_overlap(const Arrangement& arrangement, const Measures& m, const 
     }
 }
 
-// The energy under the results: with its course where there is room, without where there is less, and never at the price of the
-// mechanism.
+// The energy panel below the results: with its time plot if there is room, without it if there is less, and never at
+// the expense of the mechanism.
 TEST(Arrangement, has_room_for_the_energy) {
     for (const bool presents : {false, true})
         for (const float unit : {1.0F, 1.5F, 2.0F})
@@ -79,7 +79,7 @@ TEST(Arrangement, has_room_for_the_energy) {
             }
 }
 
-// To a class: the mechanism beside one plot, the results and the player; at every size that is promised.
+// Presentation mode: the mechanism beside one plot, the results and the player, at every supported size.
 TEST(Arrangement, shows_a_class_what_it_looks_at) {
     Scene scene;
     scene.perform(command::Present{true});
@@ -109,7 +109,7 @@ TEST(Arrangement, shows_a_class_what_it_looks_at) {
     EXPECT_GT(alone.mechanism.width, 1300.0);
 }
 
-// Equations stand where the events do, and have their place without them.
+// Equations replace the events, and keep that place if the events are hidden.
 TEST(Arrangement, equations_share_the_place_of_the_events) {
     Scene scene;
     const Measures m = measures(1600.0F, 1000.0F);
@@ -160,7 +160,7 @@ TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
         }
 }
 
-// A message takes no room from the configuration plane that its axes need: it stands above the plots then.
+// An error message must not make the configuration plane too low: it is then shown above the plots.
 TEST(Arrangement, the_plane_is_never_too_low) {
     for (const auto& [width, height] : {std::pair{1280.0F, 800.0F}, {1024.0F, 700.0F}, {900.0F, 600.0F}})
         for (const float error : {0.0F, 60.0F, 130.0F, 200.0F}) {
@@ -184,7 +184,7 @@ TEST(Arrangement, the_plane_is_never_too_low) {
         ASSERT_TRUE(hands.state.places.contains("plane")) << height;
         EXPECT_GE(hands.state.places.at("plane").height, 60.0F) << height;
     }
-    // With room for both it stands where it ever stood.
+    // With room for both it is above the picture.
     Scene scene;
     const Arrangement a = arrange(scene, measures(1600.0F, 1000.0F, 1.0F, 70.0F));
     EXPECT_EQ(a.error.x, a.mechanism.x);
@@ -262,13 +262,13 @@ TEST(Panels, are_resized_by_the_gap_beside_them) {
         EXPECT_NEAR(after.x - before.x, dx, 2.0) << panel;
         EXPECT_NEAR(after.y - before.y, dy, 2.0) << panel;
     }
-    // The journal of it leads to the same sizes; nothing of it is a change to undo.
+    // The recorded journal leads to the same sizes; resizing is not an undo step.
     EXPECT_FALSE(hands.session.can_undo());
     Session replayed = test::session("ball_on_sine");
     for (const char* panel : {"controls", "plots", "events"})
         replayed.apply(command::Size{panel, hands.session.scene().share(panel)});
     EXPECT_EQ(to_text(replayed), to_text(hands.session));
-    // A double click on the gap: as it fits.
+    // A double click on the gap restores the automatic size.
     hands.point("splitter plots");
     for (int i = 0; i < 2; ++i) {
         hands.hand.left = true;
@@ -290,7 +290,7 @@ TEST(Theme, is_chosen_in_the_window_and_changes_plots_and_panels) {
     hands.hand = {};
     const Image dark = hands.picture();
     EXPECT_GT(worst_tile(light, dark), 0.5);
-    // All of it: not one corner of the window keeps the light page.
+    // The whole window: no corner keeps the light background.
     for (const auto& [x, y] :
          {std::pair{1, 1}, std::pair{1278, 1}, std::pair{1, 798}, std::pair{1278, 798}, std::pair{286, 400}}) {
         const std::size_t at = 3 * (static_cast<std::size_t>(y) * 1280 + static_cast<std::size_t>(x));
@@ -307,7 +307,7 @@ TEST(Theme, is_part_of_the_journal_but_no_change_of_the_system) {
     session.apply(parse_command("theme dark"));
     EXPECT_FALSE(session.can_undo());
     EXPECT_NE(to_text(session).find("theme dark\n"), std::string::npos);
-    // What is made later has it, too.
+    // So do plots made later.
     session.apply(parse_command("set g 2"));
     EXPECT_EQ(session.plots()[0].curves[0].stroke.color, phase_color(dark_theme(), Phase::Kind::hybrid));
     session.apply(parse_command("open double_pendulum"));

@@ -1,4 +1,4 @@
-// The file browser of the dialogs: what it lists, and how keys walk it.
+// The file browser of the dialogs: its entries and its keys.
 #include "panels/browser.hpp"
 
 #include <gtest/gtest.h>
@@ -113,7 +113,7 @@ TEST(Browser, a_click_goes_there) {
     EXPECT_EQ(o.hands.session.system(), o.at("systems/mine.toml"));
 }
 
-// Where it is written to is told; what is there is not written over by Enter.
+// The dialog shows where the file is written; Enter does not overwrite an existing file.
 TEST(Browser, of_saving_shows_the_folder_that_is_written_to) {
     Tree tree;
     test::Hands hands("ball_on_sine");

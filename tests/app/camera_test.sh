@@ -1,6 +1,5 @@
 #!/bin/bash
-# The cameras in a real window: the menu chooses one, the middle button moves the picture, and the picture of the record is
-# drawn from it.
+# The cameras in a real window: the menu selects one, the middle button pans, and a picture is drawn from the record.
 #     camera_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 

@@ -1,4 +1,4 @@
-// The certificate of a Zeno point, as the explorer tells it.
+// The certificate card of a Zeno point in the explorer.
 #include <gtest/gtest.h>
 
 #include "app/open.hpp"
@@ -26,7 +26,7 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     EXPECT_EQ(lines[4].rfind("gap'' from −8.5", 0), 0u) << lines[4];
     session.apply(command::UseConditions{Conditions::paper});
     EXPECT_EQ(certificate_lines(first_zeno(session.trajectory())).size(),
-              3u);  // no statement about the restart
+              3u);  // no bound on the reinitialization
     int decisive = 0;
     for (const Inequality& inequality : sharp.certificate->inequalities()) {
         EXPECT_LT(inequality.left, inequality.right);
@@ -59,7 +59,7 @@ TEST(CertificatePanel, OpensWithAClickAndCloses) {
         input.left = false;
         frame(input);
     };
-    session.apply(command::Seek{2.7252});  // the list follows the present
+    session.apply(command::Seek{2.7252});  // the list follows the current time
     for (int i = 0; i < 3; ++i) frame();
     int zeno = 0;
     const auto& events = session.trajectory().events;

@@ -1,4 +1,4 @@
-// What a user sees on the command line: statuses and files. What is refused stands in refused_test.cpp.
+// The command line: exit statuses and files. For refused input see refused_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -73,7 +73,7 @@ TEST(Cli, JsonHasTheContractsKeys) {
     FAIL() << "no Zeno event";
 }
 
-// How long a run took is told to a person who asks, not to its files.
+// The computing time is printed only on request and never written to files.
 TEST(Cli, TheSameRunGivesTheSameBytes) {
     const Folder folder;
     const Answer first = folder.run("simulate double_pendulum --json -");
@@ -130,7 +130,7 @@ TEST(Cli, SaysWhatProofsAssume) {
     EXPECT_EQ(assumed["ulps"], 2);
     EXPECT_EQ(assumed["ulps_hyperbolic"], 4);
     EXPECT_NE(out.find(assumed["library"].get<std::string>()), std::string::npos) << out;
-    // Without a Zeno point nothing is proved.
+    // Without a Zeno point there is no certificate.
     EXPECT_EQ(folder.run("simulate ball_on_sine --end 1 --verbose").out.find("assume"), std::string::npos);
 }
 
@@ -140,7 +140,7 @@ TEST(Cli, AStoppedRunSaysSoAndWritesWhatThereIs) {
     EXPECT_EQ(answer.status, 3);
     EXPECT_NE(answer.err.find("achilles: the run stopped early: "), std::string::npos) << answer.err;
     EXPECT_EQ(json::parse(content(folder.path() / "a.json"))["outcome"]["kind"], "too many impacts");
-    // The summary has the reason, and one is enough.
+    // The summary states the reason, so the message does not repeat it.
     const Answer summed_up = folder.run("simulate ball_on_sine --max-impacts 3");
     const std::string reason = "3 impacts by t = ";
     EXPECT_NE(summed_up.out.find(reason), std::string::npos) << summed_up.out;
@@ -155,7 +155,7 @@ TEST(Cli, TheStepsOfARunCanBeLimited) {
     EXPECT_EQ(root["options"]["max_steps"], 30);
 }
 
-// By its own limit, or where the system gives no more: what there is is written.
+// Memory limits: the run's own and the system's. The results so far are written.
 TEST(Cli, TheMemoryOfARunIsLimited) {
     const Folder folder;
     const std::string run = "simulate ball_in_bowl --end 1e8 --max-steps 1000000000 ";
@@ -184,8 +184,8 @@ TEST(Cli, OutputReplacesAFileThroughALink) {
     EXPECT_TRUE(json::accept(content(folder.path() / "old.json")));
 }
 
-// The answer first, in at most 15 lines: what happened, a row for each change of the contact state, how accurate it is, what to
-// type next. Numbers have no digit that the certificates and the estimate do not support.
+// The summary has at most 15 lines: what happened, a row per change of the contact state, the accuracy, and what to
+// type next. Numbers have only digits that certificates and error estimate support.
 TEST(Cli, SimulateAnswersFirst) {
     const Answer answer = Folder().run("simulate ball_on_sine");
     EXPECT_EQ(answer.status, 0);
@@ -245,7 +245,7 @@ TEST(Cli, PaperDrawsSixFiguresTwoPagesAndATable) {
     EXPECT_NE(answer.out.find("2.72514217"), std::string::npos);
     EXPECT_EQ(answer.out.rfind(content(folder.path() / "achilles-paper/table.txt"), 0), 0u);
     EXPECT_EQ(folder.run("paper --out /dev/null/x").status, 2);
-    // Nothing is left of what could not be drawn, and a folder that was there stays.
+    // Nothing remains after a failure to draw, but an existing folder is kept.
     const Answer refused = folder.run("paper --out new", "ACHILLES_OFFSCREEN=none");
     EXPECT_EQ(refused.status, 2);
     EXPECT_EQ(refused.err, "achilles: ACHILLES_OFFSCREEN must be osmesa or egl, not 'none'\n");

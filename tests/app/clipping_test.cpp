@@ -1,5 +1,5 @@
-// No letter is cut, and none lies on another: in the draw data every glyph lies inside its clip rectangle, scrolled text
-// excepted, and beside its neighbours.
+// No letter is clipped and none overlaps another: in the draw data every glyph lies within its clip rectangle, except
+// in scrolled text, and beside its neighbors.
 #include <imgui.h>
 #include <imgui_internal.h>
 
@@ -15,7 +15,7 @@
 namespace achilles {
 namespace {
 
-// Which letters a quad of the atlas can be: by where it is in the texture.
+// Maps a quad's texture coordinates to glyphs of the font atlas.
 class Atlas {
  public:
     Atlas() {
@@ -24,7 +24,7 @@ class Atlas {
                 if (glyph.Visible != 0) glyphs_.push_back(&glyph);
         std::sort(glyphs_.begin(), glyphs_.end(), [](auto* a, auto* b) { return a->V0 < b->V0; });
     }
-    // The glyph that holds this part of the texture; null for a fill or a line.
+    // The glyph that contains this part of the texture; null for a fill or a line.
     const ImFontGlyph* at(ImVec2 low, ImVec2 high) const {
         constexpr float slip = 1e-6F;
         for (const ImFontGlyph* glyph : glyphs_) {
@@ -54,7 +54,7 @@ struct Placed {
     ImWchar code;
 };
 
-// Letters of two words that lie on one another. Neighbours of one word touch, and dots stand over theirs.
+// True if letters of different words overlap. Letters of one word may touch, and dots may be above theirs.
 bool is_on(const Placed& a, const Placed& b) {
     const auto width = [](const Placed& letter) { return letter.to.x - letter.from.x; };
     const auto height = [](const Placed& letter) { return letter.to.y - letter.from.y; };
@@ -71,8 +71,7 @@ std::string letters_on_others(std::vector<Placed> letters) {
     return found;
 }
 
-// A window that can be scrolled shows a part of its text up and down; sideways all the same must be seen, but in the
-// editor, where long lines move with the cursor.
+// A scrollable window may clip its text vertically, but not horizontally, except the editor, whose long lines scroll.
 bool is_editor(const char* name) { return std::string(name).find("##text") != std::string::npos; }
 bool scrolls(const char* name) {
     const ImGuiWindow* window = ImGui::FindWindowByName(name);
@@ -126,7 +125,7 @@ std::vector<Cut> cut_letters(const ImDrawData& data) {
     return cuts;
 }
 
-// Names of 25 letters, where others have one.
+// A system with names of 25 letters.
 const char* const long_names =
     R"toml(title = "A ball with names of twenty-five letters and a long title that may not fit"
 [[coordinate]]
@@ -160,7 +159,7 @@ restitution = 0.3
 [run]
 end_time = 5
 )toml";
-// And of a world as large as a planet's.
+// A system with a world as large as a planet.
 std::string large_world() {
     std::string text = R"toml(title = "A ball around a planet"
 [[coordinate]]
@@ -277,7 +276,7 @@ TEST_P(Clipping, cuts_no_letter) {
         interface.restyle(scale * session.scene().text_scale(width / scale, height / scale), false);
         for (const char* theme : {"theme light", "theme dark"}) {
             session.apply(parse_command(theme));
-            // What a refused command says goes with the next; here it is to be seen.
+            // Apply only up to this command: its error message must be visible.
             for (const char* line : state.journal)
                 if (std::string(line).find("set y -5") == 0) session.apply(parse_command(line));
             PanelState panels = test::panels();
@@ -297,7 +296,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Clipping,
                                          std::tuple(1280, 800, 1.0), std::tuple(1600, 1000, 1.0),
                                          std::tuple(2560, 1600, 2.0), std::tuple(1600, 1000, 1.5)));
 
-// The test itself: text too long for its window is found, sideways and downwards, and text that fits is not.
+// Tests the test: text that is too long for its window is found, horizontally and vertically; text that fits is not.
 TEST(Clipping, finds_what_is_cut) {
     Interface interface(test::surface(400, 300));
     const Interface::Active active(interface);

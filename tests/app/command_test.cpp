@@ -184,7 +184,7 @@ TEST(Journal, names_the_place_of_a_mistake) {
     }
 }
 
-// Every name, and none twice: two for what a name switches on and off, one for look and look all.
+// Every name appears once; twice if the command also switches off, and for `look` and `look all`.
 TEST(Command, is_listed_once) {
     std::string list;
     try {
@@ -215,7 +215,7 @@ TEST(Command, ListsAllWhereNoneIsNear) {
     }
 }
 
-// Every option has a command of its own, or shares one; values that no run can have are refused when it is done.
+// Every option has a command, alone or with others; invalid values are refused when the command is performed.
 TEST(Command, sets_every_option) {
     for (const auto group : options_by_command()) {
         const command::UseOption use(group[0], Options{});
@@ -236,7 +236,7 @@ TEST(Journal, is_a_file_that_grows_line_by_line) {
             so_far.push_back(command);
             EXPECT_EQ(read_journal(file), so_far);
         }
-        journal.append(command::Set{"e", 3.0});  // which is refused
+        journal.append(command::Set{"e", 3.0});  // the session refuses it
         journal.take_back();
         EXPECT_EQ(read_journal(file), so_far);
         journal.append(one_of_each.front());
@@ -244,7 +244,7 @@ TEST(Journal, is_a_file_that_grows_line_by_line) {
         EXPECT_EQ(read_journal(file), so_far);
         journal.take_back();
     }
-    EXPECT_THROW(JournalFile{file}, InputError);  // what was recorded is not lost
+    EXPECT_THROW(JournalFile{file}, InputError);  // an existing record is kept
     EXPECT_EQ(read_journal(file), one_of_each);
     std::filesystem::remove(file);
     EXPECT_THROW(read_journal(file), InputError);

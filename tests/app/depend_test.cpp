@@ -1,4 +1,4 @@
-// What a quantity of the present run depends on: asked, made beside the window, drawn, and as the slope of a sweep.
+// Sensitivities in the explorer: request, background job, panel, and tangent of a sweep.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -62,7 +62,7 @@ TEST(Depend, compares_over_whole_sliders_in_their_order) {
     for (const Influences::Of& one : known.all) order += one.name + " ";
     EXPECT_EQ(order, "m r g e x x' y y' ");
     EXPECT_DOUBLE_EQ(known.find("y")->over_slider, by(session, "y") * (3.0 - 0.06));
-    // Along this slider equal ratios are equally long.
+    // Sliders with a logarithmic scale.
     EXPECT_TRUE(goes_by_ratios(0.1, 20.0));
     EXPECT_FALSE(goes_by_ratios(0.0, 20.0));
     EXPECT_DOUBLE_EQ(known.find("g")->over_slider, by(session, "g") * 9.81 * std::log(20.0 / 0.1));
@@ -114,7 +114,7 @@ TEST(Depend, says_why_there_is_none) {
     session.settle();
     EXPECT_EQ(session.influences_job().problem(), "");
     EXPECT_TRUE(session.influences_are_current());
-    // At rest on the floor: what leaves it has none, what stays on it has.
+    // At rest on the floor: derivatives for starts that leave the constraint do not exist, those along it do.
     Session resting = test::session("ball_on_floor");
     resting.apply(command::Start{{{"y", 0.06}, {"x'", 0.5}}});
     resting.apply(command::ShowDependence{"x"});
@@ -130,7 +130,7 @@ TEST(Depend, refuses_what_is_no_quantity_and_keeps_what_there_is) {
         EXPECT_NE(session.error(), "") << wrong;
         EXPECT_EQ(session.depend_text(), "zeno_time(1)");
     }
-    // Another system may know it, or not.
+    // Another system may or may not have the quantity.
     session.apply(command::ShowDependence{"y"});
     session.apply(command::Open{"double_pendulum"});
     session.settle();
@@ -146,7 +146,7 @@ TEST(Depend, is_of_the_run_that_is_shown_or_said_to_be_old) {
     for (const double g : {1.1, 1.2, 1.3}) {
         session.apply(command::Set{"g", g});
         const Influences* const known = session.influences();
-        ASSERT_NE(known, nullptr);  // there is always something to see
+        ASSERT_NE(known, nullptr);  // some result is always available
         EXPECT_EQ(session.influences_are_current(), known->run.get() == &session.trajectory());
         if (!session.influences_are_current()) {
             EXPECT_FALSE(session.sweep_tangent());
@@ -158,7 +158,7 @@ TEST(Depend, is_of_the_run_that_is_shown_or_said_to_be_old) {
     EXPECT_NE(by(session, "g"), before);
 }
 
-// A hand that moves all the time sees what is finished, and at last the last.
+// While a slider is dragged, finished results appear; in the end those of the last request.
 TEST(Depend, finishes_what_it_has_begun) {
     const Session session = test::session("ball_on_sine");
     const auto run_of = [&](double g) {
@@ -178,7 +178,7 @@ TEST(Depend, finishes_what_it_has_begun) {
     EXPECT_EQ(job.influences()->run, third);
     EXPECT_FALSE(job.is_busy());
     EXPECT_FALSE(job.ask(third, "x"));
-    job.ask(third, "y");  // of another quantity nothing stays
+    job.ask(third, "y");  // results of another quantity are dropped
     EXPECT_EQ(job.influences(), nullptr);
     job.forget();
     EXPECT_FALSE(job.is_busy());
@@ -194,9 +194,9 @@ TEST(Depend, is_in_the_recipe) {
     EXPECT_EQ(to_text(Command(command::ShowDependence{"x"})), "depend \"x\"");
 }
 
-// ---- in the sweep ----
+// ---- tangent in the sweep ----
 
-// The tangent against the points of the sweep beside it: five, the present run in the middle.
+// Compares the tangent with five sweep points around the current run.
 void touches(const std::string& system, const std::string& quantity, const std::string& name, double step) {
     Session session = asking(system, quantity);
     const double x = *session.value(name);
@@ -211,7 +211,7 @@ void touches(const std::string& system, const std::string& quantity, const std::
     EXPECT_NEAR(tangent->at(data.value(0, 2)), y(2), 1e-8) << name;
     const double slope = (8.0 * (y(3) - y(1)) - (y(4) - y(0))) / (12.0 * step);
     EXPECT_NEAR(tangent->slope, slope, 2e-4 * std::max(1.0, std::abs(slope))) << quantity << " by " << name;
-    // It touches: beside the point it leaves the curve in second order.
+    // Tangency: the distance to the curve is of second order.
     const double near = std::abs(tangent->at(data.value(0, 3)) - y(3));
     const double far = std::abs(tangent->at(data.value(0, 4)) - y(4));
     EXPECT_LT(near, 0.4 * far + 1e-8) << name;
@@ -243,7 +243,7 @@ TEST(Depend, is_no_slope_of_anything_else) {
     }
 }
 
-// ---- by hand ----
+// ---- user input ----
 
 TEST(DependPanel, sweeps_what_is_clicked) {
     Hands hands("ball_on_sine");
@@ -297,7 +297,7 @@ TEST(DependPanel, says_that_what_it_shows_is_old) {
     EXPECT_TRUE(slider.bar_is_old);
 }
 
-// For depend_window_test.sh.
+// Prints positions for depend_window_test.sh.
 TEST(DependPanel, tells_where_it_is) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"depend", true});

@@ -1,5 +1,5 @@
 #!/bin/bash
-# What a result depends on, in a real window: Ctrl+5 shows it, a click on a bar sweeps its slider; the picture of the record has
+# Sensitivities in a real window: Ctrl+5 shows them, a click on a bar sweeps its slider; a picture of the record has
 # both.
 #     depend_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"

@@ -1,4 +1,4 @@
-// `simulate --derivatives` and `--of`: what the JSON and the summary say, and what bad input gets.
+// `simulate --derivatives` and `--of`: JSON, summary, and errors.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
@@ -40,7 +40,7 @@ TEST(Derivatives, OfTheCommandLineAreThoseOfTheContract) {
         EXPECT_EQ(event["derivatives"].contains("v_before"), impact);
         EXPECT_EQ(event["derivatives"].contains("v"), !impact);
     }
-    // Without what was added it is the run without derivatives, byte for byte.
+    // Without the added fields it equals the run without derivatives, byte for byte.
     const json plain = json::parse(folder.run(exact + " --json -").out);
     run.erase("derivatives");
     run["end"].erase("derivatives");

@@ -1,4 +1,4 @@
-// The text of a system, edited by hand: what takes effect and when, what is told, what is saved where.
+// The text editor: when changes take effect, error messages, and saving.
 #include <gtest/gtest.h>
 
 #include "app/hands.hpp"
@@ -14,7 +14,7 @@ using test::content;
 using test::Folder;
 using test::Hands;
 
-constexpr int frames_of_a_pause = 26;  // 0.4 s at 60 a second, and one to hand over
+constexpr int frames_of_a_pause = 26;  // 0.4 s at 60 frames per second, and one to apply the text
 
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
     const std::size_t at = text.find(from);
@@ -24,7 +24,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
 
 std::string ball() { return test::system("ball_on_sine").source_text; }
 
-// An explorer whose editor is open.
+// An explorer with its editor open.
 struct Writer : Hands {
     explicit Writer(const std::string& system = "ball_on_sine", const SurfaceOptions& options = test::surface())
         : Hands(system, options) {
@@ -36,14 +36,14 @@ struct Writer : Hands {
         press_with_control('A');
         type(text);
     }
-    // Types a path into a dialog in place of what is there.
+    // Types a path into a dialog, replacing its content.
     void write_path(const std::string& path) {
         press_with_control('A');
         type(path);
         rest(2);
         ASSERT_EQ(state.editor.path, path);
     }
-    // Pixels in the colour of a mistake, within the text.
+    // Number of pixels in the error color within the text.
     int marked() {
         const Image image = picture();
         const Rectangle r = state.places.at("text");
@@ -120,7 +120,7 @@ TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_
     EXPECT_EQ(to_text(hands.session.trajectory()), before);
 }
 
-// The wave and the tinted line: the picture of a text with a problem is another one, and the last frame is the first.
+// The wavy underline and the tinted line change the picture; without the problem the picture is as before.
 TEST(Editor, a_problem_is_marked_in_the_text) {
     Writer hands;
     EXPECT_EQ(hands.marked(), 0);
@@ -134,7 +134,7 @@ TEST(Editor, a_problem_is_marked_in_the_text) {
 
 TEST(Editor, a_message_does_not_hide_the_line_under_the_hand) {
     Writer hands;
-    hands.write(ball() + "y = [\"x\"]");  // twice in a table: a mistake in the last line
+    hands.write(ball() + "y = [\"x\"]");  // duplicate key: an error in the last line
     hands.rest(frames_of_a_pause + 5);
     ASSERT_FALSE(hands.session.document().problems.empty());
     EXPECT_GT(hands.marked(), 300 * 10);
@@ -182,7 +182,7 @@ TEST(Editor, saves_as_and_asks_before_it_writes_over_a_file) {
     const std::string there = (folder.path() / "there.toml").string(), mine = (folder.path() / "mine.toml").string();
     Writer hands;
     hands.write(ball() + "# mine");
-    hands.click("Save");  // it came from the list: there is no file to save to yet
+    hands.click("Save");  // opened from the list, so it has no file yet
     EXPECT_EQ(hands.told(), std::vector<std::string>{to_text(Command(command::Text{ball()})).substr(0, 60)});
     hands.write_path((folder.path() / "nowhere" / "mine.toml").string());
     hands.press(key::enter);
@@ -239,7 +239,7 @@ TEST(Editor, asks_what_to_do_with_changes_that_are_not_saved) {
     hands.click("dialog Cancel");
     EXPECT_EQ(hands.session.document().text, ball() + "# 1");
     choose_pendulum();
-    hands.click("dialog Save");  // to no file yet: asks for one, then goes on
+    hands.click("dialog Save");  // without a file: asks for one, then continues
     hands.write_path(mine);
     hands.press(key::enter);
     EXPECT_EQ(content(mine), ball() + "# 1");
@@ -284,7 +284,7 @@ TEST(Editor, another_text_takes_the_place_of_the_one_under_the_hand) {
     Writer hands;
     hands.write(ball() + "# more");
     hands.rest(frames_of_a_pause);
-    hands.session.apply(command::Open{"double_pendulum"});  // a file dropped on the window, say
+    hands.session.apply(command::Open{"double_pendulum"});  // e.g. a file dropped on the window
     hands.rest(2);
     EXPECT_EQ(hands.state.editor.text, test::system("double_pendulum").source_text);
     hands.type("#");
@@ -316,7 +316,7 @@ TEST(Editor, draws_the_same_bytes_every_time_in_any_size) {
     }
 }
 
-// How far the text is scrolled, pixels.
+// Scroll position of the text, pixels.
 float scroll_of(Writer& hands) {
     float scroll = -1.0F;
     hands.surface.step(
@@ -330,7 +330,7 @@ float scroll_of(Writer& hands) {
     return scroll;
 }
 
-// The text stays where it is when a change in sight is undone, in every frame; a change out of sight is brought into it.
+// Undo of a visible change does not scroll the text in any frame; undo of a hidden one scrolls to it.
 TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
     Writer hands("ball_on_egg_crate");  // a long text
     hands.click("text");
@@ -350,7 +350,7 @@ TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
     for (int i = 0; i < 3; ++i) after.push_back(scroll_of(hands));
     EXPECT_TRUE(hands.session.document().problems.empty());
     ASSERT_EQ(hands.session.document().text, test::system("ball_on_egg_crate").source_text + "# one");
-    // Without its message the text has more lines on the screen, and two less in all.
+    // Without its message the text shows more lines, and it has two lines less.
     for (const float scroll : after) EXPECT_NEAR(scroll, before, 12.0F * 14.0F);
     EXPECT_GT(after.back(), 300.0F);
     hands.session.apply(command::Text{replaced(hands.session.document().text, "title = \"", "title = \"My ")});
@@ -358,7 +358,7 @@ TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
     EXPECT_LT(scroll_of(hands), 100.0F) << "line 7 is in sight";
 }
 
-// Another document begins at its top.
+// Another document starts at its top.
 TEST(Editor, AnotherTextBeginsAtItsTop) {
     Writer hands("ball_on_egg_crate");  // a long text
     hands.click("text");
@@ -370,7 +370,7 @@ TEST(Editor, AnotherTextBeginsAtItsTop) {
     EXPECT_EQ(scroll_of(hands), 0.0F);
 }
 
-// A value that a slider has put over that of the text is told beside the text, and is put back there.
+// A value changed by a slider is listed beside the text and can be restored there.
 TEST(Editor, TellsWhatTheRunHasOtherwiseThanTheText) {
     Writer hands;
     EXPECT_FALSE(hands.says("Differs from the text"));
@@ -392,7 +392,7 @@ TEST(Editor, TellsWhatTheRunHasOtherwiseThanTheText) {
     EXPECT_EQ(hands.session.run(), hands.session.file_run());
 }
 
-// A message begins with the name of the file; its folder has no room there.
+// A message starts with the file name, without the folder, for lack of room.
 TEST(Editor, MessagesBeginWithTheNameOfTheFile) {
     const Folder folder;
     folder.put("mine.toml", replaced(ball(), "x'^2 + y'^2", "x'^2 + yy'^2"));

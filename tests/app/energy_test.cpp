@@ -1,4 +1,4 @@
-// Where the energy is and where it went, in the window.
+// The energy panel.
 #include <gtest/gtest.h>
 
 #include "app/hands.hpp"
@@ -20,7 +20,7 @@ TEST(EnergyBar, is_shown_by_a_command_and_from_the_menu) {
     EXPECT_TRUE(hands.state.places.contains("energy course"));
 }
 
-// On the player's axis: a press there goes to the instant that is seen.
+// It shares the player's time axis: a click goes to the time at that place.
 TEST(EnergyBar, goes_where_it_is_pressed) {
     Hands hands("driven_double_pendulum", test::surface(1280, 900));
     hands.session.apply(parse_command("show energy"));
@@ -32,7 +32,7 @@ TEST(EnergyBar, goes_where_it_is_pressed) {
     EXPECT_NEAR(hands.session.time(), 0.5 * hands.session.trajectory().run.options.end_time, 0.02 * 20);
 }
 
-// A picture has no room for the course: the bar stays; the mechanism before both.
+// In a low panel the time plot is dropped but the bar stays; the mechanism has precedence over both.
 TEST(EnergyBar, gives_place_to_the_mechanism) {
     for (const int height : {480, 620, 760, 1000}) {
         Hands hands("ball_on_sine", test::surface(1100, height));

@@ -1,4 +1,4 @@
-// The equations in the window: what they say of systems, what a hand finds there, and that they are set once.
+// The equations panel: content, mouse, and caching of the layout.
 #include "panels/equations.hpp"
 
 #include <gtest/gtest.h>
@@ -93,7 +93,7 @@ TEST(Equations, of_several_contacts) {
     for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.mode.is_held(condition.contact));
 }
 
-// Lines stand below one another, none outside of the page, and no line of one column in the next.
+// Lines do not overlap, stay on the page, and do not extend into the next column.
 TEST(Equations, are_set_in_columns_that_fit) {
     for (const char* system : {"ball_on_sine", "double_pendulum", "ball_in_sloped_box", "driven_double_pendulum"}) {
         const EquationSheet sheet = sheet_of(system);
@@ -132,7 +132,7 @@ TEST(Equations, are_a_command_and_a_tab) {
     hands.click("tab events");
     EXPECT_FALSE(hands.session.scene().shows("equations"));
     EXPECT_FALSE(hands.says("mass matrix"));
-    // Where the events are hidden, the tab brings them back.
+    // If the events are hidden, their tab shows them again.
     hands.session.apply(parse_command("hide events"));
     hands.session.apply(parse_command("show equations"));
     hands.rest(2);
@@ -188,14 +188,14 @@ TEST(Equations, are_simplified_and_set_once) {
     EXPECT_EQ(view.sheet(model, run, {}), sheet) << "within its range a value changes no sign";
     EXPECT_EQ(view.set(15.0F, font(), 800.0F, 300.0F).lines.data(), line);
     EXPECT_NE(view.set(15.0F, font(), 500.0F, 300.0F).lines.data(), line);
-    // Beyond it nothing may be left out as positive that is not.
+    // For a value outside the range no sign may be assumed that does not hold.
     run.parameters[0] = -1.0;
     const EquationSheet* const other = view.sheet(model, run, {});
     ASSERT_NE(other, nullptr);
     EXPECT_EQ(text_of(*other).find("ranges of m\u2081"), std::string::npos) << text_of(*other);
 }
 
-// Nobody waits for what nobody will see: another system is opened, the window is closed.
+// Work is abandoned if the system or the window changes, without waiting.
 TEST(Equations, stop_when_they_are_told_to) {
     const Model model(test::system("kneed_leg"));  // seconds
     std::stop_source stop;
@@ -205,7 +205,7 @@ TEST(Equations, stop_when_they_are_told_to) {
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
 }
 
-// A window does not wait.
+// A window does not wait for the equations.
 TEST(Equations, come_when_they_are_ready) {
     Hands hands("double_pendulum");
     hands.state.in_window = true;

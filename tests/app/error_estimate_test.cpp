@@ -1,4 +1,4 @@
-// The explorer's estimate of a run's error: beside the run, never before it.
+// The error estimate in the explorer, computed after the run without delaying it.
 #include <gtest/gtest.h>
 
 #include "app/open.hpp"
@@ -27,7 +27,7 @@ TEST(EstimateInTheExplorer, IsThatOfTheRunThatIsShown) {
     EXPECT_FALSE(session.error_estimate()->end);
 }
 
-// Nobody waits for it in a window; at rest it is there.
+// A window does not wait for it; a settled session has it.
 TEST(EstimateInTheExplorer, ComesAfterTheRun) {
     Session session = test::session("ball_on_sine", 0.0);
     session.settle();
@@ -39,7 +39,8 @@ TEST(EstimateInTheExplorer, ComesAfterTheRun) {
     EXPECT_EQ(session.error_estimate()->end->norm, estimate_error(session.trajectory()).end->norm);
 }
 
-// A run whose end means nothing: the status line's first remark, pale plots, no digits. An ordinary one has none of it.
+// A run that is inaccurate at its end: first remark of the status line, pale plots, no digits. An accurate run shows
+// none of these.
 TEST(HorizonInTheExplorer, IsShownWhenTheEstimateIsThere) {
     const std::string file = ACHILLES_SOURCE_DIR "/tests/reference/horizon/shaker.toml";
     Session session(file, read_system(file), library());
@@ -69,7 +70,7 @@ TEST(HorizonInTheExplorer, IsShownWhenTheEstimateIsThere) {
     for (const Panel& panel : session.plots()) EXPECT_TRUE(panel.beyond.curves.empty());
 }
 
-// What waits for nobody comes later, and then the plots are composed again.
+// When the estimate arrives later, the plots are composed again.
 TEST(HorizonInTheExplorer, ComesAfterTheRun) {
     const std::string file = ACHILLES_SOURCE_DIR "/tests/reference/horizon/shaker.toml";
     Session session(file, read_system(file), library(), 0.0);

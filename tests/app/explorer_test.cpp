@@ -52,8 +52,9 @@ TEST(Explorer, every_value_has_a_slider_that_works) {
         names.insert(names.end(), {"tolerance", "end", "eps", "eps q", "eps v", "eps t"});
         for (const std::string& name : names) {
             hands.all.clear();
-            hands.click(name, name == "eps" || name == "end" ? 0.6 : 0.8);  // beside the grab, which a click only holds
-            std::erase(hands.all, Command(command::Done{}));                // of the slider before
+            // Beside the grab, since a click on the grab does not move it.
+            hands.click(name, name == "eps" || name == "end" ? 0.6 : 0.8);
+            std::erase(hands.all, Command(command::Done{}));  // ends the change of the previous slider
             ASSERT_FALSE(hands.all.empty()) << system << ": " << name;
             EXPECT_EQ(to_text(hands.all[0]).rfind(name.substr(0, name.rfind("eps ", 0) == 0 ? 3 : name.size()), 0), 0U)
                 << system << ": " << name << ": " << to_text(hands.all[0]);
@@ -132,9 +133,9 @@ TEST(Explorer, fits_any_window_and_shows_messages) {
     }
 }
 
-// tests/app/window_test.sh asks this where to put the mouse in a window of this size: it holds the button down a third
-// of the way along and drags to the right by tenths of the width. So does a hand here, at the very numbers that are
-// told: g follows the mouse, and nothing else does.
+// tests/app/window_test.sh reads from this test where to drag the mouse in a window of this size: it presses at a third
+// of the slider and moves right by tenths of the width. This test does the same with the printed numbers: g follows the
+// mouse, and nothing else changes.
 TEST(Explorer, tells_where_the_slider_of_g_is) {
     Hands hands("ball_on_sine", test::surface(1280, 800));
     ASSERT_TRUE(hands.state.places.contains("set g"));
@@ -145,7 +146,7 @@ TEST(Explorer, tells_where_the_slider_of_g_is) {
     std::printf("tab %d %d\n", static_cast<int>(tab.x), static_cast<int>(tab.y));
     ASSERT_GE(x, 0);
     ASSERT_LE(x + width, 1280);
-    ASSERT_GE(width, 50);  // tenths of it are a drag
+    ASSERT_GE(width, 50);  // a tenth of it exceeds the click tolerance
 
     hands.hand.mouse_x = x + width / 3;
     hands.hand.mouse_y = y;
@@ -154,7 +155,7 @@ TEST(Explorer, tells_where_the_slider_of_g_is) {
     hands.rest(2);
     std::vector<double> followed;
     for (int step = 0; step <= 4; ++step) {
-        if (step == 0) hands.hand.mouse_x += 4.0;  // pressed alone it may be the first of a double click
+        if (step == 0) hands.hand.mouse_x += 4.0;  // a press without motion may start a double click
         if (step > 0) hands.hand.mouse_x = x + width / 3 + step * width / 10;
         hands.rest(2);
         followed.push_back(hands.session.run().parameters[1]);
@@ -164,8 +165,8 @@ TEST(Explorer, tells_where_the_slider_of_g_is) {
     for (std::size_t i = 1; i < followed.size(); ++i) EXPECT_GT(followed[i], followed[i - 1]);
     for (const Command& command : hands.all) EXPECT_EQ(to_text(command).rfind("set g ", 0), 0U) << to_text(command);
 
-    // The told width is that of the slider: from end to end g goes through its range, which is logarithmic here. The
-    // grab takes a part of the width, so it goes a little faster.
+    // The printed width is that of the slider: over it g goes through its logarithmic range. The grab takes part of the
+    // width, so g changes a little faster.
     const auto& range = hands.session.description().parameters[1].range;
     const double share = std::log(followed[4] / followed[1]) / std::log(range[1] / range[0]);
     EXPECT_GE(share, 0.27);
@@ -181,7 +182,7 @@ TEST(ExplorerOnDisplay, the_window_shows_the_bytes_of_the_picture) {
     Window window(test::surface(), "Achilles");
     int frames = 0;
     window.run([&] {
-        ImGui::GetIO().MousePos = {-1e6F, -1e6F};  // wherever the display has its pointer, it lies on nothing
+        ImGui::GetIO().MousePos = {-1e6F, -1e6F};  // away from all controls, wherever the display's pointer is
         explorer(session, window_state);
         if (++frames == 3) window.close();
     });

@@ -1,5 +1,5 @@
-// Films: what ffmpeg is told, where it is missing or fails, and how a process that draws is followed and stopped. Another
-// program of that name stands for ffmpeg: it writes its words down.
+// Animations: the ffmpeg command, a missing or failing ffmpeg, and progress and cancellation of the drawing process. A
+// script that writes down its arguments replaces ffmpeg.
 #include "pictures/film.hpp"
 
 #include <gtest/gtest.h>
@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 
 const std::string short_film = "frames ball_on_sine --end 2 --fps 2.5 --size 320x200 --jobs 1 --out ";
 
-// A folder with an ffmpeg in it.
+// A folder with a substitute for ffmpeg.
 struct Studio : test::Folder {
-    // `what` it does: with $last, the file that it is to make, and $said, where its words go.
+    // `what`: shell commands of the substitute. $last is its output file, $said the file for its arguments.
     explicit Studio(const std::string& what =
                         "echo \"$@\" > $said; ls \"$(dirname \"$last\")\" | wc -l >> $said; echo film > \"$last\"") {
         fs::create_directory(path() / "bin");
@@ -46,10 +46,10 @@ TEST(Film, is_joined_from_its_frames_which_go) {
     EXPECT_NE(studio.said().find("palettegen"), std::string::npos);
 }
 
-// It is looked for before anything is drawn.
+// ffmpeg is looked up before any frame is drawn.
 TEST(Film, WithoutFfmpegIsRefused) {
     const test::Folder folder;
-    // `timeout`, which the folder runs programs by, has to be found.
+    // `timeout`, with which the folder runs programs, must be found.
     const test::Answer answer =
         folder.run(short_film + "film.mp4", "PATH=/usr/bin/none:$(dirname $(command -v timeout)) ");
     if (fs::exists("/usr/bin/ffmpeg") || fs::exists("/bin/ffmpeg")) GTEST_SKIP() << "it stands beside timeout";
@@ -71,7 +71,7 @@ TEST(Film, HasAnEndingThatCanBeMade) {
         EXPECT_FALSE(fs::exists(studio.path() / name));
     }
     EXPECT_FALSE(fs::exists(studio.path() / "a.b"));
-    // Folders, by what they are, by their slash, or by a name that no file has.
+    // Folders: existing, with a trailing slash, or with an extension that is not a file format.
     fs::create_directory(studio.path() / "mine.frames");
     for (const std::string name : {"mine.frames", "film.avi/", "run1.5", "plain"}) {
         EXPECT_EQ(studio.make("frames ball_on_sine --end 0.5 --fps 2 --size 320x200 --out " + name).status, 0) << name;
@@ -79,7 +79,7 @@ TEST(Film, HasAnEndingThatCanBeMade) {
     }
 }
 
-// As ffmpeg counts them.
+// Progress as ffmpeg reports it.
 TEST(Film, TellsHowManyFramesAreJoined) {
     const Studio studio(
         "echo frame=3; echo progress=continue; sleep 0.5; echo frame=7; sleep 0.5; echo film > \"$last\"");
@@ -98,7 +98,7 @@ TEST(Film, TellsHowManyFramesAreJoined) {
     EXPECT_TRUE(fs::is_empty(studio.path() / "frames"));
 }
 
-// What was there stays, the frames too; they are not drawn again.
+// If joining fails, the old file and the frames are kept; the frames are not drawn again.
 TEST(Film, that_cannot_be_joined_changes_nothing) {
     const Studio studio("echo no such codec >&2; exit 1");
     studio.put("film.mp4", "another film");
@@ -131,9 +131,9 @@ TEST(Film, shows_the_plots_that_commands_ask_for) {
     EXPECT_EQ(folder.run(words + "--do 'grid 1 1' --view height --out c").status, 2);
 }
 
-// A session begins it beside itself, of the text that it runs, and can stop it.
+// A session starts it in another process with its own text, and can stop it.
 TEST(Film, of_a_session_is_followed_and_stopped) {
-    const Studio studio;  // its ffmpeg is not reached
+    const Studio studio;  // its ffmpeg is never run
     const test::Folder folder;
     const std::string before = std::getenv("PATH");
     ::setenv("PATH", ((studio.path() / "bin").string() + ":" + before).c_str(), 1);

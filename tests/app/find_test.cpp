@@ -1,4 +1,4 @@
-// Finding things: the card of keys and words, the command palette, large letters.
+// The card of keys and terms, the command palette, the interface scale and presentation mode.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 using test::Hands;
 
-// ---- the card of keys and words ----
+// ---- card of keys and terms ----
 
 TEST(Help, comes_and_goes_with_its_key_and_by_a_command) {
     Hands hands("ball_on_sine");
@@ -39,7 +39,7 @@ TEST(Help, comes_and_goes_with_its_key_and_by_a_command) {
     EXPECT_FALSE(hands.says("Zeno point theory"));
 }
 
-// What Escape closes is the card alone: what stands behind it stays.
+// Escape closes only the card, nothing behind it.
 TEST(Help, takes_escape_for_itself) {
     Hands hands("ball_on_sine");
     hands.session.apply(parse_command("select 3"));
@@ -63,7 +63,7 @@ TEST(Help, has_every_word_and_key_on_the_card) {
         EXPECT_TRUE(hands.says(std::string(shortcut.keys) + std::string(shortcut.does))) << shortcut.keys;
 }
 
-// The manual shows the same tables. Its letters are all of one width only where they are ASCII.
+// The manual shows the same tables in a monospace font, which requires ASCII.
 TEST(Help, is_the_manuals_table) {
     const std::string page = manual_page("words");
     const auto is_ascii = [](std::string_view text) {
@@ -83,7 +83,7 @@ TEST(Help, is_the_manuals_table) {
     for (const Shortcut& shortcut : shortcuts()) EXPECT_NE(page.find(shortcut.does), std::string::npos);
 }
 
-// A menu's line has the keys of the table, and every key of the table that names a line has one.
+// Menu entries show the shortcuts of the table, and every shortcut of the table that names an entry is shown.
 TEST(Help, tells_keys_of_lines_that_menus_have) {
     Hands hands("ball_on_sine");
     for (const char* menu : {"menu File", "menu Edit", "menu View", "menu Help"}) {
@@ -99,7 +99,7 @@ TEST(Help, tells_keys_of_lines_that_menus_have) {
     EXPECT_EQ(shortcut_of("Reset all values"), "");
 }
 
-// ---- the command palette ----
+// ---- command palette ----
 
 std::vector<std::string> lines_for(const std::string& typed, const std::vector<Completions>& completions = {}) {
     std::vector<std::string> lines;
@@ -142,7 +142,7 @@ TEST(Finder, completes_values_by_name_or_by_what_they_are) {
     EXPECT_TRUE(lines_for("set g 3", some).empty());
 }
 
-// Opens it by its keys.
+// Opens it by its shortcut.
 void open_palette(Hands& hands) {
     hands.hand.keys = {key::left_control, key::left_shift};
     hands.rest(1);
@@ -198,7 +198,7 @@ TEST(Palette, keeps_what_is_refused_and_says_why) {
     Hands hands("ball_on_sine");
     hands.session.apply(parse_command("find \"grid 3\""));
     hands.rest(3);
-    hands.press(key::enter);  // no command yet
+    hands.press(key::enter);  // not a command yet
     EXPECT_TRUE(hands.all.empty());
     EXPECT_TRUE(hands.says("'grid' needs more arguments"));
     EXPECT_TRUE(hands.says("write: grid COLUMNS ROWS"));
@@ -212,7 +212,7 @@ TEST(Palette, keeps_what_is_refused_and_says_why) {
     EXPECT_FALSE(hands.session.scene().shows("palette"));
 }
 
-// Another system would take the place of a text that is not saved: that is asked first.
+// A command that would replace an unsaved text asks first.
 TEST(Palette, asks_before_it_opens_over_changes) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Text{hands.session.document().text + "# mine\n"});
@@ -236,7 +236,7 @@ TEST(Palette, takes_the_place_of_the_help) {
     EXPECT_FALSE(hands.session.scene().shows("palette"));
 }
 
-// ---- how large everything is, and for whom ----
+// ---- interface scale and presentation mode ----
 
 std::string record(Hands& hands) {
     std::string text;
@@ -281,7 +281,7 @@ TEST(Presentation, comes_and_goes_and_keeps_the_keys) {
     EXPECT_TRUE(hands.says("Parameters"));
 }
 
-// Both lines of the strip are used, wherever the panels begin.
+// Both lines of the strip are used, wherever the panels start.
 TEST(Presentation, shows_as_many_results_as_the_strip_has_lines) {
     SurfaceOptions surface = test::surface(1366, 768);
     surface.scale = 1.5;
@@ -292,7 +292,7 @@ TEST(Presentation, shows_as_many_results_as_the_strip_has_lines) {
     EXPECT_FALSE(hands.says("1 more"));
 }
 
-// A picture of it has larger letters, by the command alone.
+// A picture of it is enlarged by the command alone.
 TEST(Presentation, is_drawn_larger_without_a_window) {
     const test::Folder folder;
     for (const auto& [name, more] : {std::pair{"plain.png", ""}, std::pair{"twice.png", "--do 'enlarge 2'"},
@@ -304,7 +304,7 @@ TEST(Presentation, is_drawn_larger_without_a_window) {
     EXPECT_NE(pixels("class.png"), pixels("plain.png"));
 }
 
-// What was asked for leads to the same again: a session's journal and its text have it.
+// The session's journal and its text form include it.
 TEST(Presentation, is_in_the_sessions_recipe) {
     Hands hands("ball_on_sine");
     for (const char* line : {"present on", "enlarge 1.25", "find \"grid\""}) hands.session.apply(parse_command(line));

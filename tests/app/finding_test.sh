@@ -1,6 +1,6 @@
 #!/bin/bash
-# Finding things in a real window: the card of keys and words, the palette, sliders that take round numbers, large letters,
-# the view for a class; and what one window leaves to the next.
+# In a real window: the card of keys and terms, the palette, round slider values, the interface scale, presentation
+# mode, and preferences kept for the next window.
 #     finding_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
@@ -25,7 +25,7 @@ xdotool sleep 0.2 key Return
 recorded '^grid 3 2$' "the palette does not complete and run a command"
 recorded '^hide palette$' "the palette stays when its command is done"
 
-# A drag ends at a round number, and with Shift a drag as long goes a little way.
+# A drag ends at a round number; with Shift the same drag moves the value less.
 value() { grep '^set g ' "$folder/record" | tail -1 | cut -d' ' -f3; }
 drag() {
     xdotool mousemove --window "$window" $((x + width / 3)) "$y" sleep 0.3 mousedown 1 sleep 0.2
@@ -50,7 +50,7 @@ recorded '^enlarge 1.1$' "Ctrl+Plus makes nothing larger"
 xdotool key F11
 recorded '^present on$' "F11 does not present"
 settle
-# The window shows what a picture of its record shows.
+# A picture of the record equals the window.
 "$build/achilles" screenshot --journal "$folder/record" --size 1280x800 --out "$folder/record.png"
 [ -s "$folder/record.png" ] || fail "the record cannot be drawn"
 xdotool key Escape

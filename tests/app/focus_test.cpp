@@ -1,4 +1,4 @@
-// Who has the keys: the player, or after Tab a control.
+// Keyboard focus: the player has the keys or, after Tab, a control.
 #include <gtest/gtest.h>
 
 #include <set>
@@ -54,7 +54,7 @@ TEST(Focus, the_mouse_gives_the_keys_back) {
     EXPECT_TRUE(hands.session.playing());
 }
 
-// Round once: every control of the window is met, each once, and Shift+Tab goes back.
+// Tab visits every control of the window once; Shift+Tab goes back.
 TEST(Focus, Tab_walks_everything_and_comes_back) {
     test::Hands hands("ball_on_sine");
     std::set<std::string> met;
@@ -115,7 +115,7 @@ TEST(Focus, Enter_and_Space_press) {
     EXPECT_TRUE(hands.session.theme().dark);
 }
 
-// A menu is walked by arrows; Escape closes it and nothing else.
+// Arrows walk a menu; Escape closes only the menu.
 TEST(Focus, a_menu_goes_by_keys) {
     test::Hands hands("ball_on_sine");
     go_to(hands, "menu View");
@@ -134,7 +134,7 @@ TEST(Focus, a_menu_goes_by_keys) {
     EXPECT_EQ(hands.state.focus.at, "");
 }
 
-// In a dialog Tab goes from the path to what follows it, and stays in front.
+// In a dialog Tab goes from the path to the next control and does not leave the dialog.
 TEST(Focus, stays_in_a_dialog) {
     test::Hands hands("ball_on_sine");
     hands.press_with_control('O');

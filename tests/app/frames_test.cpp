@@ -1,5 +1,5 @@
-// Animations: which pictures there are, that an interrupted run goes on where it was, that they do not depend on who
-// drew them, and that nothing of another run is lost.
+// Animation frames: which ones are drawn, continuation after an interruption, independence from the number of
+// processes, and protection of frames of other runs.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <pty.h>
@@ -46,7 +46,7 @@ TEST(Frames, AreNumberedAndTheSameByOneProcessAndByThree) {
     const Folder folder;
     const Answer answer = folder.run(short_film + "--jobs 1 --out one");
     ASSERT_EQ(answer.status, 0) << answer.err;
-    EXPECT_EQ(answer.err, "");  // no progress in a file
+    EXPECT_EQ(answer.err, "");  // no progress if standard error is a file
     const std::string at = fs::canonical(folder.path()).string() + "/one";
     EXPECT_EQ(answer.out, "6 frames of 320x200 in " + at + "\nffmpeg -framerate 2.5 -i " + at +
                               "/frame_%05d.png -pix_fmt yuv420p ball_on_sine.mp4\n");
@@ -114,14 +114,14 @@ TEST(Frames, OfAnotherRunAreNeitherMixedNorLost) {
             hint);
     EXPECT_EQ(contents(folder.path() / "film"), before);
 
-    // Half as long: what is left of the old ones would be the end of the film.
+    // Half as long: leftover frames of the old animation would appear at its end.
     const Answer replaced = folder.run(film + "--end 1 --overwrite --out film");
     EXPECT_EQ(replaced.status, 2);  // --end twice
     const std::string half = "frames ./mine.toml --end 1 --fps 2.5 --size 320x200 --scale 0.5 --view height ";
     EXPECT_EQ(folder.run(half + "--out film").status, 2);
     ASSERT_EQ(folder.run(half + "--overwrite --out film").status, 0);
     EXPECT_EQ(names(contents(folder.path() / "film")), (std::vector<std::string>(six.begin(), six.begin() + 3)));
-    // The same without the word: they are of the same run.
+    // Without --overwrite: the frames belong to the same run.
     const Answer again = folder.run(half + "--out film");
     EXPECT_EQ(again.status, 0) << again.err;
     EXPECT_NE(again.out.find("(3 already existed)"), std::string::npos);
@@ -178,7 +178,7 @@ TEST(Frames, RefusalsAreOneMessageAndLeaveNothing) {
         EXPECT_EQ(answer.out, "");
         EXPECT_TRUE(folder.files().empty()) << options;
     }
-    // A file in the way of the folder; libraries that are missing, which only the drawing processes notice.
+    // A file in place of the folder; missing libraries, which only the drawing processes notice.
     folder.put("film", "mine");
     EXPECT_EQ(folder.run(short_film + "--out film").err, "film: the folder cannot be created: Not a directory\n");
     const Folder hidden;
@@ -225,7 +225,7 @@ TEST(Frames, ARunThatStoppedEarlyIsDrawnAsFarAsItCame) {
     EXPECT_EQ(names(contents(folder.path() / "film")), (std::vector<std::string>(six.begin(), six.begin() + 3)));
 }
 
-// The whole command on a terminal of its own.
+// The complete command on a pseudoterminal.
 TEST(Frames, ATerminalSeesTheProgress) {
     const Folder folder;
     const std::string out = (folder.path() / "film").string();
@@ -250,7 +250,7 @@ TEST(Frames, ATerminalSeesTheProgress) {
     EXPECT_NE(seen.find("\r\x1b[K3 frames of 320x200 in "), std::string::npos) << seen;
 }
 
-// A program of its own, drawing 161 pictures into "film" by one process. Its first picture is there.
+// The program in its own process, drawing 161 pictures into "film" with one worker. Its first picture exists.
 class Drawing161 {
  public:
     explicit Drawing161(const Folder& folder) {
@@ -287,7 +287,7 @@ class Drawing161 {
     pid_t id_ = 0;
 };
 
-// All pictures, whole, after the same command once more.
+// Repeats the command and checks that all pictures are complete.
 void expect_completed(const Folder& folder) {
     const Answer answer = folder.run(Drawing161::film161);
     EXPECT_EQ(answer.status, 0) << answer.err;
@@ -310,7 +310,7 @@ TEST(Frames, AKilledProcessIsToldAndLeavesWholePictures) {
     expect_completed(folder);
 }
 
-// Then those that draw end by themselves, and let go of the folder.
+// The drawing processes then end by themselves and release the folder.
 TEST(Frames, AKilledProgramLeavesNobodyBehind) {
     const Folder folder;
     const Drawing161 drawing(folder);

@@ -1,4 +1,4 @@
-// The gallery in pictures.
+// The gallery and its thumbnails.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -33,7 +33,7 @@ TEST(Thumbnails, come_one_by_one_and_are_the_same_again) {
     }
     lazy.update();
     EXPECT_FALSE(lazy.is_busy());
-    // What is no system has an empty picture, and keeps nobody.
+    // A missing system has an empty picture and does not block the others.
     EXPECT_TRUE(eager.find("none")->light.shapes.empty());
 }
 

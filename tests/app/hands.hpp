@@ -1,4 +1,4 @@
-// One hand on one explorer, offscreen.
+// Simulated user input for an off-screen explorer.
 #pragma once
 
 #include <imgui.h>
@@ -15,16 +15,16 @@
 
 namespace achilles::test {
 
-// A picture must not depend on shaders that an earlier run left in a cache.
+// Pictures must not depend on shaders cached by an earlier run.
 [[maybe_unused]] inline const int no_cache = setenv("MESA_SHADER_CACHE_DISABLE", "true", 1);
 
-// One hand on one explorer.
+// An explorer with simulated mouse and keyboard.
 struct Hands {
     explicit Hands(const std::string& system, const SurfaceOptions& options = test::surface())
         : session(test::session(system)), surface(options) {
         rest(3);
     }
-    // A frame; what it asks for is done, as the window does it.
+    // One frame. Its commands are applied, as in the window.
     std::vector<Command> frame() {
         std::vector<Command> commands;
         surface.step([&] { commands = explorer(session, state); }, hand);
@@ -35,7 +35,7 @@ struct Hands {
     void rest(int frames) {
         for (int i = 0; i < frames; ++i) frame();
     }
-    // Moves over a share of a control's width.
+    // Moves the mouse to a share of a control's width.
     void point(const std::string& place, double share = 0.5) {
         const Rectangle r = state.places.at(place);
         hand.mouse_x = r.x + share * r.width;
@@ -50,7 +50,7 @@ struct Hands {
         rest(2);
         settle();
     }
-    // Until a click can be no half of a double click any more.
+    // Waits until the last click cannot become a double click.
     void settle() {
         for (int i = 0; i < 60 && waits_for_click(state); ++i) rest(1);
         rest(1);
@@ -72,7 +72,7 @@ struct Hands {
         hand.right = false;
         rest(2);
     }
-    // Where a tooltip is, after another frame; of no height where there is none.
+    // Area of the tooltip after another frame; of height 0 if there is none.
     Rectangle tooltip() {
         Rectangle found;
         std::vector<Command> commands;
@@ -87,14 +87,15 @@ struct Hands {
         for (const Command& command : commands) session.apply(command);
         return found;
     }
-    // Every letter that a frame shows, window by window, without the spaces: whoever painted it, it is a glyph of a font.
+    // All letters in a frame, window by window, without spaces. Every textured quad is looked up as a glyph of a font,
+    // whatever code drew it.
     std::string letters() {
         std::string text;
         std::vector<Command> commands;
         surface.step(
             [&] {
                 commands = explorer(session, state);
-                std::map<std::pair<float, float>, ImWchar> glyphs;  // by their first corner in the texture
+                std::map<std::pair<float, float>, ImWchar> glyphs;  // by their upper left corner in the texture
                 for (ImFont* font : ImGui::GetIO().Fonts->Fonts)
                     for (const ImFontGlyph& glyph : glyphs_of(font))
                         if (glyph.Visible != 0) glyphs[{glyph.U0, glyph.V0}] = static_cast<ImWchar>(glyph.Codepoint);
@@ -117,7 +118,7 @@ struct Hands {
         std::erase(text, ' ');
         return letters().find(text) != std::string::npos;
     }
-    // Where a control is now, its middle.
+    // The middle of a control.
     Point middle(const std::string& place) const {
         const Rectangle& r = state.places.at(place);
         return {r.x + 0.5 * r.width, r.y + 0.5 * r.height};
@@ -128,7 +129,7 @@ struct Hands {
         hand.keys.clear();
         rest(2);
     }
-    // A key while Ctrl is held.
+    // Presses a key with Ctrl.
     void press_with_control(int key) {
         hand.keys = {key::left_control};
         rest(1);

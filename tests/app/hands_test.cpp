@@ -1,4 +1,4 @@
-// What a hand does in the explorer, by injected input: the mechanism, the timeline, undo, pin, the lens, export.
+// Simulated input in the explorer: mechanism, timeline, undo, pin, lens, export.
 #include "app/hands.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 
 using test::Hands;
 
-// Takes hold at a place and moves so many pixels, in steps.
+// Presses at a place and drags by some pixels, in steps.
 void drag(Hands& hands, const std::string& place, double right, double down, int steps = 8) {
     hands.point(place);
     hands.hand.left = true;
@@ -28,7 +28,7 @@ void drag(Hands& hands, const std::string& place, double right, double down, int
     hands.rest(2);
 }
 
-// Pixels for a unit of the world.
+// Pixels per world unit.
 double unit_of(Hands& hands) {
     const Rectangle before = hands.state.places.at("body");
     const double x = *hands.session.value("x");
@@ -47,7 +47,7 @@ TEST(HandOnMechanism, drags_the_body_to_where_the_run_starts) {
     Hands hands("ball_on_sine");
     const double unit = unit_of(hands);
     const double x = *hands.session.value("x"), y = *hands.session.value("y");
-    hands.session.apply(command::Seek{5.0});  // the start is what is dragged: the time goes there
+    hands.session.apply(command::Seek{5.0});  // the drag changes the start, so the time goes there
     hands.rest(2);
     const std::string before = to_text(hands.session.trajectory());
     drag(hands, "body", 0.0, 0.0, 1);
@@ -59,7 +59,7 @@ TEST(HandOnMechanism, drags_the_body_to_where_the_run_starts) {
     EXPECT_NEAR(*hands.session.value("y"), y + 16.0 / unit, 1.5 / unit);
     EXPECT_NE(to_text(hands.session.trajectory()), before);
     EXPECT_EQ(hands.session.error(), "");
-    // The drag is one change.
+    // The drag is one undo step.
     hands.press_with_control('Z');
     EXPECT_EQ(*hands.session.value("x"), x);
     EXPECT_EQ(*hands.session.value("y"), y);
@@ -92,7 +92,7 @@ TEST(HandOnMechanism, zooms_at_the_pointer_pans_and_shows_all) {
     hands.rest(2);
     ASSERT_TRUE(hands.session.scene().look());
     const command::Look closer = *hands.session.scene().look();
-    // The world under the pointer stays: a quarter from the left.
+    // The world point under the mouse is fixed.
     const Rectangle mechanism = hands.state.places.at("mechanism");
     drag(hands, "mechanism", -40.0, 0.0);
     const command::Look moved = *hands.session.scene().look();
@@ -146,7 +146,7 @@ TEST(HandOnTimeline, plays_at_the_chosen_speed_and_begins_again) {
     play_on(hands.session, 100.0);
     EXPECT_FALSE(hands.session.playing());
     EXPECT_EQ(hands.session.time(), hands.session.trajectory().end_time);
-    // Right click: as fast as it is.
+    // A right click restores the default.
     hands.point("speed");
     hands.hand.right = true;
     hands.rest(2);
@@ -240,7 +240,7 @@ TEST(Hand, takes_a_figure_away_and_is_told_what_cannot_be_written) {
     EXPECT_EQ(hands.session.error(), "");
     EXPECT_EQ(hands.session.notice(), "wrote " + file);
     EXPECT_EQ(test::content(file).rfind("<?xml", 0), 0U);
-    // It is there already: Enter alone overwrites nothing.
+    // The file exists already: Enter alone does not overwrite it.
     ask("menu Figure as SVG\u2026", file);
     hands.all.clear();
     hands.press(key::enter);

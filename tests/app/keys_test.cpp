@@ -1,4 +1,4 @@
-// Keys belong to one owner: what is in front has all of them, and nothing behind it hears any.
+// Keyboard ownership: the part in front receives all keys, parts behind it none.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ void press_together(Hands& hands, std::vector<int> codes) {
     hands.rest(2);
 }
 
-// Every key that the panels know, alone and with Ctrl. A menu has uses of its own for some: they close it or lead to the next.
+// Every key that the panels use, alone and with Ctrl. A menu uses some itself to close or to go to the next one.
 void press_all(Hands& hands, bool is_menu) {
     std::vector<int> codes{key::home, key::end, key::f11, key::f1};
     if (!is_menu) codes.insert(codes.end(), {' ', key::left, key::right});
@@ -31,7 +31,7 @@ void press_all(Hands& hands, bool is_menu) {
     press_together(hands, {key::left_control, key::left_shift, 'P'});
 }
 
-// The session as a person sees it, and what is asked.
+// The visible state of the session and of the dialogs.
 std::string seen(const Hands& hands) {
     return to_text(hands.session) + (hands.session.playing() ? "playing" : "") +
            std::to_string(static_cast<int>(hands.state.editor.asking));
@@ -45,7 +45,7 @@ TEST(Keys, ReachNothingBehindAMenuOrADialog) {
         hands.rest(2);
         if (front == "dialog") {
             hands.press_with_control('O');
-            hands.click("dialog Cancel", -0.5);  // beside the button: no field has letters
+            hands.click("dialog Cancel", -0.5);  // beside the button: no text field is active
         } else if (front == "manual") {
             hands.state.manual_text = "A page.";
             hands.state.opens_manual = true;
@@ -61,7 +61,7 @@ TEST(Keys, ReachNothingBehindAMenuOrADialog) {
     }
 }
 
-// (But for the palette's own, on the other cards: it takes their place.)
+// (Except the palette's own shortcut on other cards, which it replaces.)
 TEST(Keys, ReachNothingBehindThePalette) {
     for (const char* front : {"palette", "gallery", "help"}) {
         Hands hands("ball_on_sine");
@@ -78,7 +78,7 @@ TEST(Keys, ReachNothingBehindThePalette) {
     }
 }
 
-// The same keys show and hide them.
+// The same shortcuts show and hide them.
 TEST(Keys, ShowAndHideWhatStandsInFront) {
     Hands hands("ball_on_sine");
     const auto toggle = [&](const std::string& what) {
@@ -107,7 +107,7 @@ struct ExportDialog : test::Folder {
         hands.rest(2);
         EXPECT_EQ(hands.state.browser.rows.size(), 1U);
     }
-    // Which row of the file list is chosen once Down was pressed there.
+    // The selected row of the file list after Down.
     int row_after_down() {
         hands.press(key::down);
         return hands.state.browser.chosen;
@@ -120,7 +120,7 @@ TEST(Keys, OfADropDownChooseNoFileBehindIt) {
     Hands& hands = dialog.hands;
     hands.click("take page");
     EXPECT_EQ(dialog.row_after_down(), -1);
-    // Escape closes the list of widths and nothing else.
+    // Escape closes only the list of widths.
     hands.press(key::escape);
     EXPECT_TRUE(hands.session.scene().shows("export"));
     EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::take_away);
@@ -149,7 +149,7 @@ TEST(Keys, OfARingChooseNoFile) {
     EXPECT_EQ(dialog.hands.state.editor.path, path) << "letters go to the field while the ring is elsewhere";
 }
 
-// Where nothing in the dialog has keys, the arrows are the list's, and Enter then takes its row.
+// If no control of the dialog has the keys, arrows walk the file list and Enter chooses a row.
 TEST(Keys, OfADialogWithoutALettersFieldAreTheFileLists) {
     ExportDialog dialog;
     Hands& hands = dialog.hands;
@@ -161,7 +161,7 @@ TEST(Keys, OfADialogWithoutALettersFieldAreTheFileLists) {
     EXPECT_EQ(test::content(dialog.path() / "foreign.svg"), "of somebody else");
 }
 
-// A row that was chosen in one dialog is not taken by Enter in the next.
+// A row selected in one dialog is not chosen by Enter in the next.
 TEST(Keys, ForgetTheRowOfAnotherDialog) {
     ExportDialog dialog;
     Hands& hands = dialog.hands;
@@ -172,7 +172,7 @@ TEST(Keys, ForgetTheRowOfAnotherDialog) {
     EXPECT_EQ(hands.state.browser.chosen, -1);
 }
 
-// A question that appears is answered by no key that was pressed before it could be seen.
+// A dialog that opens ignores keys that were pressed before it was visible.
 TEST(Keys, AnswerNoQuestionThatWasNotSeen) {
     Hands hands("ball_on_sine");
     hands.state.recovery_question = RecoveryQuestion{"mine.toml", "today"};

@@ -1,4 +1,4 @@
-// The manual says what the program does: its tables are the program's, every example runs, the schema holds.
+// Consistency of the manual with the program: its tables, its examples and the JSON schema.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -60,12 +60,12 @@ TEST(Manual, EveryPageHasItsTables) {
         EXPECT_NE(commands.find("    " + usage + "\n"), std::string::npos);
 }
 
-// In words, too: the prose is ours, the list the program's.
+// The prose must cover every command of the program's list.
 TEST(Manual, TellsWhatEveryCommandDoes) {
     const std::string all = page_text("commands.md"), prose = all.substr(all.find("## What they do"));
     for (const std::string& usage : command_usages()) {
         const std::string name = usage.substr(0, usage.find(' '));
-        if (!options_set_by(name).empty()) continue;  // "The options"
+        if (!options_set_by(name).empty()) continue;  // described under "The options"
         EXPECT_NE(prose.find("`" + name + "`"), std::string::npos) << name;
     }
 }
@@ -128,7 +128,8 @@ TEST(Help, ListsNoOptionWithoutEffect) {
     const std::string text = folder.run("simulate --help").out;
     EXPECT_EQ(text.find("no effect"), std::string::npos);
     EXPECT_EQ(text.find("--scale"), std::string::npos);
-    EXPECT_EQ(folder.run("simulate ball_on_floor --end 1 --scale 2 --size 800x600").status, 0);  // taken all the same
+    // Accepted without effect.
+    EXPECT_EQ(folder.run("simulate ball_on_floor --end 1 --scale 2 --size 800x600").status, 0);
 }
 
 TEST(Instants, AreNotOverwritten) {
@@ -139,7 +140,7 @@ TEST(Instants, AreNotOverwritten) {
     EXPECT_EQ(content(folder.path() / "times"), "0\n0.5\n1\n");
 }
 
-// ---- the skeleton ----
+// ---- template of a system ----
 
 TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {
     const std::string text = skeleton_system();
@@ -201,7 +202,7 @@ bool is_of_type(const json& value, const std::string& type) {
     return type == "object" && value.is_object();
 }
 
-// As much of JSON Schema as ours uses; whatever else it said would be a fault, too. The faults, by their places.
+// Validates the subset of JSON Schema that ours uses; any other keyword is a fault. Collects faults with their places.
 void find_faults(const json& value, const json& schema, const std::string& at, std::vector<std::string>& faults) {
     const auto fault = [&](const std::string& what) { faults.push_back(at + ": " + what); };
     for (const auto& [word, said] : schema.items()) {
@@ -213,7 +214,7 @@ void find_faults(const json& value, const json& schema, const std::string& at, s
         } else if (word == "enum") {
             if (std::find(said.begin(), said.end(), value) == said.end()) fault(value.dump() + " is none of these");
         } else if (word == "required") {
-            for (const json& key : said)  // of objects: what may be null has no keys
+            for (const json& key : said)  // for objects; null has no keys
                 if (value.is_object() && !value.contains(key.get<std::string>())) fault("lacks " + key.dump());
         } else if (word == "additionalProperties") {
             for (const auto& [key, member] : value.items()) {
@@ -269,7 +270,7 @@ TEST(Schema, HoldsForForcesMovingAndSeveralGaps) {
     EXPECT_EQ(systems, 6);
 }
 
-// A ball nearly touches a post, and a loose tolerance cannot tell: options are as asked, and what was done instead is said.
+// A ball nearly touches a post, which a loose tolerance cannot decide. Options are as requested; the rerun is reported.
 TEST(Schema, HoldsForARunThatWasMadeAgain) {
     const Folder folder;
     folder.put(
@@ -296,7 +297,7 @@ TEST(Schema, HoldsForARunThatWasMadeAgain) {
     EXPECT_EQ(summary.err.find("warning"), std::string::npos) << "once: " << summary.err;
 }
 
-// Proved, undecided, and with states at fixed times.
+// Proofs that are complete, undecided, and with states at given times.
 TEST(Schema, HoldsForProofs) {
     const Folder folder;
     for (const auto& [arguments, status] :

@@ -1,4 +1,4 @@
-// What is typed is what is meant: numbers, ranges and units on the command line, and what is said of them.
+// Interpretation of input: numbers, ranges and units on the command line, and the messages about them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,7 +37,7 @@ TEST(Meant, AValueOutsideItsRangeIsToldOnceAndUsed) {
               "it is m\n");
 }
 
-// The same of what commands do.
+// The same for commands of a journal.
 TEST(Meant, WhatACommandOverstepsIsTold) {
     const Folder folder;
     for (const char* command :
@@ -64,7 +64,7 @@ std::string with(const std::string& from, const std::string& to) {
     return std::string(drop).replace(drop.find(from), from.size(), to);
 }
 
-// Mistakes of a file that many make: the sentence says what to write.
+// Common mistakes in system files: the message says what to write.
 TEST(Meant, CommonMistakesOfAFileAreToldWhatToWrite) {
     const struct {
         std::string text, message;
@@ -153,7 +153,7 @@ TEST(Meant, WhatASettingMakesImpossibleIsToldWithTheSetting) {
     }
 }
 
-// In the unit in which it was typed; what has all its decimals was not typed in radians.
+// Messages use the unit that was typed. An angle that looks like degrees gets a hint.
 TEST(Meant, AnAngleInDegreesIsToldInDegrees) {
     const Folder folder;
     const std::pair<const char*, const char*> told[] = {
@@ -195,7 +195,7 @@ TEST(Data, HoldsTheInstantsThatWereAskedFor) {
     EXPECT_EQ(json::parse(answer.out)["samples"][1]["t"], 1.0);
 }
 
-// From where the run starts, which need not be 0.
+// They start at the start time of the run, which need not be 0.
 TEST(Data, EquidistantInstantsBeginWithTheRun) {
     const Answer answer =
         Folder().run("simulate ball_on_vibrating_table --start-time 0.5 --end 1 --samples 3 --json -");

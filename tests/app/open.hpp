@@ -1,4 +1,4 @@
-// A session on a system of the assets, and a frame of the explorer.
+// Sessions on systems of the assets, and surfaces for the explorer.
 #pragma once
 
 #include <string>
@@ -25,13 +25,13 @@ inline Session session(const std::string& name, Patience patience = {}) {
     return {name, system(name), library(), patience};
 }
 
-// Elastic impacts until there are too many: seconds of work.
+// Elastic impacts up to max_impacts: takes seconds.
 inline void ask_for_a_long_run(Session& session) {
     session.apply(command::Set{"e", 1.0});
     session.apply(command::End{1e6});
 }
 
-// A surface as the explorer sets it up.
+// A surface with the explorer's options.
 inline SurfaceOptions surface(int width = 1280, int height = 800, double scale = 1.0) {
     SurfaceOptions result;
     result.width = width;

@@ -1,4 +1,4 @@
-// A periodic run in the explorer: searched for, gone on, followed in a parameter, taken back, kept.
+// Periodic orbits in the explorer: search, continuation, branch, undo, and saved sessions.
 #include <gtest/gtest.h>
 
 #include <fmt/format.h>
@@ -24,7 +24,7 @@ Session on(const std::string& system, const std::string& text) {
 
 double period_of(const Session& session) { return session.orbit()->answer.orbit->period; }
 
-// How far the state past so many periods is from that at the beginning, moved on by so much.
+// Distance between the state after one period and the initial state plus the shift.
 double missed(const Session& session, double period, double shift) {
     const double begin = session.run().options.start_time;
     const State first = session.at(begin).state, last = session.at(begin + period).state;
@@ -44,14 +44,14 @@ TEST(OrbitSession, finds_what_the_file_guesses_and_goes_on_it) {
     EXPECT_EQ(session.run().options.end_time - session.run().options.start_time, length);
     EXPECT_LT(missed(session, period_of(session), 2.0 * M_PI), 1e-8);
     EXPECT_LT(missed(session, 3.0 * period_of(session), 6.0 * M_PI), 1e-6);
-    // Its tolerances are the session's.
+    // The session's tolerances are kept.
     EXPECT_EQ(session.run().options.tolerance, session.file_run().options.tolerance);
     session.apply(command::Undo{});
     EXPECT_EQ(session.run(), session.file_run());
     EXPECT_FALSE(session.orbit_point());
 }
 
-// A drive has a clock: the run begins in its phase.
+// A driven system keeps the phase of its drive.
 TEST(OrbitSession, goes_on_a_drive_in_its_phase) {
     Session session = on("driven_double_pendulum", "");
     ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.why;
@@ -81,7 +81,7 @@ TEST(OrbitSession, follows_a_branch_as_one_change) {
     EXPECT_NE(session.error().find("numbered from 1 to"), std::string::npos) << session.error();
 }
 
-// A run of e = 0.6 is nearest to the same orbit as that of e = 0.5: from wherever the sliders are.
+// The run with e = 0.6 finds the same orbit as that with e = 0.5: the search uses the slider values.
 TEST(OrbitSession, searches_from_the_present_run) {
     Session session = test::session("ball_down_a_wave");
     session.apply(command::Set{"e", 0.6});
@@ -122,7 +122,7 @@ TEST(OrbitSession, leaves_with_its_system) {
     EXPECT_EQ(session.orbit(), nullptr);
 }
 
-// What leads to a session leads to its periodic run, too.
+// The commands that lead to a session include its periodic orbit.
 TEST(OrbitSession, is_found_again_by_the_recipe) {
     Session session = on("ball_down_a_wave", "--continue b=0.045:0.055");
     session.apply(command::GoOnOrbit{2});
@@ -136,7 +136,7 @@ TEST(OrbitSession, is_found_again_by_the_recipe) {
     for (const Command& step : recipe(session)) EXPECT_NE(to_text(step).substr(0, 5), "orbit");
 }
 
-// Without patience the window goes on; a stop is heeded.
+// With a timeout the search runs in the background; a stop request ends it.
 TEST(OrbitSession, is_searched_beside_the_window) {
     Session session = test::session("ball_down_a_wave");
     session.set_patience(0.0);
@@ -158,7 +158,7 @@ TEST(OrbitSession, commands_are_lines_of_a_journal) {
         EXPECT_EQ(to_text(parse_command(line)), line);
 }
 
-// ---- by hand ----
+// ---- user input ----
 
 TEST(OrbitPanel, makes_the_run_periodic) {
     Hands hands("ball_down_a_wave");
@@ -202,7 +202,7 @@ TEST(OrbitPanel, goes_along_the_branch) {
     EXPECT_FALSE(hands.session.scene().shows("orbit"));
 }
 
-// For orbit_window_test.sh.
+// Prints positions for orbit_window_test.sh.
 TEST(OrbitPanel, tells_where_it_is) {
     Hands hands("ball_down_a_wave");
     hands.press_with_control('6');

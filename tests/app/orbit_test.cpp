@@ -1,4 +1,4 @@
-// `achilles orbit` as a user meets it.
+// The command `achilles orbit`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -58,7 +58,7 @@ TEST(OrbitCommand, AnswersFirst) {
     EXPECT_NE(branch.out.find("period doubling (multiplier -1)"), std::string::npos) << branch.out;
 }
 
-// From the end of a run, from a file that was written, with a shift of the command line.
+// Starts at the end of a run, at a state in a file, and with a shift on the command line.
 TEST(OrbitCommand, BeginsWhereItIsTold) {
     const Folder folder;
     ASSERT_EQ(folder.run("orbit ball_down_a_wave --json orbit.json").status, 0);
@@ -71,7 +71,7 @@ TEST(OrbitCommand, BeginsWhereItIsTold) {
     EXPECT_NEAR(period("--from end"), first["period"].get<double>(), 1e-12);
     EXPECT_NEAR(period("--from orbit.json"), first["period"].get<double>(), 1e-12);
     EXPECT_NEAR(period("--from start --shift 'x=4*pi/2'"), first["period"].get<double>(), 1e-12);
-    // Another wave, another period: the guess is taken along.
+    // Another amplitude, another period: the old orbit is only a guess.
     EXPECT_GT(std::abs(period("--set A=0.6") - first["period"].get<double>()), 1e-3);
 }
 
@@ -117,7 +117,7 @@ TEST(OrbitCommand, RefusesWhatItCannotBeAsked) {
     EXPECT_TRUE(folder.files().empty());
 }
 
-// A picture of one period and one of the branch; both are made again from what they carry.
+// Pictures of one period and of the branch, and their reproduction.
 TEST(OrbitCommand, DrawsWhatIsMadeAgain) {
     const Folder folder;
     ASSERT_EQ(folder.run("orbit ball_down_a_wave --json orbit.json").status, 0);

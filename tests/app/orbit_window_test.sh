@@ -1,6 +1,6 @@
 #!/bin/bash
-# A periodic run in a real window: Ctrl+6 shows the panel, its button searches and makes the run begin on what is found; the
-# picture of the record has it.
+# A periodic orbit in a real window: Ctrl+6 shows the panel, its button searches and starts the run on the result; a
+# picture of the record shows it.
 #     orbit_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 

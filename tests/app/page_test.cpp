@@ -1,4 +1,4 @@
-// Pictures measured in millimetres and points.
+// Pictures with a size in millimeters and points.
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -22,10 +22,10 @@ TEST(Page, is_as_large_as_it_says) {
     const PictureSize png = on_page({85.0, 0.0, 8.0, 300.0}, "png", 14.0, 1.5);
     EXPECT_EQ(png.width, 1004);  // 85/25.4*300
     EXPECT_EQ(png.height, 669);
-    EXPECT_NEAR(14.0 * png.scale, 8.0 / 72.0 * 300.0, 1e-9);  // pixels of 8 pt
+    EXPECT_NEAR(14.0 * png.scale, 8.0 / 72.0 * 300.0, 1e-9);  // 8 pt in pixels
     const PictureSize svg = on_page({170.0, 100.0, 10.0, 0.0}, "svg", 14.0, 1.5);
     EXPECT_EQ(svg.width, 1200);
-    EXPECT_NEAR(14.0 * svg.scale * 170.0 / 1200.0, 10.0 / 72.0 * 25.4, 1e-9);  // mm of 10 pt
+    EXPECT_NEAR(14.0 * svg.scale * 170.0 / 1200.0, 10.0 / 72.0 * 25.4, 1e-9);  // 10 pt in mm
     EXPECT_EQ(told({85.0, 0.0, 8.0, 300.0}, "png", 1.5), "85 \u00d7 56.67 mm, 1004 \u00d7 669 px at 300 dpi");
     for (const PaperSize& wrong :
          {PaperSize{5.0, 0.0, 0.0, 0.0}, PaperSize{85.0, 0.0, 100.0, 0.0}, PaperSize{0.0, 0.0, 8.0, 0.0},
@@ -34,7 +34,7 @@ TEST(Page, is_as_large_as_it_says) {
     EXPECT_THROW(on_page({1200.0, 0.0, 8.0, 1200.0}, "png", 14.0, 1.5), InputError);
 }
 
-// The plots set the height of such a page after their curves are sampled. Curves must not be sampled for a lower one.
+// On such a page the plots determine the height after their curves are sampled: sampling must not assume a lower page.
 TEST(Page, is_resolved_whatever_height_its_plots_need) {
     const PaperSize page{85.0, 0.0, 8.0, 300.0};
     const Resolution known = resolution_of(page, {}, "png");
@@ -44,7 +44,7 @@ TEST(Page, is_resolved_whatever_height_its_plots_need) {
     EXPECT_EQ(resolution_of({85.0, 30.0, 8.0, 300.0}, {}, "png").height, 354.0);
 }
 
-// What a program that sets pages reads from the file: its size.
+// The size stored in the file, which typesetting programs read.
 TEST(Page, is_said_by_the_file) {
     const test::Folder folder;
     const std::string words = "figure ball_on_sine --view height --width-mm 85 --font-pt 9 --out ";
@@ -56,7 +56,7 @@ TEST(Page, is_said_by_the_file) {
     const std::string png = test::content(folder.path() / "a.png");
     const std::size_t at = png.find("pHYs");
     ASSERT_NE(at, std::string::npos);
-    EXPECT_EQ(png.substr(at + 4, 9), std::string("\0\0\x27\x10\0\0\x27\x10\x01", 9));  // 10000 a metre
+    EXPECT_EQ(png.substr(at + 4, 9), std::string("\0\0\x27\x10\0\0\x27\x10\x01", 9));  // 10000 pixels per meter
     EXPECT_EQ(folder.run("reproduce a.png").status, 0);
     EXPECT_EQ(folder.run("reproduce a.svg").status, 0);
     if (find_program("rsvg-convert").empty()) return;
@@ -82,7 +82,7 @@ void replay(const std::string& picture, Session& session) {
     for (const Command& command : session_in(picture, trust_of(true, {}))) session.apply(command);
 }
 
-// In every kind, of the plots and of the mechanism: made again by itself, and dropped it leads back.
+// Every format, of plots and mechanism, can be reproduced, and dropped on the window it restores the session.
 TEST(Export, of_a_page_is_made_again_and_leads_back) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine");
@@ -116,7 +116,7 @@ TEST(Export, of_a_system_without_drawing_has_no_mechanism) {
     EXPECT_NE(session.error().find("no drawing of a mechanism"), std::string::npos) << session.error();
 }
 
-// Its lines and fills are those of the picture in pixels: a filled disc, the surface, the way.
+// The vector form has the lines and fills of the pixel form: a filled disk, the surface, the trail.
 TEST(Mechanism, is_drawn_as_lines_too) {
     const test::Folder folder;
     ASSERT_EQ(folder.run("figure ball_on_cylinder --mechanism --at 0.5 --out a.svg").status, 0);

@@ -1,4 +1,4 @@
-// Fig. 4 of the paper, and the table of its numbers beside ours.
+// Figure 4 of the paper, and the comparison of its numbers with ours.
 #include "pictures/paper.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
     EXPECT_EQ(figures[0].name, "fig4a");
     EXPECT_EQ(figures[6].name, "fig4");
     EXPECT_EQ(figures[6].figure.panels.size(), 6u);
-    // The path is drawn once, with the gap's zero line, as `figure` draws it.
+    // The path is drawn once, together with the zero line of the gap, as in `figure`.
     const Panel& path = figures[3].figure.panels[0];
     EXPECT_EQ(path.curves.size(), 2u);
     EXPECT_TRUE(path.equal_axes);
@@ -45,7 +45,7 @@ TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
         const auto& keys = figures[i].figure.keys;
         EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.label == "ℎ = 0"; })) << i;
     }
-    // From the certified time at threshold 0 to what one would read as 11 at threshold 1.
+    // From the certified time at threshold 0 to about 11 at threshold 1.
     EXPECT_EQ(figures[7].name, "zeno");
     const std::vector<Point>& cut = figures[7].figure.panels[0].curves[0].points;
     EXPECT_EQ(cut.front().x, 0.0);
@@ -55,7 +55,7 @@ TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
     ASSERT_EQ(figures[7].figure.panels[1].curves.size(), 5u);
 }
 
-// The times of shared/reference in every interval, and intervals that shrink with the square of the speed.
+// Every interval contains the time of tests/reference, and the widths shrink with the square of the impact speed.
 TEST(Paper, CertifiedIntervalsShrinkAroundTheZenoTimes) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
@@ -65,7 +65,8 @@ TEST(Paper, CertifiedIntervalsShrinkAroundTheZenoTimes) {
     for (std::size_t n = 0; n < 2; ++n) {
         ASSERT_GE(widths[n].size(), 8u);
         for (const CertifiedWidth& cut : widths[n]) {
-            // Of the second, errors of the first cut are not covered by the certificate; they are of its tolerance.
+            // The certificate of the second Zeno point does not cover errors of the first cut, which are of its
+            // tolerance.
             const double slack = n == 0 ? 1e-9 : 0.1 * cut.speed;
             EXPECT_LT(cut.low - slack, truth[n]) << cut.speed;
             EXPECT_GT(cut.high + slack, truth[n]) << cut.speed;

@@ -1,4 +1,4 @@
-// The plane of any two quantities: its commands, its menu, what of it a hand can take.
+// The configuration plane: commands, menu, and mouse.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -31,7 +31,7 @@ TEST(PlaneCommand, takes_any_two_expressions_and_shows_them) {
     EXPECT_EQ(session.error(), "");
     EXPECT_TRUE(session.scene().shows("plane"));
     EXPECT_NE(to_text(session).find(std::string("plane ") + end_of_leg + " | theta2\n"), std::string::npos);
-    // What is none stays undone, and says why.
+    // An invalid expression changes nothing and gives an error.
     session.apply(parse_command("plane theta1 theta3"));
     EXPECT_NE(session.error().find("theta3"), std::string::npos) << session.error();
     EXPECT_EQ(session.scene().plane()->x, end_of_leg);
@@ -81,7 +81,7 @@ TEST(PlaneMenu, chooses_a_pair_and_takes_expressions) {
     hands.click("plane axes");
     hands.click("plane theta1, theta2");
     EXPECT_FALSE(hands.session.scene().plane()) << "the first is what is shown by default";
-    // What is wrong is told where it was typed, and the menu stays.
+    // The error appears at the field, and the menu stays open.
     hands.click("plane axes");
     for (const char* letters : {"thta1", "sin(theta1)"}) {
         EXPECT_FALSE(hands.session.scene().plane());
@@ -96,7 +96,7 @@ TEST(PlaneMenu, chooses_a_pair_and_takes_expressions) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-// Where the window's test presses.
+// Prints positions for the window's test.
 TEST(PlaneMenu, tells_where_it_is) {
     Hands hands("double_pendulum");
     hands.session.apply(command::Show{"plane", true});
@@ -145,7 +145,7 @@ TEST(PlaneHand, takes_the_start_where_a_point_is_a_state) {
     }
 }
 
-// The surface and the contours move with the present, and nothing is computed again while it stands.
+// Surfaces and contours follow the current time and are not recomputed while it is unchanged.
 TEST(PlaneLines, are_those_of_the_present) {
     Hands hands("ball_on_vibrating_table");
     for (const char* line : {"plane y y'", "show contours", "seek 0.2"}) hands.session.apply(parse_command(line));
@@ -160,7 +160,7 @@ TEST(PlaneLines, are_those_of_the_present) {
     EXPECT_FALSE(hands.state.plane.arrows.empty());
 }
 
-// A frame's lists while everything moves: a run that plays, whose contours change at every instant.
+// Cost of a frame during playback, when the contours change at every time.
 TEST(PlaneLines, cost_little) {
     Hands hands("kneed_leg", test::surface(1600, 1000));
     for (const char* line : {"show plane", "show contours", "show energy"}) hands.session.apply(parse_command(line));

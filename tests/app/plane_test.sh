@@ -1,6 +1,6 @@
 #!/bin/bash
-# The plane of two quantities in a real window: its menu chooses a phase plane, its switch the contours, and the picture of
-# the record is drawn from it.
+# The configuration plane in a real window: its menu selects a phase plane, its toggle the contours, and a picture is
+# drawn from the record.
 #     plane_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 

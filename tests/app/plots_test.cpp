@@ -1,4 +1,4 @@
-// The plots of the explorer: what commands make of them, and a hand that zooms.
+// The plots of the explorer: commands and zooming with the mouse.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,8 +25,8 @@ TEST(Plots, ShowTheViewsOfTheFileFirst) {
     EXPECT_EQ(session.plots().size(), 4U);
 }
 
-// "gap" is of one constraint: with several, what fills the places that the file leaves empty is of each, and everything that is
-// offered can be shown.
+// `gap` is valid for a single constraint. With several, the generic views refer to each contact, and every offered view
+// can be shown.
 TEST(Plots, FillEveryPlaceWithSeveralContacts) {
     Session session = test::session("../../tests/reference/gaps/pendulum_two_stops");
     std::string text = session.document().text;
@@ -87,10 +87,10 @@ TEST(Plots, LinkedTimesMoveTogether) {
     EXPECT_EQ(session.plots()[1].x.low, 2.0);
 }
 
-// However close one looks, the curve is the run's: dense, and with its impacts.
+// At any zoom the curve is sampled densely and includes its impacts.
 TEST(Plots, AZoomIsSampledAnew) {
     Session session = test::session("ball_on_sine");
-    // Some of the last bounces before the cut: as fine as the window shows them, and no finer outside.
+    // Some of the last impacts before the cut: sampled as finely as the window shows them, and no finer outside.
     constexpr double low = 2.66, high = 2.72, top = 0.015;
     session.apply(parse_command(fmt::format("zoom 3 {} {} 0 {}", low, high, top)));
     const Panel& panel = session.plots()[2];
@@ -146,7 +146,7 @@ struct PlotHand : test::Hands {
     const Axis& y(std::size_t plot = 1) const { return session.plots()[plot].y; }
 };
 
-// In a small window names are shortened rather than left out.
+// In a small window names are shortened, not left out.
 TEST(PlotHand, EveryCurveOfTwoIsNamedInASmallWindow) {
     test::Hands hands("ball_on_sine", test::surface(1000, 700));
     hands.session.apply(parse_command("plot 1 t energy*1.000001+y*0.0001 y*1.000001+x*0.0001"));
@@ -184,7 +184,7 @@ TEST(PlotHand, DraggingPansAndADoubleClickFits) {
     hand.rest(2);
     EXPECT_GT(hand.x().low, low + 0.02 * width);
     EXPECT_NEAR(hand.x().high - hand.x().low, width, 1e-9 * width);
-    EXPECT_EQ(hand.session.time(), 0.0);  // a drag is no click
+    EXPECT_EQ(hand.session.time(), 0.0);  // a drag is not a click
     for (int i = 0; i < 2; ++i) {
         hand.hand.left = true;
         hand.rest(1);
@@ -228,7 +228,7 @@ TEST(PlotHand, ChoosesTypesAndHides) {
     hand.type("y, max_y");
     hand.press(key::enter);
     EXPECT_NE(hand.session.error(), "");
-    hand.press_with_control('A');  // the menu stays, and its field has the letters still
+    hand.press_with_control('A');  // the menu stays open and its field active
     hand.type("y, gap");
     hand.press(key::enter);
     EXPECT_EQ(hand.session.error(), "");

@@ -1,4 +1,4 @@
-// Work shared by processes, and how it is told.
+// The process pool and its progress display.
 #include "pictures/process_pool.hpp"
 
 #include <gtest/gtest.h>

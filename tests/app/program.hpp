@@ -1,4 +1,4 @@
-// Runs the program as a user does: a shell, a folder of its own, and what comes back.
+// Runs the program as a user does: by a shell, in a temporary folder, and returns status and output.
 #pragma once
 
 #include <sys/wait.h>
@@ -35,7 +35,7 @@ inline std::string content(const std::filesystem::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// An empty folder that lives as long as this; programs run in it.
+// A temporary folder, removed with this object; programs run in it.
 class Folder {
  public:
     Folder() {
@@ -60,7 +60,7 @@ class Folder {
 
     void put(const std::string& name, const std::string& text) const { std::ofstream(path_ / name) << text; }
 
-    // `arguments` as a shell reads them; `before`: variables to set.
+    // `arguments` in shell syntax; `before`: variables to set.
     Answer run(const std::string& arguments, const std::string& before = {}) const {
         const Folder answers;
         const std::string command =

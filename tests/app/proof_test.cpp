@@ -1,4 +1,4 @@
-// A proof of the present run in the explorer and in figures: when it is there, when it is not any more, what it says.
+// A proof of the current run in the explorer and in figures: when it is valid and what is shown.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,7 +26,7 @@ Session proved(const std::string& system, const std::string& line = "prove") {
     return session;
 }
 
-// As the command line has it, to the last bit.
+// It equals that of the command line, bit for bit.
 TEST(SessionProof, IsThatOfTheCommandLine) {
     const Session session = proved("ball_on_sine");
     ASSERT_NE(session.proof(), nullptr);
@@ -44,7 +44,7 @@ TEST(SessionProof, IsThatOfTheCommandLine) {
     EXPECT_NE(to_text(session).find("prove: end time until 20\n"), std::string::npos);
 }
 
-// How a run is computed means nothing to it; everything else makes it another run.
+// Integration options do not matter; any other change invalidates it.
 TEST(SessionProof, IsGoneWithTheRunThatItIsOf) {
     for (const char* change : {"set e 0.6", "set x' 1.4", "end 15", "start x 0.1 y 2.1", "max-impacts 500",
                                "open double_pendulum", "text \"\""}) {
@@ -84,7 +84,7 @@ TEST(SessionProof, IsRefusedAsOnTheCommandLine) {
     EXPECT_THROW(parse_command("prove width"), InputError);
 }
 
-// In a window nobody waits: what is under way says how far it is, and is given up by a word or by another run.
+// A window does not wait: the proof reports its progress, and a command or another run cancels it.
 TEST(SessionProof, IsMadeOnAThreadOfItsOwn) {
     Session session = test::session("arm_at_wall", 0.0);
     session.settle();
@@ -101,7 +101,7 @@ TEST(SessionProof, IsMadeOnAThreadOfItsOwn) {
         session.update();
     }
     EXPECT_GT(last, 0.0);
-    // A figure that is taken away meanwhile is of the run alone, and says so.
+    // A figure exported meanwhile shows the run without the proof, and its command says so.
     EXPECT_EQ(command_for(session, "figure").find("prove"), std::string::npos);
     EXPECT_NE(command_for(session, "explorer").find("prove"), std::string::npos);
     session.apply(command::StopProof{});
@@ -117,7 +117,7 @@ TEST(SessionProof, IsMadeOnAThreadOfItsOwn) {
     session.settle();
     EXPECT_EQ(session.proof(), nullptr);
 
-    // What is asked for while its run is under way begins when that is there.
+    // A proof requested while its run is under way starts when that is finished.
     session.apply(parse_command("end 0.6"));
     session.apply(command::Prove{});
     session.settle();
@@ -146,7 +146,7 @@ TEST(SessionProof, IsInTheRecipeAndInFigures) {
     EXPECT_EQ(to_text(figure_of(session, {})).find("tube"), std::string::npos);
 }
 
-// "Proved" is said of nothing else.
+// The word "proved" is used only for proofs.
 TEST(ProofPanels, SayProvedOfProofsAlone) {
     for (const char* system : {"ball_on_sine", "kneed_leg"}) {
         Hands hands(system, test::surface(1600, 1000));
@@ -185,7 +185,7 @@ TEST(ProofPanels, TellWhatIsProved) {
     hands.click("prove");
     EXPECT_EQ(hands.session.proof(), nullptr);
     EXPECT_FALSE(hands.says("proved to"));
-    // A wider claim from the menu beside it, which stays undecided.
+    // A wider box from the menu, for which the proof ends undecided.
     hands.click("prove more");
     hands.click("prove 0.0001");
     hands.session.settle();
@@ -198,7 +198,7 @@ TEST(ProofPanels, TellWhatIsProved) {
     EXPECT_FALSE(hands.says("proved"));
 }
 
-// For proof_window_test.sh.
+// Prints positions for proof_window_test.sh.
 TEST(ProofPanels, TellWhereTheyAre) {
     Hands hands("ball_on_sine");
     const auto tell = [&](const char* name, const std::string& place) {
@@ -211,7 +211,7 @@ TEST(ProofPanels, TellWhereTheyAre) {
     tell("wider", "prove 1e-06");
 }
 
-// ---- the command line ----
+// ---- command line ----
 
 TEST(ProofFigure, IsDrawnAndMadeAgain) {
     const Folder folder;

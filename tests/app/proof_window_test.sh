@@ -1,6 +1,5 @@
 #!/bin/bash
-# A proof in a real window: a button makes it, a slider's other run has none, a menu makes a wider one; the picture of the record
-# is drawn with it.
+# A proof in a real window: a button starts and removes it, a menu proves a wider box; a picture of the record shows it.
 #     proof_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 

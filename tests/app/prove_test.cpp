@@ -1,4 +1,4 @@
-// `achilles prove` as a user meets it.
+// The command `achilles prove`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -40,7 +40,7 @@ TEST(Prove, TellsAPersonWhatIsProvedAndWhatItStandsOn) {
         EXPECT_NE(answer.out.find(words), std::string::npos) << words << "\n" << answer.out;
 }
 
-// The answer first, in at most 15 lines; the table has the Zeno points and the release, and no impacts.
+// The summary has at most 15 lines; its table has the Zeno points and the release, but no impacts.
 TEST(Prove, AnswersFirst) {
     const Answer answer = Folder().run("prove ball_on_sine");
     EXPECT_EQ(answer.status, 0);
@@ -56,7 +56,7 @@ TEST(Prove, AnswersFirst) {
     EXPECT_NE(undecided.out.find("Try a smaller box"), std::string::npos) << undecided.out;
 }
 
-// Boxes, interval parameters, parts; and status 3 with no end where a box is too wide.
+// Boxes, interval parameters, subdivision; and status 3 without an end if a box is too wide.
 TEST(Prove, TakesBoxesAndInterval) {
     const Folder folder;
     const json wide = json::parse(folder.run("prove ball_on_sine --end 4 --width 1e-6 --json -").out);
@@ -73,7 +73,7 @@ TEST(Prove, TakesBoxesAndInterval) {
     EXPECT_TRUE(json::parse(undecided.out)["end"].is_null());
 }
 
-// Where a proof ends undecided, the reason stands once on a terminal, and how far it goes is not rounded up.
+// If a proof is undecided, the reason is printed once on a terminal, and the time reached is rounded down.
 TEST(Prove, SaysOnceWhyItIsUndecided) {
     const Folder folder;
     const Answer text = folder.run("prove ball_on_sine --set e=0.46..0.5 --verbose"),
@@ -97,7 +97,7 @@ TEST(Prove, SaysOnceWhyItIsUndecided) {
     }
 }
 
-// What a person typed is what is claimed to be proved.
+// The claim is printed with the numbers as typed.
 TEST(Prove, PrintsWhatWasTyped) {
     const Folder folder;
     const Answer answer = folder.run("prove ball_on_floor --set r=0.059..0.061 --width 1e-5 --end 0.9 --verbose");

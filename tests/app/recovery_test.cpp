@@ -1,4 +1,4 @@
-// What was typed and not saved outlives its window, and nothing else is kept.
+// Unsaved text survives its window, and nothing else is kept.
 #include "journal/recovery.hpp"
 
 #include <gtest/gtest.h>
@@ -64,7 +64,7 @@ TEST_F(Recoveries, of_several_windows_are_several_and_strangers_files_are_none) 
     EXPECT_EQ(left_unsaved()[0].steps.back(), Command(command::Text{"one"}));
 }
 
-// Nowhere to write is no reason to stop typing.
+// Without a writable folder, editing continues.
 TEST_F(Recoveries, fail_in_silence) {
     ::setenv("XDG_STATE_HOME", "/proc/nowhere", 1);
     Session session = test::session("ball_on_sine");

@@ -1,4 +1,4 @@
-// What the command line refuses, and how it says so: status, message, place, and nothing written.
+// Refused command lines: status, message, place, and no output files.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -129,7 +129,7 @@ TEST(Cli, WhatTheCommandLineSetsIsCheckedAtTheStart) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"drop.toml"});
 }
 
-// Errors that appear only while running: status 3, the reason, and what was computed until then.
+// Errors during a run: status 3, the reason, and the results so far.
 TEST(Cli, ARunThatLeavesTheDomainSaysWhenWhereAndWhy) {
     const Folder folder;
     const struct {
@@ -167,7 +167,7 @@ TEST(Cli, AJournalsMistakeIsShownWithItsPlace) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"tour.journal"});
 }
 
-// What it wanted is not in the picture, so there is none.
+// The picture would lack the effect of the command, so none is written.
 TEST(Cli, ALineOfAJournalThatIsRefusedIsBadInput) {
     const Folder folder;
     folder.put("tour.journal", "set g 2\nselect 9999\nseek 1\n");

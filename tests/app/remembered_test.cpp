@@ -1,4 +1,4 @@
-// The gallery in its groups, and what one window leaves to the next.
+// The groups of the gallery, and the preferences kept between windows.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -49,7 +49,7 @@ TEST(Gallery, shows_its_groups) {
     EXPECT_EQ(hands.session.system(), "double_pendulum");
 }
 
-// A home of its own for a test.
+// A temporary home folder for a test.
 struct Home {
     Home() { setenv("XDG_CONFIG_HOME", folder.path().c_str(), 1); }
     ~Home() { unsetenv("XDG_CONFIG_HOME"); }
@@ -76,7 +76,7 @@ TEST(Remembered, are_the_looks_and_the_files_that_were_open) {
             EXPECT_EQ(session.error(), "") << line;
             none.keep(session);
         }
-        session.apply(parse_command("open double_pendulum"));  // from the gallery: no file of the user's
+        session.apply(parse_command("open double_pendulum"));  // from the gallery: not a recent file
         none.keep(session);
     }
     EXPECT_EQ(home.text(), "theme dark\nsize plots 0.4\nenlarge 1.5\nopen " + a + "\nopen \"" + b + "\"\n");
@@ -90,7 +90,7 @@ TEST(Remembered, are_the_looks_and_the_files_that_were_open) {
     EXPECT_FALSE(next.scene().presents());
 }
 
-// Whatever stands in the file, a window opens, and does nothing but look like this.
+// Whatever the file contains, a window opens, and only its appearance is affected.
 TEST(Remembered, takes_nothing_else_from_the_file) {
     const Home home;
     std::filesystem::create_directories(home.folder.path() / "achilles");
@@ -112,7 +112,7 @@ TEST(Remembered, files_stand_in_the_menu) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-// A picture must be the same for everybody.
+// A picture must not depend on preferences.
 TEST(Remembered, is_nothing_to_a_picture) {
     const Home home;
     std::filesystem::create_directories(home.folder.path() / "achilles");

@@ -1,4 +1,4 @@
-// Pictures that know where they come from: made again from what they carry, whatever became of the files.
+// Pictures that store their origin: reproduced from their own content, whatever became of the files.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -15,7 +15,7 @@
 namespace achilles::test {
 namespace {
 
-// A ball on a floor, with what could get lost on the way: carriage returns, letters beyond Latin-1, marks of XML.
+// A system file with content that could get lost: carriage returns, letters beyond Latin-1, XML markup.
 const std::string falling_ball =
     "title = \"Ein Ball f\xC3\xA4llt: \xCE\xB8 < 3 & \\\"so\\\"\"\r\n# ]]> 'x'\r\n"
     "[[coordinate]]\nname = \"y\"\nstart = 1.0\nunit = \"m\"\n[[parameter]]\nname = \"g\"\nvalue = 9.81\n"
@@ -87,7 +87,7 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
         EXPECT_NE(all.find(part), std::string::npos) << part << all;
 }
 
-// What limits a run is told; of the steps only where somebody has said so.
+// The notes state limits of the run; the limit of steps only if it was set.
 TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
@@ -110,7 +110,7 @@ TEST_P(Reproduced, ADifferenceIsTold) {
     ASSERT_EQ(folder.run(arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
     if (picture_format(bytes) == "png") {
-        // Another version, and check sums that are right.
+        // Another version, with valid checksums.
         Notes notes = png_notes(bytes);
         notes[1].text = "Achilles 0.0.9";
         folder.put(picture, with_notes(bytes.substr(0, 33) + bytes.substr(bytes.find("IDAT") - 4), notes));
@@ -145,7 +145,7 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     std::filesystem::create_directory_symlink(fonts, folder.path() / "assets/fonts");
     for (const std::string picture : {"achilles-paper/fig4d.png", "achilles-paper/fig4.png", "achilles-paper/zeno.png",
                                       "svg/fig4e.svg", "svg/zeno.svg", "s.png"}) {
-        // Assets without systems: nothing is left to read but the picture.
+        // Assets without systems: only the picture can be read.
         const Answer answer = folder.run("reproduce " + picture + " --out again", "ACHILLES_ASSETS=assets");
         EXPECT_EQ(answer.status, 0) << answer.err;
         EXPECT_EQ(content(folder.path() / "again"), content(folder.path() / picture)) << picture;
@@ -153,7 +153,7 @@ TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     EXPECT_EQ(folder.run("reproduce achilles-paper/fig4.png").out, "achilles paper --scale 0.5\n");
 }
 
-// A picture may come from anybody: what its journal saves is not saved again.
+// A picture may be untrusted: file output of its journal is not repeated.
 TEST(Reproduce, AJournalThatSavesWritesNothing) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
@@ -177,7 +177,7 @@ TEST(Reproduce, ARunThatStoppedEarlyIsThatAgain) {
     EXPECT_EQ(folder.run("reproduce a.svg").status, 3);
 }
 
-// Whatever the file holds: status 2, its name, one sentence, nothing written.
+// Damaged pictures of any kind: status 2, the name, one sentence, and no output.
 TEST(Reproduce, RefusesWhatItCannotTrust) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
@@ -201,7 +201,7 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
         {bare, "x: this picture does not contain the command that made it\n"},
         {"<svg/>", "x: this picture does not contain the command that made it\n"},
         {svg.substr(0, 1200), "x: its notes are incomplete\n"},
-        // Its command is broken UTF-8; a length beyond the file; more notes than anybody needs.
+        // A command in broken UTF-8; a length beyond the file; too many notes.
         {bare.substr(0, 33) +
              "\x00\x00\x00\x1FiTXtAchilles Command\x00\x00\x00\x00\x00"
              "achilles \xFF\x9CN\xEDj"s +
@@ -236,7 +236,7 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
     EXPECT_EQ(folder.run("reproduce a.png --out none/a.png").status, 2);
 }
 
-// Notes that strangers added, one of them in broken UTF-8, one after the pixels: the picture is what it was.
+// Foreign notes, one in broken UTF-8, one after the pixels, do not affect the picture.
 TEST(Reproduce, StrangersNotesChangeNothing) {
     using std::string_literals::operator""s;
     const Folder folder;
@@ -288,7 +288,7 @@ TEST(Figure, IsOfTheSizeAskedForAndGoesToStandardOutput) {
     EXPECT_EQ(folder.run("figure falling_rod --view angle --format svg --out -").out.rfind("<?xml", 0), 0u);
 }
 
-// Libraries that are not there: the search path leads to empty files of their names first.
+// Missing libraries: the search path leads to empty files of their names first.
 TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
     const Folder folder, without_first, without_both;
     without_first.put("libOSMesa.so.8", "");
@@ -314,7 +314,7 @@ TEST(Figure, IsTheSameByEitherLibraryAndNamesThePackagesWithoutBoth) {
 TEST(Figure, IsDrawnWhereNoMemoryCanBeMadeExecutable) {
     const Folder folder;
     const std::string out = folder.path() / "a.png";
-    const pid_t child = fork();  // what is denied stays so
+    const pid_t child = fork();  // the restriction cannot be undone in a process
     ASSERT_GE(child, 0);
     if (child == 0) {
         if (!deny_executable_memory()) _exit(99);
@@ -327,15 +327,15 @@ TEST(Figure, IsDrawnWhereNoMemoryCanBeMadeExecutable) {
     ASSERT_TRUE(WIFEXITED(status)) << "ended by signal " << WTERMSIG(status);
     if (WEXITSTATUS(status) == 99) GTEST_SKIP() << "no seccomp here";
     EXPECT_EQ(WEXITSTATUS(status), 0);
-    // Three curves' worth of ink, not an empty page.
+    // Three curves, not an empty page.
     EXPECT_GT(content(out).size(), 5000U);
 }
 
-// By librsvg's program; where it is missing the message names its package, before the run.
+// Uses librsvg's program; if it is missing, the message names its package before the run.
 TEST(Figure, is_written_as_pdf) {
     const Folder folder;
     const std::string figure = "figure ball_on_sine --end 5 --view height ";
-    const Folder tools;  // a PATH with what runs the program, and nothing else
+    const Folder tools;  // a PATH with only what runs the program
     std::filesystem::create_symlink("/usr/bin/timeout", tools.path() / "timeout");
     const Answer missing = folder.run(figure + "--out a.pdf", "PATH='" + tools.path().string() + "'");
     EXPECT_EQ(missing.status, 2);
@@ -356,7 +356,7 @@ TEST(Figure, is_written_as_pdf) {
     EXPECT_EQ(content(folder.path() / "c.pdf").substr(0, 5), "%PDF-");
 }
 
-// From cairo 1.18 on rsvg-convert compresses the end of a PDF, where notes stand, unless it is asked for PDF 1.4.
+// From cairo 1.18 on, rsvg-convert compresses the end of a PDF, where notes are added, except in PDF 1.4.
 TEST(Figure, is_a_pdf_that_notes_can_be_added_to) {
     const Folder folder, tools;
     std::filesystem::create_symlink("/usr/bin/timeout", tools.path() / "timeout");

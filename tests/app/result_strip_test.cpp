@@ -1,4 +1,4 @@
-// The strip of results under the mechanism: it goes with the time, and with a hand.
+// The strip of results below the mechanism: scrolling by time and by mouse.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@ namespace {
 
 using test::Hands;
 
-// Dozens of results: the one that the present has reached is in view at any time, and what is not has its number at an end.
+// With dozens of results the last one reached is always visible; the number of hidden ones is shown at both ends.
 TEST(ResultStrip, keep_the_present_in_view) {
     for (const int width : {1024, 1600}) {
         Hands hands("driven_double_pendulum", test::surface(width, 800));
@@ -37,7 +37,7 @@ TEST(ResultStrip, keep_the_present_in_view) {
     }
 }
 
-// A drag, a wheel and the numbers at the ends move the strip, and nothing else; the time takes it back.
+// Drag, wheel and the numbers at the ends only scroll the strip; a change of the current result resets it.
 TEST(ResultStrip, are_moved_by_a_hand) {
     Hands hands("driven_double_pendulum", test::surface(1280, 800));
     hands.session.apply(parse_command("end 60"));
@@ -82,8 +82,7 @@ TEST(ResultStrip, are_moved_by_a_hand) {
     EXPECT_EQ(first(), at_first);
 }
 
-// A question that is asked in the very frame in which the pointer comes over a result: there was a tooltip then, and the end
-// of the program.
+// A dialog that opens in the frame in which the mouse enters a result. A tooltip there once crashed the program.
 TEST(ResultStrip, say_nothing_behind_a_dialog) {
     Hands hands("ball_on_sine");
     const Point at = hands.middle("result 10");

@@ -1,4 +1,4 @@
-// The answer first: the strip of results, the list of events, the section Accuracy, and the configuration plane.
+// The strip of results, the event list, the accuracy section, and the configuration plane.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ namespace {
 
 using test::Hands;
 
-// Every event that is no impact can be pressed, and its text holds what is proved.
+// Every Zeno point and release can be clicked, and its text states the certified accuracy.
 TEST(Results, tell_every_time_and_how_well_it_is_known) {
     Hands hands("ball_on_sine");
     const auto& events = hands.session.trajectory().events;
@@ -46,7 +46,7 @@ TEST(Results, tell_every_time_and_how_well_it_is_known) {
     }
 }
 
-// At a loose tolerance the time is wrong by far more than the interval's width: digits beyond that are not shown.
+// At a loose tolerance the integration error far exceeds the width of the interval: further digits are not shown.
 TEST(Results, show_no_digits_that_the_integration_may_change) {
     Session session = test::session("ball_on_sine");
     session.apply(parse_command("tolerance 1e-4"));
@@ -76,7 +76,7 @@ TEST(Results, select_and_show_the_proof) {
     EXPECT_EQ(hands.session.selected(), 0);
 }
 
-// Restitution 0 ends the fall at once: no proof, and no row of bounces to look at.
+// With restitution 0 the impact is plastic: no certificate, and no impact sequence to show.
 TEST(Results, call_a_landing_so_and_offer_no_lens) {
     for (const bool is_plastic : {false, true}) {
         Hands hands("ball_on_floor");
@@ -94,7 +94,7 @@ TEST(Results, call_a_landing_so_and_offer_no_lens) {
     }
 }
 
-// A run that ends before its time without a Zeno point says why, not what did not happen.
+// A run that ends early without a Zeno point states the reason.
 TEST(Results, tell_how_a_run_without_any_ended) {
     Hands hands("ball_on_floor");
     EXPECT_FALSE(hands.says("left the domain at"));
@@ -109,7 +109,7 @@ TEST(Results, tell_how_a_run_without_any_ended) {
     EXPECT_FALSE(hands.says("no Zeno point until"));
 }
 
-// The list, the status line and what stands under the pointer say the sentence of the core.
+// The list, the status line and the tooltip use the sentence of core.
 TEST(EventList, says_a_sentence_an_event) {
     Hands hands("ball_on_sine", test::surface(1600, 1000));
     const auto& events = hands.session.trajectory().events;
@@ -142,7 +142,7 @@ TEST(EventList, folds_impacts_until_a_click_opens_them) {
     hands.state.places.erase("event 1");
     hands.rest(2);
     EXPECT_FALSE(hands.state.places.contains("event 1"));
-    // An impact that is chosen elsewhere is seen.
+    // An impact selected elsewhere is scrolled into view.
     hands.session.apply(command::Select{3});
     hands.rest(3);
     EXPECT_TRUE(hands.state.places.contains("event 3"));
@@ -183,7 +183,7 @@ TEST(EventList, is_copied_as_a_table) {
 
 constexpr const char* gaps = "../../tests/reference/gaps/";
 
-// Every event of every contact: in the list, in the strip where it changes what is held, with its reasons.
+// Every event of every contact: in the list; in the strip if it changes the held contacts; with its card.
 TEST(SeveralContacts, are_named_wherever_events_are) {
     for (const char* system : {"driven_damped_pendulum", "travelling_wave", "vibrating_table", "bowl_and_post",
                                "pendulum_two_stops", "ball_in_box"}) {
@@ -203,7 +203,7 @@ TEST(SeveralContacts, are_named_wherever_events_are) {
     }
 }
 
-// A ball strikes the first of two that touch, and no force acts: no surface falls away.
+// A ball hits the first of two touching balls without forces: the message must not say that a surface falls away.
 TEST(SeveralContacts, that_take_part_in_an_impact_are_said_to) {
     Hands hands("newtons_cradle", test::surface(1600, 1600));
     hands.session.apply(command::Text{
@@ -234,7 +234,7 @@ TEST(SeveralContacts, are_copied_with_the_list) {
     EXPECT_NE(text.find("\tZeno point\tknee\t\tknee\t10.47660"), std::string::npos) << text;
 }
 
-// A sign that the font does not have shows as a question mark.
+// A character missing in the font appears as a question mark.
 TEST(Panels, write_no_sign_that_the_font_lacks) {
     Hands hands("ball_on_floor");
     int signs = 0;
@@ -263,7 +263,7 @@ TEST(Accuracy, is_one_line_until_it_is_opened) {
     EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"accuracy", true})});
 }
 
-// At the least size that is promised, every number of the certificate is inside the card, and no scroll bar is needed.
+// At the minimum window size every number of the certificate is inside the card, without a scroll bar.
 TEST(Card, shows_the_whole_certificate_in_a_small_window) {
     for (const char* system : {"ball_on_sine", "double_pendulum"}) {
         Hands hands(system, test::surface(1024, 700));
@@ -293,7 +293,7 @@ TEST(Plane, stands_in_place_of_a_drawing_and_of_any_mechanism) {
         EXPECT_TRUE(hands.state.places.contains("plane")) << system;
         EXPECT_TRUE(hands.session.scene().shows("plane"));
     }
-    // A text without a drawing has it from the beginning.
+    // A text without a drawing shows the plane from the start.
     Hands hands("double_pendulum");
     std::string text = hands.session.document().text;
     text.erase(text.find("drawing = ["), text.find("view = [") - text.find("drawing = ["));
@@ -360,7 +360,7 @@ TEST(Plane, shades_where_the_gap_is_open) {
             area += 0.5 * (a.x * b.y - b.x * a.y);
             EXPECT_GE(a.y - a.x * a.x, -1e-3);
         }
-    // Between the parabola and y = 3: 4 sqrt(3).
+    // Area between the parabola and y = 3: 4 sqrt(3).
     EXPECT_NEAR(area, 4.0 * std::sqrt(3.0), 5e-3);
     for (const Point& p : field.zero_line()) {
         if (!std::isfinite(p.x)) continue;

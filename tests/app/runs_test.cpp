@@ -1,4 +1,4 @@
-// Several pinned runs: what they are called, where they stand, when they go, what is said of all of them.
+// Pinned runs: names, order, removal, and comparison.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -84,7 +84,7 @@ TEST(Runs, are_pinned_once) {
     EXPECT_NE(refused(session, "pin").find("this run is already pinned, as 1"), std::string::npos);
 }
 
-// What a hand does after that leaves them alone.
+// Later changes do not affect them.
 TEST(Runs, stay_as_they_were) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\n");
@@ -111,7 +111,7 @@ TEST(Runs, leave_with_their_system_and_come_back) {
     apply(session, "redo\n");
     EXPECT_TRUE(session.pinned().empty());
     apply(session, "undo\n");
-    // Another value in the text: the same system. Another energy: another one.
+    // Another value in the text is the same system; another energy is not.
     std::string text = session.document().text;
     const std::size_t at = text.find("title");
     text.insert(at, "# a remark\n");
@@ -139,7 +139,7 @@ TEST(Runs, need_no_more_memory_than_a_run_may) {
     EXPECT_EQ(session.pinned().size(), 2U);
 }
 
-// Where two runs coincide, both are seen.
+// Where two runs coincide, both are visible.
 TEST(Runs, lie_under_the_present_one_and_wider) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\npin\nreset\n");
@@ -230,10 +230,10 @@ TEST(Difference, is_that_of_the_completed_runs) {
     EXPECT_GT(largest, 0.1);
     EXPECT_LE(panel.y.low, 1e-12);
     EXPECT_EQ(panel.x.high, session.trajectory().end_time);
-    // As far as both go.
+    // Up to the end of the shorter run.
     apply(session, "end 5\n");
     for (const Point& point : session.drawn(1).curves[0].points) EXPECT_LE(point.x, 5.0);
-    // Of a path both coordinates, told by their dashes.
+    // For a path both coordinates, distinguished by their dash patterns.
     apply(session, "plot 1 x y\ndifference 1 on\n");
     ASSERT_EQ(session.drawn(0).curves.size(), 2U);
     EXPECT_NE(session.drawn(0).curves[0].stroke.dash, session.drawn(0).curves[1].stroke.dash);
@@ -287,7 +287,7 @@ TEST(RunsPanel, turns_a_plot_into_the_difference) {
     EXPECT_GT(hands.session.time(), 1.0) << "a click goes to that time";
 }
 
-// A run that is under way is pinned when it is there.
+// A run under way is pinned when it is finished.
 TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
     Session session("ball_on_sine", test::system("ball_on_sine"), test::library());
     session.set_patience(0.0);
@@ -303,7 +303,7 @@ TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
     EXPECT_EQ(session.trajectory().run.parameters[2], 0.6);
 }
 
-// However long each takes: they stand in the order in which they were asked for.
+// However long each takes, they are listed in the order of the requests.
 TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
     Session session = test::session("ball_on_floor");
     for (const char* line : {"set e 1", "end 20000"}) session.apply(parse_command(line));
@@ -311,7 +311,7 @@ TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
     session.apply(command::Set{"g", 8.0});
     session.apply(command::Pin{});
     session.set_patience(1.0);
-    session.apply(command::Start{{{"e", 0.5}, {"g", 9.0}}});  // this one is there at once
+    session.apply(command::Start{{{"e", 0.5}, {"g", 9.0}}});  // this one is finished at once
     ASSERT_EQ(session.under_way(), nullptr);
     session.apply(command::Pin{});
     session.settle();
@@ -320,7 +320,7 @@ TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
     EXPECT_EQ(session.pinned()[1].place, 2);
 }
 
-// A run that is to be pinned goes on beside the next one; no hand waits for it, and nothing is said of it meanwhile.
+// A run to be pinned continues beside the next one, without waiting, and is not mentioned in comparisons meanwhile.
 TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
     Hands hands("ball_on_sine");
     Session& session = hands.session;
@@ -343,7 +343,7 @@ TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
     EXPECT_TRUE(session.run_table().rows.empty());
     hands.rest(2);
     EXPECT_TRUE(hands.says("still under way")) << hands.letters();
-    // Each can be given up, by its place or as the last; and with their system all are.
+    // Each can be cancelled, by its place or as the last; changing the system cancels all.
     hands.click("unpin 1");
     EXPECT_EQ(session.pins_under_way(), std::vector<int>{2});
     session.apply(parse_command("unpin"));

@@ -86,7 +86,7 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
               "theta1 = 30 rad is outside its range, -1.5708 to 1.5708: for an angle in degrees write 30 deg");
     session.apply(parse_command("set m1 2"));
     EXPECT_EQ(session.notice(), "") << "it was told once";
-    // A file that is opened with such a value is no other case.
+    // The same applies to a file with such a value.
     const test::Folder folder;
     std::string text = read_text(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
     const std::string_view range = "range = [-10.0, 10.0]";
@@ -96,7 +96,7 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
     EXPECT_EQ(session.notice(), "x = 0 m is outside its range, 1 to 2");
 }
 
-// Of several values at once, too.
+// Also for several values at once.
 TEST(Session, starts_outside_their_ranges_are_told) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("start theta1 30 theta1' 0.5 theta2 0.2"));
@@ -108,7 +108,7 @@ TEST(Session, starts_outside_their_ranges_are_told) {
     EXPECT_TRUE(session.warnings().empty());
 }
 
-// It opens where there is something to look at, and says so where there is not. What leads there again does so.
+// It opens if there is a Zeno point, and otherwise gives an error. The recorded commands do the same.
 TEST(Session, the_lens_opens_at_a_zeno_point) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Lens{2.0});
@@ -167,7 +167,7 @@ TEST(Session, plays_and_finds_events) {
     EXPECT_EQ(session.selected(), 0);
 }
 
-// Whatever the clock says there.
+// Whatever the start time is.
 TEST(Session, begins_and_begins_again_where_the_run_starts) {
     Session session = test::session("ball_on_sine");
     session.apply(command::End{1.0});
@@ -231,14 +231,14 @@ TEST(Session, a_text_takes_effect_and_keeps_what_the_sliders_changed) {
     EXPECT_EQ(session.time(), 6.0) << "the present stays";
     session.apply(command::Text{with(session.document().text, "rate = 1.5", "rate = -1.5")});
     EXPECT_EQ(session.run().v[0], -1.5);
-    // A start that does not fit the new text gives way to the text's own.
+    // Values that do not fit the new text are replaced by those of the text.
     session.apply(command::Set{"y", 1.0});
     session.apply(command::Text{with(session.document().text, "y - sin(x)", "y - sin(x) - 1.5")});
     EXPECT_TRUE(session.document().problems.empty());
     EXPECT_EQ(session.run().q[1], 2.0);
 }
 
-// What the command line puts over a file stays over its edited text too, until the text says something else.
+// Values from the command line still override an edited text, unless the text changes them.
 TEST(Session, a_text_keeps_what_the_command_line_said) {
     const SystemDescription description = test::system("ball_on_sine");
     auto run = default_run(description);
@@ -257,10 +257,11 @@ TEST(Session, a_text_keeps_what_the_command_line_said) {
 TEST(Session, a_text_that_is_no_system_is_told_and_leaves_the_run) {
     Session session = test::session("ball_on_sine");
     const std::string before = to_text(session.trajectory()), text = session.document().text;
-    const std::pair<std::string, int> mistakes[] = {{with(text, "m*g*y", "m*gg*y"), 21},              // an unknown name
-                                                    {with(text, "start = 2.0", "start = -2.0"), 23},  // the gap there
-                                                    {with(text, "run = {", "run = {{"), 25},          // no TOML
-                                                    {with(text, "\"lambda\"", "\"lamda\""), 38}};     // a view
+    const std::pair<std::string, int> mistakes[] = {{with(text, "m*g*y", "m*gg*y"), 21},  // unknown name
+                                                    // the gap is negative
+                                                    {with(text, "start = 2.0", "start = -2.0"), 23},
+                                                    {with(text, "run = {", "run = {{"), 25},       // not TOML
+                                                    {with(text, "\"lambda\"", "\"lamda\""), 38}};  // in a view
     for (const auto& [wrong, line] : mistakes) {
         session.apply(command::Text{wrong});
         ASSERT_EQ(session.document().problems.size(), 1U) << line;
@@ -353,7 +354,7 @@ TEST(Session, knows_where_the_present_stands_in_a_plot) {
     EXPECT_NEAR(values[1], session.now().state.q[0] * 57.29577951308232, 1e-9);
 }
 
-// At the impact where a bouncing is cut the picture shows the restarted motion in contact: the line beside it does, too.
+// At the cut, the picture and the line beside it show the restarted motion in contact.
 TEST(Session, SaysAtACutWhatThePictureShows) {
     Session session = test::session("ball_on_sine");
     const Event& zeno = session.trajectory().events.at(9);

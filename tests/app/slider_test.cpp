@@ -1,4 +1,4 @@
-// The hand on a value: typed, put back, marked, undone.
+// Sliders: typing, resetting, markers, undo.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@
 namespace achilles {
 namespace {
 
-// With the section of the sliders that is folded at first.
+// With the accuracy section unfolded.
 struct SliderHand : test::Hands {
     explicit SliderHand(const std::string& system) : Hands(system) {
         session.apply(command::Show{"accuracy", true});
@@ -49,7 +49,7 @@ TEST(Slider, what_is_given_up_changes_nothing) {
     EXPECT_TRUE(hands.all.empty());
 }
 
-// How many pixels of a control's place have this colour.
+// Number of pixels in this color within a control.
 int pixels(SliderHand& hands, const std::string& place, const Color& color) {
     const Image picture = hands.picture();
     const Rectangle r = hands.state.places.at(place);
@@ -76,7 +76,7 @@ TEST(Slider, what_is_no_number_turns_the_field_red_and_says_why) {
         EXPECT_EQ(hands.state.typed.id, "set g") << text;
         EXPECT_NE(hands.state.typed.wrong.find(why), std::string::npos) << hands.state.typed.wrong;
         EXPECT_GT(pixels(hands, "set g", light_theme().error_card), 500) << text;
-        // It stays until it is mended, or given up.
+        // The text stays until it is corrected or cancelled.
         hands.click("set g");
         hands.press_with_control('A');
         hands.type("1/3");
@@ -103,7 +103,7 @@ TEST(Slider, an_angle_is_typed_in_degrees) {
     EXPECT_NEAR(hands.session.run().q[0], -0.78539816339744831, 1e-15);
     for (const char* text : {"90/2 deg", "90/2", "pi/4", "1/4*pi rad"}) {
         hands.session.apply(parse_command("set theta1 0.1"));
-        hands.rest(30);  // or the clicks would be the third and fourth of the last two
+        hands.rest(30);  // otherwise the clicks would count as the third and fourth
         hands.double_click("value of set theta1");
         hands.type(text);
         hands.press(key::enter);
@@ -123,7 +123,7 @@ TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
          {"set m1", "value of set theta1", "set theta2'", "tolerance", "end", "eps q", "value of eps v", "eps t"}) {
         hands.all.clear();
         hands.right_click(place);
-        std::erase(hands.all, Command(command::Done{}));  // of the slider before
+        std::erase(hands.all, Command(command::Done{}));  // ends the change of the previous slider
         EXPECT_EQ(hands.all.size(), 1U) << place;
     }
     const auto now = hands.session.run();
@@ -162,7 +162,7 @@ TEST(Slider, all_values_are_reset_at_once_and_that_is_undone_at_once) {
     EXPECT_FALSE(hands.state.places.contains("reset all")) << "there is nothing to reset";
 }
 
-// What no slider shows differs from the file, too.
+// Values without a slider can differ from the file, too.
 TEST(Slider, every_value_can_be_reset) {
     for (const char* line :
          {"method dopri5", "max-impacts 1000", "max-steps 100000", "memory 2e8", "eps 1e-5 1e-6 1e-6",
@@ -176,7 +176,7 @@ TEST(Slider, every_value_can_be_reset) {
     }
 }
 
-// Everything the sliders can change.
+// All values that sliders can change.
 std::vector<double> values(const Session& session) {
     const Options& o = session.run().options;
     std::vector<double> all{o.tolerance, o.end_time, o.truncation.eps_q, o.truncation.eps_v, o.truncation.eps_t};
@@ -189,7 +189,8 @@ TEST(Slider, every_change_of_the_hand_is_undone) {
     for (const char* place : {"set e", "set y", "set x'", "tolerance", "end", "eps", "eps v"}) {
         SliderHand hands("ball_on_sine");
         const std::vector<double> before = values(hands.session);
-        hands.click(place, place == std::string("set y") ? 0.6 : 0.3);  // beside the grab, which a click only holds
+        // Beside the grab, since a click on the grab does not move it.
+        hands.click(place, place == std::string("set y") ? 0.6 : 0.3);
         EXPECT_NE(values(hands.session), before) << place;
         hands.hand.mouse_y = -1e6;
         hands.rest(1);
@@ -227,7 +228,7 @@ TEST(Slider, a_click_moves_it_once_it_is_no_double_click) {
     EXPECT_FALSE(waits_for_click(hands.state));
     EXPECT_GT(*hands.session.value("g"), 1.0);
     ASSERT_EQ(hands.all.size(), 1U);
-    // Two sliders clicked in haste are both moved.
+    // Clicks on two sliders in quick succession move both.
     for (const char* place : {"set e", "set m"}) {
         hands.point(place, 0.9);
         hands.hand.left = true;
@@ -238,7 +239,7 @@ TEST(Slider, a_click_moves_it_once_it_is_no_double_click) {
     hands.settle();
     EXPECT_GT(*hands.session.value("e"), 0.5);
     EXPECT_GT(*hands.session.value("m"), 1.0);
-    // One that is held where it was pressed moves, too.
+    // A press held without motion also moves the slider.
     hands.point("set g", 0.1);
     hands.hand.left = true;
     hands.rest(30);
@@ -250,14 +251,14 @@ TEST(Slider, every_undo_takes_something_back) {
     std::vector<std::vector<double>> moments{values(hands.session)};
     const auto done = [&] { moments.push_back(values(hands.session)); };
     hands.click("set g", 0.8), done();
-    hands.double_click("value of set e");  // typed: nothing
+    hands.double_click("value of set e");  // typed, but unchanged
     hands.press(key::escape);
     hands.click("set e", 0.3), done();
-    hands.right_click("set e"), done();  // a change of its own
+    hands.right_click("set e"), done();  // a separate change
     hands.double_click("value of set y");
     hands.type("3");
     hands.press(key::enter), done();
-    // There and back again is nothing to undo.
+    // A drag that returns to its start is not an undo step.
     hands.point("set m");
     hands.hand.left = true;
     hands.rest(1);
@@ -282,7 +283,7 @@ TEST(Slider, every_undo_takes_something_back) {
     EXPECT_FALSE(hands.session.can_undo());
 }
 
-// A tooltip tells of a value beside it, and is away while the value changes.
+// The tooltip is placed beside the value and hidden while the value changes.
 TEST(Slider, no_tooltip_covers_the_value) {
     SliderHand hands("ball_on_sine");
     for (const char* place : {"set g", "value of set g", "end"}) {
@@ -334,7 +335,7 @@ TEST(Slider, the_roundest_number_has_the_fewest_digits) {
         EXPECT_EQ(roundest(c.low, c.high), c.roundest) << c.low << " to " << c.high;
 }
 
-// Wherever a drag ends, the value is round, and lies within a pixel of the hand.
+// The result of a drag is round and within one pixel of the mouse.
 TEST(Slider, a_drag_takes_round_numbers) {
     SliderHand hands("ball_on_sine");
     const double width = hands.state.places.at("set e").width;
@@ -351,7 +352,7 @@ TEST(Slider, a_drag_takes_round_numbers) {
     hands.rest(2);
     EXPECT_GE(texts.size(), 30U) << "it follows";
     for (const std::string& text : texts) EXPECT_LE(text.size(), 5U) << text;
-    // In degrees, where these are shown.
+    // Round in degrees, if those are displayed.
     SliderHand angle("double_pendulum");
     angle.click("set theta1", 0.63);
     const double shown = *angle.session.value("theta1") * 180.0 / 3.14159265358979323846;
@@ -386,7 +387,7 @@ TEST(Slider, shift_makes_a_drag_fine) {
     EXPECT_LT(std::abs(finer - fine), 0.02);
 }
 
-// What is pressed and held where the file's value is takes that, however many digits it has.
+// A drag to the file's value selects exactly that value, however many digits it has.
 TEST(Slider, a_drag_back_takes_exactly_the_files_value) {
     SliderHand hands("ball_on_sine");
     hands.session.apply(
@@ -423,7 +424,7 @@ TEST(Slider, counts_and_the_method_stand_in_accuracy) {
     EXPECT_EQ(hands.session.run().options.max_impacts, hands.session.file_run().options.max_impacts);
 }
 
-// In one place, with what the file has; a click there puts one back, whether it has a slider or not.
+// All differences are listed with the file's values; a click restores one, with or without a slider.
 TEST(Slider, all_differences_are_listed_and_put_back) {
     SliderHand hands("double_pendulum");
     hands.session.apply(command::Show{"accuracy", false});

@@ -1,4 +1,4 @@
-// Journals, pictures and system files come from anybody: what they may not do, and what they cannot make a terminal do.
+// Untrusted journals, pictures and system files: what they may not do, and output to a terminal.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -23,7 +23,7 @@ const std::string small = " --size 640x480 --end 0.1 ";
 
 class Strangers : public testing::Test {
  protected:
-    // The picture of a journal.
+    // A screenshot of a journal.
     Answer screenshot(const std::string& journal, const std::string& options = {}) const {
         folder.put("x.journal", journal);
         return folder.run("screenshot --journal x.journal --out a.png" + small + options);
@@ -34,7 +34,7 @@ class Strangers : public testing::Test {
     const Folder folder;
 };
 
-// Told with file and line before a command of it is done; nothing is read, written or drawn.
+// Refused with file and line before any command runs; nothing is read, written or drawn.
 TEST_F(Strangers, journals_use_no_files) {
     folder.put("victim", "mine");
     folder.put("secret.toml", "password");
@@ -77,7 +77,7 @@ TEST_F(Strangers, journals_may_name_assets_and_what_the_command_line_names) {
     EXPECT_EQ(held_by("b.toml"), drop_text);
 }
 
-// What the user allows writes where nothing is.
+// With permission it may write new files only.
 TEST_F(Strangers, a_journal_that_is_trusted_overwrites_nothing) {
     folder.put("victim.toml", "mine");
     folder.put("mine.toml", drop_text);
@@ -101,7 +101,7 @@ TEST_F(Strangers, a_text_that_is_no_system_is_not_saved) {
     EXPECT_FALSE(has("b.toml"));
 }
 
-// A picture is made again from what it carries, and asks for no more than so much work.
+// A picture is reproduced from its own content, within limits of work.
 TEST_F(Strangers, work_has_a_limit) {
     std::string twelve, many;
     for (int i = 0; i < 12; ++i) twelve += "replay x.journal\n";
@@ -135,8 +135,8 @@ TEST_F(Strangers, work_has_a_limit) {
     refused("screenshot ./s.toml --journal j", replays, "at most 10000 commands");
 }
 
-// No option of a journal, no text in it, no sweep, and nothing that a picture carries makes the program grow or run for ever:
-// each is refused before a run of it is made.
+// Options or text in a journal, sweeps, and contents of a picture cannot make the program use unlimited memory or time:
+// each is refused before a run starts.
 TEST_F(Strangers, AskForNoMoreWorkThanTheirBudget) {
     const auto is_refused = [&](const Answer& answer, const std::string& place, const std::string& message) {
         EXPECT_EQ(answer.status, 2) << message;
@@ -158,7 +158,7 @@ TEST_F(Strangers, AskForNoMoreWorkThanTheirBudget) {
     }
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
     EXPECT_FALSE(has("a.png"));
-    // What the user types, or trusts, is done.
+    // What the user types, or allows, is done.
     EXPECT_EQ(screenshot("memory 2e9\n", "--memory 2e9").status, 0);
     EXPECT_EQ(screenshot("memory 2e9\nmax-steps 3000000\n", "--allow-files").status, 0);
     EXPECT_EQ(folder.run("screenshot --do 'memory 2e9' --out b.png" + small).status, 0);
@@ -192,7 +192,7 @@ TEST_F(Strangers, PicturesAreMadeAgainWithinABudget) {
     refused("sweep ./s.toml --over memory=1e9:1e300:5 --print y", memory);
 }
 
-// Runs that are each within the limits are not together.
+// Runs that are each within the limits may exceed them together.
 TEST(Budget, CountsAllRuns) {
     Options few;
     few.max_steps = 100;
@@ -213,7 +213,7 @@ TEST(Budget, CountsAllRuns) {
     };
     EXPECT_THROW(forever(), Forbidden);
     EXPECT_NEAR(runs * full_run, Budget::max_full_runs, 0.5);
-    // The session is whole all the same, and goes on without the limits.
+    // The session stays valid and continues after the limits are lifted.
     EXPECT_THROW(session.apply(command::UseOption("max-steps", {101})), Forbidden);
     budget->lift();
     EXPECT_TRUE(session.apply(command::UseOption("max-steps", {101})));
@@ -237,7 +237,7 @@ TEST(TimeLimitDeathTest, EndsTheProcess) {
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
 }
 
-// In a window the user is asked about each file, and Enter says nothing.
+// A window asks about each file; Enter does not answer.
 TEST(FileQuestion, is_asked_and_answered) {
     Hands hands("ball_on_sine");
     for (const bool allowed : {false, true}) {
@@ -255,7 +255,7 @@ TEST(FileQuestion, is_asked_and_answered) {
     EXPECT_TRUE(hands.all.empty());
 }
 
-// A yes is for one file, in one direction: every other is asked about as well.
+// Permission is for one file and one direction; all others are asked about separately.
 TEST_F(Strangers, a_yes_is_for_one_file) {
     const auto path = [&](const char* name) { return (folder.path() / name).string(); };
     folder.put("a.toml", drop_text);
@@ -279,7 +279,7 @@ TEST_F(Strangers, a_yes_is_for_one_file) {
     EXPECT_THROW(parse_trusted("save " + path("a.toml"), "x.journal", trust), Forbidden);
     trust.answered["write " + path("b.toml")] = false;
     EXPECT_THROW(parse_trusted(text, "x.journal", trust), Forbidden);
-    // What is allowed overwrites nothing all the same, and is not asked about.
+    // A permitted write still does not overwrite a file.
     trust.answered["write " + path("a.toml")] = true;
     try {
         parse_trusted("save " + path("a.toml"), "x.journal", trust);
@@ -290,7 +290,7 @@ TEST_F(Strangers, a_yes_is_for_one_file) {
     }
 }
 
-// A picture names files, too: none is looked into unasked, and without it the picture has its own text.
+// A picture also names files: none is read without permission, and otherwise the stored text is used.
 TEST_F(Strangers, a_picture_that_is_dropped_reads_no_file_unasked) {
     folder.put("own.toml", drop_text);
     const std::string own = (folder.path() / "own.toml").string(), picture = (folder.path() / "p.svg").string();
@@ -313,7 +313,7 @@ TEST_F(Strangers, a_picture_that_is_dropped_reads_no_file_unasked) {
     EXPECT_EQ(session_in(picture, {}).front(), Command(command::New{})) << "nor does it wait for a pipe";
 }
 
-// An escape sequence in a title, a source, a command, a name or a refusal reaches no terminal.
+// Escape sequences in a title, source, command, name or error message do not reach the terminal.
 TEST_F(Strangers, text_steers_no_terminal) {
     EXPECT_EQ(printable("a\x1b[31m\tb\n\x07\r\xC2\x9B"
                         "c\x7F\xE2\x80\xAE\xFF\xC3\xA9"),
@@ -353,7 +353,7 @@ TEST_F(Strangers, text_steers_no_terminal) {
     EXPECT_TRUE(clean(folder.run("reproduce p.png")));
 }
 
-// Nor does JSON, which still says the same: what is read back holds every character.
+// The same for JSON, which preserves every character when read back.
 TEST_F(Strangers, json_steers_no_terminal_and_keeps_what_it_says) {
     const std::string title = "a\x1b[2J\x7F\xC2\x9B[31m\xE2\x80\xAE\xE2\x81\xA6\xC3\xA9\n\"\\";
     std::string text = drop_text;

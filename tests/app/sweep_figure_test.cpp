@@ -1,4 +1,4 @@
-// `achilles sweep --out` as a user meets it.
+// `achilles sweep --out`.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@ std::vector<std::string> files_in(const Folder& folder) {
     return files;
 }
 
-// Beside the table, in every format at once, and nothing else stays.
+// Written beside the table, in several formats at once, without leftovers.
 TEST(SweepPicture, StandsBesideTheTable) {
     const Folder folder;
     const Answer answer = folder.run(std::string(curve) + "--csv a.csv --out a.svg --out a.png --size 600x400");
@@ -47,14 +47,14 @@ TEST(SweepPicture, IsMadeAgain) {
                 EXPECT_EQ(again.out.find(word), again.out.npos);
         }
     }
-    // The system goes with it.
+    // The system file is stored in the picture.
     folder.put("mine.toml", content(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_floor.toml"));
     ASSERT_EQ(folder.run("sweep mine.toml --over e=0:0.5:4 --print t --out c.svg").status, 0);
     folder.put("mine.toml", "broken");
     EXPECT_EQ(folder.run("reproduce c.svg").status, 0);
 }
 
-// Somebody's picture writes no files of mine.
+// Reproducing an untrusted picture writes no other files.
 TEST(SweepPicture, OfAStrangerWritesNothing) {
     const Folder folder;
     ASSERT_EQ(folder.run(std::string(curve) + "--out a.svg").status, 0);
@@ -72,7 +72,7 @@ TEST(SweepPicture, GoesOnWhereItWasInterrupted) {
     const std::string sweep =
         "sweep ball_on_sine --over x=-3:3:60 --over y=-2:2:60 --print x --end 9 --size 400x300 --out ";
     ASSERT_EQ(folder.run(sweep + "whole.png").status, 0);
-    // An end of its own after some chunks: the file cannot grow further.
+    // Interrupted after some chunks by a file size limit.
     const Answer cut = folder.run(sweep + "a.png", "ulimit -f 40; trap '' XFSZ; ");
     EXPECT_EQ(cut.status, 3) << cut.err;
     EXPECT_NE(cut.err.find("--resume continues from a.png.part"), cut.err.npos) << cut.err;

@@ -1,4 +1,4 @@
-// Many runs beside the present one: what is varied, their picture coarse to fine, and the hand in it.
+// The sweep panel: axes, pictures from coarse to fine, and mouse input.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,7 @@ TEST(SweepPanel, shows_what_single_runs_say) {
     }
 }
 
-// Typed, or from the menu, where it is by what varies.
+// Typed, or from the menu, which offers the derivative with respect to the x axis.
 TEST(SweepPanel, ShowsDerivatives) {
     const Session session =
         swept("ball_on_sine", "--over e=0.2:0.5:31 --print \"d(zeno_time(1), e)\" --print \"zeno_time(1)\"");
@@ -85,7 +85,7 @@ TEST(SweepPanel, ShowsDerivatives) {
     EXPECT_EQ(hands.session.sweep_job().data()->number(3, 0), data.number(3, 0));
 }
 
-// More points than a picture has, and more rows.
+// More points, or rows, than a picture may have.
 TEST(SweepPanel, RefusesMoreThanItDraws) {
     Session session = test::session("ball_on_sine");
     EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points cannot be drawn"),
@@ -106,7 +106,7 @@ TEST(SweepPanel, goes_from_coarse_to_fine) {
     EXPECT_EQ(counts("--over e=0:0.9:512 --print x"), (Counts{32, 128, 512}));
     EXPECT_EQ(counts("--over e=0:0.9:128 --print x"), (Counts{32, 128}));
     EXPECT_EQ(counts("--over e=0:0.9:20 --print x"), (Counts{20}));
-    // A section of one run: of a longer and longer one.
+    // A section of a single run: with increasing length.
     std::vector<double> ends;
     for (const Sweep& level : coarse_to_fine(read_sweep("--at impact --print x", session.description())))
         ends.push_back(level.base.options.end_time);
@@ -135,7 +135,7 @@ TEST(SweepPanel, refuses_what_cannot_be_shown_and_keeps_what_there_is) {
     EXPECT_NE(refused(session, "--over e=0:0.9:8 --over x=0:1:8 --over y=0:1:8 --print x").find("two axes"),
               std::string::npos);
     EXPECT_EQ(session.sweep_text(), "--over e=0:0.9:8 --print x");
-    // Another system knows no x: it has a sweep of its own.
+    // Another system has no x: it gets its default sweep.
     session.apply(command::Open{"double_pendulum"});
     session.settle();
     EXPECT_EQ(session.sweep_text(), default_sweep(session.description()));
@@ -151,7 +151,7 @@ TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
     EXPECT_EQ(command_for(session, "sweep"),
               "achilles sweep ball_on_sine --over e=0:0.9:8 --print 'zeno_time(1)' --set g=5 --out "
               "ball_on_sine-sweep.svg");
-    // As it may be typed here, which a shell would not read.
+    // Accepted here, but needs quotes in a shell.
     session.apply(command::ShowSweep{"--over x'=0:3:8 --print zeno_time(1)"});
     EXPECT_EQ(command_for(session, "sweep"),
               "achilles sweep ball_on_sine --over 'x'\\''=0:3:8' --print 'zeno_time(1)' --set g=5 --out "
@@ -159,7 +159,7 @@ TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
 }
 
 TEST(SweepPanel, asks_for_sections_of_runs_that_are_longer_than_the_file_says) {
-    Session session = test::session("ball_on_vibrating_table");  // 10 s
+    Session session = test::session("ball_on_vibrating_table");  // takes 10 s
     const std::string late = "--over om=5:15:8 --at impact --after 50 --print y'";
     EXPECT_NE(refused(session, late).find("--after 50: the runs end at 10"), std::string::npos);
     session.apply(command::End{60.0});
@@ -180,11 +180,11 @@ TEST(SweepPanel, takes_the_hand_to_another_run) {
     hands.point("sweep picture", 0.25);
     EXPECT_TRUE(hands.says("Zeno point at"));
     hands.click("sweep picture", 0.25);
-    EXPECT_NEAR(*hands.session.value("e"), 0.3, 0.005);  // a quarter of the way along x; in the middle along y
+    EXPECT_NEAR(*hands.session.value("e"), 0.3, 0.005);  // at a quarter of the x axis, in the middle of the y axis
     EXPECT_NEAR(*hands.session.value("x'"), 1.0, 0.02);
 }
 
-// They are shown in degrees and told so; what a slider takes is in the file's unit.
+// Angles are displayed in degrees; the slider's command uses the file's unit.
 TEST(SweepPanel, takes_the_hand_to_an_angle) {
     Hands hands("double_pendulum");
     hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
@@ -227,7 +227,7 @@ TEST(SweepPanel, is_chosen_from_menus) {
     hands.click("sweep print");
     hands.click("sweep print outcome");
     EXPECT_EQ(hands.session.sweep().prints, std::vector<std::string>{"outcome"});
-    // A section of it is over x alone: it would have no picture over both.
+    // A section must be over x alone: with two axes it could not be drawn.
     hands.click("sweep print");
     hands.click("sweep at every impact");
     EXPECT_EQ(hands.session.error(), "");
@@ -238,7 +238,7 @@ TEST(SweepPanel, is_chosen_from_menus) {
     EXPECT_FALSE(hands.session.scene().shows("sweep"));
 }
 
-// As on the slider: in degrees, unless it is said otherwise.
+// In degrees by default, as for the slider.
 TEST(SweepPanel, takes_limits_in_degrees) {
     Hands hands("double_pendulum");
     hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
@@ -260,7 +260,7 @@ TEST(SweepPanel, takes_limits_in_degrees) {
     EXPECT_NEAR(limited_to("-pi/3"), -std::numbers::pi / 3.0, 1e-12);
 }
 
-// For sweep_window_test.sh.
+// Prints positions for sweep_window_test.sh.
 TEST(SweepPanel, tells_where_it_is) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"sweep", true});
@@ -282,7 +282,7 @@ TEST(SweepPanel, takes_the_name_of_a_slider_onto_an_axis) {
     hands.session.settle();
     hands.rest(3);
     const Rectangle slider = hands.state.places.at("set g"), picture = hands.state.places.at("sweep picture");
-    hands.hand.mouse_x = slider.x - 30.0;  // its name stands at its left
+    hands.hand.mouse_x = slider.x - 30.0;  // its name is to its left
     hands.hand.mouse_y = slider.y + 0.5 * slider.height;
     hands.rest(2);
     hands.hand.left = true;

@@ -1,4 +1,4 @@
-// `mpirun -n N achilles sweep` as a user meets it: the same files for every N, and what is left when a rank or the disk fails.
+// `mpirun -n N achilles sweep`: the same files for every N, and the state after a rank or the disk fails.
 #include <gtest/gtest.h>
 
 #include "app/program.hpp"
@@ -10,9 +10,9 @@ namespace achilles::test {
 namespace {
 
 constexpr const char* program = ACHILLES_BINARY_DIR "/achilles";
-// What MPI keeps until the end is its own.
+// Ignore memory that MPI keeps until the end.
 const std::string with_mpi = "ASAN_OPTIONS=detect_leaks=0 ";
-// Root may, and more ranks than cores may.
+// Allow root, and more ranks than cores.
 const std::string mpirun = with_mpi + "mpirun --oversubscribe --allow-run-as-root ";
 
 int count_of(const std::string& what, const std::string& text) {
@@ -30,7 +30,7 @@ class SweepRanks : public testing::Test {
     Answer run(int ranks, const std::string& arguments) const {
         return folder_.run(arguments, mpirun + ("-n " + std::to_string(ranks)));
     }
-    // A shell's script.
+    // Runs a shell script.
     int script(const std::string& text) const {
         folder_.put("script", text);
         const int status = std::system(("cd '" + folder_.path().string() + "' && timeout 60 sh ./script").c_str());
@@ -84,7 +84,7 @@ TEST_F(SweepRanks, AreSilentButForTheFirst) {
     EXPECT_TRUE(folder_.files().empty());
 }
 
-// Shares a sweep until its log has so many bytes more, and then ends it as the last command does.
+// A script that runs a shared sweep until its log has grown by this much, and then stops it by the last command.
 std::string interrupted(const std::string& sweep, const std::string& how) {
     return "size=$(stat -c %s a.csv.part 2>/dev/null || echo 0)\n" + std::string(mpirun) +
            "-n 2 sh -c 'echo $$ >pid$OMPI_COMM_WORLD_RANK; exec " + program + " " + sweep +
@@ -94,7 +94,7 @@ std::string interrupted(const std::string& sweep, const std::string& how) {
            how + "\nwait $m";
 }
 
-// A rank is killed, then rank 0 is asked to stop; --resume goes on, with ranks and without.
+// A rank is killed, then rank 0 is stopped; --resume continues with and without ranks.
 TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:100000 --print x --print t ",
                       told = " of 100000 runs: the same command with --resume continues from a.csv.part\n";
@@ -111,7 +111,7 @@ TEST_F(SweepRanks, GoOnWhereTheyWereInterrupted) {
     EXPECT_FALSE(has("a.csv.part"));
 }
 
-// mpirun asks all to stop a second after Ctrl-C, and ends them one later.
+// mpirun asks all processes to stop a second after Ctrl-C, and kills them one second later.
 TEST_F(SweepRanks, StopWhenMpirunIsInterrupted) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:1e7 --print x ";
     EXPECT_NE(script(interrupted(sweep, "INT $m")), 0);
@@ -121,7 +121,7 @@ TEST_F(SweepRanks, StopWhenMpirunIsInterrupted) {
     EXPECT_NE(again.err.find("this is an unfinished sweep with "), std::string::npos) << again.err;
 }
 
-// The limit would be one of memory that ranks share, too: they speak over the loopback.
+// The size limit would also apply to memory shared by the ranks, so they communicate by the loopback device.
 TEST_F(SweepRanks, EndWhereTheDiskIsFull) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:3000 --print x --csv a.csv";
     EXPECT_EQ(script(std::string(mpirun) +
@@ -139,7 +139,7 @@ TEST_F(SweepRanks, EndWhereTheDiskIsFull) {
     EXPECT_EQ(file("a.csv"), file("whole.csv"));
 }
 
-// Alone each would do all of it, and write the same file.
+// Without a connection each would do all the work and write the same file.
 TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
     std::filesystem::copy_file(program, folder_.path() / "achilles");
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:5 --print x --csv a.csv",
@@ -156,7 +156,7 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
               other.err.npos);
 }
 
-// What other processes make of an order, from its text alone.
+// Other processes get the same results from the text of the order alone.
 TEST(SweepWork, IsTheSameFromItsOrder) {
     const auto description = read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
     auto base = default_run(description);
@@ -173,7 +173,7 @@ TEST(SweepWork, IsTheSameFromItsOrder) {
     EXPECT_EQ(share.task({5, 40}), sweep_chunk(table, kept, {5, 40}));
     EXPECT_NE(share.task({5, 40}), sweep_chunk(table, {true, false, true}, {5, 40}));
     EXPECT_THROW(sweep_share("0.0.1" + order.substr(order.find('\n'))), std::runtime_error);
-    // The failures are behind what is kept.
+    // The failures are appended to the stored rows.
     RunFailures failures, none;
     SweepSummary summary(table), whole(table);
     const std::string bytes = failures.take(summary.take(sweep_chunk(table, kept, {0, 120})));

@@ -1,4 +1,4 @@
-// `achilles sweep` as a user meets it: its files, what ends it early, and what goes on from there.
+// `achilles sweep`: files, interruptions, and --resume.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -87,7 +87,7 @@ TEST(SweepCommand, LeavesEmptyWhatThereIsNot) {
     EXPECT_EQ(lines[3], "3,,,end time");
 }
 
-// Rows of sections: their moments, by the events of a single run.
+// Rows of sections, compared with the events of single runs.
 TEST(SweepCommand, WritesSections) {
     const Folder folder;
     const Answer answer =
@@ -103,7 +103,7 @@ TEST(SweepCommand, WritesSections) {
     EXPECT_EQ(last[2], "contact");
 }
 
-// The same bytes from one thread and two, and from a sweep that was ended twice by a file that could not grow.
+// The same bytes with one and two threads, and after two interruptions by a file size limit.
 TEST(SweepCommand, GoesOnWhereItWasInterrupted) {
     const Folder folder;
     const bool has_hdf5 = folder.run(std::string(grid) + "--hdf5 whole.h5 --csv whole.csv --threads 1").status == 0;
@@ -135,7 +135,7 @@ TEST(SweepCommand, GoesOnWhereItWasInterrupted) {
     EXPECT_EQ(other.status, 2);
     EXPECT_NE(other.err.find("it is a different sweep\n    there: --over x=-3:3:40"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find(" --set e=0.3 --end 9\n"), std::string::npos) << other.err;
-    // A record that was being written, and what follows it.
+    // A partly written record at the end of the log is ignored.
     std::ofstream(folder.path() / "part.csv.part", std::ios::app) << "half a record";
     EXPECT_EQ(folder.run(std::string(grid) + files("part") + " --resume --threads 2").status, 0);
     EXPECT_EQ(content(folder.path() / "part.csv"), whole);
@@ -160,7 +160,7 @@ TEST(SweepCommand, ChecksThatTheSystemIsTheSame) {
         << answer.err;
 }
 
-// Runs a sweep that takes minutes until its log has grown, and ends it by a signal.
+// Starts a sweep that takes minutes, and ends it by a signal when its log has grown.
 std::string ended_by(const Folder& folder, const std::string& signal, const std::string& command) {
     folder.put("script", "'" ACHILLES_BINARY_DIR "/achilles' " + command +
                              " --csv long.csv --threads 2 2>err &\np=$!\nfor i in $(seq 2000); do\n"
@@ -232,7 +232,7 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
     EXPECT_FALSE(std::filesystem::exists("/dev/full.part"));
 }
 
-// What a picture needs is looked for before the runs; one that fails all the same stands in nobody's way.
+// Requirements of a picture are checked before the runs; a picture that fails later does not affect the other files.
 TEST(SweepCommand, DrawsOrSaysWhyNot) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
@@ -257,7 +257,7 @@ TEST(SweepCommand, DrawsOrSaysWhyNot) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "a.png.part"));
 }
 
-// Derivatives beside what they are of: in the table, from standard output and a file, in HDF5, in curves and maps.
+// Derivatives and their quantities in one table: standard output, file, HDF5, curves and maps.
 TEST(SweepCommand, PrintsDerivatives) {
     const Folder folder;
     const std::string prints = "--print \"zeno_time(1)\" --print \"d(zeno_time(1), e)\" ";
@@ -289,7 +289,7 @@ TEST(SweepCommand, SaysWhatItCameToWhereAFileIsNamed) {
     const Answer answer = folder.run(sweep + "--csv curve.csv");
     EXPECT_EQ(answer.status, 0);
     EXPECT_EQ(answer.out, "");
-    // The range is that of the column.
+    // The range equals that of the column.
     double low = 1e9, high = -1e9;
     int there = 0;
     const auto lines = lines_of(content(folder.path() / "curve.csv"));
@@ -353,7 +353,7 @@ class SweepHdf5 : public testing::Test {
         if (is_read_by_python) read_by_python();
     }
 
-    // The numbers of a column of the CSV, as they must lie in the file.
+    // The numbers of a CSV column in the binary form of the file.
     std::string numbers(std::size_t column) const {
         std::vector<double> values;
         for (const std::string& cell : columns_[column])
@@ -362,7 +362,7 @@ class SweepHdf5 : public testing::Test {
     }
     bool holds(const std::string& bytes) const { return file_.find(bytes) != std::string::npos; }
 
-    // Where h5py is there, in three lines.
+    // Reads the file with h5py, if that is installed.
     void read_by_python() {
         folder_.put("read.py",
                     "import h5py, numpy, csv\nf = h5py.File('a.h5')\n"
@@ -410,7 +410,7 @@ TEST_F(SweepHdf5, HoldsDerivatives) {
     write("sweep ball_on_sine --over e=0.3:0.5:3 --print \"d(zeno_time(1) , e)\" --print x --end 5", false);
     if (file_.empty()) return;
     EXPECT_TRUE(holds("d(zeno_time(1) , e)"));
-    columns_.erase(columns_.begin() + 1);  // the heading has a comma: the rows have a cell less
+    columns_.erase(columns_.begin() + 1);  // the heading contains a comma, so the rows have one cell less
     EXPECT_TRUE(holds(numbers(1)));
 }
 
@@ -421,7 +421,7 @@ TEST_F(SweepHdf5, HoldsSectionsByRows) {
     for (const std::size_t column : {0, 1, 3}) EXPECT_TRUE(holds(numbers(column))) << names_[column];
 }
 
-// The log has room, the file has not.
+// There is room for the log, but not for the file.
 TEST_F(SweepHdf5, IsMadeOfTheLogWhereItCouldNotBeWritten) {
     const std::string sweep = "sweep ball_on_sine --over x=-3:3:30 --print x --hdf5 ";
     if (folder_.run(sweep + "whole.h5").status == 2) GTEST_SKIP() << "there is no HDF5";

@@ -1,6 +1,6 @@
 #!/bin/bash
-# Many runs in a real window: Ctrl+4 shows them, a menu makes a map of the curve, a click in the map is another run, and the
-# picture of the record is drawn from it.
+# A sweep in a real window: Ctrl+4 shows it, a menu turns the curve into a map, a click in the map selects a run, and a
+# picture is drawn from the record.
 #     sweep_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 

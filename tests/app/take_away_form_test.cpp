@@ -1,4 +1,4 @@
-// The dialog that takes things away: it says what comes of it, and writes that.
+// The export dialog: its messages and the files it writes.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -64,18 +64,18 @@ TEST(TakeAway, a_size_that_is_none_is_told_and_nothing_is_written) {
     EXPECT_TRUE(folder.files().empty());
 }
 
-// Whether a button of the dialog can be pressed.
+// Whether a button of the dialog is enabled.
 bool can_press(const test::Hands& hands, const std::string& name) {
     const auto& stops = hands.state.focus.stops;
     return std::any_of(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.name == name; });
 }
 
-// The only folder in which programs are found, as long as this lives.
+// A folder that replaces PATH while this object lives.
 class ProgramFolder : public test::Folder {
  public:
     ProgramFolder() { ::setenv("PATH", path().c_str(), 1); }
     ~ProgramFolder() { ::setenv("PATH", before_.c_str(), 1); }
-    // A program that does nothing.
+    // Adds a program that does nothing.
     void add(const std::string& name) const {
         put(name, "#!/bin/sh\n");
         std::filesystem::permissions(path() / name, std::filesystem::perms::owner_all);
@@ -85,7 +85,7 @@ class ProgramFolder : public test::Folder {
     std::string before_ = std::getenv("PATH") == nullptr ? "" : std::getenv("PATH");
 };
 
-// Every entry of the menu opens a dialog that is ready: Enter alone writes what it says.
+// Every menu entry opens a complete dialog: Enter alone writes the file it shows.
 TEST(TakeAway, EntryOfTheMenuIsReady) {
     const ProgramFolder programs;
     programs.add("ffmpeg");
@@ -108,7 +108,7 @@ TEST(TakeAway, EntryOfTheMenuIsReady) {
 
 // The dialog says what is missing before a name is typed, and Enter draws no frames.
 TEST(TakeAway, FilmNeedsFfmpeg) {
-    const ProgramFolder programs;  // an empty one
+    const ProgramFolder programs;  // no programs
     const test::Folder folder;
     test::Hands hands("ball_on_sine");
     hands.click("menu File");
@@ -123,14 +123,14 @@ TEST(TakeAway, FilmNeedsFfmpeg) {
     EXPECT_TRUE(hands.says("a film needs ffmpeg, which is not installed")) << "the dialog is closed";
     EXPECT_TRUE(folder.files().empty());
     EXPECT_EQ(hands.session.error(), "");
-    // It is there: the same dialog exports.
+    // After ffmpeg is added, the same dialog exports.
     programs.add("ffmpeg");
     hands.rest(2);
     EXPECT_TRUE(can_press(hands, "dialog Export"));
     EXPECT_TRUE(hands.says((folder.path() / "short.mp4").string()));
 }
 
-// What is typed takes the place of the whole name, and what has no ending gets the kind's.
+// Typing replaces the whole name; a name without an extension gets that of the format.
 TEST(TakeAway, NameIsTypedOverAndEndsAsTheKindSays) {
     const test::Folder folder;
     test::Hands hands("ball_on_sine");
@@ -143,7 +143,7 @@ TEST(TakeAway, NameIsTypedOverAndEndsAsTheKindSays) {
     EXPECT_TRUE(can_press(hands, "dialog Export"));
     EXPECT_TRUE(hands.says("1200 \u00d7 800 px"));
     EXPECT_TRUE(hands.says((folder.path() / "short.png").string()));
-    // An ending that no file has is refused, without a word about the size.
+    // An unknown extension is refused, without a message about the size.
     hands.type(".pn");
     hands.rest(2);
     EXPECT_FALSE(can_press(hands, "dialog Export"));
@@ -155,7 +155,7 @@ TEST(TakeAway, NameIsTypedOverAndEndsAsTheKindSays) {
     EXPECT_EQ(folder.files(), std::vector<std::string>{"short.png"}) << hands.session.error();
 }
 
-// A width in mm and an ending that has none: nothing is wrong with the width.
+// A width in mm with a format that has no size on paper: the message is not about the width.
 TEST(TakeAway, WidthIsWrongOnlyWhereItIs) {
     test::Hands hands("ball_on_sine");
     hands.session.apply(parse_command("show export"));
@@ -177,7 +177,7 @@ TEST(TakeAway, WidthIsWrongOnlyWhereItIs) {
     EXPECT_TRUE(hands.state.places.contains("take field width")) << "its field is there to be mended";
 }
 
-// Every number of the size and its unit lie within the dialog, and the height is the one that is drawn.
+// All numbers of the size and their units are within the dialog, and the height is the drawn one.
 TEST(TakeAway, SizeIsReadWhole) {
     for (const double scale : {1.0, 1.5}) {
         test::Hands hands("ball_on_sine",
@@ -195,7 +195,7 @@ TEST(TakeAway, SizeIsReadWhole) {
         }
         EXPECT_TRUE(hands.says("300dpi")) << hands.letters();
         EXPECT_TRUE(hands.says("56.67mm")) << "the height of the field: " << hands.letters();
-        // Another height is typed, and "fits" takes it back.
+        // After typing another height, "fits" restores the automatic one.
         hands.click("take field height");
         hands.press_with_control('A');
         hands.type("40");

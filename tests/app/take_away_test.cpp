@@ -1,4 +1,4 @@
-// What a session gives away leads back to it: figures, data, journals, command lines.
+// Exports of a session reproduce it: figures, data, journals, command lines.
 #include "pictures/take_away.hpp"
 
 #include <fmt/format.h>
@@ -28,7 +28,7 @@ void apply(Session& session, const std::string& journal) {
     }
 }
 
-// Sessions that differ from their file in every way there is.
+// Sessions that differ from their files in various ways.
 const std::string changes[] = {
     "",
     "set e 0.3\nset x' 0.7333333333333333\nend 17\n",
@@ -80,7 +80,7 @@ TEST(Recipe, keeps_a_pinned_run_of_the_text_before_it_was_edited) {
     EXPECT_EQ(again.value("g"), 1.62);
 }
 
-// The line that was copied makes, in the program, the bytes that are exported here.
+// A copied command line produces the same bytes as the export.
 TEST(CopyCommand, makes_the_same_run_and_figure) {
     for (const std::string& journal : changes) {
         if (journal.find("text") != std::string::npos) continue;
@@ -104,7 +104,7 @@ TEST(CopyCommand, makes_the_same_run_and_figure) {
     }
 }
 
-// What the explorer's line opens is seen through a screenshot that is told the same.
+// Compared through screenshots with the arguments of the explorer's command line.
 TEST(CopyCommand, opens_the_same_explorer) {
     for (const std::string& journal : {changes[1], changes[9], changes[10]}) {
         const test::Folder folder;
@@ -173,7 +173,7 @@ TEST(Export, writes_whole_files_or_says_why_not) {
     EXPECT_EQ(folder.files().size(), 5U);
 }
 
-// With what it was made from: it is made again by itself, and leaves the other plots where they are.
+// A single plot stores its origin and is reproduced; the other plots are not affected.
 TEST(Export, takes_one_plot_alone) {
     for (const std::string& journal : changes) {
         if (journal.find("text") != std::string::npos) continue;
@@ -197,7 +197,7 @@ TEST(Export, takes_one_plot_alone) {
     }
 }
 
-// A run that is cancelled, or not there yet, is nobody's result.
+// A run that is cancelled or not finished is not exported.
 TEST(Export, waits_for_a_run_that_is_under_way) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine", 0.0);
@@ -216,7 +216,7 @@ TEST(Export, waits_for_a_run_that_is_under_way) {
         EXPECT_EQ(test::content(folder.path() / name).find("cancelled"), std::string::npos) << name;
 }
 
-// A picture may come from anybody: what its commands export is not written again.
+// A picture may be untrusted: exports of its commands are not repeated.
 TEST(Export, is_not_done_by_a_picture_that_is_reproduced) {
     const test::Folder folder;
     ASSERT_EQ(folder.run("figure ball_on_sine --do 'export run.json' --do 'grid 1 1' --out f.svg").status, 0);
@@ -225,7 +225,7 @@ TEST(Export, is_not_done_by_a_picture_that_is_reproduced) {
     EXPECT_FALSE(fs::exists(folder.path() / "run.json"));
 }
 
-// With a pinned run the legend tells which is which.
+// With a pinned run the legend names both runs.
 TEST(Figure, names_both_runs_by_what_differs) {
     const auto last_keys = [](const std::string& journal) {
         Session session = test::session("double_pendulum");
@@ -242,7 +242,7 @@ TEST(Figure, names_both_runs_by_what_differs) {
     EXPECT_EQ(last_keys("pin\n")[1], "pinned run");
 }
 
-// The surface is drawn as far as the pinned run has made the picture.
+// The surface is drawn over the range of both runs.
 TEST(Figure, draws_the_surface_under_both_runs) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\nset x' 1.2\n");

@@ -1,5 +1,5 @@
-// Six tasks, as few actions as they take: what the window says in each of them. tests/app/tasks_test.sh does them in a real
-// window, with the places that are told here, and counts.
+// Six user tasks with few actions: what the window shows in each. tests/app/tasks_test.sh performs them in a real
+// window, at the positions printed here, and counts the actions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,7 +20,7 @@ using test::Hands;
 
 const SurfaceOptions surface = test::surface(1280, 800);
 
-// The number of the n-th event of a kind, from 1.
+// The number, from 1, of the n-th event of a kind.
 int event_number(const Session& session, Event::Kind kind, int n) {
     const auto& events = session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i)
@@ -28,7 +28,7 @@ int event_number(const Session& session, Event::Kind kind, int n) {
     return 0;
 }
 
-// For the script: a name without spaces, the middle, and the size.
+// Prints for the script: a name without spaces, the middle, and the size.
 void tell(const Hands& hands, const std::string& name, const std::string& place) {
     const Rectangle r = hands.state.places.at(place);
     std::printf("place %s %d %d %d %d\n", name.c_str(), static_cast<int>(r.x + 0.5F * r.width),
@@ -116,7 +116,7 @@ TEST(Tasks, a_mistake_is_taken_back_at_once) {
     hands.rest(2);
     tell(hands, "text", "text");
     hands.click("text");
-    for (const char* letters : {"z", " =", " y"}) {  // with a rest after each: three texts, none a system
+    for (const char* letters : {"z", " =", " y"}) {  // with a pause after each: three texts, none valid
         hands.type(letters);
         hands.rest(30);
         ASSERT_FALSE(hands.session.document().problems.empty());
@@ -134,7 +134,7 @@ TEST(Tasks, a_mistake_is_taken_back_at_once) {
     EXPECT_EQ(hands.session.document().text, wrong) << "nothing that was typed is lost";
 }
 
-// What is in a text that is a system is taken back letter by letter, as ever.
+// In a valid text, undo takes back single letters.
 TEST(Tasks, undo_in_a_good_text_takes_letters) {
     Hands hands("ball_on_sine", surface);
     hands.session.apply(command::Show{"editor", true});
@@ -149,9 +149,9 @@ TEST(Tasks, undo_in_a_good_text_takes_letters) {
     EXPECT_EQ(hands.state.editor.text, text.substr(0, text.size() - 1));
 }
 
-// ---- the real window ----
+// ---- real window ----
 
-// The screen of Xvfb as it stands in its file (X window dump, version 7).
+// The screen of Xvfb from its file (X window dump, version 7).
 Image screen(const std::string& file) {
     const std::string bytes = test::content(file);
     const auto word = [&](std::size_t i) {
@@ -170,7 +170,7 @@ Image screen(const std::string& file) {
     return image;
 }
 
-// Pixels that differ there, but near the mouse, which the screen shows.
+// Number of differing pixels in an area, except near the mouse pointer, which the screen shows.
 int differences(const Image& a, const Image& b, const Rectangle& area, const Input& hand) {
     int count = 0;
     for (int y = static_cast<int>(area.y); y < static_cast<int>(area.y + area.height); ++y)
@@ -184,7 +184,7 @@ int differences(const Image& a, const Image& b, const Rectangle& area, const Inp
     return count;
 }
 
-// Where a task's answer stands.
+// The area with the result of a task.
 Rectangle answer_of(const std::string& task, Hands& hands) {
     const auto& places = hands.state.places;
     const Rectangle low = places.at("splitter events"), side = places.at("splitter plots");
@@ -194,7 +194,7 @@ Rectangle answer_of(const std::string& task, Hands& hands) {
     return {side.x + side.width, 40.0F, 1270.0F - side.x - side.width, low.y - 40.0F};  // the plots
 }
 
-// The script leaves of every task a folder: the screen, the record, and where the mouse was.
+// The script saves for every task the screen, the record, and the mouse position.
 TEST(TasksOnDisplay, the_window_answers_what_its_record_says) {
     const char* given = std::getenv("ACHILLES_TASKS");
     if (given == nullptr) GTEST_SKIP() << "no ACHILLES_TASKS";

@@ -1,19 +1,19 @@
 #!/bin/bash
-# Six tasks in a real window, with the clicks and keys that they may take: a click, a value typed with Return, a chord of
-# keys is one action. What comes of each stands in the window's record, and on its screen, which test_app compares with what
-# it says that the record leads to.
+# Six tasks in a real window, with a limit on the number of actions: a click, a value typed with Return, or a key
+# combination is one action. Results are checked in the window's record and on its screen, which test_app compares with
+# the picture of the record.
 #     tasks_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
 actions=0 elsewhere=0 mouse_at=
-# Every action goes through here.
+# Every action goes through this function.
 act() { actions=$((actions + 1)); xdotool "$@"; }
-# Where test_app has it: "x y width height".
+# The place printed by test_app: "x y width height".
 place_of() { grep "^place $1 " "$folder/places" | cut -d' ' -f3-; }
 point() {
     local x y
     read -r x y _ < <(place_of "$1") || fail "nobody knows where $1 is"
-    settle  # what a new run shows moves other things to their places
+    settle  # a new run moves other items
     mouse_at="$x $y"
     xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
 }
@@ -22,10 +22,10 @@ click() {
     [ "$1" = text ] || elsewhere=$((elsewhere + 1))
     act click 1 sleep 0.15
 }
-# Letters and where they go in a text are no actions: what is typed is one with the key that enters it.
+# Letters, and cursor motion in a text, are not actions; typing counts as one action with the key that enters it.
 letters() { xdotool type --delay 12 "$1"; }
 entered() { letters "$1"; act key Return; }
-# done_with TASK MOST: it took that many actions at most; its screen is kept.
+# done_with TASK MOST: checks that the task took at most that many actions; saves its screen.
 done_with() {
     echo "$1: $actions actions of $2"
     [ "$actions" -le "$2" ] || fail "the task '$1' takes $actions actions, and may take $2"
@@ -39,23 +39,23 @@ done_with() {
 
 "$build/test_app" --gtest_brief=1 --gtest_filter='Tasks.*' > "$folder/places" || { cat "$folder/places"; fail "test_app"; }
 "$build/achilles" new "$folder/mine" > /dev/null
-cd "$folder"  # files go there
+cd "$folder"  # output files are written there
 open_window "" ball_on_sine --record "$folder/record"
 settle
 
-# The second Zeno time and its interval: the pointer rests on it.
+# The second Zeno time and its interval: the mouse rests on it.
 point zeno
 done_with read 0
 [ "$(wc -l < "$folder/record")" -eq 1 ] || fail "to read is to change something: $(cat "$folder/record")"
 
-# Why a release happened.
+# The reason of a release.
 click release
 recorded '^select ' "a release is not selected"
 done_with why 2
 xdotool key Escape
 recorded '^select 0' "Escape does not close the card"
 
-# e = 0.3 beside e = 0.5.
+# Comparison of e = 0.3 with e = 0.5.
 click pin
 point e
 act click 1
@@ -83,8 +83,8 @@ done_with save 3
 "$build/achilles" reproduce "$folder/$figure" --out "$folder/again.svg" || fail "the figure cannot be made again"
 cmp -s "$folder/$figure" "$folder/again.svg" || fail "the figure is another one when it is made again"
 
-# A ball of one's own, from the skeleton: no mouse but in the text.
-# in_line KEY TEXT: types the line in place of that which begins with the key, from the top of the text.
+# A new system from the template, with the mouse used only in the text.
+# in_line KEY TEXT: replaces the first line that starts with the key, counted from the top of the text.
 in_line() {
     local lines
     lines=$(grep -n "^$1" "$folder/mine.toml" | head -1 | cut -d: -f1)
@@ -105,9 +105,9 @@ recorded "^save $folder/mine.toml" "Ctrl+S does not save"
 done_with own 5
 "$build/achilles" simulate "$folder/mine.toml" --csv - | sed -n 2p | grep -q '^0,hybrid,2.5,' || fail "it is another ball"
 
-# A mistake in the file is taken back.
+# Undo of a mistake in the file.
 xdotool key End
-for wrong in " = x" "/2"; do letters "$wrong"; sleep 0.7; done  # two texts, none of them a system
+for wrong in " = x" "/2"; do letters "$wrong"; sleep 0.7; done  # two texts, both invalid
 recorded '^text .*start = 2.5}, = x/2\\n' "the mistake is not read"
 act key ctrl+z
 recorded '^undo' "Ctrl+Z does not take the mistake back"

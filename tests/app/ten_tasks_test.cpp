@@ -1,5 +1,5 @@
-// Ten tasks of a researcher and of a teacher (ten_tasks.txt): what the explorer answers to each of them.
-// tests/app/ten_tasks_test.sh does them in a real window, with the places that are told here, and counts the actions.
+// Ten tasks of a researcher and a teacher (ten_tasks.txt): what the explorer shows in each. tests/app/ten_tasks_test.sh
+// performs them in a real window, at the positions printed here, and counts the actions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ using test::Hands;
 
 const SurfaceOptions surface = test::surface(1280, 800);
 
-// For the script: the middle of a place, under a name without spaces.
+// Prints the middle of a place for the script, under a name without spaces.
 void tell(const Hands& hands, const std::string& name, const std::string& place) {
     ASSERT_TRUE(hands.state.places.contains(place)) << place;
     const Point at = hands.middle(place);
@@ -29,7 +29,7 @@ void tell(const Hands& hands, const std::string& name, const std::string& place)
     std::printf("place %s %ld %ld\n", name.c_str(), std::lround(at.x), std::lround(at.y));
 }
 
-// Tells it, and clicks.
+// Prints it and clicks it.
 void use(Hands& hands, const std::string& name, const std::string& place) {
     tell(hands, name, place);
     hands.click(place);
@@ -41,7 +41,7 @@ void give(Hands& hands, const std::string& command) {
     hands.rest(2);
 }
 
-// The second Zeno point of a run of the ball on the sine.
+// Index of the second Zeno point in a run of the ball on the sine.
 std::size_t second_zeno(const Trajectory& run) {
     int count = 0;
     for (std::size_t i = 0; i < run.events.size(); ++i)
@@ -57,7 +57,8 @@ TEST(TenTasks, the_zeno_condition_has_its_value_at_an_impact) {
     Hands hands("ball_on_sine", surface);
     use(hands, "equations", "tab equations");
     use(hands, "zeno", result(hands));
-    for (int i = 0; i < 2; ++i) hands.press(key::left);  // past the last, from which on the contact is held
+    // Past the last impact, after which the contact is held, to the one before.
+    for (int i = 0; i < 2; ++i) hands.press(key::left);
     const Trajectory& run = hands.session.trajectory();
     EXPECT_EQ(hands.session.time(), run.events[second_zeno(run) - 2].t);
     EXPECT_TRUE(hands.says("< 0: bouncing would end at a Zeno point")) << hands.letters();
@@ -111,7 +112,7 @@ TEST(TenTasks, the_last_bounces_are_seen_in_the_mechanism) {
     use(hands, "camera", "camera");
     use(hands, "camera_zeno", "menu zeno: zoom in on the next Zeno point");
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
-    // The picture is a thousandth of that of the whole run, or less.
+    // The view is at most a thousandth as wide as that of the whole run.
     const auto width = [&](CameraMode mode) {
         const Drawing seen = hands.session.stage().camera().at(mode, hands.session.now(), {400.0, 300.0, 0.0, 0.0});
         return seen.x_high - seen.x_low;

@@ -1,17 +1,17 @@
 #!/bin/bash
-# Ten tasks of a researcher and of a teacher in a real window: no more actions than ten_tasks.txt says, and in all at most two
-# thirds of what they took before. What the explorer answers to each is in ten_tasks_test.cpp.
+# Ten tasks of a researcher and a teacher in a real window: at most the actions of ten_tasks.txt, and in total at most
+# two thirds of the earlier number. ten_tasks_test.cpp checks what the explorer shows.
 #     ten_tasks_test.sh BUILD_FOLDER
 table="$(realpath "$(dirname "$0")")/ten_tasks.txt"
 . "$(dirname "$0")/window.sh"
 
 actions=0 now=0 before=0 done=0
-# Every action goes through here.
+# Every action goes through this function.
 act() { actions=$((actions + 1)); xdotool "$@" sleep 0.2; }
 point() {
     local x y
     read -r x y < <(grep "^place $1 " "$folder/places" | cut -d' ' -f3-) || fail "nobody knows where $1 is"
-    settle  # what a new run shows moves other things to their places
+    settle  # a new run moves other items
     xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
 }
 click() {
@@ -22,13 +22,13 @@ entered() {
     xdotool type --delay 8 "$1"
     act key Return
 }
-# say LINE: the palette's two actions.
+# say LINE: types a command in the palette, two actions.
 say() {
     act key ctrl+shift+p
     entered "$1"
 }
 recorded() { await grep -q "$1" "$folder/record" || fail "$2: $(tail -3 "$folder/record")"; }
-# done_with TASK: it took what the table says.
+# done_with TASK: checks the number of actions against the table.
 done_with() {
     local was is
     read -r was is < <(awk -v task="$1" '$1 == task { print $2, $3 }' "$table")
@@ -36,9 +36,9 @@ done_with() {
     [ "$actions" -eq "$is" ] || fail "the task '$1' takes $actions actions, and not $is"
     now=$((now + actions)) before=$((before + was)) done=$((done + 1)) actions=0
 }
-# Every palette that was shown is hidden again: until then keys are the palette's.
+# True if every palette that was shown is hidden again; until then the palette receives the keys.
 is_palette_closed() { [ "$(grep -c '^show palette$' "$folder/record")" -eq "$(grep -c '^hide palette$' "$folder/record")" ]; }
-# What nobody asked for: back to how the window was.
+# Resets the window between tasks; not counted.
 back() {
     xdotool mousemove --window "$window" 640 4
     for line in "$@"; do
@@ -55,11 +55,11 @@ back() {
 "$build/achilles" new "$folder/mine" > /dev/null
 mkdir "$folder/achilles"
 echo "open $folder/mine.toml" > "$folder/achilles/preferences.journal"
-cd "$folder"  # files go there
+cd "$folder"  # output files are written there
 open_window "" ball_on_sine --record "$folder/record"
 settle
 
-# A researcher.
+# Researcher.
 click equations
 recorded '^show equations$' "the tab shows no equations"
 click zeno
@@ -94,7 +94,7 @@ recorded '^method dopri5$' "the palette does not change the method"
 done_with method
 back "reset"
 
-# A teacher.
+# Teacher.
 act key F11
 recorded '^present on$' "F11 does not present"
 done_with class

@@ -1,4 +1,4 @@
-// Tours: journals of the assets, which end in the same state at any pace, and in the same pixels.
+// Tours: journals of the assets, which end in the same state and the same pixels at any pace.
 
 #include <gtest/gtest.h>
 
@@ -26,7 +26,7 @@ std::vector<Command> journal(const std::string& name) {
 
 class Tours : public testing::TestWithParam<std::string> {};
 
-// The state they end in is among the golden files: tests/golden.
+// Their final states are golden files: tests/golden.
 TEST_P(Tours, do_nothing_that_is_refused) {
     Session session = test::session("ball_on_floor");
     for (const Command& command : journal(GetParam())) {
@@ -35,7 +35,7 @@ TEST_P(Tours, do_nothing_that_is_refused) {
     }
 }
 
-// A session that something was done to before.
+// A tour works from any session state.
 TEST_P(Tours, begin_wherever_a_session_stands) {
     Session fresh = test::session("ball_on_floor"), used = test::session("ball_on_sine");
     for (const char* line :
@@ -53,7 +53,7 @@ TEST_P(Tours, end_the_same_at_any_pace) {
     int frames = 0;
     for (; tour.runs() && frames < 100000; ++frames)
         for (const Command& command : tour.advance(0.07)) slowly.apply(command);
-    EXPECT_GT(frames, 300);  // a person could not read it in less than 20 seconds
+    EXPECT_GT(frames, 300);  // at least 20 seconds, to be readable
     EXPECT_EQ(to_text(slowly), to_text(at_once));
 }
 
@@ -65,7 +65,7 @@ TEST_P(Tours, draw_the_same_pixels_twice) {
     EXPECT_EQ(a.picture(), b.picture());
 }
 
-// From sentence to sentence the mechanism stands still.
+// The mechanism does not move between captions.
 TEST_P(Tours, say_what_fits) {
     test::Hands hands("ball_on_floor");
     hands.state.on_tour = true;
@@ -90,7 +90,7 @@ TEST(Tour, waits_add_up) {
     Tour tour({command::Play{}, command::Wait{1.0}, command::Pause{}, command::Wait{0.25}, command::Seek{1.0}});
     EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Play{}}));
     EXPECT_EQ(tour.advance(0.75), (std::vector<Command>{command::Wait{0.75}}));
-    // What is left of a frame is the next wait's.
+    // The rest of a frame's time counts for the next wait.
     EXPECT_EQ(tour.advance(0.375), (std::vector<Command>{command::Wait{0.25}, command::Pause{}, command::Wait{0.125}}));
     EXPECT_EQ(tour.next(), (std::vector<Command>{command::Wait{0.125}}));
     EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Seek{1.0}}));
@@ -125,7 +125,7 @@ TEST(Tour, goes_back_a_sentence) {
     EXPECT_EQ(tour.sentences(), 3U) << "what has ended is forgotten";
 }
 
-// What writes a file is not done twice, and the commands of a journal that was named come once.
+// File output is not repeated, and the commands of a replayed journal appear once.
 TEST(Tour, goes_back_without_writing_again) {
     Tour tour(lines({"say \"1\"", "replay inner", "say \"2\"", "wait 1", "say \"3\"", "wait 1"}));
     tour.advance(0.0);
@@ -135,7 +135,7 @@ TEST(Tour, goes_back_without_writing_again) {
     EXPECT_EQ(tour.back(), lines({"say \"1\"", "set e 0.3"}));
 }
 
-// From any sentence back to the one before: the session is as it was there.
+// Going back from any caption restores the session at the previous one.
 TEST_P(Tours, lead_back_to_what_was) {
     Session forward = test::session("ball_on_floor");
     Tour tour(journal(GetParam()));
@@ -177,7 +177,7 @@ TEST(Tour, has_buttons_and_says_how_far_it_is) {
     EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::nothing) << "there is none before the first";
 }
 
-// A frame around what the words are about, until other words come.
+// A panel is framed until the next caption.
 TEST(Tour, frames_what_it_is_about) {
     test::Hands hands("ball_on_sine");
     const Image before = hands.picture();
@@ -202,7 +202,7 @@ TEST(Tour, a_journal_in_a_journal_comes_first) {
     EXPECT_EQ(tour.advance(1.0), (std::vector<Command>{command::Play{}, command::Seek{1.0}}));
 }
 
-// Offscreen a session replays by itself, what the journals replay too, and one that names itself comes to an end.
+// An off-screen session replays nested journals, and a journal that replays itself ends.
 TEST(Tour, sessions_replay_journals) {
     SystemSource library = test::library();
     library.journal = [](const std::string& name) {
@@ -236,7 +236,7 @@ TEST(HelpMenu, shows_a_page_above_everything_until_escape) {
     EXPECT_EQ(hands.state.manual_text, "# A page about system");
     ASSERT_TRUE(hands.state.places.count("Close the manual"));
     const double before = hands.session.run().parameters[0];
-    hands.click("set m", 0.9);  // beneath
+    hands.click("set m", 0.9);  // outside the card
     EXPECT_EQ(hands.session.run().parameters[0], before);
     hands.click("Close the manual");
     hands.state.places.clear();

@@ -1,12 +1,12 @@
-# What the scripts beside this one share: a display of their own with its screen in a file, a folder, an explorer in its
-# window. Sourced first, with the script's arguments; $1 is the folder of the build.
+# Shared by the scripts in this folder: a virtual display with its screen in a file, a temporary folder, and an explorer
+# in a window. Sourced first, with the script's arguments; $1 is the build folder.
 set -euo pipefail
 
 if [ -z "${ACHILLES_WINDOW_FOLDER-}" ]; then
     ACHILLES_WINDOW_FOLDER=$(mktemp -d)
     export ACHILLES_WINDOW_FOLDER
-    # As small a screen as the window needs; no display of the person who runs the tests is touched. Without -noreset the
-    # server starts anew when one explorer has closed, and the next may find it gone.
+    # The screen is as small as the window allows; the user's own display is not used. Without -noreset the server would
+    # restart when an explorer closes, and the next one might not find it.
     exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset -fbdir $ACHILLES_WINDOW_FOLDER" "$0" "$@"
 fi
 
@@ -17,8 +17,8 @@ trap 'if [ -n "$explorer" ]; then kill "$explorer" 2>/dev/null || true; fi; rm -
 export MESA_SHADER_CACHE_DISABLE=true XDG_CONFIG_HOME=$folder XDG_STATE_HOME=$folder/state
 
 fail() { echo "$(basename "$0" .sh): $*" >&2; exit 1; }
-# How many times slower than an ordinary build this one is, as under the sanitizers: a click that comes before what it is to
-# click has been drawn is lost, and so every pause here, of the hand too, is as much longer.
+# Slowdown of this build compared with an ordinary one, e.g. with sanitizers. A click before its target is drawn is
+# lost, so all pauses, also those of the simulated input, are multiplied by it.
 patience=${ACHILLES_PATIENCE:-1}
 sleep() { for _ in $(seq "$patience"); do command sleep "$1"; done; }
 xdotool() {
@@ -34,14 +34,16 @@ xdotool() {
     command xdotool "${words[@]}"
 }
 
-# Waits up to 30 s for a command to succeed.
+# await COMMAND: waits up to 30 s for the command to succeed.
 await() { for _ in $(seq 300); do if "$@" >/dev/null 2>&1; then return 0; fi; sleep 0.1; done; return 1; }
 
-# Where a thing is, "X Y", as a test told it into $folder/places; and waits until the record has such a line.
+# place NAME: the position "X Y" that a test printed into $folder/places. recorded PATTERN WHY: waits until a line of
+# the record matches.
 place() { grep "^$1 " "$folder/places" | cut -d' ' -f2-; }
+# recorded PATTERN MESSAGE: waits until the journal has a line like PATTERN.
 recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 
-# open_window WHY ARGUMENTS: an explorer with these arguments; its process is $explorer, its window $window.
+# open_window WHY ARGUMENTS: starts an explorer with these arguments; its process is $explorer, its window $window.
 open_window() {
     local why=$1
     shift
@@ -52,7 +54,7 @@ open_window() {
     xdotool windowfocus --sync "$window" || true
 }
 
-# The explorer has to end by itself, with this status.
+# Waits until the explorer ends by itself, and checks its status.
 expect_end() {
     local status=0
     wait "$explorer" || status=$?
@@ -64,10 +66,9 @@ close_window() {
     expect_end "closed by Ctrl+Q"
 }
 
-# Every thread of the explorer sleeps: it has drawn what it was told.
+# True if all threads of the explorer sleep, so that it has drawn everything.
 is_asleep() { ! sed 's/.*) //' /proc/"$explorer"/task/*/stat | grep -qv '^S'; }
-# Until the window shows what was done, also where other work keeps it from drawing at once: it sleeps, and its screen is as
-# it was some time ago.
+# Waits until the window shows the result, also on a busy machine: the explorer sleeps and its screen no longer changes.
 settle() {
     for _ in $(seq 120); do
         cp "$folder/Xvfb_screen0" "$folder/before"
@@ -76,7 +77,7 @@ settle() {
     done
     fail "the window does not come to rest"
 }
-# What the window shows is all that there is to see: a key that does nothing draws it anew, and nothing changes.
+# Checks that the window is up to date: a key without effect redraws it, and nothing changes.
 expect_drawn() {
     settle
     cp "$folder/Xvfb_screen0" "$folder/asleep"

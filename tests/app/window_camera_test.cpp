@@ -1,4 +1,4 @@
-// The cameras of the mechanism's panel: commands, the menu, the mouse, the scale bar.
+// The cameras of the mechanism view: commands, menu, mouse, scale bar.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -25,11 +25,11 @@ TEST(CameraCommand, chooses_a_camera_and_keeps_where_one_looked) {
     EXPECT_EQ(after({"look 1 2 3"}).camera(), CameraMode::fixed);
     EXPECT_EQ(after({"look 1 2 3", "look all"}).camera(), CameraMode::fit);
     EXPECT_EQ(after({"look 1 2 3", "camera fit"}).camera(), CameraMode::fit);
-    // Where the user looked waits until the camera is fixed again.
+    // The user's view is remembered until the camera is fixed again.
     EXPECT_FALSE(after({"look 1 2 3", "camera zeno"}).look());
     ASSERT_TRUE(after({"look 1 2 3", "camera zeno", "camera fixed"}).look());
     EXPECT_EQ(after({"look 1 2 3", "camera zeno", "camera fixed"}).look()->width, 3.0);
-    // Another system is another world: there is nothing to look at where one looked.
+    // Another system has another world: the view is not kept.
     EXPECT_EQ(after({"look 1 2 3", "open double_pendulum"}).camera(), CameraMode::fit);
     EXPECT_EQ(after({"camera zeno", "open double_pendulum"}).camera(), CameraMode::zeno);
     Session session = test::session("ball_on_sine");
@@ -68,7 +68,7 @@ TEST(CameraMenu, chooses_each_camera) {
     const Rectangle before = hands.state.places.at("body");
     choose("fixed: the current view");
     ASSERT_TRUE(hands.session.scene().look());
-    // It stays as it was, and from then on whatever time it is.
+    // The view stays as it was, and is then independent of the time.
     EXPECT_NEAR(hands.state.places.at("body").x, before.x, 0.5);
     EXPECT_NEAR(hands.state.places.at("body").y, before.y, 0.5);
     const command::Look look = *hands.session.scene().look();
@@ -107,7 +107,7 @@ TEST(CameraPicture, says_its_scale_at_every_zoom) {
     hands.session.apply(command::Look{4.6, -0.99, 1e-6});
     hands.rest(2);
     EXPECT_TRUE(hands.says("2\u00b710\u22127 m")) << hands.letters();
-    // Whatever is shown beside it, the bar and the words keep apart.
+    // With any layers shown, the scale bar and the labels do not overlap.
     for (const auto& [width, height] : {std::pair{1000, 700}, {1366, 768}, {1600, 1000}}) {
         Hands other("ball_on_egg_crate", test::surface(width, height));
         const Rectangle bar = other.state.places.at("scale bar"), trail = other.state.places.at("show trail");
@@ -124,7 +124,7 @@ TEST(SidesOfSpace, are_offered_where_there_is_space) {
     EXPECT_TRUE(crate.says("across")) << crate.letters();
 }
 
-// Where the window's test presses.
+// Prints positions for the window's test.
 TEST(CameraMenu, tells_where_it_is) {
     Hands hands("ball_on_sine");
     const auto tell = [&](const char* name, const std::string& place) {

@@ -1,4 +1,5 @@
-// The hand in the window: what it holds stays under it, a press on a mark means the event, Escape closes what is in front.
+// Mouse and keys in the window: dragged objects follow the mouse, clicks on markers select events, Escape closes the
+// front.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +20,7 @@ double distance(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a
 
 Point mouse(const Hands& hands) { return {hands.hand.mouse_x, hands.hand.mouse_y}; }
 
-// Drags what is at a place along a way; at every step it must be where the hand is. Returns the largest distance.
+// Drags an object along a path and returns its largest distance from the mouse.
 double follow(Hands& hands, const std::string& place, const std::vector<Point>& steps) {
     hands.point(place);
     hands.hand.left = true;
@@ -48,7 +49,7 @@ TEST(Held, what_is_dragged_stays_under_the_hand_at_every_step) {
             EXPECT_LT(follow(hands, "body", up), 1.0) << system << " at " << time;
             EXPECT_EQ(hands.session.time(), 0.0);
         }
-    // The tip of the velocity: twelve steps make it many times as long as it was.
+    // The tip of the velocity arrow: twelve steps make it several times longer.
     for (const char* system : {"ball_on_sine", "ball_in_bowl"}) {
         Hands hands(system);
         EXPECT_LT(follow(hands, "velocity", std::vector<Point>(12, Point{9.0, -3.0})), 1.0) << system;
@@ -58,7 +59,7 @@ TEST(Held, what_is_dragged_stays_under_the_hand_at_every_step) {
 TEST(Held, every_body_of_a_mechanism_can_be_dragged) {
     Hands hands("double_pendulum");
     const double theta1 = *hands.session.value("theta1"), theta2 = *hands.session.value("theta2");
-    // The lower end, which both angles move, and then the knee, which one does.
+    // The lower end, which depends on both angles, then the knee, which depends on one.
     ASSERT_TRUE(hands.state.places.contains("body 2"));
     std::string lowest = "body";
     for (const auto& [name, place] : hands.state.places)
@@ -87,7 +88,7 @@ TEST(Held, a_body_that_is_pushed_into_the_ground_stays_on_it) {
         const double radius = *hands.session.value("r");
         EXPECT_GE(*hands.session.value("y"), radius - 1e-12) << place;
         EXPECT_LT(*hands.session.value("y"), radius + 1e-6) << place;
-        hands.hand.mouse_y -= 480.0;  // and up again: under the hand
+        hands.hand.mouse_y -= 480.0;  // back up, still under the mouse
         hands.rest(2);
         EXPECT_NEAR(*hands.session.value("y"), 1.0, 0.02) << place;
     }
@@ -139,7 +140,7 @@ TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
             EXPECT_EQ(hands.session.time(), events[wanted].t);
             EXPECT_EQ(hands.all.size(), 1U) << "it is no seek";
         }
-    // In a plot over time, and in a path: where the curve is at that event.
+    // In a plot over time and in a path: at the curve's point of that event.
     hands.session.apply(command::Select{0});
     hands.rest(2);
     for (const std::size_t plot : {1U, 3U})
@@ -158,7 +159,7 @@ TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
             hands.rest(2);
             EXPECT_EQ(hands.session.selected(), static_cast<int>(wanted) + 1) << plot;
         }
-    // Far from every mark it seeks, as ever.
+    // Away from all markers a click seeks.
     hands.session.apply(command::Select{0});
     hands.click("timeline", 0.5);
     EXPECT_EQ(hands.session.selected(), 0);
@@ -194,7 +195,7 @@ TEST(Escape, belongs_to_what_is_in_front) {
     hands.press(key::escape);
     EXPECT_FALSE(hands.session.scene().shows("runs"));
     EXPECT_EQ(hands.session.pinned().size(), 1U) << "the table is closed, the run stays";
-    // The lens first, then the card.
+    // Escape closes first the lens, then the card.
     hands.session.apply(command::Select{10});
     hands.session.apply(command::Show{"lens", true});
     hands.rest(2);
@@ -234,7 +235,7 @@ TEST(PlotMenu, keeps_what_was_mistyped) {
     hands.state.places.erase("expression y");
     hands.rest(2);
     ASSERT_TRUE(hands.state.places.contains("expression y")) << "the menu is closed";
-    // The field has the hand still: it is mended at once, and the menu closes.
+    // The field is still active: after correction the menu closes.
     hands.press_with_control('A');
     hands.type("y, gap");
     hands.press(key::enter);
@@ -249,7 +250,7 @@ TEST(Plots, no_grid_shows_a_plot_twice) {
     for (const char* system : {"ball_on_sine", "double_pendulum", "ball_on_floor", "impact_oscillator", "falling_rod"})
         for (const char* grid : {"grid 3 3", "grid 4 4"}) {
             Session session = test::session(system);
-            // Nor one that the user has put there.
+            // Also in plots chosen by the user.
             for (const char* line : {"grid 1 1", "plot 1 t energy", grid}) session.apply(parse_command(line));
             ASSERT_EQ(session.error(), "");
             std::set<std::string> shown;
@@ -299,7 +300,7 @@ TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {
     EXPECT_FALSE(std::filesystem::exists(folder.path() / "mine"));
 }
 
-// Dropped on the window, a picture leads to the session that it shows.
+// A picture dropped on the window restores its session.
 TEST(Dropped, a_picture_opens_as_a_session) {
     const test::Folder folder;
     const std::string picture = (folder.path() / "a.png").string(), figure = (folder.path() / "b.svg").string();
@@ -318,7 +319,7 @@ TEST(Dropped, a_picture_opens_as_a_session) {
     EXPECT_EQ(session.run().options.end_time, 9.0);
     EXPECT_EQ(session.time(), 2.0);
     EXPECT_EQ(session.plotted().list().size(), 1U);
-    // A system that no file holds any more comes as a text without a file.
+    // A system without a file is opened as an unsaved text.
     const std::string own = (folder.path() / "own.toml").string();
     std::filesystem::copy_file(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_floor.toml", own);
     ASSERT_EQ(folder.run("figure ./own.toml --set e=0.3 --view height --out b.svg").status, 0);

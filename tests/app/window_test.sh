@@ -1,7 +1,7 @@
 #!/bin/bash
-# A real window on a display of its own: what it draws is what the offscreen picture draws, a slider dragged by the mouse
-# changes the run, a text typed into the editor takes effect and is saved, a tour is led on and ended, files are opened and
-# dropped; the window closes with status 0 by Ctrl+Q and by a window manager, also in the middle of a run of minutes.
+# A real window on a virtual display. It draws the same as the off-screen picture; a slider dragged by mouse changes the
+# run; typed text takes effect and is saved; a tour advances and ends; files are opened and dropped. The window closes
+# with status 0 by Ctrl+Q and by a window manager, also during a long run.
 #     window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
@@ -19,17 +19,18 @@ xdotool mousemove --window "$window" $((x + width / 3)) "$y" sleep 0.3 mousedown
 for step in 1 2 3 4; do xdotool mousemove --window "$window" $((x + width / 3 + step * width / 10)) "$y" sleep 0.2; done
 await grep -q '^set g ' "$folder/journal" || fail "the slider's value is not recorded"
 followed() { [ "$(grep -c '^set g ' "$folder/journal")" -ge 2 ]; }
-await followed || fail "the slider does not follow the mouse"  # before it lets go: a busy machine draws few frames
+# Checked before the button is released, since a busy machine draws few frames.
+await followed || fail "the slider does not follow the mouse"
 xdotool mouseup 1 sleep 0.3
 grep '^set ' "$folder/journal"
 if grep '^set ' "$folder/journal" | grep -qv '^set g '; then fail "another value was changed"; fi
 
-# The journal stands alone (it opens the system itself) and leads to another picture than the untouched start: the trajectory changed.
+# The journal opens the system itself, and its picture differs from the initial one: the trajectory changed.
 "$build/achilles" screenshot double_pendulum --size 1280x800 --journal "$folder/journal" --out "$folder/after.png"
 "$build/achilles" screenshot ball_on_sine --size 1280x800 --out "$folder/before.png"
 cmp -s "$folder/before.png" "$folder/after.png" && fail "nothing changed"
 
-# The equations take the place of the events.
+# The equations replace the events.
 xdotool mousemove --window "$window" "$tab_x" "$tab_y" sleep 0.3 click 1
 await grep -q '^show equations' "$folder/journal" || fail "the equations are not shown"
 settle
@@ -40,11 +41,11 @@ await grep -q '^play' "$folder/journal" || fail "space does not play"
 xdotool key --window "$window" space
 await grep -q '^pause' "$folder/journal" || fail "space does not pause"
 
-# The editor: a comment typed at the end of the text, saved to a file that the dialog asks for.
+# The editor: a comment is typed at the end of the text and saved by the dialog.
 xdotool key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
 xdotool type --delay 40 "# by hand"
 await grep -q '^text .*# by hand"$' "$folder/journal" || fail "what is typed does not take effect"
-# Its effect is seen without another key or a move of the mouse: the message about what cannot be read.
+# The error message appears without further input.
 xdotool key Return
 xdotool type --delay 40 "[["
 await grep -q '^text .*# by hand.*\[\["$' "$folder/journal" || fail "what is typed on the next line does not take effect"
@@ -59,7 +60,7 @@ await grep -q "^save $folder/mine.toml" "$folder/journal" || fail "Ctrl+S does n
 await test -s "$folder/mine.toml" || fail "nothing was saved"
 [ "$(tail -c 9 "$folder/mine.toml")" = "# by hand" ] || fail "something else was saved"
 
-# A window that would close over changes asks first.
+# Closing a window with unsaved changes asks first.
 xdotool mousemove --window "$window" 200 300 sleep 0.2 click 1 sleep 0.3 key ctrl+End sleep 0.2
 xdotool type --delay 40 "!"
 await grep -q '^text .*# by hand!"$' "$folder/journal" || fail "the editor is deaf after it has saved"
@@ -71,8 +72,8 @@ await saved_twice || fail "the window is deaf after it was to be closed"
 
 close_window
 
-# A file is opened by its path, the window changes its size, a tour is taken and left, a file is exported; then whoever
-# manages windows asks it to close.
+# A file is opened by its path, the window is resized, a tour is started and left, a file is exported; then a window
+# manager asks the window to close.
 printf 'unpin\nopen double_pendulum\nsay "First."\nwait 600\nsay "Second."\nwait 600\n' > "$folder/tour.journal"
 open_window "for a tour" ball_on_sine --journal "$folder/tour.journal" --record "$folder/second"
 await grep -q '^say "First' "$folder/second" || fail "the tour does not begin"
@@ -108,7 +109,7 @@ await grep -q '^grid 3 2' "$folder/second" || fail "a journal that is dropped is
 timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
 await grep -q '^open impact_oscillator' "$folder/second" || fail "a picture that is dropped is not opened as a session"
 await grep -q '^seek 3' "$folder/second" || fail "a picture that is dropped does not lead to what it shows"
-# A journal that wants to write files is asked about first; Escape refuses. What is dropped meanwhile waits for the answer.
+# A journal that writes files needs permission; Escape refuses. Files dropped meanwhile wait for the answer.
 printf 'save %s/stolen.toml\n' "$folder" > "$folder/greedy.journal"
 timeout 120 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
 "$build/achilles" screenshot --set e=0.25 --do "seek 4" --size 700x500 --out "$folder/own.png" "$folder/mine.toml"
@@ -117,24 +118,24 @@ xdotool sleep 0.8 key Return sleep 0.3
 grep -q '^seek 4' "$folder/second" && fail "a question is lost in what is dropped after it"
 xdotool key Escape sleep 0.8
 [ ! -e "$folder/stolen.toml" ] || fail "a journal that is dropped writes a file unasked"
-# Nor does a picture read a file unasked that it names: refused, it brings its own text.
+# A picture does not read the file it names without permission: if refused, its own text is used.
 grep -q '^seek 4' "$folder/second" && fail "a picture that is dropped reads a file unasked"
 xdotool key Escape
 await grep -q '^seek 4' "$folder/second" || fail "what is dropped while a question is open is lost"
 [ "$(grep -c "^open $folder/mine.toml" "$folder/second")" -eq 1 ] || fail "a file is opened that was refused"
-xdotool key ctrl+z sleep 0.3 key ctrl+z sleep 0.3  # back to a text that needs no saving
+xdotool key ctrl+z sleep 0.3 key ctrl+z sleep 0.3  # back to a text without unsaved changes
 xdotool key End sleep 0.5 key Home
 "$build/achilles" screenshot --allow-files --journal "$folder/second" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
 "$build/x11_hand" close "$window"
 expect_end "closed from outside"
 
-# What was typed and not saved outlives the window that is killed, and is offered to the next; what is recovered and then
-# given up is gone.
+# Unsaved text survives a killed window and is offered in the next one; text that is recovered and then discarded is
+# gone.
 [ -z "$(ls "$folder/state/achilles" 2>/dev/null)" ] || fail "text that was saved or given up is kept"
 for signal in TERM HUP; do
     open_window "to be killed" "$folder/mine.toml"
-    if [ "$signal" = HUP ]; then xdotool sleep 1 key Escape; fi  # what the other left is offered: later
+    if [ "$signal" = HUP ]; then xdotool sleep 1 key Escape; fi  # answers "later" to the offer of the earlier text
     xdotool sleep 0.5 key ctrl+e sleep 0.5 mousemove --window "$window" 200 300 sleep 0.3 click 1 sleep 0.3 key ctrl+End sleep 0.2
     xdotool type --delay 40 " lost $signal"
     await grep -q "# by hand.* lost $signal\"" -r "$folder/state/achilles" || fail "what is typed is not kept"
@@ -153,7 +154,7 @@ explorer=
 grep -q "lost" "$folder/mine.toml" && fail "what was not saved is in the file"
 [ "$(ls "$folder/state/achilles" | wc -l)" -eq 2 ] || fail "the texts of two windows are not two files"
 
-# Impacts without end: the window is there at once, and closes at once.
+# A practically endless run: the window opens and closes at once.
 open_window "while a long run is under way" ball_on_sine --set e=1 --end 1e9 --max-impacts 1000000000
 sleep 2
 begin=$SECONDS

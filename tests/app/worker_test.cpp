@@ -1,4 +1,4 @@
-// Runs on a thread of their own. This file alone also passes under -fsanitize=thread.
+// Runs on their own threads. This is the only test file that also runs under -fsanitize=thread.
 #include "session/worker.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +17,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-// A job that goes on until it is told to stop.
+// A job that runs until it is stopped.
 int endless(const std::stop_token& stop) {
     while (!stop.stop_requested()) std::this_thread::sleep_for(1ms);
     return -1;
@@ -84,7 +84,7 @@ TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patie
         live.update();
     }
     EXPECT_EQ(live.under_way(), nullptr);
-    // How far it is trusted is estimated afterwards, beside it.
+    // The error estimate is computed afterwards on another thread.
     for (int i = 0; i < 60000 && live.error_estimate() == nullptr; ++i) {
         std::this_thread::sleep_for(1ms);
         live.update();
@@ -117,7 +117,7 @@ TEST(LiveSession, waits_no_longer_than_its_patience) {
         const auto begin = std::chrono::steady_clock::now();
         session.apply(command::Set{"g", 1.0 + 0.1 * i});
         session.update();
-        // The whole run takes seconds; a busy machine may take a while to give the processor back.
+        // The whole run takes seconds; a busy machine may delay this thread.
         EXPECT_LT(std::chrono::steady_clock::now() - begin, 500ms);
         ASSERT_NE(session.under_way(), nullptr);
     }
@@ -149,7 +149,7 @@ TEST(LiveSession, shows_the_start_of_another_system_until_its_run_is_there) {
     EXPECT_EQ(to_text(session), to_text(test::session("double_pendulum")));
 }
 
-// The window's own loop: frames are built while the run is made, each of them whole, and then the run is there.
+// As in the window: frames are drawn while the run is computed, each of them complete, and then the result arrives.
 TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
     Interface interface(test::surface());
     const Interface::Active active(interface);
@@ -171,7 +171,7 @@ TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
     EXPECT_GE(session.trajectory().statistics.impacts, 100000);
 }
 
-// Of a system whose run is under way the start is shown, and nothing is concluded from it; of another value the run before it.
+// For a new system whose run is under way only the start is shown, without results; for another value the previous run.
 TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
     int times = 0;
     for (const char* shown : {"equations", "energy", "events"}) {
@@ -187,7 +187,7 @@ TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
         EXPECT_NE(letters.find("thepreviousrunisshownuntilthen"), std::string::npos) << letters;
         EXPECT_EQ(letters.find("bouncesneverdieout"), std::string::npos) << "the run that is seen has e = 0.5";
         hands.session.apply(command::Open{"double_pendulum"});
-        if (hands.session.under_way() == nullptr) continue;  // a short run may be there at once
+        if (hands.session.under_way() == nullptr) continue;  // a short run may be finished at once
         ++times;
         hands.rest(2);
         letters = hands.letters();
@@ -198,7 +198,7 @@ TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
     EXPECT_GT(times, 0);
 }
 
-// How long a run still takes is for a window, whose frames come by the clock; a picture says nothing of it.
+// The remaining time is shown in a window, not in a picture, which must not depend on the clock.
 TEST(LiveSession, says_how_long_a_run_still_takes) {
     EXPECT_EQ(time_left(0.2, 0.5), "") << "too early to tell";
     EXPECT_EQ(time_left(10.0, 0.0), "");

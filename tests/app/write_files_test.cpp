@@ -1,4 +1,4 @@
-// Files that are written are there whole or as they were, and no output destroys what was read.
+// Output files are complete or unchanged, and never overwrite inputs.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -47,7 +47,7 @@ TEST(OutputFiles, keep_the_mode_and_follow_links) {
     EXPECT_EQ(folder.files().size(), 4U);
 }
 
-// What a process left that was killed, be its number ours.
+// Leftover of a killed process, even with our process id.
 TEST(OutputFiles, parts_of_the_dead_are_not_in_the_way) {
     const Folder folder;
     folder.put("a.json.part" + std::to_string(::getpid()), "half");
@@ -64,7 +64,7 @@ TEST(OutputFiles, are_all_there_or_as_they_were) {
         files.add(file);
         files.put(file, "new");
     }
-    fs::create_directory(three);  // meanwhile: it cannot get its name
+    fs::create_directory(three);  // blocks the rename
     EXPECT_THROW(files.commit(), InputError);
     EXPECT_EQ(content(one), "old");
     EXPECT_FALSE(fs::exists(two));
@@ -100,7 +100,7 @@ TEST(OutputFiles, are_no_inputs_and_no_others) {
     }
 }
 
-// What is printed is printed, or it is said that it is not: whoever reads a status must not take a lost answer for one.
+// If standard output cannot be written, the status reports it.
 TEST(StandardOutput, ThatIsFullIsAnError) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
@@ -119,7 +119,7 @@ TEST(StandardOutput, ThatIsFullIsAnError) {
     }
 }
 
-// A pipe is waited for, in words; what is written into it is whole.
+// A pipe without a reader: prints a note, waits, and then writes everything.
 TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
@@ -140,7 +140,7 @@ TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
     }
 }
 
-// A sentence and status 3, whatever is refused: memory, threads, the libraries that draw.
+// Lack of memory, threads or drawing libraries gives a message and status 3.
 TEST(Memory, ThatIsShortIsSaid) {
     const Folder folder;
     for (const std::string arguments :
@@ -160,7 +160,7 @@ TEST(Memory, ThatIsShortIsSaid) {
     EXPECT_EQ(folder.run("figure ball_on_sine --out o.png", "ulimit -v 2000000;").status, 0);
 }
 
-// What a screenshot was told leads to the same picture.
+// A recorded screenshot is reproduced from its record.
 TEST(Record, is_written_by_a_screenshot) {
     const Folder folder;
     folder.put("j.journal", "# told\nset e 0.4\n");

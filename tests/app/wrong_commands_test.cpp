@@ -1,4 +1,4 @@
-// Wrong command lines and files as people type them, each with the answer of the program: the table wrong_commands.txt.
+// Runs the wrong command lines and files of wrong_commands.txt and checks the program's answers.
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -21,7 +21,7 @@ namespace {
 
 const char* const table_file = ACHILLES_SOURCE_DIR "/tests/app/wrong_commands.txt";
 
-// A command line, or lines of drop.toml that are replaced, and what the answer must say.
+// A command line, or replaced lines of drop.toml, and the expected answer.
 struct Row {
     std::string head, command;
     std::vector<std::string> answer;
@@ -32,7 +32,7 @@ struct Table {
     std::vector<Row> rows;
 };
 
-// "\x89PNG\n" as bytes.
+// Converts "\x89PNG\n" to bytes.
 std::string unescaped(const std::string& text) {
     std::string bytes;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -77,7 +77,7 @@ Table read_table() {
     return table;
 }
 
-// Words with spaces stand in double quotes.
+// Splits a command; words with spaces are in double quotes.
 std::vector<std::string> words_in(const std::string& command) {
     std::vector<std::string> words;
     bool is_open = false, is_quoted = false;
@@ -97,7 +97,7 @@ std::vector<std::string> words_in(const std::string& command) {
     return words;
 }
 
-// Runs it in this process, with its output in files.
+// Runs it in this process, with output redirected to files.
 Answer answer_to(const std::string& command, const Folder& streams) {
     const auto redirect = [&](std::FILE* stream, const char* name) {
         std::fflush(stream);
@@ -168,7 +168,7 @@ TEST_F(WrongCommands, AreAnsweredWithWhatToType) {
         EXPECT_EQ(folder_.files().size(), files) << row.head << "leaves a file";
     }
     EXPECT_GE(table_.rows.size(), 200U);
-    // For a person who reads what the program says.
+    // For reading the program's messages.
     if (const char* const place = std::getenv("ACHILLES_WRITE_ANSWERS")) std::ofstream(place) << answers;
 }
 

@@ -1,5 +1,5 @@
-// What xdotool cannot do to a window: ask it to close as a window manager does, and drop a file on it as a file manager
-// does (the XDND protocol).
+// Window actions that xdotool lacks: a close request by a window manager, and a file drop by a file manager (XDND
+// protocol).
 //     x11_hand close WINDOW
 //     x11_hand drop WINDOW FILE
 #include <X11/Xatom.h>
@@ -25,7 +25,7 @@ void send(Display* display, Window to, const char* type, long a, long b = 0, lon
 
 long atom(Display* display, const char* name) { return static_cast<long>(XInternAtom(display, name, False)); }
 
-// Hands the file's name to whoever asks for it.
+// Sends the file's name to the requesting window.
 void answer(Display* display, const XSelectionRequestEvent& request, const std::string& text) {
     XChangeProperty(display, request.requestor, request.property, request.target, 8, PropModeReplace,
                     reinterpret_cast<const unsigned char*>(text.data()), static_cast<int>(text.size()));

@@ -1,10 +1,11 @@
-// bench_boundary [SHARE] [crest|known|waves|fine|post|bumps]: what runs decide next to where the course of events
-// changes, against 34 digits. Starts on a crest whose contact force dips to -0.3 of the tolerance, 6000 for each way of
-// simulating, may not stay in contact. Starts on either side of bisected boundaries, in the air and in contact, 1e-2 to
-// 1e-13 from them: each is asked by Taylor series, by dopri5 and eight at a time, at tolerances from 1e-4 to 1e-13. An
-// answer may be right, undecided, or wrong where the run's own error explains it; what is wrong though the distance to
-// the decision is more than ten times that error, or a first impact that is off by a thousand tolerances, is printed
-// with what repeats it, and the program exits with 1. SHARE (1) scales the numbers of starts.
+// bench_boundary [SHARE] [crest|known|waves|fine|post|bumps]: compares runs near boundaries, where the course of events
+// changes, with 34-digit references. - crest: the contact force has a minimum of -0.3 of the tolerance, so the run must
+// release. 6000 starts for each way of   simulating. - other families: starts on both sides of boundaries found by
+// bisection, in flight and in contact, at distances of 1e-2   to 1e-13. Each runs with Taylor series, with dopri5 and
+// in batches of eight, at tolerances from 1e-4 to 1e-13. A run may be right, undecided, or wrong if its own error
+// explains it. It is a fault if the distance from the boundary is more than ten times that error, or if the first
+// impact is off by a thousand tolerances. Faults are printed with commands that repeat them, and the program exits with
+// 1. SHARE (1) scales the numbers of starts.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ class Table {
     std::map<std::pair<Way, double>, std::map<Verdict, long>> counts_;
 };
 
-// The first ones are told, the others counted.
+// Prints the first faults and counts the others.
 class Faults {
  public:
     void add(const std::string& what, const std::string& repeat) {
@@ -47,22 +48,22 @@ class Faults {
     long count = 0;
 };
 
-// What no trajectory may show, whatever is true: apart from the verdicts.
+// Finds errors of a trajectory that need no reference. They are counted apart from the verdicts.
 void look(const Question& question, Way way, double tolerance, Faults& faults) {
-    if (way == Way::eight) return;  // the end alone is known
+    if (way == Way::eight) return;  // only the final state is recorded
     Run run = question.run;
     run.options.method = way == Way::dopri5 ? Method::dopri5 : Method::taylor;
     run.options.tolerance = tolerance;
     try {
         const std::string wrong = impossible(simulate(question.model, run));
         if (!wrong.empty()) faults.add(wrong, repeat(question, way, tolerance));
-    } catch (const InputError&) {  // judged as refused
+    } catch (const InputError&) {  // counted by judge() as refused
     }
 }
 
 Verdict ask(Judge34& judge, const Question& question, Way way, double tolerance, Faults& faults) {
     const Judgement judgement = judge.judge(way, tolerance);
-    // What could not be measured is counted: dopri5 with flights of 1e-12 in speed, as far as looked at.
+    // `unmeasured` is only counted. The cases examined so far are dopri5 runs with flights of take-off speed 1e-12.
     const bool fault = judgement.verdict == Verdict::blatant || judgement.verdict == Verdict::failed ||
                        judgement.verdict == Verdict::refused;
     if (fault)

@@ -1,6 +1,6 @@
-// The SUNDIALS ARKODE program: ERKStep with the table of dopri5 and its root finding, its memory kept from run to run.
-// First steps from the predicted flight, no root before a quarter of it (or shortly after a release), plastic cut,
-// projection in contact.
+// The SUNDIALS ARKODE program: ERKStep with the dopri5 table and ARKODE's root finding; memory is kept between runs.
+// The first step of a flight comes from its predicted duration. Roots before a quarter of that (or shortly after a
+// release) are ignored. A plastic impact ends the sequence, and the state in contact is projected.
 #include <arkode/arkode_erkstep.h>
 #include <nvector/nvector_serial.h>
 
@@ -68,7 +68,7 @@ class Arkode final : public Program {
         std::copy_n(out.begin(), 4, NV_DATA_S(rate));
         return 0;
     }
-    // What goes down through zero at the event.
+    // The function whose descent through zero is the event.
     static int crossing(double t, N_Vector y, double* out, void* self) {
         const auto& own = *static_cast<const Arkode*>(self);
         Values in;
@@ -89,7 +89,7 @@ class Arkode final : public Program {
     }
     void put(const Values& y) { std::copy(y.begin(), y.end(), data()); }
 
-    // Time runs from 0 in every stretch, so that the shortest flight has all its digits.
+    // Time starts from 0 in every segment, so that the shortest flight has full relative accuracy.
     void begin() {
         check(ERKStepReInit(arkode_, contact_ ? contact : flight, 0.0, y_));
         check(ERKStepSetStopTime(arkode_, left_));
@@ -134,7 +134,7 @@ class Arkode final : public Program {
         blind_ = a > 0.0 ? 0.25 * expected : 1e-3;
     }
 
-    // Until the state has to be projected, or the release. (ERKStepReset in place of a new start lost digits.)
+    // Integrates to the next projection or to the release. (ERKStepReset instead of ERKStepReInit lost digits.)
     void stay() {
         hint_ = 0.0;
         begin();
@@ -164,8 +164,8 @@ class Arkode final : public Program {
     N_Vector y_;
     Settings settings_;
     bool contact_ = false;
-    double left_ = 0.0;     // until the end of the run, from the start of this stretch
-    double natural_ = 0.0;  // the step the error control would take next; 0: not known
+    double left_ = 0.0;     // from the start of this segment to the end of the run
+    double natural_ = 0.0;  // the next step by the error control; 0: unknown
     double hint_ = 0.0;     // bound on the first step of the next flight; 0: none
     double blind_ = 0.0;    // no root is looked for before this time of the flight
     Result result_;

@@ -1,5 +1,5 @@
-// The two problems of the paper's Fig. 4 as an expert writes them by hand, for the programs the engine is measured
-// against: equations worked out on paper, parameters known to the compiler.
+// The two problems of the paper's Fig. 4 written by hand, for the programs that the engine is compared with. The
+// equations are derived on paper, and the compiler knows the parameters.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@ namespace achilles::bench {
 
 using Values = std::array<double, 4>;  // q (2), v (2)
 
-// What a program written by hand may be told.
+// Options of a program written by hand.
 struct Settings {
     double tolerance = 1e-9;  // absolute and relative
-    double cut = 1e-3;        // an impact slower than this ends the bouncing, by a plastic impact
+    double cut = 1e-3;        // impact speed below which a plastic impact ends the sequence
     double end_time = 20.0;
 };
 
@@ -70,7 +70,7 @@ struct Pendulum {
     }
 };
 
-// What both programs do on the surface.
+// The impact, common to both programs.
 template <class Problem>
 void bounce(Values& y, double hdot, double e) {
     const auto n = Problem::normal(y);
@@ -89,7 +89,7 @@ void project(Values& y) {
     bounce<Problem>(y, Problem::gap_rate(y), 0.0);
 }
 
-// One program, which keeps what it allocated from run to run.
+// One program; it keeps its memory between runs.
 class Program {
  public:
     virtual ~Program() = default;

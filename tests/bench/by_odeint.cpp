@@ -1,10 +1,11 @@
-// The careful Boost.Odeint program: dopri5 with dense output, as an expert writes it who knows the problem. First steps
-// from the predicted flight, no root taken too soon after an impact or a release, the gap looked at inside steps too,
-// TOMS 748 on dense output, the last step before an event made again so that its end is integrated, plastic cut,
-// projection in contact.
+// The Boost.Odeint program: dopri5 with dense output, written by an expert for these problems.
+// - The first step of a flight comes from its predicted duration, and roots too soon after an impact or a release are
+//   ignored. The gap is also evaluated inside steps.
+// - TOMS 748 finds the root on dense output. The last step before an event is repeated, so that its end is integrated.
+// - A plastic impact ends the sequence, and the state in contact is projected.
 #include <algorithm>
 #include <boost/math/tools/toms748_solve.hpp>
-// Must stand before the next: it forgets to include this.
+// Must precede the next header, which does not include it.
 #include <boost/numeric/odeint/util/unwrap_reference.hpp>
 
 #include <boost/numeric/odeint/stepper/dense_output_runge_kutta.hpp>
@@ -45,7 +46,7 @@ class Odeint final : public Program {
     }
 
  private:
-    // To the next impact, and that impact. True if contact follows.
+    // Integrates to the next impact and performs it. True if contact follows.
     bool fly() {
         constexpr auto rates = [](const Values& y, Values& rate, double) { Problem::flight(y, rate); };
         const auto gap = [&](double t) {
@@ -91,7 +92,7 @@ class Odeint final : public Program {
         return false;
     }
 
-    // To the release.
+    // Integrates to the release.
     void stay() {
         constexpr auto rates = [](const Values& y, Values& rate, double) { Problem::contact(y, rate); };
         const auto lift = [&](double t) {
@@ -119,7 +120,7 @@ class Odeint final : public Program {
         blind_ = 0.05;
     }
 
-    // Time runs from 0 in every stretch, so that the shortest flight has all its digits.
+    // Time starts from 0 in every segment, so that the shortest flight has full relative accuracy.
     void begin(double dt) { dense_.initialize(y_, 0.0, std::min(dt, left_)); }
 
     template <class Rates>
@@ -140,11 +141,11 @@ class Odeint final : public Program {
         return true;
     }
 
-    // Makes the last step again, to this time.
+    // Repeats the last step, to this time.
     template <class Rates>
     void arrive(const Rates& rates, double t) {
         y_ = dense_.previous_state();
-        stepper_.reset();  // it remembers the derivative at the end of its last step
+        stepper_.reset();  // it keeps the derivative from the end of its last step
         stepper_.do_step(rates, y_, 0.0, t - dense_.previous_time());
         left_ -= t;
     }
@@ -160,7 +161,7 @@ class Odeint final : public Program {
     template <class Function>
     static double root(const Function& f, double a, double b) {
         const double at_a = f(a), at_b = f(b);
-        if ((at_a > 0.0) == (at_b > 0.0)) return a;  // it was over before we looked
+        if ((at_a > 0.0) == (at_b > 0.0)) return a;  // the event lies before this step
         std::uintmax_t rounds = 60;
         const auto [low, high] = boost::math::tools::toms748_solve(
             f, a, b, at_a, at_b, boost::math::tools::eps_tolerance<double>(50), rounds);
@@ -171,8 +172,8 @@ class Odeint final : public Program {
     Dense dense_;
     Stepper stepper_;
     Values y_{}, sample_{};
-    double left_ = 0.0;     // until the end of the run, from the start of this stretch
-    double natural_ = 0.0;  // the step the error control would take next
+    double left_ = 0.0;     // from the start of this segment to the end of the run
+    double natural_ = 0.0;  // the next step by the error control
     double hint_ = 0.0;     // bound on the first step of the next flight; 0: none
     double blind_ = 0.0;    // no root is looked for before this time of the flight
     Result result_;

@@ -1,4 +1,4 @@
-// What a run's certificates cost: every question it asked, asked again.
+// Measures the cost of a run's certificates by repeating every request of the run.
 #pragma once
 
 #include <memory>
@@ -10,8 +10,7 @@
 
 namespace achilles::bench {
 
-// Every collision at which a run asked for a certificate: its impacts, of which the last before a Zeno point is the
-// cut.
+// Every collision at which a run requested a certificate: all its impacts. The last before a Zeno point is the cut.
 inline std::vector<Collision> collisions(const Trajectory& trajectory) {
     ContactKinematics surface(*trajectory.model, trajectory.run);
     std::vector<Collision> result;
@@ -26,14 +25,14 @@ inline std::vector<Collision> collisions(const Trajectory& trajectory) {
     return result;
 }
 
-// Asks as a run does.
+// Requests certificates as a run does.
 inline void ask(TruncationConditions& conditions, const std::vector<Collision>& collisions) {
     for (const Collision& collision : collisions)
         if (!conditions.fails_at_point(collision)) conditions.certify(collision);
 }
 
-// Asks as the run did, with conditions built anew. Nothing else is in it, and what it reads is in the cache, so it is
-// at most what the certificates cost inside the run.
+// Repeats the requests of the run, with newly built conditions. The data are in the cache, so the time is at most that
+// of the certificates inside the run.
 inline void ask_again(const Model& model, const Run& run, const std::vector<Collision>& asked) {
     ask(*truncation_conditions(model, run), asked);
 }

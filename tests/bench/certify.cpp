@@ -1,6 +1,5 @@
-// bench_certify: what certificates cost, beside the run they belong to: medians of interleaved repetitions in one
-// process. "All" is every question that the run asked, with conditions built anew, as in a run; its share is of the
-// rest of the run.
+// bench_certify: the cost of certificates relative to their run, as medians of interleaved repetitions in one process.
+// "All" repeats every request of the run, with newly built conditions. Its share is relative to the rest of the run.
 #include <fmt/format.h>
 
 #include <memory>

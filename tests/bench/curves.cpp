@@ -1,7 +1,7 @@
-// Whether figures show the whole motion, of very many random runs of the gallery, and what their curves cost.
-//     bench_curves [N [SEED]]        N runs (1000), ends from 1 to 2000 s: how far each figure is off, pixels (bar 0.7)
-//     bench_curves draws SEED K...   only the runs of these draws, which the report numbers
-//     bench_curves cost              a phase plane and a gap over time of one system, by the end of the run
+// Tests that figures show the whole motion, with many random runs of the gallery, and measures the cost of their
+// curves.     bench_curves [N [SEED]]        N runs (1000), end times from 1 to 2000 s: the error of each figure in
+// pixels (limit 0.7)     bench_curves draws SEED K...   only the runs of these draws, with the numbers of the report
+// bench_curves cost              a phase plane and a gap over time of one system, for several end times
 #include <fmt/format.h>
 
 #include <chrono>

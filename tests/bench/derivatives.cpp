@@ -1,4 +1,4 @@
-// What the derivatives of the paper's two runs cost beside the runs, by eight directions and by all: microseconds, medians.
+// The cost of the derivatives of the paper's two runs, by eight directions and by all. Medians in microseconds.
 #include <fmt/format.h>
 
 #include "bench/measure.hpp"
@@ -19,7 +19,7 @@ int main() {
         const Eigen::Index n = model->dof(), P = static_cast<Eigen::Index>(run.parameters.size());
         const Eigen::Index all = 2 * n + P, K = std::min<Eigen::Index>(8, all);
         const Eigen::MatrixXd eight = Eigen::MatrixXd::Identity(all + 1, K);
-        std::vector<double> runs, eights, alls;  // in turns: a processor does not keep its pace
+        std::vector<double> runs, eights, alls;  // interleaved, since the speed of a processor varies
         for (int i = 0; i < 201; ++i) {
             runs.push_back(1e6 * bench::seconds([&] { simulate(model, run); }));
             eights.push_back(1e6 * bench::seconds([&] { differentiate(trajectory, eight); }));

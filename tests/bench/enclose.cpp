@@ -1,5 +1,5 @@
-// What proofs give and cost: every system of the gallery, its own run and boxes around it, with random members.
-// usage: bench_enclose [MEMBERS]    default 1000; 0: the table of own runs alone
+// Width and cost of enclosures: every gallery system, its own run and boxes around it, tested with random members.
+// usage: bench_enclose [MEMBERS]    default 1000; 0: only the table of own runs
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,79 +1,78 @@
-// bench_engine [ROUNDS] [BALLS]: the engine beside two programs written by hand, in one run: Boost.Odeint (by_odeint)
-// and SUNDIALS ARKODE (by_arkode).
+// bench_engine [ROUNDS] [BALLS]: compares the engine with two programs written by hand, in one process: Boost.Odeint
+// (by_odeint) and SUNDIALS ARKODE (by_arkode).
 //
-// Work and precision, for both problems of the paper's Fig. 4 to t = 20: for each error in the end state, the fastest
-// setting of each contestant that meets it, also with a tolerance up to ten times smaller (so that no lucky error
-// wins), then medians over ROUNDS (101) interleaved rounds. Settings are the tolerance and when the bouncing is cut: by
-// the impact speed for the programs, by the certified bounds eps_q = eps_v for the engine; eps_t stays 1e-6, since the
-// motion does not depend on where the Zeno event is put in time.
+// Work and precision, for both problems of the paper's Fig. 4 to t = 20. For each error of the final state, the fastest
+// setting of each contestant with this error is selected. The error must also hold for tolerances up to ten times
+// smaller, so that no accidental cancellation wins. Then medians over ROUNDS (101) interleaved rounds are taken.
+// Settings are the tolerance and the cut: by the impact speed for the programs, by the certified bounds eps_q = eps_v
+// for the engine. eps_t stays 1e-6, since the motion does not depend on the estimated Zeno time.
 //
-// Ensemble: BALLS (10 000) random balls at tolerance 1e-9, one core; the errors are those of the first 200, against 34
-// digits, and "lost" are all that end under the floor, or not at all. The engine makes the runs one by one, as the
-// programs do, or eight at a time (simulate_ends).
+// Ensemble: BALLS (10 000) random balls at tolerance 1e-9 on one core. Errors are those of the first 200, against 34
+// digits. "lost" counts all that end under the floor or with a failure. The engine simulates single runs, as the
+// programs do, or batches of eight (simulate_ends).
 //
-// The engine's time is the whole of simulate(): checks, dense output, events, statistics, certificates; where it says
-// "end", and in the ensemble, only the end is kept (Keep::end), as the programs do. What it would be without the
-// certificates, which the programs do not have, stands behind it: they are measured by asking the same questions again
-// in the same round, in the ensemble by what the runs say of themselves. Times are those of the processor, which is
-// named beside every ratio. Ratios are medians of the rounds' ratios to Boost.Odeint: above 1 is faster.
+// The engine's time is that of simulate(): checks, dense output, events, statistics and certificates. With "end", and
+// in the ensemble, only the final state is recorded (Keep::end), as in the programs. The time without certificates,
+// which the programs do not have, is printed as well. Certificates are measured by repeating their requests in the same
+// round, in the ensemble by the runs' own statistics. Times are processor times; the processor is named beside every
+// ratio. Ratios are medians of the ratios to Boost.Odeint in each round; above 1 is faster.
 //
-// What was tried, and what it gave of the engine's time (ball and pendulum at 1e-9, then at 1e-12):
+// Optimizations, and the change of the engine's time (ball and pendulum at 1e-9, then at 1e-12):
 //   sums, differences and multiples as linear forms instead of rules       pendulum -35 percent
 //   fewer products in the equations (bias, f_c, n), whole vectors stored,
-//   dense output scaled once, no look at the domain without an edge        -13, -16, -14, -20 percent
+//   dense output scaled once, no domain check without a boundary           -13, -16, -14, -20 percent
 //   rules as machine code, inner sums compiled for each number of lanes    -21, -19, -20, -15 percent
-//   order 0 and the surface's programs as machine code                     -4, -7, -1, -7 percent
+//   order 0 and the contact programs as machine code                       -4, -7, -1, -7 percent
 //   one component watched per order instead of all, tables set up once,
 //   Newton's method stopped by its own convergence                         -7, -7, -10, -10 percent
 //   fewer evaluations per impact                                           0 to -10 percent
 //   a whole order as machine code, then all orders up to the first small
 //   one: half of the instructions                                          -18, -26 percent at 1e-9
-//   ends evaluated where they are asked for, descents told from partial
-//   sums instead of Bernstein coefficients, projection in place            -15 percent of the ball's
-//   sine and cosine at once, and those of the last angles remembered       -5 percent
-//   certificates put off by what the last proof found                      theirs, at 1e-12: -45 percent
-//   contact forces told from the series alone, polynomials not filled with
-//   zeros first, orders below the least not looked at, inner sums from a
-//   cache line on (else none can be read back before all are stored), -O2
-//   instead of -O3 (not for the programs, which it makes slower)        -8, -4, -8, -4 percent
-//   evaluators made where they are first asked for, one program for the
-//   guess of a cut                                                      ball -2 percent
-// What gave nothing, or less:
+//   ends evaluated only if requested, descents found by partial sums
+//   instead of Bernstein coefficients, projection in place                 -15 percent of the ball's
+//   sine and cosine together, and those of the last angles cached          -5 percent
+//   certificates postponed by the result of the last proof                 their time, at 1e-12: -45 percent
+//   contact forces from the series alone, polynomials not zeroed first,
+//   orders below the minimum not checked, inner sums aligned to a cache
+//   line (else none can be read back before all are stored), -O2 instead
+//   of -O3 (not for the programs, which become slower with it)          -8, -4, -8, -4 percent
+//   evaluators built at first use, one program for the estimate of a cut
+//                                                                       ball -2 percent
+// Without effect, or with a loss:
 //   vectors of eight instead of four doubles                            none on a Zen 4
 //   other weights in the order's cost                                   within 3 percent
 //   accelerations carried in registers from one order to the next, code
 //   that begins with a cache line, no errno, AVX2 for all of the core   none
-//   older rows laid out without a loop, with a jump to where they
-//   begin                                                               none (26 orders in a loop: -6 percent)
+//   older rows unrolled, with a jump to the first                       none (26 orders in a loop: -6 percent)
 //   the last terms of inner sums one by one, from registers             +10 percent from order 14 on
 //   the newest of the older rows last                                   within 2 percent of 26 orders
-//   operands of a rule by when they are known                           +10 percent with cold caches
+//   operands of a rule sorted by the time at which they are known       +10 percent with cold caches
 //   four components in one vector when an end is evaluated              +5 percent
-// What is left of the ball's time at 1e-9: two fifths is series, where every order waits for the one before (some 62
-// cycles; inner sums that take 2 loads a term come on top of it); the rest is what each of 45 steps takes besides (two
-// looks at the surface, the root, the step's length).
+// The remaining time of the ball at 1e-9: two fifths is the series, where every order waits for the one before (some 62
+// cycles, plus inner sums with 2 loads a term). The rest is the other work in each of 45 steps: two evaluations of the
+// contact, the root, and the step's length.
 //
-// Eight runs at a time, of the ensemble's time (one by one, a run takes 29 us; the series of its contact alone 12):
-//   plain flights and contacts as vectors, left to the run's own stepper
-//   where they are not plain; orders as machine code                            -38 percent
-//   Executions used again instead of made anew, lane programs as machine code   -18 percent
-//   functions compiled for AVX-512 with all that becomes a part of them (with
+// Batches of eight, change of the ensemble's time (a single run takes 29 us, the series of its contact alone 12):
+//   regular flights and contacts as vectors, others by the run's own stepper;
+//   orders as machine code                                                      -38 percent
+//   Executions reused instead of rebuilt, lane programs as machine code         -18 percent
+//   functions compiled for AVX-512 with everything inlined into them (with
 //   target_clones alone their comparisons stay scalar), flights of lower order  -18 percent
 //   inner sums and accelerations in registers from one order to the next, each
 //   factor loaded once                                                          -11 percent
-//   contact to where what is left out, not the last term, reaches the tolerance -4 percent
+//   contact steps until the remainder, not the last term, reaches the tolerance -4 percent
 //   steps in contact repeated in the lanes until one of the runs ends them      -5 percent
-//   one program for the guess of a cut instead of three; sines by pairs of terms -5 percent
+//   one program for the estimate of a cut instead of three; sines by pairs      -5 percent
 //   without AVX-512: machine code for AVX2, each half of an order by itself, and
 //   halves of programs between two calls of functions                           -46 percent of the 128-bit loops'
-// Of the pendulum's map (bench_explorer sweep), whose flights take many steps:
-//   flights of 1.2 times the order that a step alone would have, brief ones, as
-//   the bounce before tells them, of half of that                               -12 percent
-//   a flight after a release goes back to the lanes once its gap is open        -12 percent
+// The pendulum's map (bench_explorer sweep), whose flights take many steps:
+//   flights with 1.2 times the order of a single step; half of that for short
+//   ones, predicted by the flight before                                        -12 percent
+//   a flight after a release returns to the lanes once its gap is open          -12 percent
 //   right factors of inner sums in the registers that results leave idle         -6 percent
 //   roots of eight at once                                                       -2 percent
-// What gave nothing: rows summed in another order, no vzeroupper between orders, more or fewer runs under way (12 to
-// 48), 256-bit vectors instead of 128 without machine code, or for what is left to the compiler beside machine code.
+// Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48),
+// 256-bit vectors instead of 128 without machine code, or for the compiled code beside machine code.
 #include "bench/engine.hpp"
 
 #include <fmt/format.h>
@@ -93,7 +92,7 @@ double error_of(const Values& end, const Values& truth) {
     double error = 0.0;
     for (std::size_t i = 0; i < end.size(); ++i) {
         const double difference = std::abs(end[i] - truth[i]);
-        if (!(difference <= error)) error = difference;  // NaN stays
+        if (!(difference <= error)) error = difference;  // keeps NaN
     }
     return error;
 }

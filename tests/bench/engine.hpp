@@ -1,4 +1,4 @@
-// What the parts of bench_engine share: settings, runs with them, errors and ratios.
+// Common parts of bench_engine: settings, runs, errors and ratios.
 #pragma once
 
 #include <memory>
@@ -15,19 +15,20 @@ struct Setting {
 };
 
 Values values_of(const State& state);
-// The largest difference; NaN where one is.
+// The largest difference; NaN if one is NaN.
 double error_of(const Values& end, const Values& truth);
 Run run_with(const Model& model, Method method, const Setting& setting);
-// The methods there are: one that gives another's bytes is not there yet.
+// The methods that are implemented. A method whose results equal another's in every byte is not implemented yet.
 std::vector<Method> methods(const std::shared_ptr<const Model>& model);
-// The processor that a ratio belongs to: it is another one on another.
+// Name of the processor, printed beside ratios, since these depend on it.
 std::string processor_name();
-// The median of the rounds' ratios.
+// The median of the ratios of all rounds, as text.
 std::string ratio(const std::vector<double>& reference, const std::vector<double>& times);
 
-// For each error in the end state of the ball and of the pendulum, the fastest setting of each contestant that meets it.
+// For the ball and the pendulum and each error of the final state: the fastest setting of each contestant with this
+// error.
 void measure_work_and_precision(int rounds);
-// Random balls, one by one and eight at a time.
+// Random balls, in single runs and in batches of eight.
 void measure_ensemble(int count, int rounds);
 
 }  // namespace achilles::bench

@@ -1,4 +1,4 @@
-// bench_engine's ensemble: see engine.cpp.
+// The ensemble of bench_engine; see engine.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ std::vector<Values> starts(int count) {
 
 struct Ensemble {
     std::string name;
-    // Fills in the ends; returns what of the time the certificates took, s.
+    // Writes the final states and returns the time that certificates took, s.
     std::function<double(std::vector<Values>& ends)> run;
     std::vector<double> whole, net;
     std::vector<Values> ends;
@@ -50,7 +50,7 @@ std::string name_of(Vectors vectors) {
     return "";
 }
 
-// One by one, or eight at a time by these vectors. The runs say themselves how long their certificates took.
+// Single runs, or batches of eight with these vectors. The time of certificates is from the runs' statistics.
 Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, const std::vector<Values>& from,
                      Setting setting, std::optional<Vectors> vectors = {}) {
     const auto run_of = [=, &from](std::size_t i) {
@@ -88,12 +88,12 @@ Ensemble ensemble_of(const std::string& name, std::shared_ptr<Program> program, 
     return {name, all, {}, {}, {}};
 }
 
-// Ends that are no motion of a ball: under the floor, or not a number, or an outcome other than the end time.
+// The number of invalid final states: under the floor, NaN, or an outcome other than the end time.
 long count_lost(const std::vector<Values>& ends) {
     return std::count_if(ends.begin(), ends.end(), [](const Values& y) { return !(Ball::gap(y) >= -1e-6); });
 }
 
-// Where the first balls really end, in 34 digits.
+// Final states of the first balls in 34 digits.
 std::vector<Values> truths(const Model& model, const std::vector<Values>& from, std::size_t most) {
     test::TrueRuns runs(model, model.default_run());
     std::vector<Values> ends;

@@ -1,4 +1,4 @@
-// bench_engine's work and precision: see engine.cpp.
+// Work and precision of bench_engine; see engine.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +21,7 @@ struct Contestant {
     std::string name, cut_name;
     std::vector<double> cuts;
     std::function<Values(const Setting&)> run;
-    std::function<std::function<void()>(const Setting&)> certificates;  // work to be timed; none for the programs
+    std::function<std::function<void()>(const Setting&)> certificates;  // work to be timed; empty for the programs
 };
 
 // ---- the contestants ----
@@ -75,7 +75,7 @@ std::vector<Tried> try_all(const Contestant& contestant, const Values& truth) {
     return all;
 }
 
-// The fastest that meets the error, as do its neighbours of smaller tolerance.
+// The fastest setting with this error, if the settings of slightly smaller tolerance have it as well.
 const Tried* fastest(const std::vector<Tried>& all, double error) {
     const Tried* best = nullptr;
     for (const Tried& tried : all) {

@@ -1,6 +1,6 @@
-// The error estimate against what errors are: random starts around those of a few systems, at several tolerances, and what it
-// costs beside the run.
-// usage: bench_estimate [STARTS [SYSTEM...]]    default 100, those of the list below
+// Compares the error estimate with true errors, for random starts near those of a few systems at several tolerances.
+// Measures its cost relative to the run.
+// usage: bench_estimate [STARTS [SYSTEM...]]    default: 100 starts, the systems listed below
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ double quantile(std::vector<double> x, double part) {
     return x[static_cast<std::size_t>(part * static_cast<double>(x.size() - 1))];
 }
 
-// Percent of the run, the smaller of several times each.
+// Time of the estimate in percent of the run's, each the smallest of several measurements.
 double cost(const std::shared_ptr<const Model>& model, const Run& run) {
     double of_run = 1e9, of_estimate = 1e9;
     for (int round = 0; round < 20; ++round) {

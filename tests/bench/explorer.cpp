@@ -1,11 +1,11 @@
-// How long the explorer's hand waits: medians, of the processor's time where one thread works, else by the clock.
-//     bench_explorer            the bars: a frame's lists 5 ms, a slider to its picture 16 ms, first frame 200 ms
-//     bench_explorer everything what is first of these alone: everything open at once, and a hand that changes values
-//     bench_explorer sweep      a map of 512 x 512 runs: its first picture, 64 x 64 of them (taskset -c 0: on one core), 100 ms;
-//                               all of it, 6 s on two cores
-//     bench_explorer bars       what the last Zeno time of the paper's runs depends on, 16 ms (among what is first, too)
-//     bench_explorer window     the same hand on a real window (xvfb-run has a display): the longest frame while runs
-//                               of 100 000 impacts are made one after the other
+// Response times of the explorer: medians, of processor time where one thread works, else of wall time.
+// bench_explorer            all limits: drawing lists of a frame 5 ms, slider to picture 16 ms, first frame 200 ms
+// bench_explorer everything only the first part: all panels open at once, while values change     bench_explorer sweep
+// a map of 512 x 512 runs: its first picture, 64 x 64 of them (taskset -c 0: on one core), 100 ms;
+// the whole map, 6 s on two cores     bench_explorer bars       derivatives of the last Zeno time of the paper's runs,
+// 16 ms (also in the first part)     bench_explorer window     changing values in a real window (xvfb-run has a
+// display): the longest frame while runs                               of 100 000 impacts are simulated one after the
+// other
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -90,8 +90,8 @@ void frames() {
     }
 }
 
-// Equations, energy, poses at events, three runs of which two are pinned; and how long a hand waits for its answer, with
-// the patience of a window, but for the drawing itself.
+// Equations, energy, poses at events, and three runs of which two are pinned. Measures the response to a changed value,
+// with the waiting times of a window but without drawing.
 void everything() {
     for (const auto& [what, system, change] : {std::tuple{"the paper's ball", "ball_on_sine", "end 20"},
                                                std::tuple{"bouncing for ever", "ball_on_floor", "end 100000"}}) {
@@ -139,8 +139,8 @@ void sliders() {
     }
 }
 
-// On what the last Zeno time of the paper's runs depends, by every parameter and start: of a run that is there, and from a slider
-// on to the bars under all of them.
+// Derivatives of the last Zeno time of the paper's runs by every parameter and initial value: the time for a finished
+// run, and the time from a slider to the bars under all sliders.
 void bars() {
     for (const char* system : {"ball_on_sine", "double_pendulum"}) {
         Desk desk(system, {"grid 3 2", "show depend"});
@@ -200,7 +200,7 @@ void start() {
     }
 }
 
-// Runs of 100 000 impacts asked for, cancelled, shown and forgotten, as explore.cpp does it.
+// Runs of 100 000 impacts are requested, canceled, shown and discarded as in explore.cpp.
 void window() {
     Session session = test::session("ball_on_floor", 1.0 / 40.0);
     session.apply(parse_command("grid 3 2"));
@@ -225,7 +225,7 @@ void window() {
         }
         explorer(session, panels);
         ++frame;
-        // A drag: a new value in some frames, and time to finish between the drags.
+        // Drags: a new value in some frames, and pauses in which a run can finish.
         if (frame > 20 && frame % 30 < 4) session.apply(command::Set{"e", 1.0 - 1e-12 * (frame % 30)});
         if (frame > 150 || arrived > 6) window.close();
     });
@@ -241,7 +241,7 @@ void window() {
     report("taking a finished run in", fed);
 }
 
-// A map from the change of a slider on, as the panel sees it grow.
+// A map from the change of a slider on, as the panel receives its parts.
 void sweep() {
     const std::pair<const char*, const char*> maps[] = {
         {"ball_on_sine", "--over x=0:6:512 --over x'=0:3:512 --print x"},
@@ -252,7 +252,7 @@ void sweep() {
         double all = 0.0;
         for (int round = 0; round < 5; ++round) {
             Sweep sweep = read_sweep(text, session.description());
-            sweep.base.options.end_time += 1e-9 * round;  // another one
+            sweep.base.options.end_time += 1e-9 * round;  // so that the sweep differs from the one before
             SweepJob job;
             const double begin = wall_seconds();
             job.ask(session.model(), sweep);

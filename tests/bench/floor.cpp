@@ -1,12 +1,11 @@
-// bench_floor [SHARE] [METHOD] [eight] [TOLERANCE|every|random] [SYSTEM...]: never under the floor. Over every system of
-// assets/systems, or those named, from random starts: the least gap of a run, where its impacts are stored, its outcome;
-// of those with one gap for a random 1000 of them the times of events and the end
-// state against 34 digits, and grazing starts. With "eight" runs are simulated eight at a time, of which the ends are
-// known. Random starts are asked at the tolerance of their system, at a given one, or at every one of 1e-4, 1e-6, 1e-8,
-// 1e-10 and 1e-13; the truth and grazing starts have tolerances of their own and are left out where one is given.
-// "random" asks only for runs whose parameters and times are random, too, at 1e-12: all laws (floor/laws.hpp), the same
-// by the other method, and what became of them. SHARE (1) scales the numbers of runs. Prints every fault with the
-// options that repeat it, and exits with 1 if there is one.
+// bench_floor [SHARE] [METHOD] [eight] [TOLERANCE|every|random] [SYSTEM...]: tests that no run penetrates the floor,
+// from random starts of all systems of assets/systems or of those named. - Every run: the smallest gap, the gaps at
+// stored impacts, and the outcome. - Systems with one gap: event times and final states of 1000 random runs against 34
+// digits, and grazing starts. Both   have their own tolerances and are omitted if a tolerance is given. - "eight"
+// simulates batches of eight, with final states only. - The tolerance is that of the system, a given one, or with
+// "every" each of 1e-4, 1e-6, 1e-8, 1e-10 and 1e-13. - "random" tests only runs with random parameters and times at
+// 1e-12: all laws (floor/laws.hpp), the agreement of both   methods, and the statistics of outcomes. SHARE (1) scales
+// the numbers of runs. Prints every fault with the options that repeat it, and exits with 1 if there is one.
 #include <fmt/format.h>
 
 #include <atomic>
@@ -47,7 +46,7 @@ struct Way {
     std::optional<double> tolerance;  // the system's own if empty
 };
 
-// summarize(i, attempt) of every run.
+// Simulates all runs and returns summarize(i, attempt) for each.
 template <class Summarize>
 auto simulate_all(const std::shared_ptr<const Model>& model, const std::vector<Run>& runs, const Way& way,
                   const Summarize& summarize) {
@@ -110,7 +109,7 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, const 
     return faults.count;
 }
 
-// Ends the program, with what repeats it, where a run takes more than a minute.
+// Ends the program and prints the options of the run if a run takes more than a minute.
 class Patience {
  public:
     Patience(const Model& model, const std::vector<Run>& runs)
@@ -153,7 +152,7 @@ class Patience {
     std::thread watch_;
 };
 
-// A message without its numbers: what runs end of, in few words.
+// The message of an outcome without its numbers, for statistics.
 std::string kind_of(const Outcome& outcome) {
     if (outcome.kind == Outcome::Kind::end_time) return "finished";
     std::string text(to_text(outcome.kind));
@@ -171,20 +170,21 @@ Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
     }
 }
 
-// Whether both methods tell the same of bouncings that are cut late, as far as a start or parameters 1e-9 away do.
+// Compares both methods with sequences cut late. The allowed difference is that of runs with starts or parameters
+// changed by 1e-9.
 std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
     run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
     const Trajectory trajectory = simulate(model, run);
     run.options.method = run.options.method == Method::taylor ? Method::dopri5 : Method::taylor;
     const Trajectory other = simulate(trajectory.model, run);
     if (trajectory.outcome.kind != Outcome::Kind::end_time || other.outcome.kind != Outcome::Kind::end_time) return {};
-    // On the way to a Zeno point one has cut the bouncing, and the other one perhaps not yet.
+    // If a run ends between a cut and its Zeno point, the other may not have cut yet, and they are not compared.
     for (const Trajectory* one : {&trajectory, &other})
         if (!one->pieces.empty() && one->pieces.back().mode.held() != one->end_mode.held()) return {};
     const Distance apart = between(outline_of(trajectory), outline_of(other));
     if (apart.size <= 1e-8) return {};
     double sensitive = 1.0;
-    // Rest forgets the start, so parameters are moved, too.
+    // A Zeno point forgets a part of the start, so parameters are changed as well.
     const auto n = static_cast<std::size_t>(run.q.size());
     for (std::size_t i = 0; i < 2 * n + run.parameters.size(); ++i) {
         Run moved = trajectory.run;
@@ -203,7 +203,7 @@ std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
     return fmt::format("methods are {:.1e} apart, sensitivity {:.1e}, at {}", apart.size, sensitive, apart.where);
 }
 
-// Runs of every kind, at 1e-12.
+// Runs with random parameters and times, at tolerance 1e-12.
 long random_runs(const std::shared_ptr<const Model>& model, long count, const Way& way) {
     Starts starts(model, 271828);
     Faults faults;
@@ -288,7 +288,8 @@ long against_truth(const std::shared_ptr<const Model>& model, long count, const 
     return faults.count;
 }
 
-// A dip is right if it is met when it is below the floor, and only then. Undecided is right at the default tolerance.
+// A run is right if it has an impact exactly when the minimum of the gap is negative. Undecided is right at the default
+// tolerance.
 long grazing(const std::shared_ptr<const Model>& model, long count, const Way& way) {
     long wrong = 0;
     GrazingStarts source(model, 96);
@@ -369,7 +370,7 @@ int main(int count, char** arguments) {
             const Way way{*method, eight, tolerance};
             const double runs = name == "ball_on_sine" ? 1e6 : 1e5;
             faults += random_starts(model, scaled(runs / static_cast<double>(tolerances.size())), way);
-            if (tolerance || model->contacts() > 1) continue;  // the truth knows one contact
+            if (tolerance || model->contacts() > 1) continue;  // the reference has one contact
             faults += against_truth(model, scaled(1000), way);
             faults += grazing(model, scaled(100), way);
         }

@@ -1,10 +1,11 @@
-// bench_gaps [ROUNDS]: what a force, time and gaps that stay open cost, beside the ball on the sine without them; and what
-// eight at a time give where there are forces and time. Medians of ROUNDS (41) interleaved rounds, of the processor's time.
+// bench_gaps [ROUNDS]: the cost of forces, time dependence and open gaps, relative to the ball on the sine without
+// them. Also the gain by batches of eight with forces and time. Medians of ROUNDS (41) interleaved rounds, in processor
+// time.
 //
-// Functions that are not defined everywhere, as sqrt, leave the run's own stepper to make every step: with a drag of
-// -c x' sqrt(...) eight at a time give nothing.
+// With functions that are not defined everywhere, such as sqrt, every step is a scalar step. So with a drag of
+// -c x' sqrt(...) batches have no gain.
 //
-// Every ball below moves as the plain one, to within 1e-9: what is added is too small, or too far away, to matter to it.
+// Every ball below moves as the plain one to within 1e-9: the additional terms are too small, the walls too far away.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -23,7 +24,7 @@ namespace {
 
 struct Ball {
     std::string name, potential = "m*g*y", force_x = {}, force_y = {};
-    std::vector<std::string> walls = {};  // gaps that are never closed
+    std::vector<std::string> walls = {};  // gaps that never close
 };
 
 std::shared_ptr<const Model> model_of(const Ball& ball) {
@@ -97,7 +98,7 @@ void measure_additions(int rounds) {
     }
 }
 
-// From random starts, one by one and eight at a time.
+// Random starts, in single runs and in batches of eight.
 void measure_eight(int rounds) {
     constexpr std::size_t count = 400;
     fmt::print("{} balls from random starts\n", count);

@@ -1,8 +1,9 @@
-// How well the comparison of pixels tells lies from honest pictures: every lie about every figure of the gallery, the
-// least scores of each kind and how many the coarse bar alone would miss, and the greatest score of pictures made again
-// by other means. tests/golden/tolerance.hpp holds what is allowed; 1 is the bar.
+// Measures how well the comparison of pixels separates falsified from correct pictures. Every falsification is applied
+// to every figure of the gallery. Prints the smallest score of each kind, the number that the coarse limit alone would
+// miss, and the largest score of pictures drawn again in other ways. tests/golden/tolerance.hpp has the limits; a score
+// of 1 is the limit.
 //
-//     bench_golden [REPETITIONS [SYSTEM...]]        1 if a lie is missed or an honest picture refused
+//     bench_golden [REPETITIONS [SYSTEM...]]        exits with 1 if a lie is missed or a correct picture is rejected
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +37,7 @@ struct Tally {
     }
 };
 
-// How many are missed.
+// The number of falsified pictures that are missed.
 int tell_lies(const std::vector<std::string>& systems) {
     constexpr std::pair<Lie::Kind, const char*> kinds[] = {{Lie::Kind::moved_right, "curve moved right"},
                                                            {Lie::Kind::moved_up, "curve moved up"},
@@ -63,7 +64,7 @@ int tell_lies(const std::vector<std::string>& systems) {
     return missed;
 }
 
-// How many honest pictures are taken for lies.
+// The number of correct pictures that are rejected.
 int be_honest(const std::vector<std::string>& systems, int repetitions) {
     const std::vector<std::string> commands{figure_command(systems.back()),
                                             "screenshot --size 1200x750 " + systems.back()};

@@ -1,9 +1,11 @@
-// bench_interval [COUNT]: COUNT operations of Interval, hostile and random, each compared with the exact value at the
-// ends, the middle and random members of its arguments. Exit code 1 if one exact value is outside.
+// bench_interval [COUNT]: tests COUNT operations of Interval with special and random arguments. Each result is compared
+// with the exact value at the ends, the midpoint and random members of the arguments. Exit code 1 if one exact value is
+// outside.
 //
-// Three judges, each asked only where the one before cannot tell: 113 bits with a margin of 2^-100 (libquadmath errs by
-// a few 2^-113), 100 digits with a margin of 2^-200, and 700 digits, in which sums and products of doubles are exact
-// and every double is reduced modulo pi. One decision in a thousand is repeated by the last judge, whatever the margin.
+// Three precisions are used, each only if the one before cannot decide. The first has 113 bits and a margin of 2^-100
+// (libquadmath errs by a few 2^-113), the second 100 digits and a margin of 2^-200. The third has 700 digits, in which
+// sums and products of doubles are exact and every double is reduced modulo pi. It also repeats one decision in a
+// thousand.
 #include <boost/multiprecision/float128.hpp>
 #include <chrono>
 #include <cstdio>
@@ -20,14 +22,14 @@ using Wide = Real<700>;
 
 enum class Verdict { inside, outside, doubtful };
 
-// `margin` is relative to the value; 0 believes it to the last digit.
+// `margin` is relative to the value; 0 takes the value as exact.
 template <class Number>
 Verdict judge(const Interval& interval, const Number& value, double margin) {
     if (value != value) return Verdict::doubtful;
-    if (!(value - value == 0)) {  // overflow of the judge: far beyond any double
+    if (!(value - value == 0)) {  // overflow in this precision, far beyond any double
         return std::isinf(value > 0 ? interval.hi() : interval.lo()) ? Verdict::inside : Verdict::outside;
     }
-    // Perhaps underflow of the judge, in exp or pow, whose values are positive.
+    // Possibly underflow in this precision, of exp or pow, whose values are positive.
     if (value == 0 && margin > 0.0 && !(interval.lo() <= 0.0 && interval.hi() > 0.0)) return Verdict::doubtful;
     const Number slack = abs(value) * Number(margin);
     const bool above = std::isinf(interval.lo()) || Number(interval.lo()) <= value - slack;
@@ -65,7 +67,7 @@ class Bench {
 
     Tally run(long count) {
         std::vector<Case> batch(1000);
-        std::vector<double> times;  // of each batch; the median, since another process may interrupt some
+        std::vector<double> times;  // of each batch; the median is used, since other processes may interrupt some
         while (tally_.operations < count) {
             for (Case& c : batch) std::tie(c.a, c.b) = arguments(draw_, operation_);
             const auto start = std::chrono::steady_clock::now();
@@ -108,7 +110,7 @@ class Bench {
         return std::clamp((1.0 - t) * lo + t * hi, lo, hi);
     }
 
-    // An infinite end is no member. A point has only one.
+    // Checks one member of the arguments. An infinite end is no member.
     void member(const Case& c, double x, double y) {
         if (!std::isfinite(x) || !std::isfinite(y)) return;
         Verdict verdict = judge(c.ours, function_(Quad(x), Quad(y)), operation_.selects ? 0.0 : 0x1p-100);

@@ -14,7 +14,7 @@ inline double median(std::vector<double> x) {
     return *middle;
 }
 
-// Of the processor, spent by this thread: others may be at work on the machine.
+// Processor time of this thread, s. Other load on the machine does not count.
 inline double thread_seconds() {
     timespec now;
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);

@@ -1,20 +1,20 @@
-// How long pictures take: from the start of the program to the first PNG, animations with encoding, and what the
-// compression of a PNG costs for which size. Run by hand, on a machine that does nothing else.
+// Times of pictures: from the start of the program to the first PNG, animations with encoding, and the compression of a
+// PNG with the resulting sizes. To be run by hand on an idle machine.
 //
 //     ninja -C build/release bench_pictures && build/release/bench_pictures
 //
 // Measured on two cores (AMD EPYC, 2.6 GHz) of a machine with a load of 9, GCC 12, Mesa 22.3.6:
 //
-//     from the start of the program to a PNG on the disk, median of 11:                          (wanted: below 0.4 s)
+//     from the start of the program to a PNG on the disk, median of 11:                          (limit: 0.4 s)
 //       figure, one view, 1200x800       0.283 s (fastest 0.225, processor 0.190)
 //       figure, all views, 1200x800      0.306 s (fastest 0.244, processor 0.195)
 //       the same as SVG                  0.019 s (fastest 0.012, processor 0.013)
 //       screenshot, 1600x1000            0.276 s (fastest 0.248, processor 0.193)
-//     animations of 1600x1000, start of the program included:                 (wanted: 10 frames/s for a pair of cores)
+//     animations of 1600x1000, start of the program included:                 (goal: 10 frames/s for two cores)
 //                           jobs   frames/s   for two processors   processor, ms   kB a frame
 //       ball_on_sine           2        9.2                 19.9             101          110
 //       double_pendulum        2        8.5                 18.0             111          113
-//     compression of a frame, stb's, which takes no level below 5; a figure and the explorer are alike:
+//     compression of a frame by stb, whose lowest level is 5; figures and the explorer are similar:
 //       level                      5              8             12
 //       no filter         38 ms 108 kB   53 ms 108 kB   75 ms 107 kB
 //       left              39 ms 124 kB   55 ms 124 kB   77 ms 123 kB
@@ -23,8 +23,8 @@
 //       Paeth             51 ms 121 kB   65 ms 121 kB   92 ms 121 kB
 //       least sum         57 ms 118 kB   77 ms 118 kB   90 ms 118 kB
 //
-// Flat colour compresses best as it is: no filter, at level 5. Frames a second for two processors come from processor
-// time, which other work on the machine does not change much; of it encoding is a third, the rest is Mesa.
+// Uniform color compresses best without a filter, at level 5. Frames per second for two processors are computed from
+// processor time, which other load on the machine changes little. Encoding is a third of it, the rest is Mesa.
 #include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -46,7 +46,7 @@ namespace fs = std::filesystem;
 
 double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 
-// Processor seconds of the processes that have ended.
+// Processor time of all ended child processes, s.
 double spent() {
     rusage usage{};
     getrusage(RUSAGE_CHILDREN, &usage);
@@ -64,7 +64,7 @@ void run(const std::string& arguments) {
     }
 }
 
-// The median of some runs, and what each costs the processor.
+// Prints the median time of several runs and the processor time of one.
 void first_picture(const std::string& what, const std::string& arguments) {
     constexpr int runs = 11;
     std::vector<double> seconds;

@@ -1,7 +1,8 @@
-// bench_sweep: what a sweep costs beside the runs that it is made of, and that its map is what single runs give.
+// bench_sweep: the cost of a sweep relative to its runs, and the agreement of its map with single runs.
 //
-// A map of the ball on the sine, 512 x 512 starts, which valley has it at t = 20. The rate of simulate_ends() alone, and that
-// with the files written, in turn; then single runs at random points of the map, against its rows.
+// The map shows the valley of the ball on the sine at t = 20 for 512 x 512 starts. The rate of simulate_ends() alone
+// and the rate with files written are measured in turn. Then single runs at random points of the map are compared with
+// its rows.
 //
 // usage: bench_sweep [points along an axis, 512] [rounds, 5] [single runs, 2000] [threads, 1]
 #include <fmt/format.h>
@@ -24,7 +25,7 @@ namespace {
 
 constexpr const char* prints = " --print x --print \"x'\" --print impacts --print zeno_points --print releases";
 
-// By the processor's time where one thread works, else by the clock.
+// Processor time if one thread works, else wall time, s.
 template <class Work>
 double seconds_of(int threads, const Work& work) {
     if (threads == 1) return seconds(work);
@@ -33,7 +34,7 @@ double seconds_of(int threads, const Work& work) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
 }
 
-// As the command does: rows and their text in chunks, into a log, and from there into the file.
+// Writes files as the command does: rows and their text in chunks into a log, and from there into the file.
 void write_files(const SweepTable& table, int threads, const std::string& path) {
     std::remove((path + ".part").c_str());
     SweepLog log(path + ".part", {}, false, ~std::uint64_t{0});

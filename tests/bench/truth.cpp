@@ -1,11 +1,12 @@
-// bench_truth [COUNT [SYSTEM]]: certificates against the truth over COUNT random collisions (10000) of every system,
-// or this one, and over all that as many random runs of the systems with forces, time and several contacts certify;
-// 1200 are more than 20000 certificates in all. Prints how many were proved and how many of those are false, which
-// must be none, and the medians of bound over truth (farthest: the velocity bound over the largest excursion on the
-// way, which Def. 7 adds up; formula: the velocity bound over that of Def. 7's own formula with the values at the
-// restart for its maxima). uniform: the bound for all times over the largest distance at 30 instants within the first
-// flights, the median and the least; not a number where no certificate claims one. estimates, worst: how many Zeno
-// times simulate() estimated, and the largest error of one over the half width of its interval.
+// bench_truth [COUNT [SYSTEM]]: tests certificates against 34-digit references, for COUNT random collisions (10000) of
+// every system or of this one. Also for all certificates of as many random runs of the systems with forces, time and
+// several contacts; a COUNT of 1200 gives more than 20000 certificates in all. Prints how many were proved and how many
+// of those are false, which must be none. Other columns: - medians of bound over reference value; - farthest: the
+// velocity bound over the largest |v - v*| up to the Zeno point, which Def. 7 bounds by a sum; - formula: the velocity
+// bound over Def. 7's formula with the values at the restart for its maxima; - uniform: the bound for all times over
+// the largest distance at 30 instants of the first flights, median and minimum; NaN   if no certificate claims one; -
+// estimates, worst: the number of Zeno times that simulate() estimated, and the largest error over the half-width of
+// its   interval.
 #include <fmt/format.h>
 
 #include <cstdlib>
@@ -17,7 +18,7 @@ namespace {
 
 using namespace achilles::test;
 
-// Of a system, whose trials are printed and counted.
+// Runs the trials of a system, prints its row and counts violations.
 class Count {
  public:
     void add_trials(const std::string& system, Trials source, long trials) {

@@ -11,7 +11,7 @@ namespace achilles::test {
 
 namespace {
 
-// The impact at which a bouncing is cut is one, whether it is stored as an event too or not.
+// Counts the impact at a cut, whether it is also stored as an event or not.
 void cut_at(Stretch& stretch, double time) {
     while (!stretch.impacts.empty() && stretch.impacts.back() >= time) stretch.impacts.pop_back();
     stretch.impacts.push_back(time);
@@ -48,7 +48,7 @@ bool ends_on_the_surface(const Trajectory& trajectory) {
     return std::abs(contact.h) < 1e-12 && std::abs(contact.hdot) < 1e-12;
 }
 
-// The least distance in time to a neighbour.
+// The time to the nearest neighbor in the sequence of impacts.
 double room(const Stretch& truth, std::size_t i, double end) {
     const double before = i > 0 ? truth.impacts[i - 1] : truth.start;
     const double after = i + 1 < truth.impacts.size() ? truth.impacts[i + 1]
@@ -76,7 +76,7 @@ std::optional<Difference> difference_in_flight(const Stretch& own, const Stretch
         drift = std::max(drift, std::abs(late));
         last = truth.impacts[i];
     }
-    const bool settled = truth.cut;  // and the truth's own cut is an impact that it does not list
+    const bool settled = truth.cut;  // the reference's cut is an impact that it does not list
     if (i < own.impacts.size()) {
         if (settled) return std::nullopt;
         return Difference{Kind::extra_impact, stretch, i, last, own.impacts[i], {}};
@@ -87,7 +87,7 @@ std::optional<Difference> difference_in_flight(const Stretch& own, const Stretch
     return std::nullopt;
 }
 
-// Counts alone: which impact it is, is not known here.
+// Compares numbers of impacts only; which impact differs is not known here.
 std::optional<Difference> difference_in_count(const Stretch& own, const Stretch& truth, std::size_t stretch) {
     if (own.count > truth.count && !truth.cut)
         return Difference{Kind::extra_impact, stretch, truth.count, truth.start, -1.0, {}};
@@ -95,8 +95,8 @@ std::optional<Difference> difference_in_count(const Stretch& own, const Stretch&
     return Difference{Kind::missed_impact, stretch, own.count, truth.start, -1.0, {}};
 }
 
-// Both were cut in stretch i, and one of them reached its Zeno point. The times of runs whose ends are kept are
-// estimates, and so are compared with room.
+// Both were cut in stretch i, and one of them reached its Zeno point. Without recorded events, the times are estimates
+// and are compared with the tolerance `room`.
 std::optional<Difference> difference_of_zeno(const Course& own, const Course& truth, std::size_t i) {
     constexpr double room = 1e-4;  // s
     const Stretch &a = own.stretches[i], &b = truth.stretches[i];
@@ -116,7 +116,7 @@ std::optional<Difference> difference_of_zeno(const Course& own, const Course& tr
     return difference;
 }
 
-// Before the first phase in contact there is nothing but a flight of no height.
+// Removes a flight of zero height before the first phase in contact.
 void forget_no_flight(Course& course) {
     if (course.stretches.size() < 2 || course.stretches[0].kind == Phase::Kind::constrained) return;
     if (course.stretches[1].start < 1e-9) course.stretches.erase(course.stretches.begin());
@@ -172,7 +172,7 @@ Course course_of(const TrueExecution& truth, double end_time) {
 Course until(Course course, double time) {
     while (course.stretches.size() > 1 && course.stretches.back().start > time) {
         course.stretches.pop_back();
-        // Whether it was cut before that time, only the impacts can tell.
+        // Whether the sequence was cut before that time is determined by the impacts only.
         Stretch& last = course.stretches.back();
         if (last.kind == Phase::Kind::hybrid) last.zeno_low = last.zeno_high = 0.0;
     }
@@ -216,7 +216,7 @@ std::string to_text(Kind kind) {
 
 std::optional<Difference> first_difference(const Course& own, const Course& truth, const Impacts& same) {
     for (std::size_t i = 0; i < std::max(own.stretches.size(), truth.stretches.size()); ++i) {
-        // A stretch is only begun where the one before was ended by the same kind of event.
+        // Both have this stretch, so the one before ended with the same kind of event.
         const Stretch &a = own.stretches[i], &b = truth.stretches[i];
         const bool own_ends = i + 1 < own.stretches.size(), truth_ends = i + 1 < truth.stretches.size();
         if (a.kind != b.kind) {
@@ -235,7 +235,7 @@ std::optional<Difference> first_difference(const Course& own, const Course& trut
             return found;
         if (!own_ends && !truth_ends) return std::nullopt;
         if (auto found = difference_of_zeno(own, truth, i); found && !same.contains({i, zeno})) return found;
-        // Cut, but the end came before the Zeno point.
+        // The sequence was cut, but the run ends before the Zeno point.
         if (!own_ends || !truth_ends) return std::nullopt;
     }
     return std::nullopt;

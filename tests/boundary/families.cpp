@@ -28,18 +28,18 @@ std::shared_ptr<const Model> written(const std::string& coordinates, const std::
 
 Crest::Crest() : model_(written("ab", "(a'^2 + b'^2)/2", "b", "b - 0.25*cos(a)", 0.5)) {}
 
-// Energy along the contact motion: a'^2 (1 + (0.25 sin a)^2)/2 + 0.25 cos a. At the crest -hddot = 1 - 0.25 a'^2.
+// The contact motion conserves a'^2 (1 + (0.25 sin a)^2)/2 + 0.25 cos a. At the crest -hddot = 1 - 0.25 a'^2.
 Question Crest::start(double a0, double least) const {
     Question result{model_, model_->default_run(), true};
     const double at_crest = 4.0 * (1.0 - least), slope = -0.25 * std::sin(a0);
     const double speed = std::sqrt((at_crest + 0.5 * (1.0 - std::cos(a0))) / (1.0 + slope * slope));
     result.run.q << a0, 0.25 * std::cos(a0);
     result.run.v << speed, slope * speed;
-    result.run.options.end_time = -a0 / 1.9 + 0.2;  // well past the crest: a' is never below 1.95
+    result.run.options.end_time = -a0 / 1.9 + 0.2;  // well past the crest, since a' >= 1.95
     return result;
 }
 
-// Where the steps of the contact motion end, as values of a.
+// The values of a at the ends of the steps of the contact motion.
 std::vector<double> Crest::steps(const Question& question, Way way, double tolerance) const {
     Run run = question.run;
     run.options.method = way == Way::dopri5 ? Method::dopri5 : Method::taylor;
@@ -54,11 +54,11 @@ std::vector<double> Crest::steps(const Question& question, Way way, double toler
     return result;
 }
 
-// A run that is undecided ends before the dip, so that its steps are foretold from two with more force than there is
-// doubt.
+// An undecided run ends before the minimum of the force. So its steps are extrapolated from two runs whose force is too
+// large for doubt.
 std::optional<Question> Crest::start_with_a_step_into(double a0, double least, double into, Way way,
                                                       double tolerance) const {
-    const double width = std::sqrt(std::abs(least) / 2.0);  // -hddot grows like (1/2) a'^2 a^2, with a' = 2
+    const double width = std::sqrt(std::abs(least) / 2.0);  // -hddot increases as (1/2) a'^2 a^2, with a' = 2
     const double aim = into * width, more = std::min(1000.0 * tolerance, 0.03);
     double moved = 0.0, before = 0.0;
     std::size_t step = 0;
@@ -68,12 +68,12 @@ std::optional<Question> Crest::start_with_a_step_into(double a0, double least, d
         const auto twice = steps(start(a0, least + 2.0 * more), way, tolerance);
         const std::size_t count = std::min(once.size(), twice.size());
         const auto off_by = [&](std::size_t i) { return 2.0 * once[i] - twice[i] - aim; };
-        if (round == 0)  // the end nearest to the aim is the one to be moved there
+        if (round == 0)  // choose the end nearest to the aim
             for (std::size_t i = 1; i < count; ++i) step = std::abs(off_by(i)) < std::abs(off_by(step)) ? i : step;
         if (step >= count) return std::nullopt;
         const double off = off_by(step);
         if (std::abs(off) < width) return start(a0, least);
-        // The secant method, where it can be believed.
+        // The secant method, if the slope is not too small.
         const double slope = moved != 0.0 ? (off - before) / moved : 1.0;
         moved = -off / (std::abs(slope) > 0.1 ? slope : 1.0);
         before = off;
@@ -96,13 +96,13 @@ Hold hold(const Question& question, Way way, double tolerance) {
     run.options.tolerance = tolerance;
     const Trajectory trajectory = way == Way::eight ? by_eight(question.model, run) : simulate(question.model, run);
     if (trajectory.outcome.kind == Outcome::Kind::undecided) return Hold::undecided;
-    // Rounding may make the start a flight of no height.
+    // Rounding may turn the start into a flight of zero height.
     const bool flew = std::any_of(trajectory.phases.begin() + 1, trajectory.phases.end(),
                                   [](const Phase& phase) { return phase.kind == Phase::Kind::hybrid; });
     return flew ? Hold::released : Hold::held;
 }
 
-// ---- bisected starts ----
+// ---- starts found by bisection ----
 
 std::string to_text(Family family) {
     constexpr const char* names[] = {"waves", "fine waves", "post", "bumps"};
@@ -156,7 +156,7 @@ Question Boundaries::question(const Chart& chart) const {
     return result;
 }
 
-// A bouncing that settles has infinitely many impacts, however many the truth followed.
+// A converging sequence has infinitely many impacts, so the number that the reference followed does not count.
 std::string Boundaries::true_course(const Chart& chart, double end_time) const {
     const Question asked = question(chart);
     if (!in_contact_ && !(chart[1] > 1e-3)) return {};
@@ -188,7 +188,8 @@ std::optional<std::array<Boundaries::Chart, 2>> Boundaries::bisect(Chart low, Ch
         const std::string course = true_course(middle, end_time_);
         if (course.empty()) return std::nullopt;
         (course == left ? low : high) = middle;
-        // An event at the very end of the run is a question about the end time.
+        // Both courses must also differ for a changed end time. Otherwise the boundary is an event at the end of the
+        // run.
         if (round == 20 && !(differ(0.98 * end_time_) && differ(1.02 * end_time_))) return std::nullopt;
     }
     return std::array<Chart, 2>{low, high};

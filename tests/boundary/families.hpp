@@ -1,4 +1,5 @@
-// Families of systems and starts near where the course of events changes: what the boundary attack asks.
+// Test cases of the boundary attack: families of systems with starts near a boundary, where the course of events
+// changes.
 #pragma once
 
 #include <optional>
@@ -10,7 +11,8 @@
 
 namespace achilles::test {
 
-// Reproducible numbers. Written out, since the standard's distributions differ between libraries.
+// Reproducible random numbers. Own formulas, since the distributions of the standard library differ between
+// implementations.
 class Dice {
  public:
     explicit Dice(unsigned seed) : random_(seed) {}
@@ -18,7 +20,7 @@ class Dice {
         return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
     }
     double log_uniform(double low, double high);
-    // A multiple of 2^-12, so that a system is the same in any number of digits.
+    // A multiple of 2^-12, which is exact in any binary precision.
     double dyadic(double low, double high);
     template <class T, std::size_t n>
     T one_of(const T (&list)[n]) {
@@ -29,24 +31,24 @@ class Dice {
     std::mt19937_64 random_;
 };
 
-// A system of two coordinates, as a file in memory.
+// A system of two coordinates from these texts.
 std::shared_ptr<const Model> written(const std::string& coordinates, const std::string& kinetic,
                                      const std::string& potential, const std::string& gap, double e);
 
-// ---- a force that dips just below zero at the crest of a hill ----
+// ---- a contact force with a minimum just below zero, at the crest of a hill ----
 
-// From contact at a0 < 0, so fast that the least force of the contact motion, which it has at the crest a = 0, is
+// Starts in contact at a0 < 0. The speed is such that the minimum of the contact force, at the crest a = 0, is
 // -hddot = `least`. The gap is b - 0.25 cos(a), T = (a'^2 + b'^2)/2, V = b, e = 0.5.
 class Crest {
  public:
     Crest();
     Question start(double a0, double least) const;
-    // The same, but so that a step of the way ends `into` half widths of the dip past the crest, to within one. Nothing
-    // where no such start is found.
+    // The same, with a step that ends `into` half-widths of the minimum past the crest, to within one half-width.
+    // nullopt if no such start is found.
     std::optional<Question> start_with_a_step_into(double a0, double least, double into, Way way,
                                                    double tolerance) const;
-    // Start number i of the attack: the least force is -0.3 of the tolerance, and every other start is such that a step
-    // of a way simulate() takes ends near the dip, where the force is within what the integration knows of it.
+    // Start number i of the attack: the minimum of the force is -0.3 of the tolerance. For every other start a step of
+    // simulate() ends near the minimum, where the force is below the error of the integration.
     Question attack(Dice& dice, long i, double tolerance) const;
 
  private:
@@ -54,11 +56,11 @@ class Crest {
     std::shared_ptr<const Model> model_;
 };
 
-// Whether a run from contact lets go. Its force dips below zero, so it must not be held.
+// Whether a run from contact releases. Its force falls below zero, so `held` is wrong.
 enum class Hold { released, undecided, held };
 Hold hold(const Question& question, Way way, double tolerance);
 
-// ---- bisected starts ----
+// ---- starts found by bisection ----
 
 enum class Family { waves, fine_waves, post, bumps };
 constexpr Family families[] = {Family::waves, Family::fine_waves, Family::post, Family::bumps};
@@ -67,18 +69,18 @@ std::string to_text(Family family);
 class Boundaries {
  public:
     Boundaries(Family family, bool in_contact, unsigned seed);
-    // Starts on either side of one boundary between two true courses of events of a random system, at the distances
-    // 1e-2 to 1e-13 from it.
+    // Starts on both sides of a boundary between two reference courses of a random system, at distances of 1e-2 to
+    // 1e-13 from it.
     std::vector<Question> next();
 
  private:
-    // All systems are a floor below their second coordinate: a start is (q1, height, v1, v2), in contact (q1, 0, v1, 0)
-    // with the rate that keeps contact.
+    // In all systems the gap is the second coordinate minus a function. A start is (q1, height, v1, v2); in contact it
+    // is (q1, 0, v1, 0), and the second rate keeps contact.
     using Chart = std::array<double, 4>;
     void draw_system();
     Chart draw_start();
     Question question(const Chart& chart) const;
-    // Empty where the start does not serve.
+    // Empty if the start is unsuitable.
     std::string true_course(const Chart& chart, double end_time) const;
     std::optional<std::array<Chart, 2>> bisect(Chart low, Chart high) const;
 
@@ -89,14 +91,14 @@ class Boundaries {
     double end_time_ = 0.0;
 };
 
-// ---- cases that were once decided wrongly ----
+// ---- cases that were decided wrongly in the past ----
 
 struct KnownCase {
     std::string name;
     Question question;
     Way way;
     double tolerance;
-    double least_end = 0.0;  // a run that is undecided before this was wrong to give up
+    double least_end = 0.0;  // a run must not be undecided before this time, s
 };
 std::vector<KnownCase> known_cases();
 

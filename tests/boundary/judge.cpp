@@ -13,7 +13,7 @@ namespace achilles::test {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double rounding = 2e-15;  // no state in doubles is better known
+constexpr double rounding = 2e-15;  // smallest relative error of a state in doubles
 
 Options options_of(const Question& question, Way way, double tolerance) {
     Options options = question.run.options;
@@ -90,7 +90,7 @@ Judgement Judge34::judge(Way way, double tolerance) {
     std::optional<Trajectory> run;
     try {
         run = own_run(way, tolerance, end_time);
-    } catch (const std::exception& refusal) {  // as a variant without the trajectory, eight at a time
+    } catch (const std::exception& refusal) {  // a batch reports it as a variant
         return {Verdict::refused, 0.0, 0.0, refusal.what(), 0.0};
     }
     const bool undecided = run->outcome.kind == Outcome::Kind::undecided;
@@ -101,13 +101,13 @@ Judgement Judge34::judge(Way way, double tolerance) {
     if (undecided) {
         result.verdict = Verdict::undecided;
         if (!own.timed) return result;
-        const double limit = own.end * (1.0 - 1e-3);  // where it began to doubt is only known as well as it is
+        const double limit = own.end * (1.0 - 1e-3);  // the time of the doubt has an error itself
         own = until(std::move(own), limit);
         truth = until(std::move(truth), limit);
     }
     try {
         compare(own, truth, way, tolerance, result);
-    } catch (const std::runtime_error& unknown) {  // of the truth that goes on from the run's state
+    } catch (const std::runtime_error& unknown) {  // from the reference continued from the run's state
         result.verdict = Verdict::unmeasured;
         result.told += fmt::format("; {}", unknown.what());
     }
@@ -116,7 +116,7 @@ Judgement Judge34::judge(Way way, double tolerance) {
 }
 
 void Judge34::compare(const Course& own, const Course& truth, Way way, double tolerance, Judgement& result) {
-    // Nothing has magnified the error of the first impact: it is a few local ones.
+    // The error of the first impact is a few local errors, not yet magnified by the motion.
     if (own.timed && !question_.in_contact && !own.stretches[0].impacts.empty() &&
         !truth.stretches[0].impacts.empty()) {
         const double late = own.stretches[0].impacts[0] - truth.stretches[0].impacts[0];
@@ -133,7 +133,7 @@ void Judge34::compare(const Course& own, const Course& truth, Way way, double to
         if (difference->own_time && is_its_own(*difference, way, tolerance)) {
             same.insert({difference->stretch, difference->impact});
         } else if (difference->kind == Difference::Kind::zeno_time && own.timed) {
-            // What is certified is about the run's own state, so that the interval is as wide as that is wrong.
+            // The certificate is about the run's own state. So the error of that state is added to the interval.
             Judgement off;
             if (!measure_zeno(*difference, own, way, tolerance, off) || !(off.distance <= off.error)) break;
             if (off.error == infinity) break;
@@ -154,7 +154,7 @@ void Judge34::compare(const Course& own, const Course& truth, Way way, double to
     }
 }
 
-// ---- how far it was ----
+// ---- distance from the boundary ----
 
 struct Judge34::Decisive {
     double t = 0.0;
@@ -172,10 +172,11 @@ Judge34::Decisive Judge34::at(const Point& from, double time, bool contact, doub
     return {when, quantity(there, contact), false};
 }
 
-// The dips of the gap in free flight, whatever the floor, or of the force in contact, whatever the force: the first
-// after `enough` is the last.
+// Local minima of the gap in free flight through the floor, or of the force in contact regardless of its sign. Stops at
+// the first minimum after the time `enough`.
 std::vector<Judge34::Decisive> Judge34::dips(const Point& from, double time, bool contact, double enough) {
-    // s, beyond a dip, which would be found again. Where the floor is flat, rounding makes dips without end.
+    // s. The search continues this long after a minimum, so as not to find it again. On a flat floor rounding causes
+    // infinitely many minima.
     double past = 1e-7;
     std::vector<Decisive> result;
     Flight flight{from, time, 0};
@@ -196,7 +197,7 @@ std::vector<Judge34::Decisive> Judge34::dips(const Point& from, double time, boo
     return result;
 }
 
-// Runs eight at a time say how many impacts there were: when, is found by ending them earlier.
+// A batch gives only the number of impacts. The time of one is found by runs that end earlier.
 std::optional<Difference> Judge34::located(Difference difference, Way way, double tolerance) const {
     if (difference.t >= 0.0) return difference;
     const Stretch& truth = course_.stretches[difference.stretch];
@@ -228,7 +229,8 @@ std::optional<Difference> Judge34::located(Difference difference, Way way, doubl
     return std::nullopt;
 }
 
-// An impact at another time is the same one where the truth meets it then too, going on from the run's own state.
+// Whether an impact at a different time is the same impact: the reference has it at that time too, if it continues from
+// the run's own state.
 bool Judge34::is_its_own(const Difference& difference, Way way, double tolerance) {
     const double before = difference.last + 0.9 * (difference.t - difference.last);
     if (!(before > 0.0)) return false;
@@ -266,11 +268,11 @@ void Judge34::measure(const Difference& difference, const Course& own, Way way, 
     if (judgement.distance <= 10.0 * judgement.error) judgement.verdict = Verdict::wrong;
 }
 
-// The Zeno time of the truth and the one to which it goes on from the run's own state, before the run cuts.
+// Compares the Zeno time of the reference with that of the reference continued from the run's own state before the cut.
 bool Judge34::measure_zeno(const Difference& difference, const Course& own, Way way, double tolerance,
                            Judgement& judgement) {
     const Stretch &claimed = own.stretches[difference.stretch], &truth = course_.stretches[difference.stretch];
-    // Where it was cut is not known of runs whose ends are kept: before the first impact it was not.
+    // Without recorded events the cut is not known, but it is not before the first impact.
     const double before_cut = own.timed || truth.impacts.empty() ? difference.t : truth.impacts[0];
     const double before = difference.last + 0.9 * (before_cut - difference.last);
     const Trajectory its = own_run(way, tolerance, before);
@@ -280,15 +282,15 @@ bool Judge34::measure_zeno(const Difference& difference, const Course& own, Way 
     const bool interval = ended && own.timed;
     const double low = interval ? claimed.zeno_low : estimate, high = interval ? claimed.zeno_high : estimate;
     judgement.distance = std::max(low - truth.zeno_low, truth.zeno_low - high);
-    // The impact at which it is cut ends a step, whose own error no certificate covers: it moves the time by more, the
-    // lower the speed.
+    // The cut is at the end of a step, and no certificate covers the error of that step. Its effect on the time
+    // increases with decreasing impact speed.
     double speed = 1.0;
     for (const TrueEvent& event : truth_.events)
         if (event.kind != Event::Kind::release && event.t < difference.t + 1e-6)
             speed = static_cast<double>(event.speed);
     judgement.error = (rounding + tolerance) / std::min(1.0, speed);
     const TrueExecution rest = runs_.run(point_of(its.end), 2.0 * (truth.zeno_low - before));
-    double off = infinity;  // where its state does not lead to a Zeno point at all
+    double off = infinity;  // if no Zeno point follows from its state
     for (const TrueEvent& event : rest.events)
         if (event.kind == Event::Kind::zeno)
             off = std::min(off, std::abs(before + static_cast<double>(event.t) - truth.zeno_low));
@@ -296,7 +298,7 @@ bool Judge34::measure_zeno(const Difference& difference, const Course& own, Way 
     return true;
 }
 
-// The truth goes on from its own state and from the run's, both at `before`, to where it is decided.
+// Continues the reference from its own state and from the run's, both at time `before`, to the decisive minimum.
 bool Judge34::measure_at(double before, const Difference& difference, Way way, double tolerance, Judgement& judgement) {
     using Kind = Difference::Kind;
     const bool contact = difference.kind == Kind::missed_release || difference.kind == Kind::extra_release;
@@ -306,7 +308,7 @@ bool Judge34::measure_at(double before, const Difference& difference, Way way, d
     if (own.outcome.kind != Outcome::Kind::end_time || truth.end_phase != own.end_phase ||
         (truth.end_phase == Phase::Kind::constrained) != contact)
         return false;
-    // What it should have met is the first dip after it; what it should not have met is a dip near it.
+    // For a missed event take the first minimum after it, for an extra event a minimum near it.
     const auto near = [](const std::vector<Decisive>& all, double t, double reach) {
         std::optional<Decisive> best;
         for (const Decisive& dip : all)
@@ -327,7 +329,7 @@ bool Judge34::measure_at(double before, const Difference& difference, Way way, d
     if (decisive->is_dip)
         its = near(dips(start, before, contact, decisive->t + reach), decisive->t, 0.5 * (decisive->t - before));
     if (!its) its = at(start, before, contact, decisive->t);
-    // What has no dip is decided at the end, to which the run has been.
+    // Without a minimum the end of the run is decisive.
     const double end_time = question_.run.options.end_time;
     if (missed && !decisive->is_dip) {
         const Trajectory whole = own_run(way, tolerance, end_time);
@@ -340,7 +342,8 @@ bool Judge34::measure_at(double before, const Difference& difference, Way way, d
     return true;
 }
 
-// It settled where the true bouncing goes on: the force at the first impact that has none decides.
+// The run came to rest, but the reference continues to bounce. Decisive is the force at its first impact without a
+// contact force.
 bool Judge34::measure_settling(const Difference& difference, Way way, double tolerance, Judgement& judgement) {
     for (const TrueEvent& event : truth_.events) {
         if (event.kind != Event::Kind::impact || event.t < difference.last) continue;

@@ -1,4 +1,5 @@
-// The boundary between two courses of events: what a run decided, what is true, and whether the run could know.
+// Judges a run near a boundary between two courses of events. Compares it with the reference, and where they differ,
+// the run's error with the distance from the boundary.
 #pragma once
 
 #include <memory>
@@ -10,47 +11,48 @@
 
 namespace achilles::test {
 
-// How runs are simulated. Of runs eight at a time the ends are known.
+// How runs are simulated. `eight` simulates in batches and records final states only.
 enum class Way { taylor, dopri5, eight };
 constexpr Way ways[] = {Way::taylor, Way::dopri5, Way::eight};
 std::string to_text(Way way);
-constexpr std::size_t most_true_events = 500;  // a longer truth is not waited for
+constexpr std::size_t most_true_events = 500;  // a reference with more events is given up
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-13};
 
-// A start, and what happens from it in 34 digits.
+// A test case: system, run and start.
 struct Question {
     std::shared_ptr<const Model> model;
-    Run run;  // its tolerance and method are chosen when it is asked
+    Run run;  // judge() sets its tolerance and method
     bool in_contact = false;
-    double longest_true_step = 1e300;  // s, so that the truth sees what is thin
+    double longest_true_step = 1e300;  // s, limits the reference's steps so that it resolves thin obstacles
 };
 
-// The system, the start in digits that give the same bits back, and the options.
+// A reproduction: the system, the start with enough digits to restore all bits, and the options.
 std::string repeat(const Question& question, Way way, double tolerance);
 
 enum class Verdict {
     right,
-    undecided,   // which is allowed, and is not a wrong answer in disguise
-    wrong,       // but the run's state was as far from the truth as the truth was from the other decision
+    undecided,   // allowed, if the course is right up to there
+    wrong,       // with an error of the run's state as large as the distance from the boundary
     blatant,     // wrong, though the distance to the decision was more than ten times the error
-    unmeasured,  // wrong, and how far it was could not be told
+    unmeasured,  // wrong, and the distance could not be determined
     failed,      // another outcome than the end time
-    refused      // no start
+    refused      // invalid start
 };
 std::string to_text(Verdict verdict);
 
 struct Judgement {
     Verdict verdict = Verdict::right;
-    // How far the least gap or force of the truth is from zero where it decides, and by how much the same is wrong if
-    // the truth goes on from the run's own state shortly before: the run's global error, in the same unit.
+    // `distance`: the decisive minimum of the reference's gap or force, as a distance from zero. `error`: its change if
+    // the reference continues from the run's own state shortly before, which is the run's global error in the same
+    // unit.
     double distance = 0.0, error = 0.0;
-    std::string told;  // what is wrong, for a person; empty if nothing is
-    double end = 0.0;  // how far the run came
+    std::string told;  // description of the error; empty if there is none
+    double end = 0.0;  // s, where the run ended
 };
 
 class Judge34 {
  public:
-    // Throws std::runtime_error where the truth is not known.
+    // Throws std::runtime_error if the reference cannot be computed.
     explicit Judge34(const Question& question);
     Judgement judge(Way way, double tolerance);
     const TrueExecution& truth() const { return truth_; }
@@ -78,8 +80,8 @@ class Judge34 {
     Course course_;
 };
 
-// What is wrong with a trajectory whatever is true: an impact stored below the floor, time that runs back. Empty if
-// nothing is.
+// Describes an error that needs no reference: an impact stored below the floor, or time that runs backwards. Empty if
+// there is none.
 std::string impossible(const Trajectory& trajectory);
 
 }  // namespace achilles::test

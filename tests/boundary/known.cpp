@@ -1,4 +1,4 @@
-// Starts that were decided wrongly once, with the digits they were reported in.
+// Starts that were decided wrongly in the past, with the digits of the reports.
 #include "boundary/families.hpp"
 #include "core/systems.hpp"
 
@@ -28,7 +28,7 @@ std::vector<KnownCase> known_cases() {
     const auto crest =
         asked(written("ab", "(a'^2 + b'^2)/2", "b", "b - 0.25*cos(a)", 0.5), {-1.1410500000000001, 0.10416005219094915},
               {2.0201237165063586, 0.45910920882362767}, 0.77, true);
-    // (At 1e-8 dopri5 is not in doubt, and right but for the times after the release: it is a touch, nearly.)
+    // (At 1e-8 dopri5 has no doubt and is right except for the times after the release: it is nearly a touch.)
     for (const Way way : ways) add("a dip of the force at the end of a step", crest, way, 1e-6);
     for (const Way way : {Way::taylor, Way::eight}) add("a dip of the force at the end of a step", crest, way, 1e-8);
 
@@ -56,7 +56,7 @@ std::vector<KnownCase> known_cases() {
     for (const Way way : ways)
         add("no force yet, but it grows", asked(growing, {0, 0}, {1, 0}, 1.0, true), way, 1e-10, 1.0);
 
-    // What a step sees of a post from afar.
+    // A post that a step may miss from a distance.
     auto post = asked(
         written("xy", "0.783447265625*(x'^2 + y'^2)", "0.8310546875*y", "y - 0.433837890625*exp(-400*(x - 1)^2)", 0.0),
         {0.64387333732184582, 0.075524473986082988}, {0.56605409931475426, 0.56683650087298454}, 1.5355790056475376);

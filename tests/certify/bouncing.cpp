@@ -31,8 +31,8 @@ PointOf<Number> sum(const std::vector<PointOf<Number>>& coefficients, const Numb
     return result;
 }
 
-// The longest step for which a series, cut where it is, errs by less than the tolerance, given its last two sizes: two,
-// since one may vanish by symmetry.
+// The longest step for which a truncated series errs by less than the tolerance, from the sizes of its last two terms.
+// Two are needed, since one may vanish by symmetry.
 double safe_step(double step, std::size_t order, std::array<double, 2> last, double tolerance) {
     for (std::size_t k = 0; k < 2; ++k)
         if (last[k] > 0.0)
@@ -40,7 +40,7 @@ double safe_step(double step, std::size_t order, std::array<double, 2> last, dou
     return step;
 }
 
-// All of the duration where expand() stopped early.
+// The whole duration, if expand() stopped before the highest order.
 template <class Number>
 double safe_step(const std::vector<PointOf<Number>>& path, double duration, double tolerance) {
     if (path.size() <= max_order) return duration;
@@ -108,7 +108,7 @@ typename TrueMotionOf<Number>::Contact TrueMotionOf<Number>::contact(const Point
     return result;
 }
 
-// kappa = -g_i n_j, with the direction of j while the rest is held.
+// The transmissions are kappa = -g_i n_j, with n_j computed while the remaining contacts are held.
 template <class Number>
 typename TrueMotionOf<Number>::Others TrueMotionOf<Number>::others(const Point& point) {
     Others result;
@@ -136,11 +136,11 @@ PointOf<Number> TrueMotionOf<Number>::collision(const State& before) {
         point.v.emplace_back(before.v[static_cast<Eigen::Index>(i)]);
     }
     point.t = before.t;
-    for (int round = 0; round < 4; ++round) {  // Newton from 1e-16: two rounds would do
+    for (int round = 0; round < 4; ++round) {  // Newton's method from 1e-16; two rounds would suffice
         const Contact c = contact(point);
         Point next = point;
         for (std::size_t i = 0; i < dof_; ++i) next.q[i] -= c.h * c.n[i];
-        for (Held& other : held_) {  // each along what the others' gaps do not feel
+        for (Held& other : held_) {  // along directions that leave the other gaps unchanged
             set(other.with, point);
             for (std::size_t i = 0; i < dof_; ++i) {
                 next.q[i] -= other.with.h() * other.with.impulse_direction(i);
@@ -163,7 +163,7 @@ PointOf<Number> TrueMotionOf<Number>::restart(const Point& collision, Reinitiali
     return result;
 }
 
-// Terms until two in a row are negligible after `duration`, or there are no more.
+// Taylor terms until two in a row are negligible at `duration`, or up to the highest order.
 template <class Number>
 typename TrueMotionOf<Number>::Coefficients TrueMotionOf<Number>::expand(Evaluator<Series<Number>>& motion,
                                                                          const Point& from, double duration,
@@ -190,8 +190,8 @@ typename TrueMotionOf<Number>::Coefficients TrueMotionOf<Number>::expand(Evaluat
     return path;
 }
 
-// An output of a program along the path, to as many orders as it needs, which may be more than the path's: the sine of
-// a parabola. Where all of them are not enough, the step becomes shorter.
+// Taylor coefficients of an output of a program along the path, to the order that the tolerance requires. It may exceed
+// that of the path: the sine of a parabola. If the highest order is not sufficient, `step` is reduced.
 template <class Number>
 List<Number> TrueMotionOf<Number>::along(const Coefficients& path, Evaluator<Series<Number>>& program,
                                          std::size_t output, double& step, double tolerance) {
@@ -216,7 +216,7 @@ List<Number> TrueMotionOf<Number>::along(const Coefficients& path, Evaluator<Ser
     return result;
 }
 
-// Every event is where a quantity comes down through zero.
+// Follows the motion to an event: the first descent of a watched quantity through zero.
 template <class Number>
 bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longest, double expected, double tolerance) {
     Number left = longest;
@@ -230,7 +230,7 @@ bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longe
         if (until == Until::dip || until == Until::least_force) watched = derivative(watched);
         if (until == Until::dip || until == Until::release)
             for (Number& c : watched) c = -c;
-        // Known roots are zero, and would be found again.
+        // Divides out the known root at 0, which would be found again.
         if (until == Until::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
         const auto event = first_descent(watched, step);
         const Number taken = event ? *event : step < static_cast<double>(left) ? Number(step) : left;
@@ -238,7 +238,7 @@ bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longe
         flight.point = sum(path, taken);
         left -= taken;
         if (event) return true;
-        expected *= 2.0;  // or a flight that lasts a million times as long as expected takes a million steps
+        expected *= 2.0;  // so that the number of steps of a long flight stays small
     }
     return false;
 }
@@ -339,7 +339,7 @@ PointOf<Number> TrueMotionOf<Number>::constrained(Point start, const Number& dur
     return contact_at(start, {duration}, tolerance).back();
 }
 
-// One series serves all of the times within its reach.
+// Evaluates one series at all times for which it is accurate.
 template <class Number>
 std::vector<PointOf<Number>> TrueMotionOf<Number>::follow(Evaluator<Series<Number>>& motion, Point point,
                                                           const Numbers& times, double tolerance) {

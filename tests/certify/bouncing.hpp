@@ -1,5 +1,5 @@
-// What really happens after a collision, in 34 digits: the bouncing of a contact to its Zeno point, impact by impact,
-// while others are held, and the constrained motion from a restart. Certificates (core/certify) are judged by it.
+// Reference motion after a collision, in 34 digits, against which certificates (core/certify) are tested. It follows
+// every impact of a contact to its Zeno point while others are held, and the constrained motion from a restart.
 #pragma once
 
 #include <array>
@@ -23,16 +23,16 @@ struct ZenoPointOf {
     Number time;  // tau_inf - tau_k
     PointOf<Number> point;
     int impacts = 0;
-    std::vector<List<Number>> velocities;  // after each impact and before the next: the largest excursions on the way
+    std::vector<List<Number>> velocities;  // after each impact and before the next, where |v - v*| is largest
     struct Flown {
         PointOf<Number> start;
-        Number time, duration;  // time: of its start
+        Number time, duration;  // `time` is that of its start
     };
     std::vector<Flown> flights;  // the first ones
 };
 using ZenoPoint = ZenoPointOf<Real>;
 
-// Where a motion is at a time after tau_k.
+// A state at `time` after tau_k.
 template <class Number>
 struct InstantOf {
     Number time;
@@ -40,12 +40,12 @@ struct InstantOf {
 };
 using Instant = InstantOf<Real>;
 
-// How many instants of each of the first flights are looked at: the highest need most. 30 in all.
+// Number of sampled instants in each of the first flights, most in the highest. 30 in all.
 constexpr std::size_t flights_kept = 6;
 constexpr std::array<std::size_t, flights_kept> instants_of_flight{10, 6, 5, 4, 3, 2};
 
-// Motion underway. At the start of a flight the gap has a root of this multiplicity: 1 after an impact, 3 after a
-// release.
+// The current state of a motion. `known` is the multiplicity of the root of the gap at the start of a flight: 1 after
+// an impact, 3 after a release.
 template <class Number>
 struct FlightOf {
     PointOf<Number> point;
@@ -54,7 +54,7 @@ struct FlightOf {
 };
 using Flight = FlightOf<Real>;
 
-// Evaluators with the parameters in place.
+// Evaluators with the values of the parameters set.
 template <class Number>
 Evaluator<Number> evaluator(const Model& model, const Program& program, const List<Number>& parameters) {
     Evaluator<Number> result(program);
@@ -77,38 +77,39 @@ class TrueMotionOf {
     using Instant = InstantOf<Number>;
     using Flight = FlightOf<Number>;
 
-    // A series does not see a thin post from afar, where all terms that there are vanish: steps are at most that
-    // long.
+    // `longest_step` limits the steps. Far from a thin post all computed terms of a series may vanish, and a longer
+    // step would pass over the post.
     TrueMotionOf(const Model& model, const Run& run, double longest_step = 1e300, std::size_t contact = 0,
                  Mode mode = {})
         : TrueMotionOf(model, Numbers(run.parameters.begin(), run.parameters.end()), longest_step, contact, mode) {}
     TrueMotionOf(const Model& model, const Numbers& parameters, double longest_step = 1e300, std::size_t contact = 0,
                  Mode mode = {});
 
-    // The collision that a computed state stands for: q moved along n until h = 0 to working precision, of what is
-    // held as well, whose hdot becomes 0; else v as it is.
+    // The exact collision for a computed state. q is moved along n until h = 0 to working precision, for this contact
+    // and for held ones. hdot of held contacts becomes 0; otherwise v is unchanged.
     Point collision(const State& before);
-    // Where Def. 7 (Euclidean) or the plastic impact (kinetic) restarts from it.
+    // The restart after a collision: Def. 7 (Euclidean) or the plastic impact (kinetic).
     Point restart(const Point& collision, Reinitialization kind);
-    // Follows the impacts until their speed has fallen by the factor `until`; what is left is a geometric series, up
-    // to terms in the square of that speed. Nothing if the bouncing does not behave like one.
+    // Follows the impacts until their speed has fallen by the factor `until`. The rest is a geometric series, up to
+    // terms in the square of that speed. Returns nullopt if the impacts do not behave like one.
     std::optional<ZenoPoint> zeno(const Point& collision, double until = 1e-8);
-    // Instants within its first flights, in time: spread evenly, and the top of each.
+    // Instants of the first flights, in order of time: evenly spaced ones and the top of each flight.
     std::vector<Instant> inside(const ZenoPoint& zeno, double tolerance);
-    // The motion that keeps contact, for a time, whatever the force.
+    // The constrained motion for this duration, regardless of the sign of the force.
     Point constrained(Point start, const Number& duration, double tolerance);
-    // Where the motion is at these times after the start, which ascend: in contact whatever the force, or free
-    // whatever the gap.
+    // States at these times after the start, in ascending order: in contact regardless of the force, or free regardless
+    // of the gap.
     std::vector<Point> contact_at(const Point& start, const Numbers& times, double tolerance);
     std::vector<Point> flight_at(const Point& start, const Numbers& times, double tolerance);
 
-    // Flies to the next impact, for `longest` at most, in steps of at most `expected`. False if none came.
+    // Follows the flight to the next impact, for at most `longest`, with a first step of at most `expected`. False if
+    // there is no impact.
     bool fly(Flight& flight, const Number& longest, double expected, double tolerance);
-    // Flies until the gap stops falling and rises, likewise.
+    // The same to the next local minimum of the gap.
     bool fly_to_dip(Flight& flight, const Number& longest, double expected, double tolerance);
-    // Keeps contact until the force vanishes, for `longest` at most. True if it did.
+    // Follows the constrained motion until the force vanishes, for at most `longest`. True if it does.
     bool stay(Flight& contact, const Number& longest, double tolerance);
-    // Keeps contact, whatever the force, until that stops falling and rises, likewise.
+    // The same to the next local minimum of the force, regardless of its sign.
     bool stay_to_dip(Flight& contact, const Number& longest, double tolerance);
 
     struct Contact {
@@ -116,16 +117,16 @@ class TrueMotionOf {
         Numbers n, g;
     };
     Contact contact(const Point& point);
-    // hddot of the free motion, and its rate h''' along the constrained one.
+    // hddot of the free motion, and its rate h''' along the constrained motion.
     Number normal_acceleration(const Point& point);
     Number jerk(const Point& point);
-    // What a certificate says of the other contacts while this one is in the air: the forces that hold what is held,
-    // the gaps of what is open, and what an impulse is passed on by, all in ascending order of the contacts.
+    // Quantities of the other contacts while this one is open, in ascending order of contacts: forces of the held ones,
+    // gaps of the open ones, and the transmissions kappa of an impulse to the held ones.
     struct Others {
         Numbers forces, gaps, transmissions;
     };
     Others others(const Point& point);
-    // A state in contact after a short time, to first order.
+    // The state after a short time in contact, to first order.
     Point drift(const Point& slid, const Number& time);
 
  private:
@@ -144,10 +145,10 @@ class TrueMotionOf {
     double longest_step_;
     Number e_;
     Evaluator<Series<Number>> flight_, contact_motion_, gap_, release_;
-    ContactTerms<Evaluator<Number>> surface_, free_surface_;  // while the others are held, and while none is
+    ContactTerms<Evaluator<Number>> surface_, free_surface_;  // with the others held, and with none held
     ReleaseTerms<Evaluator<Number>> normal_;
     MotionTerms<Evaluator<Number>> acceleration_;
-    // Of every other contact that is held: with this one and the rest held, and with the rest alone.
+    // For every other held contact: `with` this contact and the remaining ones held, `without` this contact.
     struct Held {
         ContactTerms<Evaluator<Number>> with, without;
         Evaluator<Number> force;

@@ -8,7 +8,7 @@ namespace {
 
 double mag(double x) { return std::abs(x); }
 
-// Of a vector with n entries; of intervals the upper end.
+// Norm of a vector with n entries; for intervals, its upper end.
 template <class Entry>
 double norm(std::size_t n, const Entry& entry) {
     double sum = 0.0;
@@ -16,7 +16,7 @@ double norm(std::size_t n, const Entry& entry) {
     return std::sqrt(sum);
 }
 
-// eta and zeta where these stand.
+// eta = |n| and zeta = |f| at the current input of `terms`.
 template <class Terms>
 std::pair<double, double> eta_and_zeta(const Terms& terms, std::size_t n) {
     return {norm(n, [&](std::size_t i) { return terms.impulse_direction(i); }),

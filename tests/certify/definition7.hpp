@@ -1,4 +1,4 @@
-// Def. 7 of the paper (theory.md 3.1) written out once more, for any neighbourhood, to compare core/certify with.
+// An independent implementation of Def. 7 of the paper (theory.md 3.1) for any neighborhood, to test core/certify.
 #pragma once
 
 #include <optional>
@@ -12,15 +12,14 @@ class Definition7 {
  public:
     Definition7(const Model& model, const Run& run, std::size_t contact = 0, Mode mode = {});
 
-    // What the bounds on time, position and velocity are per unit of the impact speed: eps_t/c1, eps_q'/c2,
-    // eps_v'/c3.
+    // The bounds on time, position and velocity per unit of impact speed: eps_t/c1, eps_q'/c2, eps_v'/c3.
     struct Factors {
         double time, position, velocity;
     };
-    // Of a system without time: with the maxima over the neighbourhood of radii eps_q' and eps_v'; nothing where
-    // a_min > 0, e' < 1 is not proved.
+    // With the maxima over the neighborhood of radii eps_q' and eps_v', for autonomous systems. Returns nullopt if
+    // a_min > 0 and e' < 1 are not proved.
     std::optional<Factors> over(const Collision& collision, double eps_q, double eps_v);
-    // With the maxima replaced by the values at the restart: what the formula itself gives, however V is chosen.
+    // With the maxima replaced by the values at the restart: a lower bound for every choice of V.
     Factors at(const Collision& collision);
 
  private:

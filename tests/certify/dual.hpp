@@ -1,5 +1,5 @@
-// A number of 34 digits with its derivative by one direction. Decisions are by the value alone. It shares no code with the
-// derivatives that it judges.
+// Dual number: a value of 34 digits with its derivative by one direction. Comparisons use the value alone. It shares no
+// code with the derivatives that it tests.
 #pragma once
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -39,7 +39,7 @@ struct Dual {
     friend bool operator<=(const Dual& a, const Dual& b) { return a.value <= b.value; }
     friend bool operator>=(const Dual& a, const Dual& b) { return b <= a; }
 
-    // f(x) where f'(x) is given.
+    // The dual number f(x) for given values f and f'(x).
     friend Dual chain(const Dual& x, const Real& f, const Real& by_x) { return {f, by_x * x.slope}; }
     friend Dual abs(const Dual& x) { return x.value < 0 ? -x : x; }
     friend Dual sqrt(const Dual& x) {
@@ -71,7 +71,7 @@ template <>
 inline test::Dual scalar_from<test::Dual>(const Constant& constant) {
     return scalar_from<test::Real>(constant);
 }
-// The arc cosine has no derivative at its end.
+// pi by a constant: acos(-1) has no derivative.
 template <>
 inline test::Dual scalar_pi<test::Dual>() {
     return scalar_pi<test::Real>();

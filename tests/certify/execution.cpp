@@ -68,7 +68,8 @@ TrueExecutionOf<Number> TrueRunsOf<Number>::run(double end_time, double cut) {
     return std::move(result_);
 }
 
-// The geometric series takes hddot as constant, which where it nears zero no speed is low enough for.
+// Whether hddot changes by less than 1e-6 of itself in the remaining time. The geometric series assumes a constant
+// hddot, which fails at any impact speed if hddot approaches zero.
 template <class Number>
 bool TrueRunsOf<Number>::settles(const Point& slid, const Number& acceleration, const Number& rest) {
     return abs(motion_.normal_acceleration(motion_.drift(slid, rest)) + acceleration) < 1e-6 * acceleration;
@@ -76,7 +77,7 @@ bool TrueRunsOf<Number>::settles(const Point& slid, const Number& acceleration, 
 
 template <class Number>
 void TrueRunsOf<Number>::fly() {
-    // The lower a flight, the less it may err.
+    // Lower flights need a smaller error.
     const double rise = flight_.known == 1 ? static_cast<double>(motion_.contact(flight_.point).hdot) : 1.0;
     const double tolerance = precision * std::clamp(rise, 1e-12, 1.0);
     if (!motion_.fly(flight_, end_time_ - flight_.time, expected_, tolerance)) {

@@ -1,5 +1,5 @@
-// The whole completed execution in 34 digits, from a start in the air or in contact to an end time: every impact down
-// to speeds far below what double precision resolves, Zeno points, releases. What simulate() computes is judged by it.
+// Reference for simulate(): the completed execution in 34 digits, from a start in flight or in contact to an end time.
+// It resolves impacts down to speeds far below double precision, Zeno points and releases.
 #pragma once
 
 #include <vector>
@@ -13,29 +13,29 @@ struct TrueEventOf {
     Event::Kind kind = Event::Kind::impact;
     Number t;
     Number speed;           // impact: |hdot| before
-    PointOf<Number> point;  // before it
+    PointOf<Number> point;  // before the event
 };
 using TrueEvent = TrueEventOf<Real>;
 
 template <class Number>
 struct TrueExecutionOf {
-    std::vector<TrueEventOf<Number>> events;  // in time
+    std::vector<TrueEventOf<Number>> events;  // in order of time
     PointOf<Number> end;
     Phase::Kind start_phase = Phase::Kind::hybrid, end_phase = Phase::Kind::hybrid;
 };
 using TrueExecution = TrueExecutionOf<Real>;
 
-// A dip of the gap in free motion.
+// A local minimum of the gap in free motion.
 template <class Number>
 struct DipOf {
     Number t, gap;
-    Number curvature;  // hddot there
+    Number curvature;  // hddot at the minimum
 };
 using Dip = DipOf<Real>;
 
 Point point_of(const State& state);
 
-// Throws std::runtime_error where there are more events than that: bouncing that does not settle.
+// Computes reference executions. Throws std::runtime_error after `most_events` events, if the impacts do not converge.
 template <class Number>
 class TrueRunsOf {
  public:
@@ -49,17 +49,17 @@ class TrueRunsOf {
     TrueRunsOf(const Model& model, const List<Number>& parameters, std::size_t most_events = 5000,
                double longest_step = 1e300);
 
-    // Starts with h > 0. Bouncing is followed until its speed has fallen below `cut` and hddot no longer changes in
-    // what is left, which is a geometric series and the plastic restart and errs by O(cut^3).
+    // Starts with h > 0. Follows impacts until their speed is below `cut` and hddot is constant for the remaining time.
+    // The rest is a geometric series and the plastic restart, with an error of O(cut^3).
     TrueExecution run(const Point& start, double end_time, double cut = 1e-9);
-    // Starts on the surface, at rest along its normal: the point is moved there from what rounding made of it. It stays
-    // if the contact force is positive, or is zero and grows.
+    // Starts with h = hdot = 0; rounding errors of `start` in h and hdot are removed first. Contact is kept if the
+    // contact force is positive, or is zero and increases.
     TrueExecution run_from_contact(const Point& start, double end_time, double cut = 1e-9);
-    // Where the gap first stops falling and rises again, if free motion from the start does that within the time.
+    // The first local minimum of the gap in free motion from the start, if there is one within this time.
     std::optional<Dip> first_dip(const Point& start, double within);
 
  private:
-    static constexpr double precision = 1e-26;  // of a step
+    static constexpr double precision = 1e-26;  // error tolerance of a step
     TrueExecution run(double end_time, double cut);
     bool settles(const Point& slid, const Number& acceleration, const Number& rest);
     void fly();

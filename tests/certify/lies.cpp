@@ -13,11 +13,11 @@ double norm(const Evaluator<double>& evaluator, std::size_t first, std::size_t n
     return std::sqrt(sum);
 }
 
-// |M g'|/W at the restart; the truth is a maximum of |M^-1 g'|/W around it.
+// |M g'|/W at the restart. Correct is the maximum of |M^-1 g'|/W around it.
 double eta_with_M(const Model& model, const Run& run, const State& state) {
     const Equations& equations = model.equations();
     const ContactEquations& contact = equations.free.contacts[0];
-    Graph graph(contact.W.graph());  // a copy: the model stays as it is
+    Graph graph(contact.W.graph());  // a copy, so that the model is unchanged
     const Layout& layout = model.layout();
     const auto n = static_cast<std::size_t>(model.dof());
     std::vector<Expression> outputs;
@@ -33,7 +33,7 @@ double eta_with_M(const Model& model, const Run& run, const State& state) {
     return norm(evaluator, 0, n);
 }
 
-// The interval of theory.md 4 with the two extremes mixed up.
+// The interval of theory.md 4 with a_min and a_max exchanged.
 void swap_accelerations(Certificate& c, double e, double w) {
     const double a_min = c.a_max, a_max = c.a_min, r = a_max / a_min;
     c.zeno_low = 2.0 * e * (1.0 + e) * w / (a_max * (1.0 - e * e / r));

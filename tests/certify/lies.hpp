@@ -1,4 +1,4 @@
-// Certificates made false on purpose: a comparison that lets one of them pass compares nothing.
+// Falsified certificates. A comparison must detect each of them.
 #pragma once
 
 #include "certify/truth.hpp"
@@ -20,7 +20,7 @@ constexpr Lie lies[] = {Lie::earliest_time,    Lie::latest_time,           Lie::
                         Lie::velocity,         Lie::shadowing_position,    Lie::shadowing_velocity,
                         Lie::uniform_position, Lie::swapped_accelerations, Lie::eta_with_M};
 
-// The certificate that a program with this mistake would have issued.
+// The certificate that a program with this error would issue.
 Certificate falsified(Certificate certificate, Lie lie, const Collision& collision, const Run& run, const Model& model);
 
 }  // namespace achilles::test

@@ -38,7 +38,8 @@ class Comparison {
     }
 
  private:
-    // Of one contact: where two bounce, a run may cut one bouncing before an impact of the other and the proof behind it.
+    // Adds the events of one contact. They are compared per contact: if two contacts bounce, a run may cut the sequence
+    // of one before an impact of the other, and the proof after it.
     void add_events(const Trajectory& run, std::size_t contact) {
         std::vector<const Event*> events;
         for (const Event& event : run.events)
@@ -60,7 +61,7 @@ class Comparison {
         }
     }
 
-    // Slack: what the run itself may be wrong by.
+    // `slack` is the error of the run itself.
     void compare(const Interval& x, double y, double slack, const std::string& what) {
         ++result_.compared;
         const double allowed = slack + 1e-3 * width(x);
@@ -87,7 +88,7 @@ achilles::Claim claim_around(const Model& model, double end, double half, double
         gap.run();
         closest = std::min(closest, std::abs(gap.output(0)));
     }
-    if (closest > 1e-9) {  // else most members would be no starts
+    if (closest > 1e-9) {  // otherwise the gap of most members would be negative
         std::mt19937_64 random(seed);
         std::uniform_real_distribution<double> uniform(0.99, 1.01);
         for (Intervals* box : {&claim.q, &claim.v})
@@ -124,7 +125,7 @@ Membership members_of(const std::shared_ptr<const Model>& model, const achilles:
         for (std::size_t i = 0; i < claim.parameters.size(); ++i) run.parameters[i] = any_of(claim.parameters[i]);
         try {
             comparison.add(simulate(model, run));
-        } catch (const InputError&) {  // no start: below the surface
+        } catch (const InputError&) {  // invalid start: negative gap
         }
     }
     comparison.finish();

@@ -43,7 +43,7 @@ int variations(const List<Number>& b) {
     return count;
 }
 
-// One root in (low, high), positive on its left: Newton's method, kept inside by bisection.
+// The single root in (low, high), with positive values on its left: Newton's method safeguarded by bisection.
 template <class Number>
 Number locate(const List<Number>& coefficients, Number low, Number high) {
     const List<Number> slope = derivative(coefficients);
@@ -57,7 +57,7 @@ Number locate(const List<Number>& coefficients, Number low, Number high) {
         t = next;
         if (close) break;
     }
-    // What a dual rises by is a step behind its value.
+    // The derivative part of a dual number converges one step later than its value.
     const Number last = t - value(coefficients, t) / value(slope, t);
     return abs(last - t) <= 1e-30 * abs(t) ? last : t;
 }

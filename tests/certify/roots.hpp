@@ -1,5 +1,5 @@
-// Where a polynomial first comes down through zero, in 34 digits: every root of the truth. Shares no code with
-// core/simulate/polynomial.
+// First descent of a polynomial through zero, in 34 digits, for the reference motions. Shares no code with
+// core/number/polynomial.
 #pragma once
 
 #include <optional>
@@ -15,8 +15,9 @@ Number value(const List<Number>& coefficients, const Number& t);
 template <class Number>
 List<Number> derivative(const List<Number>& coefficients);
 
-// The first t in (0, length) at which it goes from positive to negative. All roots are isolated by the sign variations
-// in the Bernstein basis, so that two close together are not one or none; a touch to working precision is no root.
+// The first t in (0, length) at which the polynomial changes from positive to negative. Roots are isolated by sign
+// variations in the Bernstein basis, so two close roots are not missed. A double root to working precision does not
+// count.
 template <class Number>
 std::optional<Number> first_descent(const List<Number>& coefficients, const std::type_identity_t<Number>& length);
 

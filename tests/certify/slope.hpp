@@ -1,4 +1,4 @@
-// How the error of a cut falls with the impact speed (theory.md 5, theory-gaps.md 6).
+// Order of the error of a cut in the impact speed (theory.md 5, theory-gaps.md 6).
 #pragma once
 
 #include <memory>
@@ -9,13 +9,13 @@
 namespace achilles::test {
 
 struct Slope {
-    double order = 0.0;   // of log(error) against log(w)
-    double factor = 0.0;  // error/w^3 at the least w
+    double order = 0.0;   // slope of log(error) over log(w)
+    double factor = 0.0;  // error/w^3 at the smallest w
 };
 
-// The error at a time `later` after collisions at the place of a Zeno point of the default run (the first is 0),
-// which share (q, s) and differ in their speed, `speeds` in descending order; of the state there, when the bouncing
-// is replaced by this restart. Zeros where some bouncing has no Zeno point.
+// Measures the error of the state at a time `later` after a collision, if the impact sequence is replaced by this
+// restart. The collisions have (q, s) of Zeno point number `zeno` (from 0) of the default run and these speeds, in
+// descending order. Returns zeros if a sequence has no Zeno point.
 Slope restart_slope(const std::shared_ptr<const Model>& model, Reinitialization kind, std::size_t zeno = 0,
                     const std::vector<double>& speeds = {3e-2, 3e-3, 3e-4, 3e-5, 3e-6}, double later = 0.5);
 

@@ -1,4 +1,4 @@
-// Counts over many trials: violated claims, and how far the bounds are from the truth.
+// Statistics over many trials: violated claims, and the ratio of bounds to reference values.
 #pragma once
 
 #include <array>
@@ -11,15 +11,15 @@
 namespace achilles::test {
 
 struct Tally {
-    long certificates = 0, violations = 0, unknown = 0;  // unknown: no truth to compare with
-    // bound/actual by what it is about; the time from tau_k on
+    long certificates = 0, violations = 0, unknown = 0;  // unknown: no reference Zeno point
+    // bound/actual for each kind of bound; times are counted from tau_k
     std::array<std::vector<double>, 7> ratios;
-    // Of Def. 7's own velocity bound, w eps_v/c3, which the certificate's may undercut: excursion, over the largest
-    // |v - v*| on the way; formula, over what it would be with the values at the restart for its maxima, so what the
-    // neighbourhood costs.
+    // Two ratios concern Def. 7's own velocity bound w eps_v/c3, which may exceed the certificate's. `excursion` is its
+    // ratio to the largest |v - v*| up to the Zeno point. `formula` is its ratio to the same formula with the values at
+    // the restart for the maxima: the loss by the neighborhood.
     enum Ratio { latest, position, velocity, excursion, formula, shadowing, uniform };
-    // Of the best estimate of the Zeno time: how many there were, and the largest error over the half width of the
-    // interval. Inside the interval it is at most 2; as the middle of it, 1.
+    // Best estimates of the Zeno time: their number, and the largest error divided by the half-width of the interval.
+    // An estimate inside the interval has at most 2, the midpoint at most 1.
     long estimates = 0;
     double worst_estimate = 0.0;
 
@@ -28,7 +28,7 @@ struct Tally {
     double least(Ratio ratio) const;
 };
 
-// By conditions, reinitialization, and whether the tolerances were met.
+// Key: conditions, reinitialization, and whether the tolerances were met.
 using Tallies = std::map<std::tuple<Conditions, Reinitialization, bool>, Tally>;
 void add(Tallies& tallies, const Trial& trial, const Model& model);
 std::string table_head();

@@ -74,7 +74,7 @@ void Evaluator<Series<Number>>::lower(const Instruction& in, std::size_t result)
     }
 }
 
-// Repeated products: unlike the usual recurrence they do not divide by the base, which may vanish.
+// Powers by repeated products. The usual recurrence would divide by the base, which may vanish.
 template <class Number>
 void Evaluator<Series<Number>>::lower_power(const Instruction& in, std::size_t result) {
     const int n = std::abs(in.exponent);
@@ -147,7 +147,7 @@ Number Evaluator<Series<Number>>::product(std::size_t a, std::size_t b, std::siz
     return sum;
 }
 
-// Coefficient k >= 1 from the earlier ones: the usual recurrences of automatic differentiation.
+// Coefficient k >= 1 from the earlier ones, by the usual recurrences of automatic differentiation.
 template <class Number>
 Number Evaluator<Series<Number>>::next(const Step& step, std::size_t k) {
     const std::size_t a = step.a, b = step.b, c = step.result;

@@ -1,5 +1,5 @@
-// Taylor coefficients of a program's outputs along a motion, order by order, in multiprecision: the integrator of the
-// truth that certificates are compared with. It shares no code with the integrators it judges.
+// Taylor coefficients of a program's outputs along a motion, order by order, in multiprecision. The reference motions
+// are integrated with it. It shares no code with the integrators it tests.
 #pragma once
 
 #include <span>
@@ -11,21 +11,22 @@
 
 namespace achilles::test {
 
-// The truth is told in real numbers or, for its derivatives, in duals.
+// Reference motions use real numbers or, for derivatives, dual numbers.
 template <class Number>
 using List = std::vector<Number>;
 using Reals = List<Real>;
 
 template <class Number>
-struct Series {};  // only names the specialisation below
+struct Series {};  // tag for the specialization below
 constexpr std::size_t max_order = 30;
 
 }  // namespace achilles::test
 
 namespace achilles {
 
-// Runs a program on power series in time. Coefficient k of the outputs needs coefficients 0 .. k of the inputs only, so
-// that a differential equation fills its own series: set(.., k), run(k), read output(.., k), which gives order k + 1.
+// Runs a program on power series in time. Coefficient k of the outputs needs only coefficients 0 .. k of the inputs. So
+// the series of a differential equation is built order by order: set(.., k), run(k), and output(.., k) gives order k +
+// 1.
 template <class Number>
 class Evaluator<test::Series<Number>> {
  public:

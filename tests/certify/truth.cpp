@@ -24,7 +24,7 @@ std::size_t index_of_restitution(const Model& model) {
     throw std::invalid_argument("the trials vary the parameter e, which this system lacks");
 }
 
-// Known to far more than 16 digits, and rounding it cannot turn a violation into none: bounds are never that tight.
+// Rounding to double hides no violation: x has far more than 16 digits, and no bound is that tight.
 double actual(const Real& x) { return static_cast<double>(x); }
 
 }  // namespace
@@ -38,7 +38,7 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
     const auto since = [&](double t) { return actual(t - tau_k); };
     const double t = actual(truth.time), q = actual(distance(truth.point.q, own.restart.q)),
                  v = actual(distance(truth.point.v, own.restart.v));
-    // Where impacts change nothing but hdot the shadowing error is 0, and so is its bound: the truth is known to this.
+    // If impacts change only hdot, the shadowing error and its bound are 0. The reference is accurate to `known`.
     const Real known = 1e-18 * own.collision.speed;
     const auto shadow = [&](const Reals& a, const Reals& b) {
         return actual(std::max(distance(a, b) - known, Real(0)));
@@ -55,7 +55,7 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
         result.push_back({About::best_estimate, *certified.best, c.zeno_low});
         result.push_back({About::best_estimate, c.zeno_high, *certified.best});
     }
-    // Whatever it says of them: what is held stays held, and what is open open.
+    // The certificate implies that held contacts stay held and open ones stay open.
     if (trial.least)
         for (const Reals* part : {&trial.least->forces, &trial.least->gaps, &trial.least->transmissions})
             for (const Real& x : *part) result.push_back({About::others, actual(x), 0.0});
@@ -69,7 +69,7 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
         for (const Real& gap : trial.least->gaps) result.push_back({About::others, actual(gap), *c.others->least_gap});
     }
     if (!certified.held) return result;
-    // What was asked for: Def. 7 limits how far the Zeno point is, the sharp conditions how well it is known.
+    // The requested tolerances: Def. 7 bounds the distance to the Zeno point, the sharp conditions its uncertainty.
     const bool paper = c.conditions == Conditions::paper;
     const double half_width = 0.5 * (c.zeno_high - c.zeno_low);
     result.push_back({About::tolerance, certified.asked.eps_t, paper ? t : half_width});
@@ -88,14 +88,14 @@ double largest_excursion(const Trial& trial, Reinitialization kind) {
 Trials::Trials(std::shared_ptr<const Model> model, unsigned seed, Vary vary)
     : model_(std::move(model)), random_(seed), vary_(vary) {}
 
-// Written out, since the standard's distributions differ between libraries.
+// Own formula, since the distributions of the standard library differ between implementations.
 double Trials::uniform(double low, double high) {
     return low + (high - low) * static_cast<double>(random_() >> 11) * 0x1p-53;
 }
 
 std::size_t Trials::any_of(std::size_t count) { return static_cast<std::size_t>(random_() % count); }
 
-// A place where the contact rests, and what is held: pressed, with the other gaps open.
+// A random Zeno equilibrium: this contact and the held ones at h = 0 with positive force, the other gaps open.
 std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
     State state = trial.run.start();
     const auto& coordinates = model_->description().coordinates;
@@ -152,8 +152,8 @@ void Trials::certify(Trial& trial, const State& before) {
     }
 }
 
-// Nothing where simulate() goes on bouncing, since its guess whether a proof is worth while said no, or refuses the
-// start, which rounding has put a little further below the surface than an input may be.
+// Returns nullopt if simulate() does not cut here, since its estimate in double precision predicted no proof. The same
+// if it rejects the start because rounding made the gap slightly negative.
 std::optional<double> Trials::best_estimate(Run run, const State& before, const Certificate& certificate) const {
     run.q = before.q;
     run.v = before.v;
@@ -201,7 +201,7 @@ std::vector<Trial> Trials::next_run() {
     try {
         for (const Event& event : simulate(model_, run).events) {
             if (event.kind != Event::Kind::zeno || is_plastic_landing(event)) continue;
-            if (!event.contacts.has_one()) continue;  // the true motion below is of one contact that bounces
+            if (!event.contacts.has_one()) continue;  // the reference motion has one bouncing contact
             Trial& trial = trials.emplace_back();
             trial.run = run;
             while (!event.contacts.contains(trial.contact)) ++trial.contact;
@@ -212,7 +212,7 @@ std::vector<Trial> Trials::next_run() {
                 {run.options.truncation, !event.certificate->below_rounding, *event.certificate, event.t});
             find_truth(trial, before);
         }
-    } catch (const InputError&) {  // inside a wall
+    } catch (const InputError&) {  // negative gap at the start
     }
     return trials;
 }

@@ -1,5 +1,5 @@
-// Certificates against the truth: collisions near Zeno equilibria at random, what core/certify claims about them, and
-// what really happens.
+// Tests certificates against reference motions (34 digits): random collisions near Zeno equilibria, the claims of
+// core/certify about them, and the motion that follows.
 #pragma once
 
 #include <random>
@@ -11,36 +11,36 @@
 
 namespace achilles::test {
 
-// One certificate and what it is about.
+// One certificate with the tolerances for which it was requested.
 struct Certified {
     Truncation asked;
-    bool held = false;  // the conditions hold for the tolerances; otherwise it is the widest that can be proved
+    bool held = false;  // the conditions hold for the tolerances; otherwise it states what can be proved without them
     Certificate certificate;
-    // What simulate() takes for the Zeno time, from tau_k on, where it cuts at this collision.
+    // The estimate of tau_inf - tau_k by simulate(), if it cuts at this collision.
     std::optional<double> best;
 };
 
-// One collision with every certificate that it gets. The truth is known unless `zeno` is empty.
+// One collision with all its certificates. `zeno` is the reference Zeno point, empty if there is none.
 struct Trial {
     Run run;
-    std::size_t contact = 0;  // that lands
-    Mode mode;                // the others' that are held meanwhile
+    std::size_t contact = 0;  // the impacting contact
+    Mode mode;                // the other contacts that are held
     std::vector<Certified> certified;
     std::optional<ZenoPoint> zeno;
     struct Restarted {
-        Collision collision;     // as the conditions see it
-        Point restart, at_zeno;  // where the constrained motion starts, and where it is at tau_inf
-        double farthest = 0.0;   // the largest |q(t) - q~(t)| of the instants looked at, q~ being that motion
+        Collision collision;     // input of the conditions
+        Point restart, at_zeno;  // the constrained motion: its start, and its state at tau_inf
+        double farthest = 0.0;   // the largest sampled |q(t) - q~(t)|, with q~ the constrained motion
     };
     Restarted kinetic, euclidean;
-    // Of the other contacts at the instants looked at: the least, and the extremes of what an impulse is passed on by.
+    // Minimum and maximum, over the sampled instants, of the forces, gaps and transmissions of the other contacts.
     std::optional<TrueMotion::Others> least, most;
     const Restarted& restarted(Reinitialization kind) const {
         return kind == Reinitialization::kinetic ? kinetic : euclidean;
     }
 };
 
-// A claim is true if actual <= bound.
+// One inequality that a certificate claims: actual <= bound.
 struct Claim {
     enum class About {
         earliest,
@@ -50,8 +50,8 @@ struct Claim {
         shadowing_position,
         shadowing_velocity,
         uniform_position,
-        best_estimate,  // of the Zeno time: inside the interval
-        others,         // what is said of the other contacts
+        best_estimate,  // the estimate of the Zeno time lies in the interval
+        others,         // statements about the other contacts
         tolerance
     };
     About about;
@@ -59,24 +59,24 @@ struct Claim {
     bool holds() const { return actual <= bound; }
 };
 
-// Everything that the certificate claims about the trial, next to what is true.
+// All claims of the certificate about the trial, with the reference values.
 std::vector<Claim> claims(const Trial& trial, const Certified& certified);
 
-// The largest |v - v*| on the way to the Zeno point, after tau_k. Not claimed, but it is what Def. 7 adds up.
+// The largest |v - v*| between tau_k and the Zeno point. No certificate claims it, but the sum in Def. 7 bounds it.
 double largest_excursion(const Trial& trial, Reinitialization kind);
 
-// Reproducible trials of one system: states over the ranges that its description shows, impact speeds 1e-5 .. 1 and
-// tolerances 1e-6 .. 1e-1 (both log-uniform), restitution 0 .. 0.95, always hddot < 0. With `everything` the other
-// parameters as well (0.5 .. 1.5 times theirs), the time, the contact that lands and one that may be held, and states
-// around the file's start.
+// Reproducible random trials of one system, always with hddot < 0. States are in the ranges of its description, impact
+// speeds in 1e-5 .. 1, tolerances in 1e-6 .. 1e-1 (both log-uniform), restitutions in 0 .. 0.95. With
+// `Vary::everything` the states are around the file's start. Then the other parameters (0.5 .. 1.5 times their values),
+// the time, the impacting contact and one held contact vary as well.
 class Trials {
  public:
     enum class Vary { restitution, everything };
     Trials(std::shared_ptr<const Model> model, unsigned seed, Vary vary = Vary::restitution);
     const Model& model() const { return *model_; }
     Trial next();
-    // What the run from a random start near the file's certifies: a trial for each of its Zeno points that ends a
-    // bouncing. Nothing where the start is not allowed.
+    // Simulates from a random start near the file's. Returns a trial for each Zeno point of the run that follows an
+    // impact sequence; none if the start is invalid.
     std::vector<Trial> next_run();
 
  private:

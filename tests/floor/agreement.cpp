@@ -14,7 +14,7 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
-// Where no events are kept, phases tell who has come to rest, and who has left.
+// Without recorded events, the phases show which contacts have come to rest and which were released.
 void read_phases(const Trajectory& trajectory, Outline& outline) {
     for (std::size_t i = 1; i < trajectory.phases.size(); ++i) {
         const ContactSet before = trajectory.phases[i - 1].mode.held(), after = trajectory.phases[i].mode.held();
@@ -26,7 +26,8 @@ void read_phases(const Trajectory& trajectory, Outline& outline) {
     }
 }
 
-// Of several contacts that touch one another without a force, impacts may go on below what a method knows of a gap.
+// Impact speeds below this are not compared if there are several contacts. Contacts that touch without force may have
+// impacts below the accuracy of the gap.
 constexpr double slowest = 1e-6;
 
 void read_event(const Event& event, std::size_t contact, bool several, Outline::OfContact& known) {

@@ -1,4 +1,4 @@
-// Two executions of one start beside one another: what happens to each contact, and when.
+// Compares two executions from one start: the events of each contact and their times.
 #pragma once
 
 #include <string>
@@ -9,34 +9,34 @@
 
 namespace achilles::test {
 
-// An execution as what happens to each contact: it bounces until it rests, rests until it leaves, bounces.
+// An execution by contact: impacts up to a Zeno point, contact up to a release or opening, impacts, and so on.
 struct Outline {
     struct Bouncing {
         std::vector<double> impacts;  // times
         double zeno_low = 0.0, zeno_high = 0.0;
     };
     struct OfContact {
-        std::vector<Bouncing> bounces{1};  // the last one may lack its Zeno point
-        std::vector<double> leaves;        // times: released, or opened by an impact
+        std::vector<Bouncing> bounces{1};  // the last one may have no Zeno point
+        std::vector<double> leaves;        // times of release, or of opening by an impact
         std::size_t zenos = 0;
     };
     std::vector<OfContact> contacts;
     Vector end;
-    bool ends_alone = false;  // no events are kept
+    bool ends_alone = false;  // recorded without events
 };
 Outline outline_of(const Trajectory& trajectory);
-Outline outline_of(const TrueExecution& truth);  // of one contact
+Outline outline_of(const TrueExecution& truth);  // one contact only
 
-// The largest difference between times, s, and in the end state; infinite where other things happen.
+// The largest difference of event times (s) and of the final state. Infinite if the events differ.
 struct Distance {
     double size = 0.0;
     std::string where;
     void add(double more, const std::string& place);
 };
 
-// How far `b` is from `a`: the times of impacts before the bouncing was cut, of Zeno points (beyond what is certified) and
-// of leaving, and the end. A bouncing may have been cut at another impact, so those that both have are compared. Of a
-// trajectory that keeps its end alone, the leaving and the end.
+// The distance of `b` from `a`: times of impacts before the cut, of Zeno points (beyond the certified interval) and of
+// releases, and the final state. The two may be cut at different impacts, so only common impacts are compared. Without
+// recorded events, releases and the final state are compared.
 Distance between(const Outline& a, const Outline& b);
 
 }  // namespace achilles::test

@@ -94,7 +94,7 @@ std::string start_of(const Trajectory& trajectory) { return start_of(*trajectory
 
 namespace {
 
-// The gaps of a run, as evaluators of its parameters.
+// Evaluators of the gaps at the parameters of a run.
 std::vector<Evaluator<double>> gaps_of(const Trajectory& trajectory) {
     std::vector<Evaluator<double>> gaps;
     for (std::size_t i = 0; i < trajectory.model->contacts(); ++i)
@@ -127,7 +127,7 @@ std::string below_the_floor(const Trajectory& trajectory) {
 }
 
 std::string fault(const Trajectory& trajectory, double between) {
-    // Not all that chatters together is completed (theory-gaps.md 2.6): such a run says so.
+    // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6).
     const bool may_be_undecided = trajectory.model->contacts() > 1;
     if (trajectory.outcome.kind != Outcome::Kind::end_time &&
         !(may_be_undecided && trajectory.outcome.kind == Outcome::Kind::undecided))
@@ -138,7 +138,7 @@ std::string fault(const Trajectory& trajectory, double between) {
     if (!stored.empty()) return stored;
     auto gaps = gaps_of(trajectory);
     for (const Piece& piece : trajectory.pieces) {
-        if (!piece.mode.held().empty()) continue;  // a sample is projected
+        if (!piece.mode.held().empty()) continue;  // samples in contact are projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
             const double t = piece.start + theta * (piece.end - piece.start);
             const double least = least_of(gaps, state_in(piece, trajectory.coefficients, trajectory.model->dof(), t));
@@ -203,7 +203,7 @@ std::optional<Grazing> GrazingStarts::next(double least_gap) {
     return std::nullopt;
 }
 
-// Most starts do not, which 34 digits need not find out: Heun's method will do.
+// Quick check by Heun's method: most starts have no minimum near the floor, and the reference is expensive.
 bool GrazingStarts::dips_near_the_floor(const State& start) {
     const auto rate = [&](const State& state) {
         set_state(flight_, state);
@@ -232,8 +232,7 @@ bool GrazingStarts::dips_near_the_floor(const State& start) {
     return false;
 }
 
-// Moves the start along the normal until the dip is as deep as wanted: the secant method, whose last digits are those
-// of q.
+// Moves the start along the normal until the minimum has the given value, by the secant method to the last digits of q.
 std::optional<Grazing> GrazingStarts::tune(State start, double least_gap) {
     ContactKinematics surface(*model_, run_);
     double slope = 1.0, before = 0.0, step = 0.0;

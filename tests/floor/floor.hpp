@@ -1,5 +1,5 @@
-// Never under the floor: random starts over the ranges a description shows, what simulate() makes of them, and whether
-// that is what happens in 34 digits.
+// Tests that no trajectory penetrates: simulates random starts in the ranges of a description, and compares the
+// trajectories with 34-digit references.
 #pragma once
 
 #include <array>
@@ -15,15 +15,14 @@
 
 namespace achilles::test {
 
-// Reproducible starts in the air: uniform over the ranges of coordinates and rates, where every gap is above 1e-6 (a start
-// closer to the floor is a question about the start, not about the motion). Written out, since the standard's
-// distributions differ between libraries.
+// Reproducible starts in flight: uniform in the ranges of coordinates and rates, with every gap above 1e-6. (Closer
+// starts would test the treatment of the start, not the motion.) Own formulas, since the distributions of the standard
+// library differ between implementations.
 class Starts {
  public:
     Starts(std::shared_ptr<const Model> model, unsigned seed);
     State next();
-    // Of all that a run may have: parameters within their ranges, a part of the time that the file shows, at a start of
-    // those.
+    // A run from such a start, with random parameters in their ranges and a part of the file's duration.
     Run next_run();
     double uniform(double low, double high);
 
@@ -38,30 +37,30 @@ class Starts {
     std::mt19937_64 random_;
 };
 
-// An impact stored at a gap below -1e-12, relative to the coordinates where they are larger than 1. Empty if none is.
+// Describes an impact stored at a gap below -1e-12 max(1, |q|); empty if there is none.
 std::string below_the_floor(const Trajectory& trajectory);
 
-// What is wrong with a trajectory by itself: an impact stored so, an outcome other than the end time (several contacts
-// may be undecided), or a gap below -1e-12 at the end of a step, or below -`between` inside one, where dense output is
-// an interpolation. Empty if nothing is.
+// Describes an error of a trajectory that is visible without a reference; empty if there is none. Errors are: an impact
+// below the floor (see above); an outcome other than the end time (several contacts may be undecided); a gap below
+// -1e-12 at the end of a step; a gap below -`between` inside a step, where dense output interpolates.
 std::string fault(const Trajectory& trajectory, double between);
 
-// The first violation of a law (floor/laws.hpp). Empty if all are obeyed.
+// The first violation of a law (floor/laws.hpp); empty if there is none.
 std::string broken_law(const Trajectory& trajectory);
 
-// The end of a run that is simulated beside others.
+// The trajectory of a run simulated in a batch, recorded without events.
 Trajectory by_eight(const std::shared_ptr<const Model>& model, const Run& run);
 
-// A run in digits that give the same bits back, for a bug report; that of a trajectory.
+// The start and options of a run for a bug report, with enough digits to restore all bits; the same for a trajectory.
 std::string start_of(const Model& model, const Run& run);
 std::string start_of(const Trajectory& trajectory);
 
-// A trajectory beside the truth.
+// Result of the comparison of a trajectory with its reference.
 struct Comparison {
     double error = 0.0;  // the largest difference (floor/agreement.hpp)
     std::string where;
-    // The same between the run and runs from starts moved by 1e-7, over 1e-7, and at least 1. Infinite if phases
-    // differ.
+    // Sensitivity to the start: the largest difference to runs from starts moved by 1e-7, divided by 1e-7; at least 1.
+    // Infinite if phases differ.
     double sensitivity = 1.0;
     bool agrees() const { return error <= 1e-8 * sensitivity; }
 };
@@ -76,16 +75,16 @@ class Judge {
     TrueRuns truth_;
 };
 
-// A start whose free motion dips to a given least gap, and back up, before anything else happens.
+// A start whose gap in free motion has a given local minimum before any other event.
 struct Grazing {
     State start;
-    Dip dip;  // of the start as rounded to doubles
+    Dip dip;  // for the start as rounded to doubles
 };
 
 class GrazingStarts {
  public:
     GrazingStarts(std::shared_ptr<const Model> model, unsigned seed);
-    // Nothing where no start of 2000 dips near the floor: in some systems the gap falls for ever once it falls.
+    // nullopt if none of 2000 starts has a minimum near the floor: in some systems a decreasing gap has no minimum.
     std::optional<Grazing> next(double least_gap);
 
  private:
@@ -93,7 +92,7 @@ class GrazingStarts {
     std::optional<Grazing> tune(State start, double least_gap);
     std::shared_ptr<const Model> model_;
     Run run_;
-    double soon_;  // s, a dip later than this is not looked for
+    double soon_;  // s, the latest time of a minimum
     Starts starts_;
     Evaluator<double> flight_, gap_;
     TrueRuns truth_;

@@ -19,18 +19,18 @@ namespace {
 
 double largest(const Vector& x) { return x.size() == 0 ? 0.0 : x.cwiseAbs().maxCoeff(); }
 
-// x with W x = b, of least norm where gradients depend on one another.
+// x with W x = b; of least norm if gradients are linearly dependent.
 Eigen::VectorXd least(const ContactMatrix<double>& W, const Eigen::VectorXd& b) {
     return Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(W).solve(b);
 }
 
-// The least eigenvalue of W beside the largest: 0 where gradients depend on one another.
+// Ratio of the smallest to the largest eigenvalue of W: 0 if gradients are linearly dependent.
 double least_pivot(const Closed& held) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(Eigen::MatrixXd(held.W), Eigen::EigenvaluesOnly);
     return values.eigenvalues().minCoeff() / values.eigenvalues().maxCoeff();
 }
 
-// What a law asks of the model at a state.
+// Quantities of the model at a state that the laws need.
 class Probe {
  public:
     explicit Probe(const Trajectory& t)
@@ -47,12 +47,12 @@ class Probe {
         energy_.run();
         return energy_.output(0);
     }
-    // |T| + |V|: what the energy's relative errors refer to.
+    // |T| + |V|, the scale of relative errors of the energy.
     double energy_scale(const State& state) {
         energy(state);
         return std::abs(energy_.output(1)) + std::abs(energy_.output(2));
     }
-    // |V| and the sum of all |M_ij v_i v_j|/2: what the rounding of an energy refers to where T is what its terms leave over.
+    // |V| + sum |M_ij v_i v_j|/2, the scale of rounding errors of the energy if the terms of T cancel.
     double terms_scale(const State& state) {
         const auto kinetic = [&](Eigen::Index i, Eigen::Index j) {
             State part{state.q, Vector::Zero(state.v.size()), state.t};
@@ -68,9 +68,9 @@ class Probe {
         }
         return sum + std::abs(energy_.output(2));
     }
-    // What counts as h = 0.
+    // Tolerance for h = 0.
     static double off(const State& state) { return 1e-12 * std::max(1.0, state.q.norm()); }
-    // The forces that hold these contacts, from the accelerations that the gaps would have without: W lambda = -hddot.
+    // The contact forces that hold these contacts: W lambda = -hddot, with hddot of the free motion.
     Eigen::VectorXd forces(const State& state, const Closed& held) {
         Eigen::VectorXd hddot(static_cast<Eigen::Index>(held.which.size()));
         for (Eigen::Index i = 0; i < hddot.size(); ++i)
@@ -78,14 +78,15 @@ class Probe {
         return least(held.W, -hddot);
     }
 
-    // Of those forces, where they are not unique, one choice that presses if there is any.
+    // The same; if the forces are not unique, a nonnegative solution if there is one.
     Eigen::VectorXd pressing(const State& state, const Closed& held) {
         const Eigen::VectorXd of_any_sign = forces(state, held);
         if (least_pivot(held) > 1e-9) return of_any_sign;
         const auto choice = solve_complementarity(held.W, ContactVector<double>(-held.W * of_any_sign));
         return choice ? Eigen::VectorXd(choice->p) : of_any_sign;
     }
-    // By how much such forces leave the gaps accelerated, beside what the largest does.
+    // The largest remaining acceleration of a held gap under the reported forces, relative to that by the largest
+    // force.
     double off_balance(const State& state, const Closed& held, ContactForces& told) {
         Eigen::VectorXd left(static_cast<Eigen::Index>(held.which.size())), lambda = left;
         for (Eigen::Index i = 0; i < left.size(); ++i) {
@@ -96,7 +97,7 @@ class Probe {
         return (left + held.W * lambda).cwiseAbs().maxCoeff() / size;
     }
 
-    // What the force that holds a contact would be to stop the largest acceleration: its rounding refers to that.
+    // Scale of rounding errors of a contact force: the force that would stop the largest acceleration.
     double force_scale(const State& state, const Contact& contact) {
         set_state(flight_, state);
         flight_.run();
@@ -121,7 +122,7 @@ void complain(Violations& violations, bool holds, const std::string& sentence) {
 
 ContactSet held_before(const Event& event) { return event.mode.held().with(event.opened).without(event.contacts); }
 
-// The Zeno point of the bouncing that was cut at this impact, if one was.
+// The Zeno point of the impact sequence that was cut at this impact, if there is one.
 const Event* cut_at(const Trajectory& trajectory, const Event& event) {
     for (const Event* next = &event + 1; next != trajectory.events.data() + trajectory.events.size(); ++next)
         if (next->kind == Event::Kind::zeno)
@@ -131,7 +132,7 @@ const Event* cut_at(const Trajectory& trajectory, const Event& event) {
     return nullptr;
 }
 
-// Whether the run ends after this impact on the way to a Zeno point: what it restarted from is not told.
+// Whether the sequence was cut at this impact and the run ends before the Zeno point. The restart is then not recorded.
 bool ends_cut(const Trajectory& trajectory, const Event& event) {
     return &event == &trajectory.events.back() && !trajectory.pieces.empty() &&
            trajectory.pieces.back().start >= event.t && trajectory.pieces.back().mode.held() != event.mode.held();
@@ -140,7 +141,7 @@ bool ends_cut(const Trajectory& trajectory, const Event& event) {
 State before(const Event& event) { return {event.q, event.v_before, event.t}; }
 State after(const Event& event) { return {event.q, event.v_after, event.t}; }
 
-// Who takes part in an impact: those that land, what was held, and what it tells an impulse of.
+// The contacts of an impact: the impacting ones, the held ones, and those with a recorded impulse.
 ContactSet struck(const Event& event) {
     ContactSet set = event.contacts.with(held_before(event));
     if (event.joint)
@@ -148,7 +149,7 @@ ContactSet struck(const Event& event) {
     return set;
 }
 
-// An impact as its velocities tell it: the impulses p of all that take part, hdot before and after.
+// An impact reconstructed from the velocity jump: the impulses p of its contacts, hdot before and after.
 struct Blow {
     Blow(Probe& probe, const Event& event)
         : contacts(probe.surfaces.at(before(event), struck(event))),
@@ -157,7 +158,8 @@ struct Blow {
           p(least(contacts.W, rates_after - rates)) {
         for (std::size_t i = 0; i < contacts.which.size(); ++i)
             if (held_before(event).contains(contacts.which[i])) rates[static_cast<Eigen::Index>(i)] = 0.0;
-        // Where gradients depend on one another, or nearly do, velocities do not tell how impulses were shared.
+        // If gradients are linearly dependent, or nearly so, velocities do not determine the impulses: use the recorded
+        // ones.
         if (!event.joint) return;
         Eigen::VectorXd told = Eigen::VectorXd::Zero(p.size());
         for (const auto& [contact, impulse] : event.joint->impulses)
@@ -175,8 +177,8 @@ struct Blow {
     Eigen::VectorXd rates, rates_after, p;
 };
 
-// Moreau's law (theory-gaps.md 2.1), where one contact is closed Newton's: velocities jump along impulses p >= 0 of
-// contacts that land or were held, and where p > 0 is hdot+ = -e hdot-.
+// Moreau's law (theory-gaps.md 2.1), with one closed contact Newton's. Velocities jump by impulses p >= 0 of impacting
+// or held contacts, and hdot+ = -e hdot- where p > 0.
 void moreau(Violations& violations, Probe& probe, const Event& event) {
     const Blow blow(probe, event);
     const double rounding = 1e-14 * (1.0 + std::max(largest(event.v_before), largest(event.v_after)));
@@ -190,7 +192,8 @@ void moreau(Violations& violations, Probe& probe, const Event& event) {
         const std::size_t contact = blow.contacts.which[i];
         const double left = blow.rates_after[k] + probe.restitution[contact] * blow.rates[k];
         const double allowed = rounding * (1.0 + blow.contacts.contacts[i].g.norm());
-        // What the impulse does to its own gap's rate: of a contact that was only nearly closed it is rounding.
+        // The change of the contact's own hdot by its impulse. For a contact that is closed only nearly it is rounding
+        // error.
         const double push = blow.p[k] * blow.contacts.contacts[i].W;
         check(push >= -allowed, "an impulse pulls");
         if (push > 100.0 * allowed) check(std::abs(left) <= allowed, "an impact is not Newton's");
@@ -208,7 +211,7 @@ Violations energy(const Trajectory& trajectory) {
     double scale = 1e-300;
     for (const Sample& sample : samples)
         scale = std::max({scale, probe.energy_scale(sample.state), std::abs(sample.work), sample.loss});
-    // The local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth stretch.
+    // Local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth segment.
     const double allowed = 100.0 * trajectory.run.options.tolerance * scale;
     const auto balance = [&](const State& state, double work, double loss) {
         return probe.energy(state) - work + loss;
@@ -221,7 +224,7 @@ Violations energy(const Trajectory& trajectory) {
     for (const Sample& sample : samples) check(balance(sample.state, sample.work, sample.loss), sample.t);
     double lost = 0.0;
     for (const Event& event : trajectory.events) {
-        // What the restart takes is booked with the impact. A pair restarts from another place, too, as samples tell.
+        // The loss of the restart is recorded with the impact. A pair also restarts from other coordinates.
         const Event* const cut = event.kind == Event::Kind::impact ? cut_at(trajectory, event) : nullptr;
         const bool restarts = cut || ends_cut(trajectory, event);
         const State next = cut ? State{cut->truncation->q, cut->truncation->v, event.t} : after(event);
@@ -244,7 +247,7 @@ Violations energy(const Trajectory& trajectory) {
         complain(
             violations, std::abs(jump - work + loss) <= rounding,
             fmt::format("the energy jumps by {:.17g} and not by {:.17g} at t = {:.9g}", jump, work - loss, event.t));
-        // The Euclidean restart may gain some.
+        // The Euclidean restart may increase the energy.
         complain(violations, restarts || event.loss >= lost - rounding,
                  fmt::format("energy is found at t = {:.9g}", event.t));
         lost = event.loss;
@@ -266,7 +269,7 @@ Violations gap(const Trajectory& trajectory) {
 
 namespace {
 
-// A phase and what happens in it, one event after the other.
+// Checks a phase and its events in order.
 class PhaseCheck {
  public:
     PhaseCheck(const Trajectory& trajectory, Violations& violations)
@@ -312,7 +315,7 @@ class PhaseCheck {
     }
     void impact(const Event& event, const Phase& phase) {
         ++impacts_;
-        // One whose restitution is 0 may come to be held where several decide together.
+        // With several contacts, an impacting contact of restitution 0 may become held.
         ContactSet plastic;
         for (std::size_t i = 0; i < probe_.model.contacts(); ++i)
             if (event.contacts.contains(i) && probe_.restitution[i] == 0.0) plastic = plastic.with(i);
@@ -329,7 +332,7 @@ class PhaseCheck {
               "an impact does not approach", event.t);
         moreau(violations_, probe_, event);
     }
-    // h = hdot = 0 of what is held, and no jump.
+    // Checks h = hdot = 0 of the held contacts, and that no velocity jumps.
     void still(const Event& event, ContactSet held) {
         check(event.v_before == event.v_after, "a velocity jumps where nothing strikes", event.t);
         for (std::size_t i = 0; i < probe_.model.contacts(); ++i) {
@@ -407,7 +410,7 @@ Violations contact_force(const Trajectory& trajectory) {
             continue;
         const Closed held = probe.surfaces.at(sample.state, phase->mode.held());
         if (phase->not_unique()) {
-            // One share of them presses, and is told.
+            // There is a nonnegative solution, and it is recorded.
             told.set(sample);
             const double off = probe.off_balance(sample.state, held, told);
             complain(violations, off <= 1e-9,

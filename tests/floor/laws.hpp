@@ -1,5 +1,5 @@
-// What every execution of every system obeys. A law takes a trajectory and returns its violations, one sentence each:
-// none for what simulate() makes, some for a trajectory that was falsified (lies_test.cpp).
+// Laws that every execution of every system obeys. A law takes a trajectory and returns its violations, one sentence
+// each. There must be none for a result of simulate(), and some for a falsified trajectory (lies_test.cpp).
 #pragma once
 
 #include <string>
@@ -11,16 +11,16 @@ namespace achilles::test {
 
 using Violations = std::vector<std::string>;
 
-// E - work + loss is constant over the whole run; an impact with impulses p loses sum p (1 - e) |hdot|/2, and in it
-// moving surfaces do the work -sum p dh/dt.
+// E - work + loss is constant over the whole run. In an impact with impulses p the loss is sum p (1 - e) |hdot|/2, and
+// moving constraints do the work -sum p dh/dt.
 Violations energy(const Trajectory& trajectory);
-// Every gap >= -1e-12 max(1, |q|) everywhere.
+// Every gap is >= -1e-12 max(1, |q|) at all times.
 Violations gap(const Trajectory& trajectory);
-// Phases abut, and each ends where the set of held contacts changes (Def. 5, where there is one: hybrid, Zeno point,
-// constrained, release, hybrid, ...); impacts are Moreau's, with one contact Newton's; Zeno points lie on h = hdot = 0
-// where forces press, inside what their certificate says.
+// Phases are contiguous, and each ends where the set of held contacts changes. With one contact the order is that of
+// Def. 5: hybrid, Zeno point, constrained, release, hybrid, ... Impacts obey Moreau's law, with one contact Newton's.
+// At Zeno points h = hdot = 0, forces are positive, and the values lie inside the bounds of the certificate.
 Violations phases(const Trajectory& trajectory);
-// The force of every held contact presses inside constrained phases; a release is where it is 0 and h''' > 0.
+// The force of every held contact is positive inside constrained phases. At a release it is 0 and h''' > 0.
 Violations contact_force(const Trajectory& trajectory);
 
 }  // namespace achilles::test

@@ -1,5 +1,5 @@
-// libFuzzer: any bytes as an expression. It is refused with ParseError, or it can be printed and read back as the same
-// node, differentiated, substituted into, and evaluated so that every enclosure holds.
+// Fuzz target: any bytes as an expression. It is rejected with ParseError. Otherwise it can be printed and read back as
+// the same node, differentiated, substituted into, and evaluated so that every enclosure holds.
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -30,8 +30,8 @@ Evaluator<Scalar> evaluated(const Program& program) {
     return evaluator;
 }
 
-// The double is one of the numbers that rounding can make of a node, and so lies in its enclosure, but for what two
-// ways to multiply out a power may differ. It may be a NaN only where something is undefined or overflows before it.
+// Requires that the double value of every node lies in its enclosure, up to the difference of two ways to multiply out
+// a power. NaN is allowed only if an operand is undefined or overflows.
 void require_enclosed(Graph& graph) {
     std::vector<Expression> nodes;
     for (std::uint32_t id = 0; id < graph.size(); ++id) nodes.push_back({&graph, id});
@@ -54,7 +54,7 @@ void require_readable(Expression e, const Scope& scope) {
     const std::array<std::string, 3> names{"x", "x'", "z"};
     const std::string printed = to_text(e, names);
     try {
-        // Perhaps with sums and factors in another order: their enclosures still share the value.
+        // Sums and factors may be in another order, but both enclosures contain the value.
         const Expression again = parse(printed, scope, e.graph());
         const std::array<Expression, 2> both{e, again};
         const Program program(both, Slots{3, 2, 3});
@@ -62,7 +62,7 @@ void require_readable(Expression e, const Scope& scope) {
         const Interval &x = enclosures.output(0), &y = enclosures.output(1);
         require(again == e || !x.is_defined() || !y.is_defined() || (x.lo() <= y.hi() && y.lo() <= x.hi()),
                 "what is printed reads back");
-    } catch (const ParseError& error) {  // parentheses and fractions may be more than what was typed
+    } catch (const ParseError& error) {  // the printed text may have more parentheses and fractions than the input
         const std::string_view why = error.what();
         require(why.find("levels deep") != why.npos || why.find("out of range") != why.npos ||
                     why.find("too large") != why.npos,
@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         require(!depends_on(substitute(e, slot, third), slot), "a replaced symbol is gone");
     } catch (const ParseError& error) {
         require(error.offset <= size && error.what()[0] != '\0', "an error says what and where");
-    } catch (const std::domain_error&) {  // by substitution: 1/(3*x - 1)
+    } catch (const std::domain_error&) {  // after substitution, as in 1/(3*x - 1)
     }
     return 0;
 }

@@ -1,6 +1,6 @@
-// The fuzz targets without libFuzzer: every file of some folders as it is, then a number of mutated ones, from a fixed
-// seed: the same inputs on every machine. Random numbers are taken as they come from the engine, since the library's
-// distributions may differ.
+// Runs a fuzz target without libFuzzer: every file of the folders unchanged, then COUNT mutated ones. A fixed seed
+// gives the same inputs on every machine. The random engine is used directly, since the distributions of the standard
+// library may differ.
 // usage: fuzz_TARGET COUNT DICTIONARY FOLDER...
 #include <algorithm>
 #include <cstddef>
@@ -19,7 +19,7 @@
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
-// A target may have its own, as for libFuzzer.
+// A target may define its own mutator, as for libFuzzer.
 extern "C" std::size_t LLVMFuzzerCustomMutator
     [[gnu::weak]] (std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed);
 
@@ -28,13 +28,13 @@ namespace {
 namespace fs = std::filesystem;
 using Bytes = std::vector<std::uint8_t>;
 
-constexpr std::size_t largest_growth = 64;  // of an input, by one mutation
+constexpr std::size_t largest_growth = 64;  // of an input by one mutation, bytes
 
 std::mt19937 engine(1);
 std::vector<Bytes> words;   // of the dictionary
-std::vector<Bytes> inputs;  // as they stand in the folders
+std::vector<Bytes> inputs;  // the files of the folders
 
-// 0 .. n - 1
+// A random number in 0 .. n - 1.
 std::size_t random_below(std::size_t n) { return engine() % n; }
 
 std::span<const std::uint8_t> piece_of_any_input(std::size_t length) {
@@ -49,7 +49,7 @@ Bytes bytes_of(const fs::path& path) {
     return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// The words of a libFuzzer dictionary: one a line, in quotes; \xAB, \" and \\ stand for bytes.
+// The words of a libFuzzer dictionary: one per line, in quotes, with the escapes \xAB, \" and \\.
 std::vector<Bytes> words_of(const fs::path& dictionary) {
     std::vector<Bytes> result;
     std::ifstream file(dictionary);
@@ -81,8 +81,8 @@ std::vector<Bytes> inputs_in(const fs::path& folder) {
     return result;
 }
 
-// The input that is tried stands in a file, where whatever ends the process leaves it. The file stays open: some file
-// systems write to the disk whenever a file that was emptied is closed.
+// Writes the current input to a file, so that it remains if the process ends. The file stays open, since some file
+// systems write to the disk whenever a truncated file is closed.
 class Attempt {
  public:
     explicit Attempt(const fs::path& program)
@@ -116,8 +116,8 @@ Bytes mutated(Bytes input) {
 
 }  // namespace
 
-// One small change: a bit, or a few bytes replaced by as many, none, a word, or a piece of any input. Returns the new
-// size. Bytes come from the inputs: of all 256 few would ever be accepted.
+// One small change: a flipped bit, or a few bytes replaced by as many, by none, by a word, or by a piece of any input.
+// Returns the new size. Bytes are taken from the inputs, since few of all 256 would be accepted.
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most) {
     Bytes bytes(data, data + size);
     const std::size_t at = random_below(size + 1), length = std::min(size - at, random_below(5));
@@ -157,8 +157,8 @@ int main(int argc, char** argv) {
     if (inputs.empty()) throw std::runtime_error("no inputs");
     Attempt attempt(argv[0]);
     for (const Bytes& input : inputs) attempt(input);
-    // Up to four changes, one upon the other: the input of one attempt is not kept for the next, since nothing here
-    // says which were interesting.
+    // Up to four changes of one input. A changed input is not kept for the next attempt, since without coverage data
+    // nothing shows which are useful.
     for (int left = std::stoi(argv[1]); left > 0; --left) {
         Bytes input = inputs[random_below(inputs.size())];
         for (std::size_t changes = 1 + random_below(4); changes > 0; --changes) input = mutated(std::move(input));

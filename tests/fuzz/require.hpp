@@ -1,4 +1,4 @@
-// What must hold whatever the input: libFuzzer keeps the input that breaks it.
+// A condition that must hold for every input. If it fails, the process aborts and libFuzzer keeps the input.
 #pragma once
 
 #include <cstdio>

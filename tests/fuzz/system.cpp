@@ -1,5 +1,5 @@
-// libFuzzer: any bytes as a system file. It is refused with InputError, or derived, simulated for a short time and
-// written: then every state is finite and every text is what it claims to be.
+// Fuzz target: any bytes as a system file. It is rejected with InputError. Otherwise it is derived, simulated for a
+// short time and written. Every state must be finite and every output valid.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -28,7 +28,7 @@ namespace {
 using namespace achilles;
 using fuzz::require;
 
-// Short, however fast the motion is.
+// A run of at most 20 impacts and 200 steps, so that it is short for any motion.
 Run short_run(const Model& model) {
     Run run = model.default_run();
     run.options.tolerance = std::max(run.options.tolerance, 1e-8);
@@ -63,7 +63,7 @@ void require_sound(const Trajectory& trajectory) {
     require(!summary(trajectory).empty(), "there is a summary");
 }
 
-// What stands between quotes on one line: places where expressions and names are, [begin, end).
+// Ranges [begin, end) of the texts between quotes on one line: expressions and names.
 std::vector<std::pair<std::size_t, std::size_t>> strings_of(std::string_view text) {
     std::vector<std::pair<std::size_t, std::size_t>> strings;
     std::size_t open = text.npos;
@@ -91,7 +91,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
 }
 
-// Bytes changed anywhere are mostly bad TOML; every other time a change stays inside one string.
+// Changes at arbitrary places mostly give invalid TOML. So every other change is made inside one string.
 extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed) {
     std::minstd_rand random(seed);
     const auto strings = strings_of({reinterpret_cast<const char*>(data), size});
@@ -99,7 +99,7 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
     const auto [begin, end] = strings[random() % strings.size()];
     std::vector<std::uint8_t> inner(data + begin, data + end);
     inner.resize(inner.size() + (most - size));
-    if (inner.empty()) return LLVMFuzzerMutate(data, size, most);  // an empty string, and no room for it to grow
+    if (inner.empty()) return LLVMFuzzerMutate(data, size, most);  // an empty string without room to grow
     inner.resize(LLVMFuzzerMutate(inner.data(), end - begin, inner.size()));
     constexpr std::string_view words = "+-*/^()'. 0123456789";
     for (std::uint8_t& byte : inner)

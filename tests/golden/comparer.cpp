@@ -23,7 +23,7 @@ std::size_t at(const Image& image, int x, int y) {
     return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
 }
 
-// The mean difference over a tile in the channel that differs most; what lies outside the image does not differ.
+// The mean difference over a tile in the channel that differs most; pixels outside the image count as equal.
 double fine_difference(const Image& a, const Image& b, int left, int top) {
     std::array<long, 3> sums{};
     const int right = std::min(left + fine_tile, a.width), bottom = std::min(top + fine_tile, a.height);
@@ -43,7 +43,7 @@ std::vector<std::string_view> lines_of(std::string_view text) {
     return lines;
 }
 
-// Takes a number off the text's front.
+// Removes a number from the front of the text.
 std::optional<double> take_number(std::string_view& text) {
     double value = 0.0;
     const auto read = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -59,10 +59,10 @@ bool same_number(double a, double b) {
     return apart < 1.5 * unit;
 }
 
-// Where two lines part; nothing where they do not.
+// The column at which two lines first differ, if they do.
 std::optional<std::size_t> parting(std::string_view golden, std::string_view actual) {
     const std::size_t length = golden.size();
-    bool in_word = false;  // the digits of a name or a colour are no number
+    bool in_word = false;  // digits in a name or a color are not a number
     while (!golden.empty() && !actual.empty()) {
         std::string_view a = golden, b = actual;
         const std::optional<double> x = in_word ? std::nullopt : take_number(a), y = x ? take_number(b) : x;
@@ -81,12 +81,12 @@ std::optional<std::size_t> parting(std::string_view golden, std::string_view act
     return length - golden.size();
 }
 
-// A long line's part about a column.
+// The part of a long line around a column.
 std::string shown(std::string_view line, std::size_t column) {
     constexpr std::size_t before = 60, most = 150;
     std::size_t begin = column > before && line.size() > most ? std::min(column - before, line.size()) : 0;
     std::size_t end = std::min(begin + most, line.size());
-    // Whole letters only.
+    // Does not cut a UTF-8 character.
     const auto in_letter = [&](std::size_t i) {
         return i < line.size() && (static_cast<unsigned char>(line[i]) & 0xC0U) == 0x80U;
     };
@@ -125,12 +125,12 @@ Image difference(const Image& a, const Image& b) {
 }
 
 std::string difference(std::string_view golden, std::string_view actual) {
-    constexpr std::size_t most = 5;  // of either kind
+    constexpr std::size_t most = 5;  // lines of each kind
     std::vector<std::string_view> a = lines_of(golden), b = lines_of(actual);
     std::size_t line = 0;
     for (; line < std::min(a.size(), b.size()) && !parting(a[line], b[line]); ++line) {
     }
-    // What is the same at the end: a line more or less must not make all that follow look different.
+    // Skips equal lines at the end: an added or removed line must not make all following lines differ.
     while (a.size() > line && b.size() > line && !parting(a.back(), b.back())) a.pop_back(), b.pop_back();
     const std::size_t lost = a.size() - line, found = b.size() - line;
     if (lost == 0 && found == 0) return {};

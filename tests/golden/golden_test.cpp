@@ -1,4 +1,4 @@
-// Every picture is as it was when somebody last found it right.
+// Compares every picture with its golden files.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,7 +36,7 @@ TEST(Goldens, every_golden_file_belongs_to_a_picture) {
         ADD_FAILURE() << file.string() << " belongs to no picture; tests/run --bless removes it";
 }
 
-// Also of a system that was added after the tests above were listed.
+// Also for a system that was added after the tests above were listed.
 TEST(Goldens, every_picture_has_golden_files) {
     for (const Picture& picture : pictures())
         EXPECT_TRUE(std::filesystem::is_directory(place().goldens / picture.name))
@@ -63,7 +63,7 @@ TEST(Goldens, every_system_and_journal_has_a_picture) {
     EXPECT_EQ(names.size(), files + 1) << "and the paper";
 }
 
-// The machinery, on a picture of its own.
+// Tests of check() and bless() with a picture made here.
 class Machinery : public testing::Test {
  protected:
     Machinery() : where{folder.path() / "goldens", folder.path() / "report"} {

@@ -33,7 +33,7 @@ void write(const Layer& layer, const fs::path& file) {
     if (!stream) throw std::runtime_error(file.string() + ": cannot be written");
 }
 
-// The golden file as a layer; nothing if it is missing.
+// The golden file as a layer; nullopt if it is missing.
 std::optional<Layer> golden_of(const Layer& made, const fs::path& folder) {
     const fs::path file = folder / made.file;
     if (!fs::exists(file)) return {};
@@ -48,7 +48,7 @@ std::string told(const Distance& distance, const Image& golden, const Image& mad
                        distance.score(), distance.left, distance.top, distance.coarse, distance.fine);
 }
 
-// Everything that is to be said about a picture.
+// Result of the comparison of a picture.
 struct Comparison {
     std::vector<Layer> made, golden;
     std::vector<Finding> findings;
@@ -86,7 +86,7 @@ Comparison compare(const Picture& picture, const Place& place) {
     return result;
 }
 
-// Beside one another: what was made, what was golden, and ten times the difference.
+// Writes the new file, the golden file and ten times the difference.
 void write_failure(const Comparison& comparison, const fs::path& folder) {
     const auto variant = [&](const std::string& file, const std::string& kind) {
         const fs::path path(file);
@@ -126,7 +126,7 @@ std::vector<fs::path> orphans(const std::vector<Picture>& pictures, const Place&
     for (const auto& entry : fs::recursive_directory_iterator(place.goldens)) {
         const std::string kind = entry.path().extension();
         const std::string folder = fs::relative(entry.path().parent_path(), place.goldens);
-        // The machinery itself stands in the folder; a journal is not golden but what a picture is made from.
+        // Skips the source files in this folder, and journals, which are inputs of pictures.
         if (!entry.is_regular_file() || folder == "." || (kind != ".png" && kind != ".txt")) continue;
         if (std::none_of(pictures.begin(), pictures.end(), [&](const Picture& one) { return one.name == folder; }))
             found.push_back(entry.path());

@@ -1,5 +1,5 @@
-// Golden files: what a picture was when somebody last looked at it and found it right. Every picture has a folder of
-// them, a file a layer.
+// Golden files: the contents of a picture when it was last reviewed. Every picture has a folder with one file per
+// layer.
 #pragma once
 
 #include <filesystem>
@@ -12,39 +12,38 @@
 
 namespace achilles::golden {
 
-// A file of a picture: a text or an image.
+// One file of a picture: a text or an image.
 struct Layer {
     std::string file;
     std::variant<std::string, Image> content;
 };
 
 struct Picture {
-    std::string name;                          // of its folder: "figure/ball_on_sine"
-    std::function<std::vector<Layer>()> make;  // in the order in which layers are compared
+    std::string name;                          // name of its folder: "figure/ball_on_sine"
+    std::function<std::vector<Layer>()> make;  // returns the layers in the order of comparison
 };
 
 struct Place {
     std::filesystem::path goldens, report;
 };
-Place place();  // tests/golden, and "golden" in the build tree
+Place place();  // goldens in tests/golden, report in "golden" of the build tree
 
-// A layer that is not as it was.
+// A layer that differs from its golden file.
 struct Finding {
     std::string file, what;
 };
 
-// Makes the picture and compares it with its golden files. Where it differs, the report gets what was made, the golden
-// files, the difference, and index.html, a page with all pictures that failed; where it does not, the report forgets
-// it.
+// Makes the picture and compares it with its golden files. If it differs, the new files, the golden files and the
+// differences are added to the report, whose index.html shows all failed pictures. Otherwise its entry is removed.
 std::vector<Finding> check(const Picture& picture, const Place& place);
 
 // Golden files that belong to no picture.
 std::vector<std::filesystem::path> orphans(const std::vector<Picture>& pictures, const Place& place);
 
-// Makes the golden files anew where they differ and removes those that nothing makes. A sentence for every file.
+// Replaces golden files that differ and removes those without a layer. Returns a sentence for every file.
 std::vector<std::string> bless(const Picture& picture, const Place& place);
 
-// What a person does about a finding.
+// Advice printed with a finding.
 inline constexpr const char* how_to_bless = "look at the picture; if it is right: tests/run --bless";
 
 }  // namespace achilles::golden

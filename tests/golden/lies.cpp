@@ -15,7 +15,7 @@ namespace achilles::golden {
 
 namespace {
 
-// The digit that looks most like it: the hardest change to see.
+// The digit that looks most similar: the change that is hardest to see.
 char lookalike(char digit) {
     constexpr std::string_view others = "8738168138";
     return others[static_cast<std::size_t>(digit - '0')];
@@ -23,7 +23,7 @@ char lookalike(char digit) {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 
-// Turned on the colour wheel by a tenth of it, as bright as before.
+// The color with its hue turned by a tenth of the color wheel, at the same brightness.
 Color turned(const Color& color) {
     const double high = std::max({color.r, color.g, color.b}), low = std::min({color.r, color.g, color.b});
     if (high == low) return color;
@@ -38,12 +38,12 @@ Color turned(const Color& color) {
     return {channel(5.0), channel(3.0), channel(1.0), color.a};
 }
 
-// What is nearly grey has none that could be another.
+// A nearly gray color has no hue to change.
 bool has_hue(const Color& color) {
     return std::max({color.r, color.g, color.b}) - std::min({color.r, color.g, color.b}) > 40;
 }
 
-// Whether no other marker covers it.
+// Whether no other marker covers this one.
 bool stands_alone(const Sheet& sheet, std::size_t item) {
     const auto& mark = std::get<Mark>(sheet[item]);
     for (std::size_t i = 0; i < sheet.size(); ++i) {
@@ -54,7 +54,7 @@ bool stands_alone(const Sheet& sheet, std::size_t item) {
     return true;
 }
 
-// How far a curve goes to the side and up or down; of parts that are not joined, the sum.
+// Horizontal and vertical extent of a curve, summed over separate parts.
 Point extent(const Path& path) {
     Point sum;
     for (std::size_t i = 1; i < path.points.size(); ++i) {
@@ -102,12 +102,12 @@ std::string to_text(const Lie& lie, const Sheet& truth) {
 }
 
 std::vector<Lie> lies_about(const Sheet& truth) {
-    constexpr double visible = 8.0;  // pixels: shorter ones hide under the markers at their ends
+    constexpr double visible = 8.0;  // pixels: markers at the ends cover shorter curves
     std::vector<Lie> lies;
     for (std::size_t i = 0; i < truth.size(); ++i) {
         if (const auto* path = std::get_if<Path>(&truth[i])) {
             const Point goes = extent(*path);
-            // A straight line moved along itself stays what it is.
+            // A straight line moved along itself does not change.
             if (goes.y > visible) lies.push_back({Lie::Kind::moved_right, i, 0});
             if (goes.x > visible) lies.push_back({Lie::Kind::moved_up, i, 0});
             if (goes.x + goes.y > visible && has_hue(path->stroke.color)) lies.push_back({Lie::Kind::other_hue, i, 0});

@@ -1,5 +1,4 @@
-// Falsified figures: what a comparison of pixels must notice. A lie is told on the sheet, so the real pipeline draws
-// it.
+// Falsified figures that a comparison of pixels must detect. A lie changes the sheet, so the normal pipeline draws it.
 #pragma once
 
 #include <string>
@@ -13,19 +12,19 @@ namespace achilles::golden {
 struct Lie {
     enum class Kind { moved_right, moved_up, other_hue, thicker, no_marker, other_digit };
     Kind kind = Kind::moved_right;
-    std::size_t item = 0;    // of the sheet
-    std::size_t letter = 0;  // of a label
+    std::size_t item = 0;    // index in the sheet
+    std::size_t letter = 0;  // index in a label
 };
 
 std::string to_text(const Lie& lie, const Sheet& truth);
 
-// Every lie of these kinds that can be told about a sheet and that shows: of every curve that is more than a point,
-// every marker that stands alone, every digit.
+// All visible lies about a sheet: about every curve longer than a point, every marker that no other covers, every
+// digit.
 std::vector<Lie> lies_about(const Sheet& truth);
 
 Sheet told(const Lie& lie, Sheet sheet);
 
-// The golden figure of one system of the gallery, and an easel to draw it on as `achilles figure` does.
+// The golden figure of one gallery system, drawn as by `achilles figure`.
 class Easel {
  public:
     explicit Easel(const std::string& system);

@@ -1,5 +1,5 @@
-// The comparison of pixels, tested by lies that it must notice and by what must not matter. bench_golden does both at
-// length: every lie about the gallery, and thirty repetitions.
+// Tests the comparison of pixels with falsified pictures that it must detect and correct ones that it must accept.
+// bench_golden does so with every lie about the gallery and thirty repetitions.
 #include <gtest/gtest.h>
 
 #include <map>
@@ -29,7 +29,7 @@ TEST(Lies, are_noticed_by_pixels_alone) {
     }
 }
 
-// The bars stand between lies and what another machine may draw.
+// Pictures drawn with other settings, as on another machine, are below the limits.
 TEST(Lies, a_picture_by_other_means_is_the_same) {
     const Image truth = image_of(figure_command(system));
     for (const char* threads : {"1", "2"})
@@ -41,7 +41,7 @@ TEST(Lies, a_picture_by_other_means_is_the_same) {
     EXPECT_LT(distance(truth, image_of(figure_command(system), "GALLIUM_OVERRIDE_CPU_CAPS=sse2")).score(), 0.5);
 }
 
-// What is drawn here is what the program draws.
+// The easel draws the same picture as the program.
 TEST(Lies, are_told_about_the_golden_figure) {
     Easel easel(system);
     EXPECT_EQ(easel.draw(easel.truth()), image_of(figure_command(system)));

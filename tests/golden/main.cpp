@@ -1,4 +1,4 @@
-// The golden tests; with --bless, and names of pictures or none, what they are and have to be from now on.
+// Runs the golden tests. With --bless [PICTURE...] replaces the golden files of these pictures, or of all.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -28,7 +28,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a command of the program leaves in an empty folder, and how the files are called, texts first.
+// Runs a command of the program in an empty folder and lists the files that it writes, texts first.
 class Made {
  public:
     explicit Made(const std::string& command, const std::string& environment = {}) {
@@ -71,7 +71,7 @@ std::vector<Layer> figure_layers(const std::string& system) {
             {image_name, image_of(figure_command(system))}};
 }
 
-// Everything `achilles paper` writes.
+// All files that `achilles paper` writes.
 std::vector<Layer> paper_layers() {
     const Trajectory ball = run_of("ball_on_sine", Conditions::paper);
     const Trajectory pendulum = run_of("double_pendulum", Conditions::paper);
@@ -83,8 +83,7 @@ std::vector<Layer> paper_layers() {
     return layers;
 }
 
-// The run, then the state of the session and its plots, then the picture.
-// Without the folder of the systems: where that stands is no matter.
+// The text without the path of the systems folder, which differs between machines.
 std::string anywhere(std::string text) {
     const std::string folder = find_system("ball_on_sine").parent_path().string() + "/";
     for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder))
@@ -97,7 +96,7 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
     library.find = find_system;
     library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
     library.exports = false;
-    const std::string first = "ball_on_sine";  // as the program opens without a word
+    const std::string first = "ball_on_sine";  // the system that the program opens without arguments
     Session session(first, read_system(find_system(first)), std::move(library));
     for (const Command& command : read_journal(journal)) session.apply(command);
     const std::string trajectory = to_text(session.trajectory()), state = anywhere(to_text(session));
@@ -110,7 +109,7 @@ std::vector<Layer> explorer_layers(const fs::path& journal) {
             {image_name, image_of(explorer_command(journal))}};
 }
 
-// The fourth frame of four seconds each, of a system that stands here: it shows more than those of the gallery need.
+// The frame at the fourth step of 4 s of a system of tests/golden/frame, which has elements that no gallery system has.
 std::vector<Layer> frame_layers(const fs::path& system) {
     constexpr double step = 4.0;
     const auto model = std::make_shared<const Model>(read_system(system));
@@ -121,7 +120,7 @@ std::vector<Layer> frame_layers(const fs::path& system) {
     return {{"figure.txt", to_text(animation.at(3.0 * step))}, {image_name, frames.image("frame_00003.png")}};
 }
 
-// The file's line is a system and what `achilles sweep` is asked of it.
+// The line of the file has the system and the options for `achilles sweep`.
 std::vector<Layer> sweep_layers(const fs::path& file) {
     std::string line = test::content(file);
     line.erase(line.find_last_not_of('\n') + 1);
@@ -135,7 +134,7 @@ std::vector<Layer> sweep_layers(const fs::path& file) {
     return {{"figure.txt", to_text(compose_sweep(data))}, {image_name, made.image(image_name)}};
 }
 
-// The file's line is a system and what `achilles figure --proof` is asked of it, an option and its value each.
+// The line of the file has the system and the options with values for `achilles figure --proof`.
 std::vector<Layer> proof_layers(const fs::path& file) {
     const std::string line = test::content(file).substr(0, test::content(file).find('\n'));
     std::istringstream words(line);
@@ -190,7 +189,7 @@ std::vector<Picture> pictures() {
 
 Trajectory gallery_run(const std::string& system) { return run_of(system, {}); }
 
-// All views, those over time first, as `achilles figure` orders them.
+// All views, those over time first, in the order of `achilles figure`.
 Figure gallery_figure(const Trajectory& trajectory, const PublicationStyle& style) {
     std::vector<ViewDescription> views = trajectory.model->description().views;
     std::stable_partition(views.begin(), views.end(), [](const ViewDescription& view) { return view.x.text == "t"; });

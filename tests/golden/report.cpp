@@ -35,7 +35,7 @@ std::string escaped(const std::string& text) {
     return html;
 }
 
-// Its first line holds the score, for those who sort.
+// Reads an entry, whose first line is the score.
 Entry read_entry(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
     Entry entry;
@@ -63,7 +63,7 @@ void write_entry(const fs::path& folder, const std::string& name, double score, 
         fmt::format("<h2>{}</h2>\n<p>{:.3g} times what is allowed in its worst image</p>\n", escaped(name), score);
     for (const Finding& finding : findings)
         html += fmt::format("<pre><b>{}</b>: {}</pre>\n", escaped(finding.file), escaped(finding.what));
-    std::vector<std::pair<std::string, fs::path>> images;  // by what they are of, then before, now, difference
+    std::vector<std::pair<std::string, fs::path>> images;  // sorted by layer, then before, now, difference
     for (const auto& entry : fs::directory_iterator(folder)) {
         const fs::path image = entry.path().filename(), of = image.stem().stem();
         const fs::path kind = image.stem().extension();

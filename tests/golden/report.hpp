@@ -1,5 +1,5 @@
-// One page with every picture that is not as it was, the worst first. Tests run side by side: each leaves an entry in a
-// folder of its own and then collects all there are.
+// A page with all pictures that differ from their golden files, the worst first. Tests run in parallel: each writes an
+// entry to its own folder and then collects all entries.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,7 @@
 
 namespace achilles::golden {
 
-// Whoever writes to the report holds it, one after the other over all test programs.
+// Lock of the report; only one of all test programs can hold it at a time.
 class ReportLock {
  public:
     explicit ReportLock(const std::filesystem::path& report);
@@ -22,11 +22,11 @@ class ReportLock {
     int file_;
 };
 
-// The entry of one picture, in its folder beside the files it shows.
+// Writes the entry of one picture to its folder, which has the files that it shows.
 void write_entry(const std::filesystem::path& folder, const std::string& name, double score,
                  const std::vector<Finding>& findings);
 
-// index.html from all entries below the report's folder.
+// Writes index.html from all entries below the report's folder.
 void write_page(const std::filesystem::path& report);
 
 }  // namespace achilles::golden

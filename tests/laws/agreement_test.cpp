@@ -1,4 +1,4 @@
-// Executions that must agree: two tolerances, two methods, two reinitializations, two runs of the same.
+// Executions that must agree: two tolerances, two methods, two reinitializations, two identical runs.
 #include "floor/agreement.hpp"
 #include "laws/laws.hpp"
 #include "output/output.hpp"
@@ -20,10 +20,10 @@ TEST_P(Agreement, TwoTolerancesAgree) {
     EXPECT_EQ(loose.phases.size(), tight.phases.size());
 }
 
-// The same happens to every contact, at the same times, however steps are made. Until the end errors grow as the motion makes
-// them: 1e-9 (ball_in_gusts) was measured.
+// Every contact has the same events at the same times with both methods. Until the end the errors grow with the motion;
+// the largest measured difference is 1e-9 (ball_in_gusts).
 TEST_P(Agreement, TwoMethodsTellTheSame) {
-    if (GetParam().method != Method::taylor) return;  // asked once of the two
+    if (GetParam().method != Method::taylor) return;  // one test for the pair of methods
     auto run = run_of(GetParam());
     run.options.tolerance = 1e-12;
     const Trajectory one = simulated(GetParam(), run);
@@ -33,8 +33,8 @@ TEST_P(Agreement, TwoMethodsTellTheSame) {
     EXPECT_LE(apart.size, 5e-9) << apart.where;
 }
 
-// What the euclidean restart adds is of the order of the impact speed at the cut, which eps bounds, and
-// grows with the motion: up to 28 eps (triple_pendulum) was measured.
+// The difference of the two restarts is of the order of the impact speed at the cut, which eps bounds. It grows with
+// the motion; the largest measured value is 28 eps (triple_pendulum).
 TEST_P(Agreement, KineticAndEuclideanAgreeAsEpsFalls) {
     auto run = run_of(GetParam());
     run.options.tolerance = 1e-12;

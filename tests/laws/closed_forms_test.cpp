@@ -1,4 +1,4 @@
-// Systems of the gallery whose motion is known in closed form, to 1e-10.
+// Gallery systems whose motion is known in closed form; agreement to 1e-10.
 #include <fmt/format.h>
 
 #include <boost/math/special_functions/ellint_1.hpp>
@@ -18,7 +18,7 @@ constexpr double within = 1e-10;
 
 class ClosedForm : public testing::TestWithParam<Method> {
  protected:
-    // The system with these values set, integrated finely, so that the comparison is with the theory.
+    // Simulates the system with these settings, at a tight tolerance, so that the integration error does not count.
     Trajectory simulated(const std::string& system, const std::vector<std::string>& settings, double end_time) {
         const auto model = model_of(system);
         auto run = model->default_run();
@@ -53,7 +53,7 @@ Event only(const Trajectory& trajectory, Event::Kind kind) {
 
 std::string set(const std::string& name, double value) { return fmt::format("{}={}", name, value); }
 
-// tau_inf = t1 + 2 e v1/(g (1 - e)), v1 the speed of the first impact.
+// tau_inf = t1 + 2 e v1/(g (1 - e)), with the time t1 and the speed v1 of the first impact.
 TEST_P(ClosedForm, FlatFloor) {
     for (const double e : {0.0, 0.3, 0.7, 0.9}) {
         SCOPED_TRACE(e);
@@ -76,7 +76,7 @@ TEST_P(ClosedForm, FlatFloor) {
     }
 }
 
-// Across the plane gravity is g cos(alpha); along it the ball gathers g sin(alpha), whatever the impacts.
+// Gravity is g cos(alpha) normal to the plane. Along it the ball accelerates with g sin(alpha), independent of impacts.
 TEST_P(ClosedForm, Incline) {
     for (const double alpha : {0.1, 0.4, 1.0}) {
         SCOPED_TRACE(alpha);
@@ -92,7 +92,8 @@ TEST_P(ClosedForm, Incline) {
     }
 }
 
-// From the top with the speed v: cos(phi) = 2/3 + v^2/(3 g R), and phi'^2 = (v/R)^2 + 4 (g/R) sin^2(phi/2) on the way.
+// Start at the top with speed v. Release at cos(phi) = 2/3 + v^2/(3 g R); phi'^2 = (v/R)^2 + 4 (g/R) sin^2(phi/2)
+// before.
 TEST_P(ClosedForm, ReleaseFromTheCylinder) {
     for (const double v : {1e-5, 0.05, 0.2, 1.0, 2.0}) {
         SCOPED_TRACE(v);
@@ -104,7 +105,7 @@ TEST_P(ClosedForm, ReleaseFromTheCylinder) {
         const double phi = acos(2.0 / 3.0 + v * v / (3.0 * g * R));
         EXPECT_NEAR(release.q[1] / R, cos(phi), within);
         EXPECT_NEAR(release.v_after.norm(), sqrt(g * R * cos(phi)), within);
-        if (v < 0.01) continue;  // the slower the start, the more its rounding delays the fall
+        if (v < 0.01) continue;  // at a slow start rounding shifts the time of the fall
         // t = 2/w F(phi/2 | -m) with w = v/R, m = 4 g/(R w^2).
         const double w = v / R, m = 4.0 * g / (R * w * w), k = sqrt(m / (1.0 + m));
         // F(a | -m) = (K(k) - F(pi/2 - a, k))/sqrt(1 + m)
@@ -114,7 +115,7 @@ TEST_P(ClosedForm, ReleaseFromTheCylinder) {
     }
 }
 
-// After bouncing: from the Zeno point on, 3 cos(phi) = 2 cos(phi0) + v^2/(g R).
+// After a Zeno point at phi0 with speed v: release at 3 cos(phi) = 2 cos(phi0) + v^2/(g R).
 TEST_P(ClosedForm, ReleaseFromTheCylinderAfterBouncing) {
     const Trajectory trajectory = simulated("ball_on_cylinder", {}, 1.4);
     const Event zeno = only(trajectory, Event::Kind::zeno), release = only(trajectory, Event::Kind::release);
@@ -123,8 +124,8 @@ TEST_P(ClosedForm, ReleaseFromTheCylinderAfterBouncing) {
                 within);
 }
 
-// Locked, it is one pendulum: from rest at theta1 = -a, the knee opens at the vertical, a quarter of the period
-// 4 sqrt(I/(M g l)) K(sin(a/2)) later.
+// With the knee locked, the system is a single pendulum. From rest at theta1 = -a, the knee is released at the
+// vertical, after a quarter of the period 4 sqrt(I/(M g l)) K(sin(a/2)).
 TEST_P(ClosedForm, LockedPendulum) {
     for (const double a : {0.1, 0.7, 1.5}) {
         SCOPED_TRACE(a);
@@ -142,7 +143,7 @@ TEST_P(ClosedForm, LockedPendulum) {
     }
 }
 
-// Sliding in y = c x^2 with amplitude A: (1 + 4 c^2 x^2) x'^2 = 2 g c (A^2 - x^2), hence the period
+// Sliding in y = c x^2 with amplitude A: (1 + 4 c^2 x^2) x'^2 = 2 g c (A^2 - x^2), so the period is
 // 4 sqrt((1 + p)/(2 g c)) E(k) with p = 4 c^2 A^2, k^2 = p/(1 + p).
 TEST_P(ClosedForm, SlidingInTheBowl) {
     const double A = 1.0, c = 0.5, g = 9.81, p = 4.0 * c * c * A * A;
@@ -156,7 +157,7 @@ TEST_P(ClosedForm, SlidingInTheBowl) {
     EXPECT_EQ(whole.phases.size(), 1u);
 }
 
-// From the bottom with v^2 in (2 g R, 5 g R): released at cos(phi) = -(v^2 - 2 g R)/(3 g R).
+// Start at the bottom with v^2 in (2 g R, 5 g R): release at cos(phi) = -(v^2 - 2 g R)/(3 g R).
 TEST_P(ClosedForm, ReleaseInsideTheRing) {
     for (const double rate : {6.5, 7.0, 8.0, 9.5}) {
         SCOPED_TRACE(rate);
@@ -173,7 +174,8 @@ TEST_P(ClosedForm, ReleaseInsideTheRing) {
     }
 }
 
-// On the stop, cart and pendulum swing as one mass: from rest at x = -A, released at x = g tan(alpha) (M + m)/k.
+// With the pendulum on its stop, cart and pendulum move as one mass. From rest at x = -A, release is at
+// x = g tan(alpha) (M + m)/k.
 TEST_P(ClosedForm, CartAndPendulum) {
     const double A = 0.3, alpha = 10.0 * pi / 180.0;
     const Trajectory trajectory = simulated("cart_pendulum", {"x=-0.3", set("theta", alpha), set("alpha", alpha)}, 1.0);
@@ -186,20 +188,21 @@ TEST_P(ClosedForm, CartAndPendulum) {
     EXPECT_NEAR(releases.front().v_after[0], w * sqrt(A * A - x * x), within);
 }
 
-// The mass sticks to the stop until the shaker relaxes its spring, at cos(om t) = 0; then it is driven from rest.
+// The mass stays on the stop until the spring of the shaker is relaxed, at cos(om t) = 0. Then it starts from rest.
 TEST_P(ClosedForm, ImpactOscillator) {
     const double end = 0.5;
     const Trajectory trajectory = simulated("impact_oscillator", {"x=0"}, end);
     const double om = value("om"), w = sqrt(value("k") / value("m")), a = value("a");
     const Event release = only(trajectory, Event::Kind::release);
     EXPECT_NEAR(release.t, pi / 2.0 / om, within);
-    // x'' + w^2 x = w^2 a sin(om s), s = t - pi/(2 om): at rest at s = 0.
+    // x'' + w^2 x = w^2 a sin(om s), s = t - pi/(2 om), with x = x' = 0 at s = 0.
     const double s = end - release.t, b = a * w * w / (w * w - om * om);
     EXPECT_NEAR(trajectory.end.q[0], b * (sin(om * s) - om / w * sin(w * s)), within);
     EXPECT_NEAR(trajectory.end.v[0], b * om * (cos(om * s) - cos(w * s)), within);
 }
 
-// Against a shaker that stands still the flights are x = u/w sin(w t) - d (1 - cos(w t)), of 2/w atan(u/(w d)) each.
+// With the shaker at rest, a flight of take-off speed u is x = u/w sin(w t) - d (1 - cos(w t)) and lasts
+// 2/w atan(u/(w d)).
 TEST_P(ClosedForm, ImpactOscillatorThatNothingShakes) {
     const double d = 0.1, e = 0.6;
     const Trajectory trajectory = simulated("impact_oscillator", {"x=0.02", "om=1e-9"}, 0.2);
@@ -212,8 +215,8 @@ TEST_P(ClosedForm, ImpactOscillatorThatNothingShakes) {
     EXPECT_NEAR(only(trajectory, Event::Kind::zeno).t, t, within);
 }
 
-// Without drive and damper ball and table swing as one mass about y = -m g/K; thrown off where the table falls freely,
-// at y = M g/K.
+// Without drive and damper, ball and table oscillate as one mass about y = -m g/K. The ball is released where the
+// acceleration of the table alone is that of free fall, at y = M g/K.
 TEST_P(ClosedForm, SprungTable) {
     const Trajectory trajectory = simulated("ball_on_table", {"z=-0.2", "y=-0.2", "F=0", "d=0"}, 0.4);
     const double w = sqrt(value("K") / (value("M") + value("m")));
@@ -224,7 +227,7 @@ TEST_P(ClosedForm, SprungTable) {
     EXPECT_NEAR(release.v_after[0], w * sqrt((0.2 + rest) * (0.2 + rest) - (off - rest) * (off - rest)), within);
 }
 
-// The table of amplitude a throws where a om^2 sin(om t) = g.
+// The vibrating table of amplitude a releases the ball where a om^2 sin(om t) = g.
 TEST_P(ClosedForm, ThrownByAVibratingTable) {
     const Trajectory trajectory = simulated("ball_on_vibrating_table", {"y=0", "y'=1"}, 0.15);
     const double a = value("a"), om = value("om"), g = value("g");

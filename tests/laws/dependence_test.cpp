@@ -1,4 +1,4 @@
-// What the derivatives of every run obey (theory-derivatives.md 3 and 4): of every file of the gallery, as far as they go.
+// Laws that the derivatives of every run obey (theory-derivatives.md 3 and 4), tested on every gallery file.
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
@@ -22,7 +22,7 @@ Run exact_run(const Model& model, double end_time = 0.0) {
     return run;
 }
 
-// By the starts, at the end time: 2n x 2n.
+// Derivatives of (q, v) at the end time by the initial values, 2n x 2n.
 MatrixXd by_starts(const achilles::Derivatives& d) {
     const Index n = d.end->q.rows();
     MatrixXd result(2 * n, 2 * n);
@@ -50,7 +50,8 @@ class Dependence : public testing::TestWithParam<std::string> {
     std::shared_ptr<const Model> model_ = model_of(GetParam());
 };
 
-// det dx(t)/dx0 = e^(2N) det M(q0)/det M(q(t)) without completion: until the last impact before the first cut.
+// Without completion det dx(t)/dx0 = e^(2N) det M(q0)/det M(q(t)) after N impacts. Tested up to the last impact before
+// the first cut.
 TEST_P(Dependence, KeepsPhaseVolumeBetweenImpacts) {
     if (has_damping(model_->description())) return;
     const Trajectory whole = simulate(model_, exact_run(*model_));
@@ -61,7 +62,7 @@ TEST_P(Dependence, KeepsPhaseVolumeBetweenImpacts) {
             until = event.truncation ? event.truncation->t : event.t;
             break;
         }
-    double end = 0.0;  // where no impact is near: a share of its flight before an impact
+    double end = 0.0;  // far from impacts: at 0.7 of the flight before an impact
     for (std::size_t i = 0; i < whole.events.size() && i < 8; ++i) {
         const double before = i == 0 ? whole.run.options.start_time : whole.events[i - 1].t;
         if (whole.events[i].t < until && whole.events[i].t > before) end = before + 0.7 * (whole.events[i].t - before);
@@ -76,13 +77,13 @@ TEST_P(Dependence, KeepsPhaseVolumeBetweenImpacts) {
     double expected = det_of_mass(*model_, run, run.start()) / det_of_mass(*model_, run, trajectory.end);
     for (const Event& event : trajectory.events)
         expected *= std::pow(model_->restitution(run.parameters, event.contacts.only()), 2);
-    // Beside the size of the terms that cancel in it.
+    // Relative to the size of the terms that cancel in the determinant.
     const MatrixXd by = by_starts(d);
     const double size = std::pow(by.norm(), static_cast<double>(by.rows()));
     EXPECT_NEAR(by.determinant(), expected, 1e-11 * std::abs(expected) + 1e-15 * size) << trajectory.events.size();
 }
 
-// In contact every change stays on h = 0, hdot = 0; a Zeno point forgets two dimensions of the starts'.
+// In contact all derivatives are tangent to h = 0, hdot = 0. A Zeno point forgets two dimensions of the initial values.
 TEST_P(Dependence, IsTangentInContact) {
     const Trajectory trajectory = simulate(model_, exact_run(*model_));
     const auto d = differentiate(trajectory);
@@ -102,7 +103,7 @@ TEST_P(Dependence, IsTangentInContact) {
             contact.at(state);
             for (Index k = 0; k < K; ++k) {
                 if (!d.refused[static_cast<std::size_t>(k)].empty()) continue;
-                // What is nothing at all beside the other components is rounding.
+                // A component far below the others is rounding error.
                 const double least = 1e-2 * std::max(1.0, Z.cwiseAbs().maxCoeff());
                 const double size = least + contact.h_row().cwiseAbs() * Z.col(k).cwiseAbs();
                 const double rate = least + contact.hdot_row().cwiseAbs() * Z.col(k).cwiseAbs();
@@ -129,8 +130,8 @@ TEST_P(Dependence, IsTangentInContact) {
     EXPECT_LE(singular[singular.size() - 1], 1e-12 * singular[0]);
 }
 
-// Slower by a factor, with gravity less by its square, everything happens later by the factor:
-// sum v dt/dv + 2 g dt/dg = -t for every event. Where g is the only thing that knows seconds.
+// If velocities change by a factor and gravity by its square, every event time changes by the inverse factor. So
+// sum v dt/dv + 2 g dt/dg = -t for every event, if g is the only parameter whose unit contains seconds.
 TEST_P(Dependence, KnowsTheUnitOfTime) {
     const SystemDescription& system = model_->description();
     if (!model_->equations().autonomous || has_damping(system)) return;
@@ -160,7 +161,7 @@ TEST_P(Dependence, KnowsTheUnitOfTime) {
     }
 }
 
-// Where all that has mass is heavier by a factor nothing changes.
+// Multiplying all masses by a factor changes no event time: sum m dt/dm = 0.
 TEST_P(Dependence, KnowsTheUnitOfMass) {
     const SystemDescription& system = model_->description();
     for (const auto& coordinate : system.coordinates)
@@ -183,8 +184,8 @@ TEST_P(Dependence, KnowsTheUnitOfMass) {
     }
 }
 
-// What a quantity of the true run is differentiated by: what duals carry through it, and fourth-order differences of runs in 34
-// digits beside it, which know nothing of derivatives.
+// Derivative of a quantity of the reference run (34 digits) by one direction, by dual numbers. It is compared with
+// fourth-order differences of reference runs, which share no code with the derivatives.
 class TrueSlopes {
  public:
     using Runs = TrueRunsOf<Dual>;
@@ -207,7 +208,7 @@ class TrueSlopes {
             beside_.push_back(TrueRuns(model, other).run(point_of(other.start()), run.options.end_time));
         }
     }
-    // Of what is taken from an execution, whatever its numbers.
+    // The derivative of the quantity that `take` reads from an execution of any number type.
     template <class Take>
     Real of(const Take& take) const {
         const Real slope = take(by_duals_).slope;
@@ -218,12 +219,13 @@ class TrueSlopes {
     }
 
  private:
-    static constexpr double distance = 0x1p-23;  // to the fourth power it is 2e-28
+    static constexpr double distance = 0x1p-23;  // its fourth power, the order of the error, is 2e-28
     TrueExecutionOf<Dual> by_duals_;
     std::vector<TrueExecution> beside_;
 };
 
-// The derivatives beside those of the truth: of the first Zeno point and release, and of the end, by one start and by e.
+// Derivatives against those of the reference: times of the first Zeno point and release, and the final state, by one
+// initial value and by e.
 TEST_P(Dependence, IsWhatManyDigitsSay) {
     static const std::vector<std::string> some{"ball_on_sine",           "double_pendulum",
                                                "driven_double_pendulum", "ball_on_vibrating_table",
@@ -252,7 +254,8 @@ TEST_P(Dependence, IsWhatManyDigitsSay) {
     };
     for (const Index direction : {Index{0}, e}) {
         const TrueSlopes truth(*model_, run, direction);
-        for (const Event::Kind kind : {Event::Kind::zeno, Event::Kind::release}) {  // the truth has more impacts
+        for (const Event::Kind kind :
+             {Event::Kind::zeno, Event::Kind::release}) {  // impacts are not compared: the reference has more
             for (std::size_t j = 0; j < trajectory.events.size(); ++j) {
                 if (trajectory.events[j].kind != kind) continue;
                 const Real slope = truth.of([&](const auto& execution) {

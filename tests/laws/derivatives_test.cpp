@@ -1,5 +1,5 @@
-// Every program of every model against finite differences of L and h, in 50 digits, where these differences are as good
-// as exact: what simulate() evaluates is what Euler, Lagrange and theory.md 1 say.
+// Compares every program of every model with finite differences of L and h in 50 digits, where the differences are
+// practically exact. So simulate() evaluates the Euler-Lagrange equations and the formulas of theory.md 1.
 #include <boost/multiprecision/cpp_bin_float.hpp>
 #include <functional>
 #include <random>
@@ -20,7 +20,7 @@ Reals moved(Reals x, const Reals& direction, const Real& by) {
     return x;
 }
 
-// Truncation h^2 and cancellation 1e-50/h are both about 1e-32.
+// Central difference. The truncation error h^2 and the cancellation error 1e-50/h are both near 1e-32.
 Real along(const Function& function, const Reals& x, const Reals& direction) {
     const Real h = 1e-16;
     return (function(moved(x, direction, h)) - function(moved(x, direction, -h))) / (2 * h);
@@ -45,7 +45,7 @@ class Derivatives : public Law {
         dof_ = static_cast<std::size_t>(model_->dof());
     }
 
-    // Outputs [first, first + count) of a program at (q, v, t); sigma where the program has it.
+    // Outputs [first, first + count) of a program at (q, v, t), and at sigma if the program has this input.
     Reals evaluate(const Program& program, const Reals& x, std::size_t first, std::size_t count, Real sigma = 0) const {
         auto evaluator = model_->evaluator<Real>(program, model_->default_run().parameters);
         for (std::size_t i = 0; i < 2 * dof_; ++i) evaluator.input(i) = x[i];
@@ -66,15 +66,15 @@ class Derivatives : public Law {
     }
     Reals q(const Reals& x) const { return {x.begin(), x.begin() + static_cast<std::ptrdiff_t>(dof_)}; }
     Reals v(const Reals& x) const { return {x.begin() + static_cast<std::ptrdiff_t>(dof_), x.end() - 1}; }
-    // How a state moves that has this acceleration.
+    // Rate of the state (q, v, t) for this acceleration.
     Reals flow(const Reals& x, const Reals& acceleration) const { return joined(v(x), acceleration, 1); }
-    // dT/dv_i, and M times a vector: what dT/dv would be at this velocity.
+    // dT/dv_i, and component i of M times a vector, computed as dT/dv at that velocity.
     Real momentum(const Reals& x, std::size_t i) const { return along(output(model_->energy(), 1), x, unit(dof_ + i)); }
     Real mass_times(const Reals& x, const Reals& vector, std::size_t i) const {
         return momentum(joined(q(x), vector, x.back()), i);
     }
 
-    // Some states of the sliders' ranges at which M is positive definite and everything is finite.
+    // Random states in the ranges of the sliders at which M is positive definite and all values are finite.
     std::vector<Reals> states() const {
         std::mt19937 random(7);
         std::vector<Reals> result;
@@ -99,7 +99,7 @@ class Derivatives : public Law {
     std::size_t dof_ = 0;
 };
 
-// d/dt dL/dv = dL/dq + Q along f, by which the energy grows as Q'v + dV/dt.
+// d/dt dL/dv = dL/dq + Q along f, and the energy changes at the rate Q'v + dV/dt.
 TEST_P(Derivatives, FreeMotionIsLagranges) {
     const Program forces(model_->equations().Q, model_->layout().slots());
     for (const Reals& x : states()) {
@@ -119,7 +119,7 @@ TEST_P(Derivatives, FreeMotionIsLagranges) {
     }
 }
 
-// hdot, hddot along f; W and n by M; f_c keeps hdot, its force is g' lambda; h''' along f_c.
+// hdot and hddot along f; W and n from M; f_c keeps hdot, and its force is g' lambda; h''' along f_c.
 TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
     const Program& surface = model_->contact_terms();
     const Function gap = output(model_->gap(), 0), hdot = output(surface, 1),
@@ -162,8 +162,8 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
     }
 }
 
-// In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and what the shadowing bound differentiates (theory.md 5.1
-// and 5.2).
+// In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and the derivatives in the shadowing bound (theory.md 5.1 and
+// 5.2).
 TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
     const Bouncing& bouncing = model_->bouncing();
     for (const Reals& x : states()) {
@@ -176,7 +176,7 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
         const Real sigma = output(model_->contact_terms(), 1)(x);
         const Reals y = joined(q(x), s, x.back()), free = flow(x, evaluate(model_->motion({}).program, x, 0, dof_));
         const Program &hddot = bouncing.hddot, &shadow = bouncing.shadow;
-        const std::size_t first = bouncing.variables.size();  // the gradient of hddot stands before
+        const std::size_t first = bouncing.variables.size();  // the first outputs are the gradient of hddot
         expect_same(evaluate(hddot, y, 0, 1, sigma)[0], output(model_->motion({}).program, 2 * dof_)(x), "hddot");
         const Real h = 1e-16;
         const Real by_sigma =
@@ -186,7 +186,7 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
         const Reals D = evaluate(shadow, y, first + 3 * dof_, dof_, sigma),
                     rate = evaluate(bouncing.rates, y, dof_, dof_, sigma);
         const Reals motion = flow(x, rate);
-        // Where a force makes it no square, D is for Lagrange's remainder alone.
+        // If a force makes f_c not quadratic in v, D is only the coefficient of Lagrange's remainder.
         const bool quadratic = D == evaluate(shadow, y, first + 3 * dof_, dof_, 2 * sigma);
         for (std::size_t i = 0; i < dof_; ++i) {
             expect_same(evaluate(bouncing.rates, y, i, 1, sigma)[0], x[dof_ + i], "v");
@@ -205,7 +205,7 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
                             along(output(shadow, first + i, sigma), y, unit(k)), "dA");
             }
         }
-        // The rate of hddot(q, s, 0) along the bouncing, and what the estimate of the Zeno time needs of it.
+        // The rate of hddot(q, s, 0) along the bouncing motion, and the terms of it that estimate the Zeno time.
         const Reals drift = evaluate(shadow, y, first + 6 * dof_ + 2 * dof_ * dof_, 3);
         if (quadratic)
             expect_same(drift[0] + drift[1] * sigma + drift[2] * sigma * sigma,

@@ -1,4 +1,4 @@
-// The laws of one execution, on the run that each file asks for.
+// The laws of one execution, tested on the run that each gallery file specifies.
 #include <random>
 
 #include "laws/laws.hpp"
@@ -13,7 +13,7 @@ std::string listed(const Violations& violations) {
     return text;
 }
 
-// Every law is asked of the file's run, of the other conditions and of the other reinitialization.
+// Tests a law on the file's run with both sets of truncation conditions and both reinitializations.
 template <class F>
 void on_every_run(const Case& one, F law) {
     for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {
@@ -35,7 +35,7 @@ TEST_P(Law, TheGapIsNeverNegative) { on_every_run(GetParam(), gap); }
 TEST_P(Law, PhasesAbutAndHoldWhatTheirEventsSay) { on_every_run(GetParam(), phases); }
 TEST_P(Law, TheContactForcePressesUntilTheRelease) { on_every_run(GetParam(), contact_force); }
 
-// Starts and parameters anywhere near the file's, within its sliders.
+// Random initial values and parameters near those of the file, in the ranges of its sliders.
 TEST_P(Law, AllHoldFromOtherStarts) {
     const auto model = model_of(GetParam().system);
     const SystemDescription& description = model->description();
@@ -63,7 +63,7 @@ TEST_P(Law, AllHoldFromOtherStarts) {
             continue;  // a start with a negative gap
         }
         ++done;
-        // Not all that chatters together is completed (theory-gaps.md 2.6): such a run says so.
+        // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6).
         if (model->contacts() == 1 || trajectory.outcome.kind != Outcome::Kind::undecided) {
             EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         }

@@ -1,5 +1,5 @@
-// What must not change a motion with forces, time and several gaps: the numbering of contacts, a gap
-// that is never reached, another system in the same file, the frame, the time at which it starts.
+// Invariance of motions with forces, time dependence and several gaps. The motion must not depend on the numbering of
+// contacts, a gap that is never reached, another system in the same file, the frame, or the start time.
 #include <fmt/format.h>
 
 #include "core/systems.hpp"
@@ -18,7 +18,7 @@ Trajectory to_its_end(const SystemDescription& system, const std::function<void(
     return trajectory;
 }
 
-// Contact i of one is contact as[i] of the other.
+// Contact i of the one run is contact as[i] of the other.
 ContactSet renamed(ContactSet set, const std::vector<std::size_t>& as) {
     ContactSet result;
     for (std::size_t i = 0; i < as.size(); ++i)
@@ -65,7 +65,7 @@ TEST_P(GapLaws, RenumberingContactsRenamesAndChangesNothing) {
     expect_same_run(expected, to_its_end(turned), 1e-12, as);
 }
 
-// Not a bit where its series ends before the others do; where it does not, steps may be shorter.
+// All bits agree if the Taylor series of the added gap ends before the others. Otherwise steps may be shorter.
 TEST_P(GapLaws, AGapThatIsNeverReachedChangesNothing) {
     const Trajectory expected = to_its_end(description());
     for (const auto& [motion, tolerance] : {std::pair("", 0.0), std::pair(" + sin(t)", 1e-10)}) {
@@ -85,7 +85,7 @@ TEST_P(GapLaws, AGapThatIsNeverReachedChangesNothing) {
 INSTANTIATE_TEST_SUITE_P(Reference, GapLaws, testing::ValuesIn(reference_systems),
                          [](const auto& one) { return std::string(one.param); });
 
-// Two systems in one file, which must not share a name: coordinates and parameters of the second get a prefix.
+// Two systems in one file. To keep names distinct, coordinates and parameters of the second get a prefix.
 SystemDescription joined_systems(const SystemDescription& a, SystemDescription b) {
     const auto renamed_in = [&](std::string text) {
         std::string result;
@@ -133,7 +133,7 @@ SystemDescription joined_systems(const SystemDescription& a, SystemDescription b
     return both;
 }
 
-// The steps and the impacts at which bouncings are cut may differ.
+// The steps and the impacts at which sequences are cut may differ.
 TEST(IndependentSystems, InOneFileRunAsEachAlone) {
     const std::pair<const char*, const char*> pairs[] = {{"travelling_wave", "driven_damped_pendulum"},
                                                          {"ball_in_box", "vibrating_table"},
@@ -185,7 +185,7 @@ Plane ball_over_waves() {
     return ball;
 }
 
-// b = B + u t, B' = b' - u.
+// Galilean transformation: b = B + u t, B' = b' - u.
 TEST(MovingGaps, WithConstantSpeedAreGapsInAMovingFrame) {
     const double u = 0.4;
     Plane moving = ball_over_waves();
@@ -199,11 +199,11 @@ TEST(MovingGaps, WithConstantSpeedAreGapsInAMovingFrame) {
     }
     seen.end.q[1] -= u * seen.end_time;
     seen.end.v[1] -= u;
-    seen.work = still.work;  // it depends on the frame; what impacts take does not
+    seen.work = still.work;  // work depends on the frame; the loss at impacts does not
     expect_same_run(still, seen, 1e-9);
 }
 
-// b = B + alpha t^2/2: in the frame of the gap everything weighs more.
+// b = B + alpha t^2/2: in the frame of the gap, gravity is larger by alpha.
 TEST(MovingGaps, WithConstantAccelerationAreGravity) {
     Plane heavy = ball_over_waves(), moving = heavy;
     heavy.potential = "1.5*b";
@@ -236,7 +236,8 @@ TEST(StartTime, ShiftsAnAutonomousRun) {
     }
 }
 
-// Of a system with time it does not: it would be another run.
+// For a system that depends on time, a run from start time 7 equals a run from 0 of the system with t + 7 in place of
+// t.
 TEST(StartTime, IsTheTimeThatForcesAndGapsSee) {
     const auto shifted = [](const std::string& by) {
         Plane ball = ball_over_waves();
@@ -253,14 +254,14 @@ TEST(StartTime, IsTheTimeThatForcesAndGapsSee) {
     EXPECT_GT(distance(now.end, to_its_end(shifted("0")).end), 1e-3);
 }
 
-// E(end) - E(start) = work - loss, whatever moves, is held and is struck meanwhile; reinitializations included.
+// E(end) - E(start) = work - loss, with moving gaps, held contacts, impacts and reinitializations.
 TEST(PowerBalance, HoldsWithEveryContactThatMoves) {
     const auto with_gaps = [](const char* name, const std::vector<std::string>& gaps) {
         SystemDescription system = model_of(name)->description();
         for (std::size_t i = 0; i < gaps.size(); ++i) system.constraints[i].gap.text = gaps[i];
         return system;
     };
-    // A ball that a moving floor carries strikes a wall that passes some of it on to the floor.
+    // A ball on a moving floor hits an inclined wall, and part of the impulse is passed on to the floor.
     Plane carried;
     carried.gap = "b - 0.1*sin(3*t)";
     carried.e = "0";

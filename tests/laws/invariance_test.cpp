@@ -1,6 +1,6 @@
-// What must not change a motion: another zero of the potential, L in other units of energy, other units of time and of
-// the coordinates, a gap times a positive function. The texts of the system are rewritten, so that everything is
-// derived and certified anew.
+// Invariance of the motion under a constant added to the potential, other units of energy, time and coordinates, and a
+// gap multiplied by a positive function. The texts of the system are rewritten, so everything is derived and certified
+// again.
 #include <algorithm>
 #include <cctype>
 
@@ -14,8 +14,8 @@ class Invariance : public Law {
  protected:
     SystemDescription description() const { return model_of(GetParam().system)->description(); }
 
-    // A system's motion with other texts, whose time runs `faster` times as fast and whose coordinates are `larger`
-    // times as large, in the units of the file.
+    // Simulates the rewritten system, whose time runs `faster` times as fast and whose coordinates are `larger` times
+    // as large. Returns the trajectory in the units of the file.
     Trajectory rewritten(const SystemDescription& description, double faster = 1.0, double larger = 1.0) const {
         auto run = run_of(GetParam());
         run.options.tolerance = 1e-11;
@@ -34,7 +34,7 @@ class Invariance : public Law {
     }
 };
 
-// Steps, and the impact at which the bouncing is cut, may differ where error norms see other units.
+// Steps and the impacts at which sequences are cut may differ, since error norms depend on the units.
 void expect_same(const Trajectory& a, const Trajectory& b) {
     EXPECT_LE(distance(a.end, b.end), 1e-6);
     std::vector<Event> of_a, of_b;
@@ -50,7 +50,7 @@ void expect_same(const Trajectory& a, const Trajectory& b) {
 
 void wrap(Text& text, const std::string& before, const std::string& after) { text.text = before + text.text + after; }
 
-// A text with factors before every coordinate, before every rate, and before t.
+// Factors to insert in a text before every coordinate, every rate, and t.
 struct Factors {
     std::string coordinate = "1", rate = "1", time = "1";
 };
@@ -76,7 +76,7 @@ std::string rescaled(const SystemDescription& system, const std::string& text, c
     return result;
 }
 
-// All of a system's texts where coordinates, rates or t may stand.
+// All texts of a system that may contain coordinates, rates or t.
 std::vector<Text*> texts_of(SystemDescription& system) {
     std::vector<Text*> texts{&system.kinetic, &system.potential, &system.dissipation};
     for (CoordinateDescription& coordinate : system.coordinates) texts.push_back(&coordinate.force);
@@ -86,7 +86,7 @@ std::vector<Text*> texts_of(SystemDescription& system) {
     return texts;
 }
 
-// Energy, dissipation and forces times factors; forces are per coordinate.
+// Multiplies energies, dissipation and forces by factors.
 void strengthen(SystemDescription& system, const std::string& energy, const std::string& dissipation,
                 const std::string& force) {
     if (!system.potential.text.empty()) wrap(system.potential, energy + "*(", ")");
@@ -106,7 +106,7 @@ TEST_P(Invariance, LInOtherUnitsOfEnergy) {
     wrap(changed.kinetic, "1000*(", ")");
     strengthen(changed, "1000", "1000", "1000");
     expect_same(rewritten(changed), rewritten(description()));
-    // The contact force is in these units.
+    // The contact force scales with the unit of energy.
     const auto force = [&](const SystemDescription& system) {
         const Model model(system);
         const auto run = model.default_run();
@@ -118,7 +118,7 @@ TEST_P(Invariance, LInOtherUnitsOfEnergy) {
     EXPECT_NEAR(force(changed), 1000.0 * force(description()), 1e-9 * std::abs(force(changed)));
 }
 
-// In minutes, say: rates are 60 times as large, accelerations 3600 times.
+// Another unit of time. With minutes, for example, rates are 60 times as large, accelerations 3600 times.
 TEST_P(Invariance, OtherUnitsOfTime) {
     SystemDescription changed = description();
     for (Text* text : texts_of(changed))
@@ -127,7 +127,7 @@ TEST_P(Invariance, OtherUnitsOfTime) {
     expect_same(rewritten(changed, 60.0), rewritten(description()));
 }
 
-// Coordinates in units a hundredth as large, angles too.
+// Coordinates, including angles, in units that are smaller by a factor of 100.
 TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     SystemDescription changed = description();
     for (Text* text : texts_of(changed)) text->text = rescaled(changed, text->text, {"0.01", "0.01", "1"});
@@ -136,7 +136,7 @@ TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
 }
 
-// A gap times a positive function of the coordinates is the same surface: its gradient is another one, impacts, Zeno
+// A gap times a positive function of the coordinates has the same zero set. Its gradient differs, but impacts, Zeno
 // points and releases are the same.
 TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     const auto events = [&](const SystemDescription& system) {

@@ -1,4 +1,4 @@
-// The files that every execution is asked of; what it obeys stands in floor/laws.hpp.
+// The gallery files and methods on which the laws of floor/laws.hpp are tested.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -22,15 +22,15 @@ std::string name_of(const testing::TestParamInfo<Case>& info);
 
 // The methods that --method accepts and computes with.
 std::vector<Method> all_methods();
-// Every file in the folder with every method there is.
+// Every gallery file with every method.
 std::vector<Case> all_cases();
 
 std::shared_ptr<const Model> model_of(const std::string& system);
-// The run that the file asks for, with this method.
+// The run that the file specifies, with the method of `one`.
 Run run_of(const Case& one);
-// Simulates, and expects that the run reaches its end time.
+// Simulates the run and expects that it reaches its end time.
 Trajectory simulated(const Case& one, const Run& run);
-// The largest difference of a coordinate or rate, relative where these are large.
+// The largest difference of a coordinate or rate; relative where the values are large.
 double distance(const State& a, const State& b);
 
 class Law : public testing::TestWithParam<Case> {};

@@ -1,4 +1,4 @@
-// The laws, told lies: a falsified execution must violate the law it breaks.
+// Tests of the laws themselves: a falsified execution must violate the law that it breaks.
 #include "laws/laws.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
@@ -19,8 +19,8 @@ Event& first(Trajectory& trajectory, Event::Kind kind) {
     throw std::logic_error("no such event");
 }
 
-// Coefficient number i of the piece after the first impact: of x, y, x', y' first the constant ones, then the linear
-// ones.
+// Coefficient number i of the piece after the first impact. The order is: constant terms of x, y, x', y', then linear
+// terms.
 double& coefficient(Trajectory& trajectory, std::size_t i) {
     const double t = trajectory.events.front().t;
     for (const Piece& piece : trajectory.pieces)
@@ -35,7 +35,7 @@ TEST(Lies, TheTruthViolatesNothing) {
 
 TEST(Lies, Energy) {
     Trajectory fast = truth();
-    coefficient(fast, 4 + 2) += 1e-6;  // a rate that grows
+    coefficient(fast, 4 + 2) += 1e-6;  // linear term of x'
     EXPECT_FALSE(energy(fast).empty());
     Trajectory lively = truth();
     first(lively, Event::Kind::impact).v_after[1] += 1e-12;
@@ -88,7 +88,7 @@ TEST(Lies, ContactForce) {
     release.q = before.q;
     release.v_after = before.v;
     EXPECT_FALSE(contact_force(early).empty());
-    // A contact phase said to last into the flight.
+    // A contact phase extended into the flight.
     Trajectory late = truth();
     for (Piece& piece : late.pieces)
         if (piece.start >= late.phases[1].end) piece.mode = Mode::holding(ContactSet::of(0));
@@ -101,7 +101,7 @@ TEST(Lies, ContactForce) {
 Trajectory truth_of_two_stops() {
     const auto model = model_of("double_pendulum_two_stops");
     auto run = model->default_run();
-    run.options.end_time = 7.0;  // the knee locks at 4.85, a blow against the wall opens it at 6.65
+    run.options.end_time = 7.0;  // the knee locks at 4.85, an impact on the wall opens it at 6.65
     return simulate(model, run);
 }
 
@@ -143,7 +143,7 @@ TEST(Lies, TwoStops) {
             if (piece.mode.held().empty()) t.coefficients[piece.first] += 0.4;  // theta1 beyond the wall
     });
     lie("a wall that pulls", contact_force, [](Trajectory& t) {
-        // The weight at the wall is stronger than the motor.
+        // Holding the wall as well would need a pulling force: the weight exceeds the motor torque.
         const Mode both = Mode::holding(ContactSet::of(0).with(1));
         for (Piece& piece : t.pieces)
             if (!piece.mode.held().empty()) piece.mode = both;

@@ -1,4 +1,5 @@
-// Random systems of a ball, or a ball and a mass beside it, among floors, walls and discs, and what scaling their gaps changes.
+// Random systems of a ball, or a ball and a second mass, with floors, walls and discs; the effect of scaling their
+// gaps.
 #pragma once
 
 #include <cstdint>
@@ -8,11 +9,13 @@
 
 namespace achilles::test {
 
-// Wavy or flat floors, some of them shaken; walls, some of which move; discs; damping or none; restitutions of which a half are 0.
+// A random system: flat or wavy floor, possibly shaken; wall, possibly moving; disc; damping or none. Half of the
+// restitutions are 0.
 SystemDescription random_system(std::uint64_t seed);
 
-// Runs a system as it is, and with all its gaps multiplied by a number. What of the courses differs: how they ended, an event, or
-// its time by more than rounding makes of it along the way; "" where nothing does, "undecided" where the system as it is ends so.
+// Runs a system unchanged and with all gaps multiplied by `factor`. Returns the first difference of the two runs: the
+// outcome, an event, or an event time by more than 1e-7 s. "" if there is none; "undecided" if the unchanged run ends
+// so.
 std::string difference_by_scaling(const SystemDescription& system, double factor);
 
 }  // namespace achilles::test

@@ -1,4 +1,4 @@
-// A gap times a positive number is the same surface: the course is the same (theory-gaps.md 2.7).
+// Multiplying a gap by a positive number changes no run (theory-gaps.md 2.7).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +18,7 @@ TEST(ScaledGaps, ChangeNoRunOfTheGallery) {
     }
 }
 
-// One of them ends undecided: impacts in turn of a wall that moves and a floor that collapse (theory-gaps.md 2.6).
+// One of the systems ends undecided: impacts on a moving wall and a floor alternate and collapse (theory-gaps.md 2.6).
 TEST(ScaledGaps, ChangeNoRunOfRandomSystems) {
     int undecided = 0;
     for (std::uint64_t seed = 0; seed < 60; ++seed) {

@@ -1,4 +1,4 @@
-"""What the tests of the Python module share. CTest says where the source and the program are."""
+"""Fixtures of the tests of the Python module. CTest passes the locations of the source and the program."""
 
 import os
 import pathlib
@@ -19,7 +19,7 @@ def source():
 
 @pytest.fixture
 def program():
-    """Runs the program, and returns what it prints."""
+    """Runs the program and returns its output."""
 
     def call(*words, status=0):
         done = subprocess.run([PROGRAM, *words], capture_output=True, text=True)
@@ -31,7 +31,7 @@ def program():
 
 @pytest.fixture
 def counting():
-    """How far another thread of Python counts, a thousand times a second, while something is done; and how long that takes."""
+    """Runs a function while another thread counts about every millisecond. Returns the duration, s, and the count."""
 
     def call(work):
         counted, done = 0, threading.Event()

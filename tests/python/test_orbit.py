@@ -1,4 +1,4 @@
-"""Periodic runs as Python has them."""
+"""Periodic orbits in Python."""
 
 import json
 import os
@@ -87,7 +87,7 @@ def test_a_branch_ends_where_its_zeno_point_is_lost():
     (lost,) = found.branch.lost
     assert lost.value == pytest.approx(0.6632133961, abs=1e-8) and "Zeno point" in " ".join(found.branch.ends)
     assert found.branch.value.max() <= lost.value
-    # psi is linear there.
+    # psi is linear near the loss of the Zeno point.
     near = found.branch.psi[found.branch.value > 0.6]
     assert len(near) > 3 and (np.diff(near) < 0).all() and near[-1] < 0.05 * found.branch.psi.max()
 
@@ -148,7 +148,7 @@ def test_figures_are_made_again(wave, program, tmp_path):
     program(*words, "--out", str(tmp_path / "drawn.svg"))
     assert (tmp_path / "f.svg").read_bytes() == (tmp_path / "drawn.svg").read_bytes()
     assert figure._repr_svg_().startswith("<svg") and found._repr_svg_() == found.figure()._repr_svg_()
-    # Without a branch, of paper's size, as pixels; begun at a state, which the picture carries.
+    # Without a branch, sized for paper, as PNG; and started at a state, which the picture stores.
     wave.figure(width_mm=85).save(tmp_path / "page.png")
     achilles.orbit(WAVE, from_=wave, e=0.4, continue_="e=0.35:0.45").figure().save(tmp_path / "from.svg")
     for file in ("f.svg", "page.png", "from.svg"):
@@ -214,13 +214,13 @@ def test_a_value_beyond_its_range_is_told():
 
 
 def test_the_lock_is_released(counting):
-    """Another thread counts during a search."""
+    """Another thread keeps running during a search."""
     seconds, counted = counting(lambda: achilles.orbit("driven_double_pendulum", continue_={"e": (0.1, 0.9)}))
     assert seconds > 0.05 and counted > 5
 
 
 def test_control_c_ends_a_search():
-    """Before it, too: in a run that takes an hour."""
+    """Also while the run before the search is computed, which would take an hour."""
     threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
     begin = time.process_time()
     with pytest.raises(KeyboardInterrupt):

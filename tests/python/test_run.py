@@ -1,4 +1,4 @@
-"""A run as Python has it: the numbers of the program, arrays, events, other threads."""
+"""Runs in Python: the same numbers as the program, arrays, events, other threads."""
 
 import copy
 import gc
@@ -20,7 +20,7 @@ BALL = {"e": 0.3, "set": {"x'": 1.2}}
 
 
 def plain(value):
-    """A record as json.loads has it."""
+    """Converts a record to the types of json.loads."""
     if isinstance(value, np.ndarray):
         return value.tolist()
     if isinstance(value, dict):
@@ -47,7 +47,7 @@ def test_the_numbers_are_those_of_reference(source):
     run = achilles.simulate("ball_on_sine")
     zeno = [event.t for event in run.events if event.kind == "zeno"]
     assert zeno == pytest.approx([2.725142, 12.465775], abs=1e-5)
-    assert fig4  # the engine itself is held to it by the tests of the laws
+    assert fig4  # the tests of the laws check the engine itself
     for certificate, t in zip(run.certificates, zeno):
         assert certificate.certified and certificate.zeno_time[0] <= t <= certificate.zeno_time[1]
 
@@ -142,7 +142,7 @@ def test_the_same_bytes_twice():
 
 
 def test_the_lock_is_released(counting):
-    """Another thread counts while a run is made."""
+    """Another thread keeps running during a run."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         seconds, counted = counting(

@@ -1,4 +1,4 @@
-"""Sweeps as Python has them."""
+"""Sweeps in Python."""
 
 import csv
 import os
@@ -14,7 +14,7 @@ import achilles
 
 
 def frame(text):
-    """A CSV of the program."""
+    """Parses CSV output of the program."""
     rows = [row.split(",") for row in text.splitlines()]
     return pandas.DataFrame(rows[1:], columns=rows[0])
 
@@ -69,7 +69,7 @@ def test_equal_distances_and_ratios_are_axes():
     assert "log:" in achilles.sweep("ball_on_floor", {"e": np.geomspace(0.1, 0.9, 5)}, "zeno_time").command
     with pytest.raises(achilles.InputError, match="neither at equal distances nor in equal ratios"):
         achilles.sweep("ball_on_floor", {"e": [0.1, 0.2, 0.5]}, "zeno_time")
-    # A ball that starts at rest at y: t1 = sqrt(2 y / g), and rests at t1 (1 + e)/(1 - e).
+    # A ball that starts at rest at height y: t1 = sqrt(2 y / g), and comes to rest at t1 (1 + e)/(1 - e).
     floor = achilles.simulate("ball_on_floor", e=0.5)
     assert achilles.sweep("ball_on_floor", {"e": (0.5, 0.6, 2)}, "zeno_time")["zeno_time"][0] == pytest.approx(
         [event.t for event in floor.events if event.kind == "zeno"][0], abs=1e-8)
@@ -94,7 +94,7 @@ def test_a_run_that_fails_is_a_point():
 
 
 def test_the_lock_is_released(counting):
-    """Another thread counts during a sweep, which calls nothing of Python."""
+    """Another thread keeps running during a sweep without Python callbacks."""
     seconds, counted = counting(lambda: achilles.sweep("ball_on_sine", {"e": (0.1, 0.9, 20000)}, "zeno_time(2)"))
     assert seconds > 0.05 and counted > 5
 
@@ -115,7 +115,7 @@ def test_control_c_ends_it_within_a_chunk():
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
         achilles.sweep("ball_on_sine", {"e": (0.1, 0.9, 10**8)}, "zeno_time(2)")
-    assert time.monotonic() - begin < 20  # on a machine that others use; alone it takes half a second
+    assert time.monotonic() - begin < 20  # for a busy machine; alone it takes half a second
 
 
 @pytest.mark.parametrize("over, asked, words, told", [

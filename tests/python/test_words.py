@@ -177,7 +177,7 @@ def test_every_option_of_the_table_is_an_argument(program):
 
 
 def python_of(text):
-    """The first indented block of a page that begins with `import achilles`."""
+    """Returns the first indented block of a page that begins with `import achilles`."""
     lines = text[text.index("    import achilles\n"):].splitlines()
     code = []
     for line in lines:
@@ -221,7 +221,7 @@ def test_it_is_found_where_it_is_installed(tmp_path):
 
 @pytest.mark.parametrize("kind", ["System", "Run", "Orbit"])
 def test_an_object_without_a_value_cannot_be_made(kind):
-    """What __new__ leaves uninitialized would read memory that nobody has written."""
+    """Objects cannot be made by __new__, which would leave their memory uninitialized."""
     program = f"""
 import copy, achilles
 kind = getattr(achilles._core, {kind!r})

@@ -1,4 +1,4 @@
-// Stills: where the parts stand, what fills as time passes.
+// Frames of animations: positions of their areas, and plots that fill as time passes.
 #include "figure/animation.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ TEST(Animation, PutsThePlotsWhereTheWorldIsLarger) {
     EXPECT_EQ(tall.world.height, 950.0F);
     EXPECT_EQ(tall.plots.x, tall.world.width);
     EXPECT_EQ(still_areas(1.0, 0, screen).world.width, 1600.0F);
-    // Upright, and many.
+    // A portrait area, and many plots.
     EXPECT_EQ(still_areas(4.0, 2, {0, 0, 1080, 1850}).columns, 1);
     EXPECT_EQ(still_areas(0.8, 5, screen).columns, 2);
     EXPECT_EQ(still_areas(4.0, 6, screen).columns, 3);
@@ -34,7 +34,7 @@ TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {
     EXPECT_DOUBLE_EQ(still_scale({16384, 16384, 8.0}), 11.0);
 }
 
-// Without a [[drawing]]: the plane of two coordinates with h = 0, the phase plane of one.
+// Without a [[drawing]], a frame shows the plane of two coordinates with h = 0, or the phase plane of a single one.
 TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
     const std::string rest = "[[constraint]]\ngap = \"a\"\nrestitution = 0.5\n";
     const std::string one = "title = \"\"\n[[coordinate]]\nname = \"a\"\nstart = 1\nunit = \"m\"\n";
@@ -50,7 +50,7 @@ TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
         EXPECT_EQ(panel.x.label, "𝑎 (m)");
         EXPECT_EQ(panel.y.label, model == plane ? "𝑏" : "𝑎\u0307 (m/s)");
         EXPECT_EQ(panel.boundary.points.empty(), model == line);
-        EXPECT_NEAR(panel.markers.back().points.at(0).x, 0.5, 1e-9);  // where it is now
+        EXPECT_NEAR(panel.markers.back().points.at(0).x, 0.5, 1e-9);  // the present state
         EXPECT_EQ(to_text(still).find("[[drawing]]"), std::string::npos);
     }
 }
@@ -58,7 +58,7 @@ TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
 TEST(Animation, ShowsThePresentAndFillsThePlots) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());
-    const std::vector<ViewDescription> views{model->description().views[1]};  // height
+    const std::vector<ViewDescription> views{model->description().views[1]};  // the height
     Animation animation(trajectory, views, {1600, 1000, 1.0}, 1.0 / 30.0);
     const Still before = animation.at(1.0), after = animation.at(3.2);
     EXPECT_EQ(to_text(before).substr(0, to_text(before).find("shape")),
@@ -68,14 +68,14 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     const Panel &first = before.plots.panels[0], &second = after.plots.panels[0];
     EXPECT_EQ(first.y.low, second.y.low);
     EXPECT_EQ(first.y.high, second.y.high);
-    // Pale curves of the whole run, then the curves until now.
+    // Pale curves of the whole run, then the curves up to the present.
     ASSERT_EQ(first.curves.size(), 4u);
     EXPECT_EQ(first.curves[0].points.size(), second.curves[0].points.size());
     EXPECT_LT(first.curves[0].stroke.color.a, 100);
     EXPECT_EQ(first.curves[2].points.back().x, 1.0);
     EXPECT_TRUE(first.curves[3].points.empty());
     EXPECT_EQ(second.curves[3].points.back().x, 3.2);
-    // Impacts until now, then the cursor and the dot.
+    // Events up to the present, then the cursor and the dot.
     ASSERT_EQ(second.markers.size(), 5u);
     EXPECT_TRUE(first.markers[0].points.empty());
     EXPECT_GT(second.markers[0].points.size(), 3u);
@@ -85,8 +85,8 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     EXPECT_EQ(second.markers[3].points[0].x, 3.2);
     EXPECT_EQ(second.markers[4].points[0].x, 3.2);
     EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
-    // What is solid, the surface, lit where it is touched; the ball's ways to come and those it went, in flight and in contact;
-    // before them the ball, whose rim is where the file has its centre.
+    // The solid; the surface, highlighted because it is touched; the future and the past trail of the ball, in flight
+    // and in contact. In front of them the ball, whose rim is at the position that the file gives for its center.
     const std::vector<Shape>& shapes = after.world.shapes;
     ASSERT_EQ(shapes.size(), 9u);
     const Color lit = phase_color(light_theme(), Phase::Kind::constrained);

@@ -1,4 +1,4 @@
-// Where the picture of a mechanism looks, what is solid in it, and how a disc rests: in numbers, over the gallery.
+// Visible part of the world, solid ground, and resting discs, numerically for the systems of the gallery.
 #include "figure/camera.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct Staged {
     Stage stage;
 };
 
-// The last disc that moves.
+// The last moving disc.
 Shape ball_in(const Drawing& drawing) {
     Shape found;
     for (const Shape& shape : drawing.shapes)
@@ -76,8 +76,8 @@ Drawing around(const Point& p, double size) {
     return drawing;
 }
 
-// y - sin(x), and the like, of a disc's centre: while it is held the rim is on the line and nothing of it below; a gap that
-// counts the radius leaves the disc where the file says.
+// Gaps such as y - sin(x) refer to the center of a disc. While such a contact is held, the rim is on the line and no
+// part of the disc below it. A gap that includes the radius leaves the disc where the file puts it.
 TEST(Disc, rests_on_the_ground_it_touches) {
     for (const char* name : {"ball_on_sine", "ball_on_hills", "ball_in_bowl", "ball_in_gusts", "ball_on_cylinder",
                              "bead_in_ring", "ball_on_floor", "ball_on_incline", "ball_in_sloped_box", "ball_in_v"}) {
@@ -90,7 +90,7 @@ TEST(Disc, rests_on_the_ground_it_touches) {
             return Shape();
         }() : ball_in(drawing);
         ASSERT_EQ(ball.points.size(), 1u) << name;
-        // A little within its rim nothing is solid, and a little outside, towards the ground, there is ground.
+        // Slightly inside the rim nothing is solid; slightly outside, toward the ground, there is ground.
         int free = 0, touching = 0;
         for (int i = 0; i < 360; ++i) {
             const double angle = i * 3.14159265358979 / 180.0;
@@ -117,7 +117,7 @@ TEST(Disc, is_where_the_file_says_far_from_the_ground) {
     EXPECT_EQ(ball_in(floor.draw(t, floor.stage.limits())).points[0].y, floor.at(t).state.q[1]);
 }
 
-// Height over the ground is true where it is small: what the scale bar says of a bounce holds.
+// Small heights over the ground are true, so that the scale bar is valid for a bounce.
 TEST(Disc, keeps_small_heights) {
     Staged staged("ball_on_sine");
     const double t = staged.first(Event::Kind::zeno).t;
@@ -139,7 +139,7 @@ TEST(Ground, is_the_side_of_the_gap_and_smooth_at_any_zoom) {
             const Drawing drawing = staged.draw(0.0, around({x + 0.013 * size, on.y}, size));
             EXPECT_TRUE(is_solid(drawing, {x, on.y - 0.01 * size})) << x << " " << size;
             EXPECT_FALSE(is_solid(drawing, {x, on.y + 0.01 * size})) << x << " " << size;
-            // The file's own line: no chord of what is seen farther from it than a tenth of a pixel of a thousand.
+            // On the file's own line, the error of a visible chord is at most a tenth of a pixel of a thousand.
             const auto line = std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const Shape& shape) {
                 return shape.kind == Shape::Kind::polyline && !shape.moves && shape.item;
             });
@@ -157,7 +157,7 @@ TEST(Ground, is_the_side_of_the_gap_and_smooth_at_any_zoom) {
             EXPECT_LE(worst, 1e-4 * size) << x << " " << size;
             EXPECT_LT(line->points.size(), 3000u);
         }
-    // A bead inside a ring: what is outside is solid.
+    // A bead inside a ring: the outside is solid.
     Staged ring("bead_in_ring");
     const Drawing drawing = ring.draw(0.0, ring.stage.limits());
     EXPECT_TRUE(is_solid(drawing, {0.51, 0.0}));
@@ -220,7 +220,7 @@ TEST(Camera, follow_never_loses_the_body_and_its_arrow) {
             const double arrow = longest / 500.0 * size / staged.stage.trail().fastest;
             EXPECT_TRUE(holds(seen, body)) << name << " " << now.t;
             EXPECT_TRUE(holds(seen, {body.x + arrow * v.x, body.y + arrow * v.y})) << name << " " << now.t;
-            // It does not jump.
+            // The view does not jump.
             const Point middle{0.5 * (seen.x_low + seen.x_high), 0.5 * (seen.y_low + seen.y_high)};
             if (i > 0) {
                 EXPECT_LT(std::hypot(middle.x - before.x, middle.y - before.y), 0.2 * size) << name;
@@ -230,7 +230,7 @@ TEST(Camera, follow_never_loses_the_body_and_its_arrow) {
     }
 }
 
-// The bounces look the same all the way down: the highest that is left takes a quarter of the picture's height.
+// The bounces look alike at every scale: the highest remaining bounce takes a quarter of the picture's height.
 TEST(Camera, zeno_keeps_the_bounces_visible_down_to_1e_9) {
     for (const char* name : {"ball_on_sine", "ball_on_floor", "falling_rod"}) {
         Staged staged(name);
@@ -252,13 +252,13 @@ TEST(Camera, zeno_keeps_the_bounces_visible_down_to_1e_9) {
                 EXPECT_NEAR(shown, 0.25, 0.01) << name << " " << left;
                 least = std::min(least, *height);
             }
-            // The ground that is touched is in it, and what is just above.
+            // The contact point on the ground and the points just above it are visible.
             const auto ground = staged.stage.touch().ground_below(grip, 0, now.t, now.state);
             ASSERT_TRUE(ground);
             EXPECT_TRUE(holds(seen, ground->foot)) << name << " " << left;
         }
         EXPECT_LT(least, 3e-9) << name;
-        // It comes back, and is a function of the time alone.
+        // After the Zeno point the view returns. It is a function of time only.
         const Drawing all = camera.at(CameraMode::fit, staged.at(0.0), {600.0, 400.0});
         const Drawing end = camera.at(CameraMode::zeno, staged.at(staged.run.end_time), {600.0, 400.0});
         EXPECT_GE(end.y_high - end.y_low, (all.y_high - all.y_low) * (1.0 - 1e-9)) << name;

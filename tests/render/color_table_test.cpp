@@ -1,4 +1,4 @@
-// The colours of numbers: even and monotone, for any colour vision.
+// Colors for numbers: uniform and monotone, for any color vision.
 #include "figure/palette.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ Triple linear(const Color& c) {
     return {one(c.r), one(c.g), one(c.b)};
 }
 
-// CIE L* and OKLab, of linear sRGB.
+// CIE L* and OKLab, from linear sRGB.
 double lightness(const Triple& rgb) {
     const double y = 0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2];
     return y > 0.008856 ? 116.0 * std::cbrt(y) - 16.0 : 903.3 * y;
@@ -53,7 +53,7 @@ struct Vision {
 };
 
 const Vision visions[] = {
-    {"all cones", {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 0.86},  // 1 but for the rounding to bytes
+    {"all cones", {{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}}, 0.86},  // 1 except for rounding to bytes
     {"protan",
      {{{0.152286, 1.052583, -0.204868}, {0.114503, 0.786281, 0.099216}, {-0.003882, -0.048116, 1.051998}}},
      0.42},
@@ -86,13 +86,13 @@ TEST(ColorTable, IsEvenForAnyColourVision) {
 TEST(ColorTable, IsWholeAndInsideTheScreensColours) {
     EXPECT_EQ(number_color(-1.0), number_color(0.0));
     EXPECT_EQ(number_color(2.0), number_color(1.0));
-    // Nothing is cut off by the screen: what is read back is the formula.
+    // No color is clamped to the sRGB gamut: the inverse map gives the formula.
     for (int i = 0; i <= 16; ++i) {
         const Triple at = lab(linear(number_color(i / 16.0)));
         EXPECT_NEAR(at[0], 0.25 + 0.67 * i / 16.0, 0.004) << i;
         EXPECT_NEAR(std::hypot(at[1], at[2]), 0.125, 0.006) << i;
     }
-    // All 256 differ, and each is brighter than the one before.
+    // All 256 colors differ, and each is brighter than the one before.
     const std::vector<Color> table = number_colors(256);
     for (std::size_t i = 1; i < table.size(); ++i)
         EXPECT_GT(lightness(linear(table[i])), lightness(linear(table[i - 1])) - 0.15) << i;

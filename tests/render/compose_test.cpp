@@ -1,4 +1,4 @@
-// What a figure says, in numbers: limits, ticks, labels, phases, markers.
+// Content of figures as numbers: limits, ticks, labels, phases, markers.
 #include "figure/compose.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ TEST(Labels, NamesBecomeSymbols) {
     EXPECT_EQ(typeset("2*e"), "2·𝑒");
     EXPECT_EQ(typeset("sin(x_ball)^12/(2*pi) + (x')^2.5"), "sin(𝑥_{ball})¹²/(2·π) + (𝑥\u0307)^2.5");
     EXPECT_EQ(typeset("h + _1*v_max2 - mass"), "ℎ + _1·𝑣_{max2} − mass");
-    // An index of letters belongs to a letter; words with a bar are words, wherever they stand.
+    // A subscript of letters needs a single letter before it; other words with an underscore stay words.
     EXPECT_EQ(typeset("lambda_knee + near_left"), "𝜆_{knee} + near_left");
     EXPECT_EQ(typeset_name("lambda_knee"), "λ_knee");
     EXPECT_EQ(typeset_name("near_left"), "near_left");
@@ -79,7 +79,7 @@ TEST(Label, is_taken_apart_into_letters) {
     EXPECT_EQ(one("₇"), (Letter{'7', false, -1, 0}));
     EXPECT_EQ(one("⁻"), (Letter{U'−', false, 1, 0}));
     EXPECT_EQ(letters("τ_{∞}b"), (std::vector<Letter>{{U'τ', false, 0, 0}, {U'∞', false, -1, 0}, {'b', false, 0, 0}}));
-    EXPECT_EQ(letters("a_{b").size(), 4u);  // nothing that ends: as it stands
+    EXPECT_EQ(letters("a_{b").size(), 4u);  // no closing brace: kept as it is
     EXPECT_EQ(letters("\xff\xce").size(), 2u);
     EXPECT_TRUE(letters("\u0307").empty());
 }
@@ -134,7 +134,7 @@ TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
         EXPECT_FALSE(panel.curves[0].stroke.dash.empty());  // hybrid
         EXPECT_TRUE(panel.curves[1].stroke.dash.empty());   // constrained
         EXPECT_NE(panel.curves[0].stroke.color, panel.curves[1].stroke.color);
-        EXPECT_GE(panel.curves[0].points.size(), 2u);  // how many it needs: trace_test.cpp
+        EXPECT_GE(panel.curves[0].points.size(), 2u);  // how many are needed: trace_test.cpp
         EXPECT_GE(panel.curves[1].points.size(), 2u);
         ASSERT_EQ(panel.markers.size(), 3u);
         for (std::size_t k = 0; k < 3; ++k) {
@@ -167,7 +167,7 @@ TEST_P(Composed, TheMechanismStaysInsideItsLimits) {
             mechanism.draw(sample.t, sample.state, trajectory.run.parameters, limits, light_theme());
         EXPECT_EQ(drawing.shapes.size(), model->description().drawings.size());
         for (const Shape& shape : drawing.shapes) {
-            if (shape.points.size() > 100) continue;  // the surface goes on beyond the picture
+            if (shape.points.size() > 100) continue;  // the surface extends beyond the picture
             for (const Point& p : shape.points) {
                 EXPECT_TRUE(p.x >= limits.x_low && p.x <= limits.x_high && p.y >= limits.y_low && p.y <= limits.y_high);
             }
@@ -190,7 +190,7 @@ TEST(Composing, AnglesAreShownInDegrees) {
     EXPECT_NEAR(panel.markers[1].points[0].y, zeno.q[0] * 180.0 / std::numbers::pi, 1e-12);
 }
 
-// Of what is an angle, too, not of coordinates alone.
+// Expressions that are angles are shown in degrees, not only coordinates.
 TEST(Composing, angles_that_are_computed_are_shown_in_degrees) {
     const auto model = test::load("double_pendulum");
     ViewDescription view;
@@ -207,7 +207,7 @@ TEST(Composing, angles_that_are_computed_are_shown_in_degrees) {
     }
 }
 
-// With thousands of steps no flight may lose its height.
+// With thousands of steps, no flight may lose its height.
 TEST(Composing, EveryOneOfVeryManyFlightsHasItsHeight) {
     const auto model = test::load("ball_on_floor");
     auto run = model->default_run();
@@ -242,7 +242,8 @@ TEST(Composing, ALegendHidesNoCurve) {
     }
 }
 
-// What is at rest is drawn so: an axis does not grow until rounding errors fill it, whatever the scale of the system is.
+// A quantity at rest is drawn as constant: the axis is not magnified until rounding errors fill it, whatever the scale
+// of the system.
 TEST(Composing, RoundingErrorsAreNoMotion) {
     const auto drawn = [](const std::string& name, const std::string& y, const std::string& x = "t") {
         const auto system = test::load(name);
@@ -267,7 +268,7 @@ TEST(Composing, RoundingErrorsAreNoMotion) {
     EXPECT_LT(drawn("ball_on_sine", "y'", "1e-9*y").x.high, 3e-9);
 }
 
-// The name of a curve stands beside what is drawn of it.
+// The label of a curve is at the part that is drawn.
 TEST(Composing, ALegendShowsTheCurveAsItIs) {
     const auto system = test::load("table_on_legs");
     ViewDescription view;
@@ -291,8 +292,7 @@ TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
     EXPECT_GT(most, 1.0);
 }
 
-// A run of more steps than a screen shows is drawn by some of them, over its whole time and as high as all.
-// At 10 s the ball lies in the bowl and at the post: g_bowl = (-r, 0, 1), g_post = (1, 0.3 sin(phi), 0).
+// At 10 s the ball rests in the bowl and at the post: g_bowl = (-r, 0, 1), g_post = (1, 0.3 sin(phi), 0).
 TEST(Composing, EveryContactShowsItsForce) {
     const Trajectory trajectory = test::run_gaps("bowl_and_post");
     ViewDescription view;
@@ -311,7 +311,7 @@ TEST(Composing, EveryContactShowsItsForce) {
     EXPECT_NEAR(force[0], values[2] - sample.state.q[0] * values[1], 1e-12);
     EXPECT_NEAR(force[1], 0.3 * std::sin(sample.state.q[1]) * values[2], 1e-12);
     EXPECT_NEAR(force[2], values[1], 1e-12);
-    // An event shows what is held after it.
+    // At an event, the forces are those after it.
     const Event& release = trajectory.events[test::event_near(trajectory, 13.775854797030098)];
     const std::vector<double> after =
         values_at(trajectory, sample_at(trajectory, release), PreparedView(*trajectory.model, view));

@@ -73,7 +73,7 @@ TEST(Curves, break_at_points_that_are_not_finite) {
 }
 
 TEST(Curves, what_is_drawn_afterwards_is_in_its_place) {
-    // More vertices than 16-bit indices reach, then ordinary rectangles.
+    // More vertices than 16-bit indices can address, then ordinary rectangles.
     Offscreen surface(support::options());
     std::vector<Point> saw;
     for (int i = 0; i < 100000; ++i) saw.push_back({50.0 + i * 0.005, i % 2 == 0 ? 50.0 : 250.0});
@@ -122,7 +122,7 @@ TEST(Curves, the_finer_mask_draws_the_same_curve) {
     EXPECT_LT(worst_tile(a, b), support::worst_tile_allowed);
 }
 
-// A lie: one pixel to the side is another picture.
+// A curve shifted by one pixel must be detected as a different picture.
 TEST(Curves, a_curve_moved_by_a_pixel_is_noticed) {
     Offscreen surface(support::options());
     const auto wave = [&](double shift) {

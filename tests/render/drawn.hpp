@@ -1,4 +1,4 @@
-// How far the curves of a figure are from the run they show, in the figure's pixels.
+// Distance between the curves of a figure and the run that they show, in pixels of the figure.
 #pragma once
 
 #include <algorithm>
@@ -23,7 +23,7 @@ struct Size {
 
 inline bool is_there(const Point& p) { return std::isfinite(p.x) && std::isfinite(p.y); }
 
-// A figure of one view, and the place of its plot.
+// A figure of one view, and its plot area.
 struct Picture {
     Picture(const Trajectory& run, const ViewDescription& view, Size size = {}) : prepared(*run.model, view) {
         PublicationStyle style;
@@ -44,7 +44,7 @@ struct Picture {
     Rectangle plot;
 };
 
-// The quantities of a run at instants inside its steps, placed in a picture.
+// Quantities of a run at instants inside its steps, in pixels of a picture.
 class Truth {
  public:
     Truth(const Trajectory& run, const Picture& picture)
@@ -76,7 +76,7 @@ class Truth {
     bool with_work_;
 };
 
-// What goes through each column of pixels: from its lowest to its highest point.
+// Range of a curve in each column of pixels: its lowest and highest point.
 class Columns {
  public:
     Columns(const Rectangle& plot, double margin)
@@ -110,9 +110,9 @@ class Columns {
     std::vector<double> low_, high_;
 };
 
-// The largest distance, in pixels, between the lowest (highest) point drawn in a column of pixels and the lowest
-// (highest) of 50 samples in it, the ends of its steps and its events, over all quantities. A curve may cross the edge
-// of a column a quarter of a pixel off.
+// Maximum over all quantities and columns of pixels of the difference, in pixels, between the drawn extremes and those
+// of the run. The run is sampled at 50 instants per column, at the ends of its steps and at its events. A curve may
+// cross the edge of a column by a quarter of a pixel.
 inline double worst_over_time(const Trajectory& run, const Picture& picture) {
     constexpr double edge = 0.25;
     constexpr int samples = 50;
@@ -141,9 +141,9 @@ inline double worst_over_time(const Trajectory& run, const Picture& picture) {
             for (double t = panel.x.low + step * std::ceil((piece.start - panel.x.low) / step); t <= piece.end;
                  t += step)
                 add(truth.at(piece, t, i));
-            // A quantity may jump where two steps meet: both values are of the run.
+            // A quantity may jump between two steps: both values belong to the run.
             for (const double t : {piece.start, piece.end}) add(truth.at(piece, t, i));
-            // Where the curve itself has its points the truth is known, too.
+            // The true values are also known at the points of the drawn curve.
             auto corner = std::lower_bound(corners.begin(), corners.end(), piece.start);
             for (; corner != corners.end() && *corner <= piece.end; ++corner) {
                 const Point p = truth.at(piece, *corner, i);
@@ -167,7 +167,7 @@ inline double worst_over_time(const Trajectory& run, const Picture& picture) {
     return worst;
 }
 
-// Segments in buckets, to find how far a point is from the nearest.
+// Segments in buckets, to find the distance of a point from the nearest one.
 class Segments {
  public:
     Segments(const Rectangle& plot, double reach)
@@ -186,7 +186,7 @@ class Segments {
             };
             const Point p = at(k), q = at(k + 1);
             if (std::vector<std::array<Point, 2>>* here = bucket(p)) {
-                // Of very many on the same way a few will do.
+                // Of very many coincident segments a few are sufficient.
                 const auto is_same = [&](const std::array<Point, 2>& other) {
                     constexpr double same = 0.02;
                     return std::hypot(other[0].x - p.x, other[0].y - p.y) +
@@ -234,8 +234,8 @@ class Segments {
     std::vector<std::vector<std::array<Point, 2>>> buckets_;
 };
 
-// The Hausdorff distance, pixels, at most 3, between what is drawn in a plane and the run: of each point of the one
-// from the other. So many instants of each step.
+// Hausdorff distance between the drawn path in a plane and the run, in pixels, at most 3. `of_step`: number of instants
+// in each step.
 inline double worst_in_plane(const Trajectory& run, const Picture& picture, int of_step = 48) {
     const Panel& panel = picture.panel();
     const PanelMap map = picture.map();
@@ -275,7 +275,7 @@ inline double worst_in_plane(const Trajectory& run, const Picture& picture, int 
     return worst;
 }
 
-// Whether a curve goes through the plot.
+// Whether no point of a curve lies in the plot.
 inline bool is_empty(const Picture& picture) {
     const PanelMap map = picture.map();
     const Rectangle& plot = picture.plot;
@@ -288,16 +288,17 @@ inline bool is_empty(const Picture& picture) {
     return true;
 }
 
-// A run of a system of the gallery from other rates, to an end between 1 s and `longest`, and one of its views.
+// A run of a system of the gallery with random initial rates and an end time between 1 s and `longest`, and one of its
+// views.
 struct RandomRun {
-    std::size_t draw = 0;  // the number of draws before it
+    std::size_t draw = 0;  // number of draws before it
     std::string about;
     Trajectory trajectory;
     ViewDescription view;
 };
 class RandomRuns {
  public:
-    // The first `skipped` draws are left out.
+    // Skips the first `skipped` draws.
     RandomRuns(unsigned seed, double longest, std::size_t skipped = 0)
         : random_(seed), longest_(longest), names_(test::all_systems()), draw_(skipped) {
         random_.discard(numbers_per_draw * skipped);
@@ -321,7 +322,7 @@ class RandomRuns {
                 if (made.trajectory.pieces.empty()) continue;
                 ++draw_;
                 return made;
-            } catch (const InputError&) {  // no start of the system
+            } catch (const InputError&) {  // not a valid initial state of the system
             }
         }
     }
@@ -347,7 +348,7 @@ class RandomRuns {
     std::size_t draw_;
 };
 
-// The larger of both, by what the view is of.
+// Error over time or in the plane, depending on the view.
 inline double worst(const Trajectory& run, const Picture& picture) {
     return picture.prepared.quantities()[0].is_time ? worst_over_time(run, picture) : worst_in_plane(run, picture);
 }

@@ -1,4 +1,4 @@
-// What every drawing test runs under, however the test program is started.
+// Environment of all rendering tests, however the test program is started.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -7,7 +7,7 @@ namespace {
 
 class Mesa : public testing::Environment {
  public:
-    // A picture must not depend on shaders that an earlier run left in a cache.
+    // A picture must not depend on shaders cached by an earlier run.
     void SetUp() override { setenv("MESA_SHADER_CACHE_DISABLE", "true", 1); }
 };
 

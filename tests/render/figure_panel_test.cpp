@@ -1,4 +1,4 @@
-// Colours, text, and panels of runs that are not the paper's.
+// Colors, texts, and panels of runs other than the paper's.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace achilles {
 namespace {
 
-// A ball over a floor; `gap` and more may differ.
+// A ball above a floor; the gap and other entries can be changed.
 std::string ball(const std::string& more, const std::string& y = "y", const std::string& gap = "y") {
     return "title = \"ball\"\n[[coordinate]]\nname = \"x\"\nrate = 0.5\n[[coordinate]]\nname = \"" + y +
            "\"\nstart = 1.0\n[lagrangian]\nkinetic = \"(x'^2 + " + y + "'^2)/2\"\npotential = \"10*" + y +
@@ -137,7 +137,7 @@ TEST(Panels, AreBoundedForManyImpacts) {
     EXPECT_NEAR(highest, std::sqrt(0.2), 1e-3);  // thinning keeps the extremes
 }
 
-// t, and a parameter that follows from others.
+// The drawing depends on t, and on a parameter computed from others.
 TEST(Mechanism, moves_with_time) {
     const auto model = test::typed(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[parameter]]\nname = \"double\"\nvalue = \"2*om\"\n"
@@ -166,7 +166,7 @@ TEST(Mechanism, moves_with_time) {
     EXPECT_NEAR(grip->at(1.5, {trajectory.run.q, trajectory.run.v}).at.y, 7.5, 1e-14);
 }
 
-// Those of the constraints are among the others.
+// Drawings of constraints are among the other drawings.
 TEST(Mechanism, draws_what_is_touched) {
     const auto model = test::typed(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\npotential = \"x\"\n"
@@ -218,7 +218,7 @@ TEST(MechanismLimits, StayAtTheMotion) {
     EXPECT_LT(alone.x_low, -0.3);
     EXPECT_GT(alone.x_high, 1.3);
     EXPECT_LT(alone.x_high, 1.6);
-    // A long floor a little lower is seen, and only where the ball is; a far one is not.
+    // A long floor slightly below is shown, and only around the ball; a distant floor is not shown.
     const auto floor = [&](const std::string& y) {
         return disc + "[[drawing]]\nshape = \"segment\"\nfrom = [\"-500\", \"" + y + "\"]\nto = [\"500\", \"" + y +
                "\"]\n";
@@ -228,14 +228,14 @@ TEST(MechanismLimits, StayAtTheMotion) {
     EXPECT_LT(near.x_high - near.x_low, 12.0);
     const Drawing far = limits(ball("[run]\nend_time = 2\n" + floor("-400")));
     EXPECT_GT(far.y_low, -2.0);
-    // A bowl that is hardly larger than the motion is seen whole, a valley as long as a road is not.
+    // A bowl not much larger than the motion is shown entirely, a long valley is not.
     const auto valley = [&](const std::string& half) {
         return disc + "[[drawing]]\nshape = \"curve\"\nover = [\"s\", -" + half + ", " + half +
                "]\nat = [\"s\", \"0.3*s^2\"]\n";
     };
     EXPECT_LT(limits(ball("[run]\nend_time = 2\n" + valley("1.4"))).x_low, -1.4);
     EXPECT_GT(limits(ball("[run]\nend_time = 2\n" + valley("20"))).x_low, -1.0);
-    // A curve on a coordinate moves with it.
+    // A curve that depends on a coordinate moves with it.
     const std::string rope =
         "[[drawing]]\nshape = \"curve\"\nover = [\"s\", 0, 1]\nat = [\"s*x\", \"5 + s*(y - 5)\"]\n";
     EXPECT_GT(limits(ball("[run]\nend_time = 2\n" + rope)).y_high, 5.0);

@@ -1,4 +1,4 @@
-// Axes with limits nobody would choose, and logarithmic ones.
+// Axes with extreme limits, and logarithmic axes.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// Formulas as boxes, in numbers: a font whose letters are all 0.6 of their size wide.
+// Formulas as boxes, numerically, with a font whose letters are all 0.6 of their size wide.
 #include "figure/formula.hpp"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ const FormulaBox::Letters& letter(const FormulaBox& box, const std::string& labe
     throw std::runtime_error("there is no " + label);
 }
 
-// Of letters: where their ink may be.
+// Area that the ink of a text may cover.
 struct Ink {
     float left, right, top, bottom;
 };
@@ -44,7 +44,8 @@ Ink ink(const FormulaBox::Letters& one) {
     return {one.x, one.x + one.width, one.y - f.ascent * one.size, one.y + f.descent * one.size};
 }
 
-// No letters lie on others, none outside of the box, and none on a rule; a power may stand over the index of what it raises.
+// Texts do not overlap each other or a line, and stay inside the box. Only a power may be above the subscript of its
+// base.
 void expect_apart(const FormulaBox& box, const std::string& what) {
     for (std::size_t i = 0; i < box.letters.size(); ++i) {
         const Ink a = ink(box.letters[i]);
@@ -116,10 +117,10 @@ TEST(Formula, base_lines_align) {
     EXPECT_EQ(letter(row, "1").y, 0.0F);
     EXPECT_LT(letter(box("g^{2}"), "2").y, 0.0F);
     EXPECT_LT(letter(box("g^{2}"), "2").size, 20.0F);
-    // Over its index, not behind it.
+    // The power is above the subscript, not after it.
     const FormulaBox power = box("m_{1}^{2}");
     EXPECT_FLOAT_EQ(letter(power, "2").x, 0.6F * 20.0F);
-    // The bar of a fraction is where a minus sign is: over the base line, below the top of a letter.
+    // The bar of a fraction is level with a minus sign: above the baseline, below the top of a letter.
     EXPECT_LT(row.rules.front().y, 0.0F);
     EXPECT_GT(row.rules.front().y, -font().ascent * 20.0F);
 }
@@ -146,7 +147,7 @@ TEST(Formula, brackets_are_as_high_as_what_they_enclose) {
         EXPECT_LE(bow.points.front().y, -box("\\frac{g}{L}").ascent);
         EXPECT_GE(bow.points.back().y, box("\\frac{g}{L}").descent);
     }
-    // A root's sign reaches from under its letters to its bar.
+    // The radical sign extends from below its content to its bar.
     const FormulaBox root = box("\\sqrt{\\frac{g}{L}}");
     EXPECT_NEAR(root.strokes.front().points.back().y, root.rules.back().y, 2.0);
 }
@@ -164,12 +165,13 @@ TEST(Formula, long_sums_are_broken_at_their_signs) {
             EXPECT_TRUE(i == 0 || first == "+" || first == "\u2212") << first;
         }
     }
-    // One that fits is one line; inside brackets only where there is no other place; a product at last.
+    // A formula that fits is one line. Breaks are inside brackets only if there is no other place, and in a product
+    // last.
     EXPECT_EQ(set_in_lines(read("g + L"), 20.0F, font(), 400.0F, 0.0F).size(), 1U);
     EXPECT_EQ(set_in_lines(read("g (m_{1} + L + g + L + g + L)"), 20.0F, font(), 120.0F, 0.0F).front().letters[2].label,
               "m\u2081");
     EXPECT_GT(set_in_lines(read("g L g L g L g L"), 20.0F, font(), 40.0F, 0.0F).size(), 2U);
-    // What cannot be broken is wider than the line, and alone in it.
+    // A piece that cannot be broken may be wider than the line, and is alone in it.
     EXPECT_EQ(set_in_lines(read("\\mathit{mass} + g"), 20.0F, font(), 20.0F, 0.0F).size(), 2U);
 }
 

@@ -17,9 +17,9 @@ namespace {
 
 using samples::half;
 
-// Round things do not stay small between white margins: in every figure of the gallery panels fill their places. Less do
-// paths that are alone in the last row and would take more than its share of the height, and a round one beside which
-// panels with bars would be too low.
+// Paths with equal axes must not leave wide margins: in every figure of the gallery the panels fill their cells.
+// Exceptions are single paths in a last row that would take more than its share of the height, and a round path beside
+// which panels with bars would be too low.
 TEST(Layout, paths_fill_their_place) {
     const std::set<std::string> is_less{"arm_at_wall", "ball_in_gusts", "cart_between_walls", "ball_round_post"};
     for (const std::string& name : test::all_systems()) {
@@ -44,12 +44,12 @@ TEST(Layout, paths_fill_their_place) {
     }
 }
 
-// The path first, beside two rows; the others keep their order and share their axis as ever.
+// The path comes first, beside two rows. The other panels keep their order and share their axis as usual.
 TEST(Layout, a_round_path_stands_beside_two_rows) {
     const auto system = test::load("bead_in_ring");
     const Trajectory run = simulate(system, system->default_run());
     auto views = system->description().views;
-    std::rotate(views.begin(), views.begin() + 1, views.end());  // the path is the last
+    std::rotate(views.begin(), views.begin() + 1, views.end());  // the path is the last one
     const Figure figure = publication(run, views, {});
     EXPECT_EQ(figure.panels[0].title, "(a)\u00A0\u00A0path");
     EXPECT_EQ(figure.panels[0].rows, 2);
@@ -65,13 +65,13 @@ TEST(Layout, a_round_path_stands_beside_two_rows) {
     EXPECT_EQ(gap.x, plots[2].plot.x);
     EXPECT_GT(path.height, 1.8F * gap.height);
     EXPECT_NEAR(path.width / path.height, shape_of(figure.panels[0]), 0.01);
-    // As the command line orders them, or arranged by hand, they stay.
+    // With the order of the command line, or a given number of columns, the panels keep their places.
     PublicationStyle ordered, by_hand;
     ordered.ordered = true;
     by_hand.columns = 2;
     EXPECT_EQ(publication(run, views, ordered).panels[4].title, "(e)\u00A0\u00A0path");
     EXPECT_EQ(publication(run, views, by_hand).panels[4].rows, 1);
-    // What is long and low keeps a row of its own, which is higher; what is high and narrow a column.
+    // A long and low path keeps a row of its own, which is higher; a high and narrow one gets a column.
     const auto of_system = [](const std::string& name) {
         const auto other = test::load(name);
         return publication(simulate(other, other->default_run()), other->description().views, {});
@@ -81,7 +81,7 @@ TEST(Layout, a_round_path_stands_beside_two_rows) {
     EXPECT_EQ(of_system("ball_on_hills").panels[0].rows, 1);
 }
 
-// A marker on the very end of an axis is there, whole, however wide the picture is.
+// A marker at the very end of an axis is drawn entirely, for any width of the picture.
 TEST(Layout, markers_on_the_rim_are_drawn) {
     Figure figure;
     Panel& panel = figure.panels.emplace_back();
@@ -98,7 +98,7 @@ TEST(Layout, markers_on_the_rim_are_drawn) {
     }
 }
 
-// Full size, the size of indices, and only then any other: letters that are stretched look pale in pixels.
+// Full size, then the size of subscripts, and only then any other size: scaled glyphs look pale.
 TEST(Layout, labels_are_of_sizes_that_have_letters) {
     const auto size_of = [](const std::string& label) {
         Figure figure;
@@ -117,7 +117,7 @@ TEST(Layout, labels_are_of_sizes_that_have_letters) {
     EXPECT_GE(least, 7.0F);
 }
 
-// A word that is longer than the plot is cut where it cannot be smaller, and stays on the page.
+// A word longer than the plot is shortened if it cannot be smaller, and stays on the page.
 TEST(Layout, labels_of_one_long_word_stay_on_the_page) {
     Figure figure;
     figure.smallest_text = 0.9;
@@ -134,7 +134,7 @@ TEST(Layout, labels_of_one_long_word_stay_on_the_page) {
     EXPECT_EQ(labels, 1);
 }
 
-// The numbers at an axis in `height` pixels.
+// The labels on an axis of `height` pixels.
 std::vector<std::string> numbers_at(float height, bool bars = false) {
     Figure figure;
     Panel& panel = figure.panels.emplace_back();
@@ -148,12 +148,12 @@ std::vector<std::string> numbers_at(float height, bool bars = false) {
     return numbers;
 }
 
-// One number tells no scale.
+// A single label does not define a scale.
 TEST(Layout, an_axis_has_two_numbers_where_there_is_room_for_two) {
     for (float height = 80.0F; height < 200.0F; height += 1.0F) EXPECT_GE(numbers_at(height).size(), 2U) << height;
 }
 
-// What is lowest at the axis keeps clear of the first name below it.
+// The lowest label on the axis does not touch the first name below it.
 TEST(Layout, numbers_stand_above_the_names_of_time_bars) {
     for (float height = 120.0F; height < 300.0F; height += 1.0F) {
         const std::vector<std::string> numbers = numbers_at(height, true);
@@ -181,7 +181,7 @@ TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
         }
         return ticks;
     };
-    EXPECT_EQ(ticks_in(600), 9);  // 0, 5, ... 20 and what is between
+    EXPECT_EQ(ticks_in(600), 9);  // 0, 5, ... 20, and minor ticks
     EXPECT_EQ(ticks_in(90), 5);
 }
 

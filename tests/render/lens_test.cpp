@@ -1,4 +1,4 @@
-// The Zeno lens: an evenly spaced row of equal arcs.
+// The Zeno lens: evenly spaced, equal arcs.
 #include "figure/lens.hpp"
 
 #include <gtest/gtest.h>
@@ -39,7 +39,7 @@ TEST(ZenoLens, TheRowIsEvenAndTheArcsAreEqual) {
         ASSERT_GE(impacts.size(), 6u);
         for (std::size_t i = 1; i < impacts.size(); ++i)
             EXPECT_NEAR(impacts[i].x - impacts[i - 1].x, lens->spacing(), 1e-5) << system << " impact " << i;
-        // The tops of the run's own arcs and of those beyond the cut.
+        // Maxima of the run's own arcs and of those after the cut.
         double own = 0.0, limit = 0.0;
         for (const Point& point : panel.curves[0].points) own = std::max(own, point.y);
         for (const Point& point : panel.curves[1].points) limit = std::max(limit, point.y);
@@ -47,7 +47,7 @@ TEST(ZenoLens, TheRowIsEvenAndTheArcsAreEqual) {
     }
 }
 
-// Flights longer than a millisecond show the run's gap, which must join its own cubic.
+// Flights longer than a millisecond show the gap of the run, which must join its cubic interpolation.
 TEST(ZenoLens, ShowsTheGapOfTheRun) {
     const Trajectory trajectory = run_of("ball_on_sine", 1e-9);
     const auto lens = Lens::at(trajectory, first_zeno(trajectory));
@@ -78,12 +78,12 @@ TEST(ZenoLens, GoesOnForEver) {
 TEST(ZenoLens, HasNothingToShowWithoutARow) {
     const Trajectory trajectory = run_of("ball_on_sine", 1e-6);
     EXPECT_FALSE(Lens::at(trajectory, 0));       // an impact
-    EXPECT_FALSE(Lens::at(trajectory, 100000));  // no event
+    EXPECT_FALSE(Lens::at(trajectory, 100000));  // not an event
     const Trajectory plastic = run_of("ball_on_sine", 1e-6, 0.0);
     EXPECT_FALSE(Lens::at(plastic, first_zeno(plastic)));
 }
 
-// The interval begins where the certificate says.
+// The interval starts at the value of the certificate.
 TEST(ZenoLens, MarksTheCutAndTheCertifiedInterval) {
     const Trajectory trajectory = run_of("double_pendulum", 1e-6);
     const std::size_t event = first_zeno(trajectory);
@@ -95,8 +95,8 @@ TEST(ZenoLens, MarksTheCutAndTheCertifiedInterval) {
     EXPECT_GT(*lens->interval(), lens->cut());
 }
 
-// What is shown at first holds the cut and the beginning of the interval, which goes on for ever; and the arcs are as
-// high wherever one looks.
+// The initial view contains the cut and the start of the interval, which has no end. The arcs have the same height in
+// any view.
 TEST(ZenoLens, ShowsTheIntervalAsABandWithoutEnd) {
     for (const std::string system : {"ball_on_sine", "double_pendulum"}) {
         const Trajectory trajectory = run_of(system, 1e-6);

@@ -1,4 +1,4 @@
-// What we declare of OSMesa is what its header declares, where there still is one.
+// Our declarations of OSMesa agree with its header, on systems that still have it.
 #include <gtest/gtest.h>
 
 #include <type_traits>
@@ -11,7 +11,7 @@
 namespace achilles {
 namespace {
 
-// A context is an opaque pointer here and there.
+// Both declare the context as an opaque pointer.
 template <class Ours, class Theirs>
 constexpr bool is_same_call = false;
 template <class R, class... As, class S, class... Bs>

@@ -11,7 +11,8 @@ namespace {
 
 constexpr Color black{0, 0, 0, 255};
 
-// The box of what is not white, as left, top, right, bottom; right and bottom are one past the last.
+// Bounding box of all pixels that are not white: left, top, right, bottom; right and bottom are one past the last
+// pixel.
 std::array<int, 4> inked(const Image& image) {
     std::array<int, 4> box{image.width, image.height, 0, 0};
     for (int y = 0; y < image.height; ++y)
@@ -28,7 +29,7 @@ TEST(Label, dots_take_no_width) {
         EXPECT_EQ(label_width("q\u0308", 14.0F), label_width("q", 14.0F));
         EXPECT_EQ(label_width("", 14.0F), 0.0F);
         EXPECT_GT(label_width("ww", 14.0F), label_width("w", 14.0F));
-        EXPECT_GT(label_width("\xff\xce", 14.0F), 0.0F);  // no UTF-8, no harm
+        EXPECT_GT(label_width("\xff\xce", 14.0F), 0.0F);  // invalid UTF-8 does no harm
     });
 }
 
@@ -43,7 +44,7 @@ TEST(Label, the_width_is_the_one_that_is_painted) {
         EXPECT_EQ(promised, painted);
         const auto box = inked(image);
         EXPECT_NEAR(box[2] - box[0], promised, 0.25F * size);
-        EXPECT_GE(static_cast<float>(box[1]), 50.0F - 0.2F * size);  // the dot may stand out a little
+        EXPECT_GE(static_cast<float>(box[1]), 50.0F - 0.2F * size);  // the dot may extend slightly
         EXPECT_LE(static_cast<float>(box[3]), 50.0F + size);
     }
 }
@@ -114,7 +115,7 @@ TEST(Paint, maps_data_to_pixels_and_back) {
     }
 }
 
-// Lies: each of these changes must be seen.
+// Each of these changes must be detected.
 TEST(Paint, changes_are_noticed) {
     Offscreen surface(support::options(900, 600));
     const auto draw = [&](const Figure& figure) {
@@ -133,7 +134,7 @@ TEST(Paint, changes_are_noticed) {
     for (Point& p : lie.panels[0].curves[0].points) p.y += 0.01;
     EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
     lie = figure;
-    // A letter; a subscript alone scores 0.0049 and is left to the comparison of the figure's text.
+    // A letter. A subscript alone scores 0.0049; the comparison of the figure's text detects it.
     lie.panels[1].x.label = "\u03c6\u2081 [\u00b0]";
     EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
 }

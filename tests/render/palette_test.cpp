@@ -1,4 +1,4 @@
-// What is written can be read and what is drawn can be seen, in both themes: contrasts as WCAG 2 measures them.
+// Text is readable and drawings are visible in both themes: contrast ratios of WCAG 2.
 #include "figure/palette.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ constexpr double of_text = 4.5, of_signs = 3.0;
 TEST(Palette, measures_contrast_as_the_standard_does) {
     EXPECT_DOUBLE_EQ(contrast({0, 0, 0, 255}, {255, 255, 255, 255}), 21.0);
     EXPECT_DOUBLE_EQ(contrast({9, 9, 9, 255}, {9, 9, 9, 255}), 1.0);
-    EXPECT_NEAR(contrast({119, 119, 119, 255}, {255, 255, 255, 255}), 4.48, 0.005);  // the grey that just fails
+    EXPECT_NEAR(contrast({119, 119, 119, 255}, {255, 255, 255, 255}), 4.48, 0.005);  // the gray that just fails
 }
 
 TEST(Palette, text_can_be_read) {
@@ -41,7 +41,7 @@ TEST(Palette, curves_and_signs_can_be_seen) {
             EXPECT_GE(contrast(run_color(theme, place), theme.background), of_signs) << theme.dark << " " << place;
         EXPECT_GE(contrast(theme.surface, theme.background), of_signs);
         EXPECT_GE(contrast(theme.body, theme.background), of_text);
-        // Lines of a grid are there, and quiet.
+        // Grid lines are visible but faint.
         EXPECT_GT(contrast(theme.grid, theme.background), 1.1);
         EXPECT_LT(contrast(theme.grid, theme.background), 2.0);
     }

@@ -1,4 +1,4 @@
-// Springs, dampers, grounds and boxes in numbers.
+// Springs, dampers, grounds and boxes, numerically.
 #include "figure/parts.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ TEST(Parts, a_spring_stretches_between_straight_ends_and_keeps_its_breadth) {
     const PartSize size{2.0, 0.3};
     for (const double length : {0.7, 2.0, 9.0}) {
         const std::vector<Point> line = spring_line({1.0, 1.0}, {1.0, 1.0 + length}, 5, size);
-        ASSERT_EQ(line.size(), 14u);  // two ends of two points, five coils of two
+        ASSERT_EQ(line.size(), 14u);  // two ends with two points each, five coils with two points each
         EXPECT_EQ(line.front().y, 1.0);
         EXPECT_NEAR(line.back().y, 1.0 + length, 1e-15);
         const double end = std::min(0.15, 0.15 * length);
@@ -37,7 +37,7 @@ TEST(Parts, a_spring_stretches_between_straight_ends_and_keeps_its_breadth) {
     }
 }
 
-// Cup: points 3 to 6, piston: 8 and 9, its rod: 11 and 12.
+// Cup: points 3 to 6; piston: 8 and 9; its rod: 11 and 12.
 TEST(Parts, the_piston_of_a_damper_stays_in_its_cup) {
     const PartSize size{1.0, 0.2};
     double before = 0.0;
@@ -58,7 +58,7 @@ TEST(Parts, the_piston_of_a_damper_stays_in_its_cup) {
         if (length == 1.0) {
             EXPECT_NEAR(piston, 0.5 * (bottom + mouth), 1e-15);
         }
-        // What is drawn out is the rod, not the cup.
+        // Under extension the rod becomes longer, not the cup.
         if (length >= 1.0) {
             EXPECT_NEAR(mouth - bottom, 0.4, 1e-15);
         }
@@ -77,8 +77,10 @@ TEST(Parts, a_ground_is_hatched_on_the_right) {
         EXPECT_LE(strokes[i].x, 2.0 + 1e-14);
         EXPECT_TRUE(std::isnan(strokes[i + 2].x));
     }
-    for (const Point& p : hatching({0.0, 2.0}, {0.0, 0.0}, 0.1)) EXPECT_FALSE(p.x > 1e-15);  // down: its right is -x
-    EXPECT_EQ(hatching({0.0, 0.0}, {1e9, 0.0}, 1e-3).size(), 3000u);  // no more, however long it is
+    for (const Point& p : hatching({0.0, 2.0}, {0.0, 0.0}, 0.1))
+        EXPECT_FALSE(p.x > 1e-15);                                    // downward: its right is
+                                                                      // -x
+    EXPECT_EQ(hatching({0.0, 0.0}, {1e9, 0.0}, 1e-3).size(), 3000u);  // not more, for any length
     EXPECT_EQ(hatching({0.0, 0.0}, {0.05, 0.0}, 0.1).size(), 3u);
 }
 
@@ -106,9 +108,9 @@ TEST(Parts, a_box_turns_about_its_middle) {
     EXPECT_NEAR(corners[2].y, 4.0, 1e-15);
 }
 
-// ---- in a system ----
+// ---- parts in a system ----
 
-// A mass on a spring and a damper that comes to rest on a table, which sinks at a known speed.
+// A mass on a spring and a damper that comes to rest on a table; the table sinks at a given speed.
 struct Machine {
     explicit Machine(const std::string& more = "")
         : model(test::typed(
@@ -136,7 +138,7 @@ struct Machine {
 TEST(Mechanism, draws_parts_between_things_that_move) {
     const Machine machine;
     const Drawing start = machine.at(0.0), later = machine.at(1.0);
-    ASSERT_EQ(start.shapes.size(), 6u);  // what is solid, hatches, their line, spring, damper, box
+    ASSERT_EQ(start.shapes.size(), 6u);  // solid, hatches, their line, spring, damper, box
     const auto breadth = [](const Shape& shape) {
         const auto [least, most] = std::minmax_element(shape.points.begin(), shape.points.end(),
                                                        [](const Point& a, const Point& b) { return a.x < b.x; });
@@ -149,7 +151,7 @@ TEST(Mechanism, draws_parts_between_things_that_move) {
     EXPECT_NEAR(breadth(spring), breadth(stretched), 1e-15);
     EXPECT_GT(breadth(spring), 0.02);
     EXPECT_TRUE(spring.moves);
-    EXPECT_NEAR(start.shapes[4].points[4].x - start.shapes[4].points[5].x, -0.2, 1e-15);  // the cup, across = w/2
+    EXPECT_NEAR(start.shapes[4].points[4].x - start.shapes[4].points[5].x, -0.2, 1e-15);  // the cup, whose width is w/2
     const Shape& box = later.shapes[5];
     ASSERT_EQ(box.points.size(), 4u);
     EXPECT_TRUE(box.closed && box.fill);
@@ -159,7 +161,7 @@ TEST(Mechanism, draws_parts_between_things_that_move) {
     ASSERT_TRUE(grip);
     EXPECT_EQ(grip->at(0.0, {machine.run.run.q, machine.run.run.v}).at.y, 2.0);
     EXPECT_EQ(grip->at(0.0, {machine.run.run.q, machine.run.run.v}).radius, 0.2);
-    // The whole table is seen: it is not long.
+    // The table is not long, so it is shown entirely.
     EXPECT_LT(machine.limits.x_low, -1.0);
     EXPECT_GT(machine.limits.x_high, 1.0);
 }

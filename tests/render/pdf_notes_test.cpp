@@ -8,7 +8,7 @@
 namespace achilles {
 namespace {
 
-// An empty page, as cairo writes it.
+// An empty page in the format of cairo.
 std::string small_pdf() {
     std::string text = "%PDF-1.5\n%\xB5\xED\xAE\xFB\n", table = "xref\n0 5\n0000000000 65535 f \n";
     int object = 0;
@@ -38,7 +38,7 @@ TEST(PdfNotes, come_back_in_order) {
     EXPECT_EQ(with_pdf_notes(small_pdf(), awkward_notes), with_pdf_notes(small_pdf(), awkward_notes));
 }
 
-// What a reader of PDF does: from the end to the table, from the table to the object.
+// Follows the file as a PDF reader does: from its end to the cross-reference table, and from there to the object.
 TEST(PdfNotes, are_an_update_of_the_information_dictionary) {
     const std::string before = small_pdf(), pdf = with_pdf_notes(before, awkward_notes);
     EXPECT_EQ(pdf.substr(0, before.size()), before);

@@ -1,4 +1,4 @@
-// What a plane of two quantities shows besides the run: surfaces, contours, impacts as arrows.
+// Content of a plane of two quantities besides the run: surfaces, contours, arrows at impacts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -81,7 +81,7 @@ TEST(Plane, has_a_line_for_each_gap_and_shades_where_all_are_open) {
     EXPECT_NEAR(area(surfaces.open), (wall + 40.0) * 60.0, 1.0);
 }
 
-// The surface in a phase plane moves as time passes, and is made anew only then.
+// The surface in a phase plane moves with time, and is recomputed only when it does.
 TEST(Plane, has_the_surface_as_it_is_now) {
     const auto model = model_of("ball_on_vibrating_table");
     const auto run = model->default_run();
@@ -100,7 +100,7 @@ TEST(Plane, has_the_surface_as_it_is_now) {
     EXPECT_EQ(plane.surfaces_key(state), std::vector<double>{0.3});
     const auto still = model_of("ball_on_floor");
     EXPECT_TRUE(Plane(*still, {"y", "y'"}).surfaces_key(start_of(still->default_run())).empty()) << "x does not matter";
-    // What no gap of it depends on is nowhere closed and nowhere shaded.
+    // If no gap depends on the axes, there are no surfaces.
     EXPECT_TRUE(Plane(*still, {"x", "x'"})
                     .surfaces(still->default_run().parameters, start_of(still->default_run()), box(0.0, 1.0, 0.0, 1.0))
                     .lines.empty());
@@ -119,7 +119,7 @@ TEST(Plane, has_the_line_of_a_gap_that_is_an_axis) {
     EXPECT_NEAR(area(surfaces.open), 50.0, 1e-9);
 }
 
-// Of a falling ball: V = m g y, so its lines are level; E = m y'^2/2 + m x'^2/2 + m g y are parabolas.
+// For a falling ball: V = m g y, so its level lines are horizontal; E = m y'^2/2 + m x'^2/2 + m g y has parabolas.
 TEST(Plane, has_contours_at_round_energies) {
     const auto model = model_of("ball_on_floor");
     const auto run = model->default_run();
@@ -138,7 +138,7 @@ TEST(Plane, has_contours_at_round_energies) {
     const auto levels = Plane(*model, {"x", "y"}).levels(run.parameters, state, box(0.0, 2.0, 0.0, 2.0));
     ASSERT_GE(levels.size(), 3U);
     ASSERT_LE(levels.size(), 12U);
-    double datum = value(levels[0]) - m * g * levels[0].points[0].y;  // the file may count from the ground
+    double datum = value(levels[0]) - m * g * levels[0].points[0].y;  // the file may measure heights from the ground
     EXPECT_TRUE(std::abs(datum) < 1e-9 || std::abs(datum + m * g * r) < 1e-9) << datum;
     for (const auto& level : levels)
         for (const Point& p : level.points)
@@ -156,7 +156,7 @@ TEST(Plane, has_contours_at_round_energies) {
             }
     EXPECT_EQ(phase.levels_key(state), std::vector<double>{2.0}) << "x' alone";
     EXPECT_TRUE(Plane(*model, {"x*y", "y"}).levels(run.parameters, state, box(0.0, 2.0, 0.0, 2.0)).empty());
-    // Nothing is drawn of what is the same everywhere.
+    // A constant has no level lines.
     EXPECT_TRUE(Plane(*model, {"x", "gap"}).levels(run.parameters, state, box(0.0, 2.0, 0.0, 2.0)).empty());
 }
 
@@ -183,7 +183,7 @@ TEST(Plane, has_arrows_from_before_an_impact_to_after_it) {
         EXPECT_GT(arrow.coming.x, arrow.from.x) << "from above";
         EXPECT_GE((arrow.to.y - arrow.from.y) * 300.0 / (panel.y.high - panel.y.low), 7.0);
     }
-    // An impact moves nothing in a plane of coordinates.
+    // In a plane of coordinates an impact causes no jump.
     const Plane path(*model, {"x", "y"});
     EXPECT_TRUE(impact_arrows(trajectory, path.view(), compose(trajectory, samples, path.view(), light_theme()), 400.0,
                               300.0, 1.0)

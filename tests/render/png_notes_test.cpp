@@ -26,7 +26,7 @@ std::string big_endian(std::uint32_t value) {
     return text;
 }
 
-// CRC-32 bit by bit, and a chunk with a right one.
+// CRC-32 bit by bit, and a chunk with a valid checksum.
 std::string chunk(const std::string& name_and_data) {
     std::uint32_t sum = 0xFFFFFFFFU;
     for (const char c : name_and_data) {
@@ -36,7 +36,7 @@ std::string chunk(const std::string& name_and_data) {
     return big_endian(static_cast<std::uint32_t>(name_and_data.size() - 4)) + name_and_data + big_endian(~sum);
 }
 
-// With a chunk of anybody's after the header.
+// A PNG with an arbitrary chunk after its header.
 std::string png_with(const std::string& name_and_data) {
     const std::string png = small_png();
     return png.substr(0, 33) + chunk(name_and_data) + png.substr(33);
@@ -75,7 +75,7 @@ TEST(PngNotes, every_flipped_bit_and_every_missing_end_is_noticed) {
     }
 }
 
-// Check sums are right here, but parts are missing.
+// The checksums are valid, but parts of the chunks are missing.
 TEST(PngNotes, chunks_that_are_no_text_are_refused) {
     for (const std::string& damaged : {"tEXt"s, "tEXtkeyword"s, "iTXt"s, "iTXtkeyword"s, "iTXtk\0"s, "iTXtk\0\0"s,
                                        "iTXtk\0\0\0"s, "iTXtk\0\0\0en"s, "iTXtk\0\0\0en\0"s, "iTXtk\0\0\0en\0word"s})
@@ -93,11 +93,11 @@ TEST(PngNotes, what_no_chunk_can_hold_is_refused) {
     EXPECT_THROW(with_notes("GIF89a", {}), std::runtime_error);
 }
 
-// What strangers' files hold.
+// ---- files from other programs ----
 
 TEST(PngNotes, are_found_before_between_and_after_the_pixels) {
     const std::string png = small_png(), header = png.substr(0, 33), end = png.substr(png.size() - 12);
-    const std::string pixels = png.substr(41, png.size() - 41 - 12 - 4);  // of the one IDAT
+    const std::string pixels = png.substr(41, png.size() - 41 - 12 - 4);  // of the only IDAT chunk
     const std::string first = chunk("IDAT" + pixels.substr(0, 5)), second = chunk("IDAT" + pixels.substr(5));
     ASSERT_EQ(header + chunk("IDAT" + pixels) + end, png);
     EXPECT_EQ(png_notes(header + chunk("tEXta\0one"s) + chunk("gAMA\0\1\x86\xA0"s) + first + chunk("tIME1234567") +
@@ -112,7 +112,7 @@ TEST(PngNotes, of_one_keyword_all_come_in_order) {
               (Notes{{"k", "three"}, {"k", ""}, {"k", "one"}, {"k", "one"}, {"l", "two"}}));
 }
 
-// The notes around them are found.
+// Notes before and after such a chunk are still found.
 TEST(PngNotes, that_nobody_could_have_written_here_are_left_out) {
     for (const std::string& strange :
          {"tEXt\0no keyword"s, "tEXt"s + std::string(80, 'k') + "\0too long"s, "tEXtH\xF6he\0Latin-1"s,
@@ -135,7 +135,7 @@ TEST(PngNotes, a_length_that_is_wrong_is_noticed) {
             return false;
         }
     };
-    // Of the header, the first note, the pixels and the end.
+    // Chunk lengths of the header, the first note, the pixels and the end.
     for (const std::size_t at : {std::size_t{8}, std::size_t{33}, png.find("IDAT") - 4, png.size() - 12}) {
         std::uint32_t right = 0;
         for (std::size_t i = at; i < at + 4; ++i) right = right << 8 | static_cast<unsigned char>(png[i]);
@@ -149,7 +149,7 @@ TEST(PngNotes, a_length_that_is_wrong_is_noticed) {
     EXPECT_THROW(png_notes(small_png().substr(0, 33) + "\0\0\0\3tEXtk\0v\xCB\x04\xF3\x91"s), std::runtime_error);
 }
 
-// Whatever stands in chunks whose check sums are right: what is read can be written and comes back, or is refused.
+// Random chunks with valid checksums: the notes that are read can be written and read again, or the file is rejected.
 TEST(PngNotes, of_random_chunks_are_such_as_can_be_written) {
     std::mt19937 random(17);
     const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };

@@ -33,7 +33,7 @@ double length(const std::vector<Point>& line) {
     return sum;
 }
 
-// A ball bouncing with many samples: arcs, corners, smaller and smaller.
+// A bouncing ball with many samples: arcs and corners of decreasing size.
 std::vector<Point> bounces(int samples) {
     std::vector<Point> points;
     double x = 0.0, width = 200.0, height = 300.0;
@@ -55,7 +55,7 @@ TEST(Polyline, thinning_keeps_corners_and_extremes) {
     std::vector<Point> saw;
     for (int i = 0; i < 20000; ++i) saw.push_back({i * 0.02, i % 2 == 0 ? 10.0 : 90.0});
     const std::vector<Point> thin = thinned(saw, tolerance);
-    // Neighbouring teeth are 0.04 px apart, yet every one goes all the way up and down.
+    // Adjacent teeth are 0.04 px apart, but each one keeps its full height.
     EXPECT_NEAR(length(thin), length(saw), length(saw) * 1e-3);
     const std::vector<Point> there_and_back{{0, 0}, {50, 0}, {100, 0}, {60, 0}, {20, 0}, {70, 0}};
     const std::vector<Point> kept = thinned(there_and_back, tolerance);
@@ -81,7 +81,7 @@ TEST(Polyline, cutting_keeps_what_is_inside) {
 }
 
 TEST(Polyline, dashes_have_their_lengths_across_corners) {
-    // 4 on, 6 off: two fifths of the way is ink, however the way bends.
+    // 4 on, 6 off: two fifths of the length is drawn, for any curve.
     std::vector<Point> circle;
     constexpr double radius = 400.0 / (2.0 * std::numbers::pi);
     for (int i = 0; i <= 3000; ++i) {
@@ -90,7 +90,7 @@ TEST(Polyline, dashes_have_their_lengths_across_corners) {
     }
     const Box box{-100, -100, 100, 100};
     EXPECT_NEAR(length(cut(circle, box, {4, 6}, 0.0)), 160.0, 0.1);
-    EXPECT_NEAR(length(cut(circle, box, {4, 6}, 1.0)), 80.0, 0.1);  // the caps add what is missing
+    EXPECT_NEAR(length(cut(circle, box, {4, 6}, 1.0)), 80.0, 0.1);  // the caps add the rest
 }
 
 TEST(Polyline, dashes_do_not_depend_on_the_view) {

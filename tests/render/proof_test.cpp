@@ -41,19 +41,20 @@ ViewDescription over_time(const std::vector<std::string>& y) {
     return view;
 }
 
-// The slices of a tube around a time.
+// Whether the slices of a tube around the time t contain y.
 bool holds(const Tube& tube, double t, double y) {
     for (std::size_t i = 0; i + 1 < tube.slices.size(); ++i) {
         const Tube::Slice &a = tube.slices[i], &b = tube.slices[i + 1];
         if (!(a.x <= t && t <= b.x)) continue;
-        const double share = b.x > a.x ? (t - a.x) / (b.x - a.x) : 0.0, slack = 1e-5;  // of the chord between instants
+        const double share = b.x > a.x ? (t - a.x) / (b.x - a.x) : 0.0, slack = 1e-5;  // error of the chord between
+                                                                                       // instants
         return y >= a.low + share * (b.low - a.low) - slack && y <= a.high + share * (b.high - a.high) + slack;
     }
     return false;
 }
 
-// Every member of the box runs inside, rates and gaps included, but where its event and that of the curve lie between two
-// instants.
+// Every member of the box stays inside the tubes, including rates and gaps. Excluded are times between two instants
+// within which a member's event and that of the curve lie.
 TEST(ProofTube, HoldsTheMembers) {
     const Proven ball("ball_on_sine", 6.0, {1e-3, {}});
     ASSERT_GT(ball.proof.enclosure.proved_until, 2.0);
@@ -78,7 +79,7 @@ TEST(ProofTube, HoldsTheMembers) {
     EXPECT_GT(asked, 1000);
 }
 
-// It is not drawn behind its own curve, but where a plot is looked at closely it is: as far from the curve as is proved.
+// The tube is not drawn where its curve hides it. In a close view it is drawn at the proved distance from the curve.
 TEST(ProofTube, IsDrawnWhereItIsSeen) {
     const Proven ball("ball_on_sine", 4.0, {1e-8, {}});
     EXPECT_TRUE(ball.plot(over_time({"x"})).tubes.empty());
@@ -105,7 +106,7 @@ TEST(ProofTube, IsDrawnWhereItIsSeen) {
     EXPECT_GT(last, 3.5 + 0.99 * reach);
 }
 
-// The gap of no member is below 0, and in contact it is 0.
+// No member has a negative gap, and in contact the gap is 0.
 TEST(ProofTube, KnowsWhatTheSurfaceForbids) {
     const Proven ball("ball_on_sine", 3.5, {1e-5, {}});
     ASSERT_TRUE(ball.proof.enclosure.end);
@@ -125,7 +126,7 @@ TEST(ProofTube, KnowsWhatTheSurfaceForbids) {
     }
 }
 
-// A line where the proof ends, and nothing after it.
+// A line marks the end of the proof, and no tube follows.
 TEST(ProofTube, EndsWhereTheProofIsUndecided) {
     const Proven ball("ball_on_sine", 4.0, {2e-2, {}});
     const double until = ball.proof.enclosure.proved_until;
@@ -139,7 +140,7 @@ TEST(ProofTube, EndsWhereTheProofIsUndecided) {
     ASSERT_NE(mark, panel.markers.end());
     ASSERT_EQ(mark->points.size(), 1U);
     EXPECT_EQ(mark->points[0].x, until);
-    // No later than that: some of these times would be rounded up.
+    // The text must not claim a later time, although some of these times would be rounded up.
     Proof other = ball.proof;
     for (const double reached : {until, 2.6366666, 1.9999999, 0.3}) {
         other.enclosure.proved_until = reached;
@@ -154,7 +155,7 @@ TEST(ProofTube, EndsWhereTheProofIsUndecided) {
     }
     ASSERT_EQ(panel.bands.size(), 1U);
     EXPECT_EQ(panel.bands[0].low, until);
-    // A proof knows no work and no path: there is nothing to draw.
+    // A proof has no bounds on work or paths, so nothing is drawn.
     EXPECT_TRUE(ball.plot(over_time({"loss"})).tubes.empty());
     ViewDescription path = over_time({"y"});
     path.x.text = "x";
@@ -184,7 +185,7 @@ TEST(ProofTube, IsInTheLegendAndInEveryKindOfPicture) {
         if (const auto* strip = std::get_if<Strip>(&item)) {
             EXPECT_EQ(strip->upper.size(), strip->lower.size());
             for (std::size_t i = 0; i < strip->upper.size(); ++i)
-                EXPECT_LE(strip->upper[i].y, strip->lower[i].y + 1e-9) << i;  // pixels go down
+                EXPECT_LE(strip->upper[i].y, strip->lower[i].y + 1e-9) << i;  // pixels count downward
             ++strips;
         }
     EXPECT_EQ(strips, 2) << "the tube and its key";
@@ -192,14 +193,13 @@ TEST(ProofTube, IsInTheLegendAndInEveryKindOfPicture) {
     EXPECT_NE(drawn.find("fill-opacity=\"0.43\""), std::string::npos);
 }
 
-// Its fill is one colour, also where its pieces meet, and nothing is painted outside.
-// A path has no tube. Its legend must not read as if one were hidden by the curve.
+// A path has no tube. Its legend must not suggest that the curve hides one.
 TEST(ProofTube, IsNotClaimedWhereNoPlotIsOverTime) {
     const Proven proven("ball_on_sine", 5.0, {0.05, {}});
     ViewDescription path = over_time({"y"});
     path.x.text = "x";
     const auto keys = [&](const std::vector<ViewDescription>& views) {
-        std::vector<std::string> labels;  // of the proof alone
+        std::vector<std::string> labels;  // of the proof only
         for (const auto& key : publication(proven.run, views, {}, &proven.proof, {}).keys)
             if (key.label.starts_with("proved") || key.label.starts_with("undecided")) labels.push_back(key.label);
         return labels;

@@ -77,7 +77,7 @@ TEST_F(Publication, the_legend_tells_what_occurs_and_nothing_else) {
     EXPECT_EQ(of({y}).keys[0].label, "in flight");
 }
 
-// At restitution 0 nothing bounces: no legend speaks of a Zeno point.
+// At restitution 0 there are no bounces: no legend mentions a Zeno point.
 TEST_F(Publication, a_plastic_landing_is_called_a_landing) {
     const ViewDescription y = view("height", "t", {"y", "x"});
     achilles::Run plastic = model->default_run();
@@ -98,7 +98,7 @@ TEST_F(Publication, a_plastic_landing_is_called_a_landing) {
     EXPECT_TRUE(has(both, "Zeno point, 𝜏_{∞}, landing"));
 }
 
-// The sheet is checked, not a picture: no sign or label of a legend inside a plot area.
+// Checked in the sheet instead of a picture: no symbol or label of a legend is inside a plot area.
 TEST_F(Publication, no_legend_covers_data) {
     const Figure figure = of({view("rates", "t", {"x'", "y'"}), view("height", "t", {"y"})});
     EXPECT_TRUE(figure.panels[0].legend && figure.panels[0].legend_above);
@@ -121,7 +121,7 @@ TEST_F(Publication, no_legend_covers_data) {
     EXPECT_EQ(labels, 3);
 }
 
-// Limits are those of the data: a legend above the panel needs no room in it.
+// Limits follow the data, because a legend above the panel needs no space in it.
 TEST_F(Publication, several_curves_fill_their_panel) {
     const Panel panel = of({view("all", "t", {"x", "y", "x'", "y'", "gap"})}).panels[0];
     EXPECT_TRUE(panel.legend);
@@ -132,7 +132,7 @@ TEST_F(Publication, several_curves_fill_their_panel) {
     EXPECT_LT(panel.y.high, 1.15 * most);
 }
 
-// Circles are circles: a path is as long as it is high where its axes say so, in the sheet that is drawn.
+// Circles are round: units have equal length on both axes, in the drawn sheet.
 TEST_F(Publication, axes_of_one_unit_are_equally_long) {
     const auto lengths = [](const Figure& figure) {
         const Panel& panel = figure.panels[0];
@@ -152,12 +152,12 @@ TEST_F(Publication, axes_of_one_unit_are_equally_long) {
     EXPECT_TRUE(of({view("path", "x", {"y"})}).panels[0].equal_axes);
     EXPECT_FALSE(of({view("phase plane", "x", {"x'"})}).panels[0].equal_axes);
     EXPECT_FALSE(of({view("height", "t", {"y"})}).panels[0].equal_axes);
-    // Its whole length, and high enough to be read: the limits are widened.
+    // The whole length is shown, and the height is readable: the limits are widened.
     const Panel panel = of({view("path", "x", {"y"})}).panels[0];
     EXPECT_GE(panel.y.high - panel.y.low, 0.29 * (panel.x.high - panel.x.low));
 }
 
-// In a path h = 0 is drawn: in the plane of coordinates, and where a mechanism's point goes.
+// A path shows h = 0: in the plane of coordinates, and for the path of a mechanism's point.
 TEST_F(Publication, a_path_shows_the_boundary) {
     const auto of_path = [](const std::string& name) {
         const auto system = test::load(name);
@@ -177,10 +177,10 @@ TEST_F(Publication, a_path_shows_the_boundary) {
         bottom = std::min(bottom, p.y), top = std::max(top, p.y);
     }
     EXPECT_TRUE(left < -0.49 && right > 0.49 && bottom < -0.49 && top > 0.49);
-    // All of the ring is in view, and of a longer line what the path needs.
+    // The whole ring is visible; of a longer line, only what the path needs.
     EXPECT_TRUE(bead.x.low < left && bead.x.high > right && bead.y.low < bottom && bead.y.high > top);
     EXPECT_LT(of_path("ball_on_cylinder").x.high, 1.5);
-    EXPECT_TRUE(of_path("ball_on_egg_crate").boundary.points.empty());  // h depends on the height, too
+    EXPECT_TRUE(of_path("ball_on_egg_crate").boundary.points.empty());  // h also depends on the height
     EXPECT_TRUE(of_path("double_pendulum").boundary.points.empty());    // a phase plane
     EXPECT_TRUE(of({view("x", "t", {"x"})}).panels[0].boundary.points.empty());
     const auto keys = of({view("path", "x", {"y"})}).keys;
@@ -208,7 +208,7 @@ TEST_F(Publication, axes_say_their_units) {
     EXPECT_EQ(of({own}).panels[0].y.label, "speed (m/s)");
 }
 
-// Of plots that were arranged by hand, too.
+// Also for plots arranged by the user.
 TEST_F(Publication, a_legend_above_needs_no_room_in_the_panel) {
     const PreparedView rates(*model, view("rates", "t", {"x'", "y'"}));
     Framing screen, print;
@@ -221,7 +221,7 @@ TEST_F(Publication, a_legend_above_needs_no_room_in_the_panel) {
     EXPECT_EQ(a.y.high, b.y.high);
 }
 
-// A last row that is not full has no hole: its panels are wider, and end where the others do.
+// A last row that is not full has no gap: its panels are wider and end where the others do.
 TEST_F(Publication, a_last_row_fills_its_width) {
     const ViewDescription y = view("height", "t", {"y"}), x = view("x", "t", {"x"});
     const auto clips = [&](std::size_t panels, int columns) {
@@ -247,7 +247,7 @@ TEST_F(Publication, a_last_row_fills_its_width) {
     }
 }
 
-// Impacts before a Zeno point are seen one by one, as long as they stand apart; on each of several curves.
+// Impacts before a Zeno point are drawn individually while they are far enough apart, on each of several curves.
 TEST_F(Publication, impacts_that_crowd_thin_out) {
     for (const auto& ys : {std::vector<std::string>{"y"}, {"y", "x'"}}) {
         const Figure figure = of({view("", "t", ys)});
@@ -263,7 +263,7 @@ TEST_F(Publication, impacts_that_crowd_thin_out) {
         for (std::size_t i = 0; i < squares.size(); ++i)
             for (std::size_t j = 0; j < i; ++j)
                 nearest = std::min(nearest, std::hypot(squares[i].x - squares[j].x, squares[i].y - squares[j].y));
-        EXPECT_GT(nearest, 5.5 * 1.4);  // across
+        EXPECT_GT(nearest, 5.5 * 1.4);  // minimum distance: the width of a marker, pixels
     }
 }
 
@@ -283,7 +283,7 @@ TEST_F(Publication, what_is_retraced_is_drawn_once) {
     EXPECT_NEAR(length, 2.0 * 3.14159265, 0.1);
 }
 
-// Where a path crosses itself it goes on.
+// A path continues where it crosses itself.
 TEST_F(Publication, crossings_are_not_retraced) {
     const auto system = test::typed(
         "title = \"eight\"\n[[coordinate]]\nname = \"x\"\nrate = 1\n[[coordinate]]\nname = \"y\"\nrate = 2\n"
@@ -293,7 +293,7 @@ TEST_F(Publication, crossings_are_not_retraced) {
     for (const Point& p : figure.panels[0].curves[0].points) EXPECT_TRUE(std::isfinite(p.x));
 }
 
-// A long title stands above a legend that leaves no room beside it, a short one in its line.
+// A long title is above the legend if there is no space beside it; a short one is on the same line.
 TEST_F(Publication, titles_and_legends_do_not_overlap) {
     for (const char* name : {"rates", "the rates of both coordinates of the ball, each in a colour of its own"}) {
         const Sheet sheet =
@@ -343,7 +343,7 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
     EXPECT_TRUE(holds(200, 150, "2"));
 }
 
-// On a page 1200 pixels are 170 mm: whatever is written at --scale 1 has 7 points at least, but indices.
+// On a page, 1200 pixels are 170 mm: all text at --scale 1 has at least 7 points, except subscripts.
 TEST_F(Publication, text_is_never_too_small_to_be_printed) {
     ViewDescription long_one = view("a view whose name is much longer than the panel that it stands above, twice", "t",
                                     {"sqrt(x'^2 + y'^2)*sqrt(x'^2 + y'^2) + x'*y' + x'*x' + y'*y'"});
@@ -358,7 +358,7 @@ TEST_F(Publication, text_is_never_too_small_to_be_printed) {
             words += run->label + "|";
         }
     }
-    EXPECT_NE(words.find("\u2026 (m²/s²)|"), std::string::npos) << words;  // shorter, with its unit
+    EXPECT_NE(words.find("\u2026 (m²/s²)|"), std::string::npos) << words;  // shortened, with its unit
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Figures made by hand: what the drawing tests draw.
+// Figures made by hand for the rendering tests.
 #pragma once
 
 #include <cmath>
@@ -9,11 +9,11 @@
 
 namespace achilles::samples {
 
-// A measure: every byte of a label is half as wide as it is high.
+// A measure of labels: every byte is half as wide as it is high.
 inline float half(const std::string& label, float size) { return 0.5F * size * static_cast<float>(label.size()); }
 
 inline std::string number(double value) {
-    // Only for the samples: a few digits, a real minus sign.
+    // For these samples only: a few digits, and U+2212 for minus.
     std::string text = std::to_string(std::abs(value)).substr(0, 4);
     while (text.find('.') != std::string::npos && (text.back() == '0' || text.back() == '.')) {
         const bool point = text.back() == '.';
@@ -37,7 +37,7 @@ inline Axis axis(const std::string& label, double low, double high, double step)
 
 constexpr Color blue{31, 90, 160, 255}, red{200, 60, 40, 255}, grey{150, 150, 150, 255}, white{255, 255, 255, 255};
 
-// Member by member: GCC 12 mistakes nested braces here for uninitialised memory.
+// Member by member, because GCC 12 reports nested braces here as uninitialized memory.
 inline Curve curve(const std::string& label, Color color, double width, const std::vector<double>& dash) {
     Curve result;
     result.label = label;
@@ -47,7 +47,7 @@ inline Curve curve(const std::string& label, Color color, double width, const st
     return result;
 }
 
-// A ball that bounces to rest, then lies still: corners, crowded impacts, a dashed phase, a legend.
+// A ball that bounces to rest: corners, dense impacts, a dashed phase, a legend.
 inline Panel bouncing(const std::string& title = "(a)") {
     Panel panel;
     panel.title = title;
@@ -101,7 +101,7 @@ inline Panel phase_plane(const std::string& title = "(b)") {
     return panel;
 }
 
-// Saw teeth: nothing but corners.
+// A sawtooth line: only corners.
 inline Panel corners(const std::string& title = "(c)") {
     Panel panel;
     panel.title = title;
@@ -113,7 +113,7 @@ inline Panel corners(const std::string& title = "(c)") {
     return panel;
 }
 
-// Decades.
+// A logarithmic axis.
 inline Panel decay(const std::string& title = "(d)") {
     Panel panel;
     panel.title = title;

@@ -1,4 +1,4 @@
-// Pictures of runs with several contacts, and of surfaces that move.
+// Pictures of runs with several contacts and of moving surfaces.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -49,7 +49,7 @@ TEST(TimeBars, are_filled_while_a_contact_is_held_and_ticked_at_its_impacts) {
     std::vector<TimeBar::Mark> filled;
     for (const TimeBar::Mark& mark : knee.marks)
         if (mark.high > mark.low) filled.push_back(mark);
-    ASSERT_EQ(filled.size(), 2u);  // the reference's Zeno points, opening and release
+    ASSERT_EQ(filled.size(), 2u);  // Zeno points, opening and release of the reference
     EXPECT_NEAR(filled[0].low, 4.850414795914218, 1e-8);
     EXPECT_NEAR(filled[0].high, 6.648636034206552, 1e-8);
     EXPECT_NEAR(filled[1].low, 10.476602100186066, 1e-8);
@@ -62,7 +62,7 @@ TEST(TimeBars, are_filled_while_a_contact_is_held_and_ticked_at_its_impacts) {
     EXPECT_FALSE(std::any_of(knee.marks.begin(), knee.marks.end(), opening));
     EXPECT_TRUE(std::none_of(wall.marks.begin(), wall.marks.end(),
                              [](const TimeBar::Mark& mark) { return mark.high > mark.low; }));
-    // Bouncing to rest is no comb of ticks that cannot be told apart.
+    // A bouncing sequence is not drawn as ticks too dense to be distinguished.
     for (std::size_t i = 1; i < wall.marks.size(); ++i)
         EXPECT_GT(wall.marks[i].low - wall.marks[i - 1].low, (panel.x.high - panel.x.low) / 5000.0);
 }
@@ -84,7 +84,7 @@ TEST(Plots, over_time_begin_where_the_run_does) {
     EXPECT_EQ(panel.x.high, 1.0);
 }
 
-// Of a sheet: the fills of a colour, from left to right.
+// The fills of a color in a sheet, from left to right.
 std::vector<Rectangle> fills(const Sheet& sheet, const Color& color) {
     std::vector<Rectangle> found;
     for (const auto& item : sheet)
@@ -127,7 +127,7 @@ TEST(TimeBars, stand_between_the_plot_and_the_numbers_of_its_axis) {
         ASSERT_NE(name, sheet.end());
         EXPECT_LT(std::get<TextRun>(*name).x, plot.x);
         EXPECT_EQ(std::get<TextRun>(*name).anchor, 1.0F);
-        // The numbers are where they are without bars.
+        // The labels are where they are without bars.
         const auto number = std::find_if(sheet.begin(), sheet.end(), named("10"));
         const auto same = std::find_if(plain.begin(), plain.end(), named("10"));
         ASSERT_TRUE(number != sheet.end() && same != plain.end());
@@ -135,7 +135,7 @@ TEST(TimeBars, stand_between_the_plot_and_the_numbers_of_its_axis) {
     }
 }
 
-// Sixteen of them leave the plot its room.
+// Sixteen bars leave space for the plot.
 TEST(TimeBars, take_less_than_half_of_a_panel) {
     Panel panel = panel_of(run_of("pendulum_two_stops"), "t", "th2");
     panel.time_bars.resize(16, panel.time_bars.front());
@@ -189,7 +189,7 @@ TEST(Boundaries, of_several_gaps_are_drawn_where_no_other_is_negative) {
     }
     EXPECT_GT(count[0], 100);
     EXPECT_GT(count[1], 10);
-    EXPECT_EQ(count[2], 0);  // it meets the floor outside of the panel, and would be under it
+    EXPECT_EQ(count[2], 0);  // it meets the floor outside the panel, and would be below it
 }
 
 TEST(Boundaries, that_move_are_drawn_as_they_are_at_an_instant) {
@@ -214,7 +214,7 @@ TEST(Boundaries, that_move_are_drawn_as_they_are_at_an_instant) {
     }
 }
 
-// A gap that is written twice is drawn, not cut away by itself.
+// Two equal gaps must not remove each other's line.
 TEST(Boundaries, of_gaps_that_are_the_same_are_there) {
     Drawing limits;
     const PlaneFunction circle = [](const Point& p) { return p.x * p.x + p.y * p.y - 0.25; };
@@ -223,8 +223,8 @@ TEST(Boundaries, of_gaps_that_are_the_same_are_there) {
     EXPECT_EQ(border(limits, twice).size(), 2 * border(limits, once).size());
 }
 
-// Every row is even, and its arcs are as high as what they tend to, while another contact is held and where the surface
-// moves.
+// Every row is even, and its arcs have the height of their limit, also while another contact is held and on a moving
+// surface.
 TEST(ZenoLens, looks_at_the_contact_that_bounces) {
     int rows = 0, with_others = 0;
     for (const std::string name : {"bowl_and_post", "pendulum_two_stops", "ball_in_box", "travelling_wave"}) {

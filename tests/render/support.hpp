@@ -1,4 +1,4 @@
-// What the drawing tests share.
+// Shared by the rendering tests.
 #pragma once
 
 #include <imgui.h>
@@ -19,7 +19,7 @@ inline SurfaceOptions options(int width = 600, int height = 400, double scale = 
 
 using golden::worst_tile_allowed;
 
-// Draws on the list behind everything, over white.
+// Draws on the background draw list, on white.
 template <class Draw>
 Image picture(Offscreen& surface, const Draw& draw) {
     return surface.frame([&] {

@@ -18,7 +18,7 @@
 namespace achilles {
 namespace {
 
-// A bit of everything: a figure, a mechanism, widgets.
+// A figure, a mechanism and widgets.
 void everything() {
     paint(samples::figure(2), ImGui::GetBackgroundDrawList(), {0, 0, 600, 250});
     paint(samples::mechanism(), ImGui::GetBackgroundDrawList(), {300, 250, 300, 150});
@@ -88,7 +88,7 @@ TEST(Offscreen, keeps_clear_what_nothing_was_drawn_on) {
         EXPECT_NEAR(image.rgb[3 * x + 1], 100, 1);
         EXPECT_NEAR(image.rgb[3 * x + 2], 50, 1);
     }
-    EXPECT_EQ(png_bytes(image).at(25), 6);  // colour type: RGBA
+    EXPECT_EQ(png_bytes(image).at(25), 6);  // color type: RGBA
 }
 
 TEST(Offscreen, draws_the_same_bytes_with_any_number_of_threads) {
@@ -206,7 +206,7 @@ TEST(Events, a_slow_frame_keeps_up_with_typing_and_keeps_its_order) {
     events.key(key::left_shift, true);
     press('C', "C");
     events.key(key::left_shift, false);
-    press(key::left, "");  // acts on what was typed before, and on nothing after it
+    press(key::left, "");  // acts on the text typed before it only
     press('D', "d");
     events.key(key::left_control, true);
     press('S', "");
@@ -254,7 +254,7 @@ TEST_F(OnDisplay, a_window_draws_the_bytes_of_offscreen) {
     EXPECT_EQ(shown.width, expected.width);
     EXPECT_EQ(worst_tile(shown, expected), 0.0);
     EXPECT_EQ(shown, expected);
-    // One thread, two kinds of context, in turn.
+    // One thread, two kinds of context, alternating.
     EXPECT_EQ(surface.frame(everything, 3), expected);
     EXPECT_EQ(window.picture(), expected);
 }
@@ -287,7 +287,7 @@ TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
     EXPECT_TRUE(window.dropped().empty());
 }
 
-// With nothing to do it draws nothing, until it is woken. Even a field that waits for letters lets it sleep.
+// An idle window draws nothing until it is woken, even while a text field is active.
 TEST_F(OnDisplay, a_window_that_rests_draws_nothing) {
     Window window(support::options(200, 100), "achilles");
     window.keep_drawing(false);
@@ -307,7 +307,7 @@ TEST_F(OnDisplay, a_window_that_rests_draws_nothing) {
         if (is_over) window.close();
     });
     later.join();
-    // Some frames to settle after it appeared; twice a second would be more.
+    // A few frames to settle after the window appeared; drawing twice a second would give more.
     EXPECT_LE(when_woken, 12);
 }
 

@@ -32,7 +32,7 @@ std::size_t count(const std::string& text, const std::string& part) {
     return found;
 }
 
-// A file with this text, and the status of a shell command in which %s stands for its name.
+// Writes a text to a file. Returns the exit status of a shell command in which %s stands for its name.
 int status_of(const std::string& command, const std::filesystem::path& file, const std::string& text) {
     std::ofstream(file, std::ios::binary) << text;
     std::string full = command;
@@ -51,10 +51,10 @@ TEST(Svg, is_valid_xml) {
 
 TEST(Svg, has_text_as_text) {
     const std::string text = sample();
-    // Theta with its index, lowered by 0.13 of the line and set at 0.72 of its size.
+    // Theta with its index, lowered by 0.13 of the line height and at 0.72 of its size.
     EXPECT_NE(text.find(">θ<tspan dy=\"1.82\" font-size=\"8.66\">1</tspan><tspan dy=\"-1.82\"> [°]</tspan></text>"),
               std::string::npos);
-    // A dot of its own over theta, and the way back.
+    // A separate dot above theta, and the way back.
     EXPECT_NE(text.find(">θ<tspan dx=\""), std::string::npos);
     EXPECT_EQ(count(text, "˙"), 1u);
     EXPECT_EQ(count(text, "¨"), 1u);
@@ -72,7 +72,7 @@ TEST(Svg, keeps_curves_within_a_hundredth_and_small) {
     EXPECT_LT(svg(figure, {900, 600, 1.0}, fonts, {}).size(), 30000u);
 }
 
-// Everything but words: glyphs are rasterised differently, which alone scores 0.16. What the words are is tested above.
+// The figure without words: glyphs are rasterized differently, which alone scores 0.16. The words are tested above.
 Figure without_words(Figure figure) {
     for (Panel& panel : figure.panels) {
         panel.title.clear();
@@ -88,7 +88,7 @@ Figure without_words(Figure figure) {
     return figure;
 }
 
-// librsvg draws what we draw ourselves.
+// librsvg renders the same picture as our painter.
 TEST(Svg, looks_like_the_png) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_look.svg";
     const auto rendered = [&](const Figure& figure) {
@@ -112,7 +112,7 @@ TEST(Svg, looks_like_the_png) {
     std::filesystem::remove(file.string() + ".png");
 }
 
-// The figures of every system of the gallery: valid with their words, and the same picture without.
+// The figures of all systems of the gallery: valid SVG with words, and the same picture without them.
 TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_gallery.svg";
     SurfaceOptions options = support::options(1200, 800, publication_scale);
@@ -125,7 +125,7 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
         const Figure figure = publication(trajectory, model->description().views, {});
         const auto as_svg = [&](const Figure& f) { return svg(f, {1200, 800, publication_scale}, fonts, {}); };
         EXPECT_EQ(status_of("xmllint --noout %s", file, as_svg(figure)), 0) << entry.path();
-        // Curves of many thousand pixels: where their dashes begin drifts with how finely they are thinned.
+        // In curves of many thousand pixels, the phase of the dashes depends on how finely the curves are thinned.
         Figure bare = without_words(figure);
         for (Panel& panel : bare.panels)
             for (Curve& curve : panel.curves) curve.stroke.dash.clear();
@@ -141,7 +141,7 @@ TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
     std::filesystem::remove(file.string() + ".png");
 }
 
-// The box of the numbers in a path, left, top, right, bottom.
+// Bounding box of the points of a path: left, top, right, bottom.
 std::array<double, 4> box_of(const std::string& path) {
     std::array<double, 4> box{1e9, 1e9, -1e9, -1e9};
     for (std::size_t at = path.find('M') + 1; path[at] != 'Z'; at = path.find(' ', at) + 1) {
@@ -151,7 +151,7 @@ std::array<double, 4> box_of(const std::string& path) {
     return box;
 }
 
-// A release and an impact exactly where an axis begins and ends: neither cut nor crossed by the box, in SVG and pixels.
+// A release and an impact exactly at the ends of an axis are neither clipped nor crossed by the box, in SVG and pixels.
 TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
     const auto model =
         std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml"));
@@ -175,14 +175,14 @@ TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
     const double span = impact->t - release->t;
     const Figure inside = figure_from(release->t - 0.3 * span, impact->t + 0.3 * span);
 
-    // SVG: outside every clipping group, and to both sides of the axis' end.
+    // SVG: outside every clipping group, and on both sides of the end of the axis.
     std::istringstream lines(svg(at_ends, {600, 400, 1.4}, fonts, {}));
     const Color green = event_markers(light_theme(), Event::Kind::release).fill;
     const std::string fill = fmt::format("fill=\"#{:02x}{:02x}{:02x}\"", green.r, green.g, green.b);
     int triangles = 0;
     bool clipped = false;
     double left = 0.0;                                             // of the axes
-    const std::string area = "<clipPath id=\"plot3\"><rect x=\"";  // after those of two keys
+    const std::string area = "<clipPath id=\"plot3\"><rect x=\"";  // after those of two legend entries
     for (std::string line; std::getline(lines, line);) {
         clipped = line.starts_with("<g clip-path") || (clipped && line != "</g>");
         if (const std::size_t at = line.find(area); at != std::string::npos)
@@ -198,7 +198,7 @@ TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
     }
     EXPECT_EQ(triangles, 1);
 
-    // Pixels: as many of their colours as where nothing is near them.
+    // Pixels: as many in their colors as for isolated events.
     SurfaceOptions options = support::options(600, 400, 1.4);
     options.curve_fineness = 2;
     Offscreen surface(options);
@@ -218,7 +218,7 @@ TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
     EXPECT_NEAR(there, whole, 0.1 * whole);
 }
 
-// At the size of a page nothing is shortened.
+// At page size no label is shortened.
 TEST(Svg, labels_of_the_gallery_are_whole) {
     for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/assets/systems")) {
         const auto model = std::make_shared<const Model>(read_system(entry.path()));

@@ -1,4 +1,4 @@
-// Sweeps over one axis, in numbers: gaps, breaks, steps and classes.
+// Sweeps over one axis, numerically: gaps, breaks, steps and classes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,7 @@ namespace {
 
 using sweeps::grid, sweeps::nothing_there, sweeps::only;
 
-// Its pieces, as the x of their points.
+// The pieces of a curve, as the x of their points.
 std::vector<std::vector<double>> pieces(const Curve& curve) {
     std::vector<std::vector<double>> all(1);
     for (const Point& p : curve.points) {
@@ -41,7 +41,7 @@ TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
     EXPECT_EQ(panel.y.label, "Zeno time 2 (s)");
     EXPECT_EQ(panel.x.low, 0.0);
     EXPECT_EQ(panel.x.high, 0.7);
-    // One bar, in the middle between the two.
+    // One bar, midway between the two points.
     ASSERT_EQ(panel.markers.size(), 1u);
     EXPECT_EQ(panel.markers[0].label, sequence_changes);
     ASSERT_EQ(panel.markers[0].points.size(), 1u);
@@ -66,7 +66,7 @@ TEST(SweepCurve, says_why_it_is_broken_where_lines_would_be_too_many) {
     EXPECT_EQ(panel().curves.size(), 1u);
 }
 
-// There is no run with 2.5 of them.
+// A count has no values between integers.
 TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
     SweepData data = grid({{"e", 0.0, 0.5, 6, false}}, {1, 1, 2, 2, 2, 4}, {1, 1, 1, 1, 1, 1});
     EXPECT_EQ(pieces(compose_sweep(data, only(0)).panels[0].curves[0]).size(), 1u);

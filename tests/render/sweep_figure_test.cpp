@@ -1,4 +1,4 @@
-// Figures of sweeps, in numbers and text: cells, contours, classes, dots, and what has no figure.
+// Figures of sweeps, as numbers and text: cells, contours, classes, dots, and sweeps without a figure.
 #include "figure/sweep_figure.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 
 using sweeps::data_of, sweeps::grid, sweeps::nothing_there, sweeps::only;
 
-// The first axis goes to the right, the second upwards; half of an outer cell is outside.
+// The first axis points to the right, the second upward. Half of each outer cell is outside the range of the axis.
 TEST(SweepMap, has_a_cell_for_every_point) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 2.0, 0.0, 3, false}}, {0, 1, 2, 3, 4, nothing_there},
                                 {1, 1, 1, 1, 1, 2});
@@ -31,7 +31,7 @@ TEST(SweepMap, has_a_cell_for_every_point) {
     const Cells& cells = *panel.raster.cells;
     ASSERT_EQ(cells.columns, 2);
     ASSERT_EQ(cells.rows, 3);
-    // The second axis runs downwards, so that its first value, 2, is at the top.
+    // The second axis runs downward, so that its first value, 2, is at the top.
     const std::vector<Color> table = number_colors(256);
     EXPECT_EQ(cells.colors[0], table.front());
     EXPECT_EQ(cells.colors[1], table[191]) << "three quarters of the way";
@@ -48,7 +48,7 @@ TEST(SweepMap, has_a_cell_for_every_point) {
     EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s)");
     EXPECT_EQ(panel.color_bar.axis.low, 0.0);
     EXPECT_EQ(panel.color_bar.axis.high, 4.0);
-    // The line between the last cell and its two neighbours.
+    // The line between the last cell and its two neighbors.
     ASSERT_EQ(panel.curves.size(), 2u);
     const std::vector<Point>& line = panel.curves[1].points;
     ASSERT_EQ(line.size(), 5u);
@@ -68,7 +68,7 @@ TEST(SweepMap, says_where_lines_would_be_too_many) {
     EXPECT_TRUE(panel.legend_above);
 }
 
-// Two of many that are far from the rest do not take the colours from them, and are told.
+// Two outliers do not use up the color scale, and the figure mentions them.
 TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
     std::vector<double> numbers;
     for (int i = 0; i < 2000; ++i) numbers.push_back(i % 100);
@@ -137,7 +137,7 @@ TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
     EXPECT_EQ(panel.markers[0].points[1].y, data.number(1, 1));
 }
 
-// Nor are there numbers along an axis without any.
+// An axis without numbers has no labels.
 TEST(SweepFigure, says_that_there_is_no_value) {
     const std::vector<double> none(4, nothing_there);
     const std::vector<std::uint64_t> same(4, 1);
@@ -177,7 +177,7 @@ TEST(SweepSection, of_zeros_says_which_way_they_are_passed) {
     EXPECT_EQ(compose_sweep(data).panels[0].markers[0].label, "at every upward zero of " + typeset("x - 1"));
 }
 
-// As in the figure of a run; a drive's frequency is no angle's rate.
+// As in the figure of a run; the frequency of a drive is not converted to degrees.
 TEST(SweepFigure, shows_angles_in_degrees) {
     const SweepData data =
         data_of("driven_double_pendulum",
@@ -214,7 +214,7 @@ TEST(SweepSamples, stand_where_they_are) {
     EXPECT_TRUE(figure.panels[1].color_bar.colors.empty());
 }
 
-// A dot is darker the more points are in it, by the logarithm.
+// A dot darkens with the logarithm of its number of points.
 TEST(SweepDots, are_shaded_by_the_logarithm_of_their_number) {
     Panel panel;
     panel.x.high = panel.y.high = 10.0;
@@ -250,7 +250,7 @@ TEST(SweepFigure, has_its_bar_inside_the_picture) {
     }
 }
 
-// Where it stands below a panel that has none, too.
+// Also below a panel without a color scale.
 TEST(SweepFigure, has_its_bar_inside_the_picture_in_a_row_that_is_not_full) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
     SweepLook look;
@@ -286,7 +286,8 @@ TEST(SweepFigure, says_once_what_several_panels_show) {
     EXPECT_EQ(figure.columns, 2);
 }
 
-// By widths in points: 1200 pixels, or 170 mm, and half of it. In a height that is given they stay where they are larger.
+// The widths are in points: 1200 pixels, or 170 mm, and half of it. With a given height, the maps stay side by side if
+// they are larger so.
 TEST(SweepFigure, has_narrow_maps_below_one_another) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
     const auto columns = [&](double width, double height) {

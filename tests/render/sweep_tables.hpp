@@ -1,4 +1,4 @@
-// Tables of sweeps: some that nobody computed, and some of systems of the gallery.
+// Tables of sweeps: artificial ones, and some of systems of the gallery.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace achilles::sweeps {
 
 inline constexpr double nothing_there = std::numeric_limits<double>::quiet_NaN();
 
-// Data of a table that nobody computed: one number and held, over a grid.
+// Data of an artificial table: one number and the held contacts, over a grid.
 inline SweepData grid(std::vector<SweepAxis> axes, const std::vector<double>& numbers,
                       const std::vector<std::uint64_t>& signatures) {
     SweepData data;

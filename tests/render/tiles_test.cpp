@@ -22,7 +22,7 @@ Color at(const Image& image, int x, int y) {
     return {rgb[0], rgb[1], rgb[2], 255};
 }
 
-// To the last pixel, inside the clip, with strokes before and behind it.
+// Exact to the pixel, inside the clip rectangle, with strokes below and above.
 TEST(TilesPainted, are_rectangles_of_their_colours) {
     constexpr Color white{255, 255, 255, 255}, black{0, 0, 0, 255};
     Offscreen surface(support::options());

@@ -1,4 +1,4 @@
-// Figures show the whole motion, however long it is.
+// Figures show the whole motion, for runs of any length.
 #include "figure/trace.hpp"
 
 #include <gtest/gtest.h>
@@ -33,8 +33,8 @@ TEST(Trace, FiguresOfRandomRunsShowTheirMotion) {
     }
 }
 
-// The contact force jumps where the motion in contact begins, and is highest there: 0.84 pixels above the next sample.
-// The measure accepts the true curve and finds the fault of one without that point.
+// The contact force jumps where contact begins, and is largest there: 0.84 pixels above the next sample. The measure
+// accepts the true curve and detects that this point is missing.
 TEST(Trace, ShowsAForceToItsHighestWhereItJumps) {
     const auto model = test::load("ball_in_bowl");
     auto start = model->default_run();
@@ -72,7 +72,7 @@ TEST(Trace, NumberOfPointsDoesNotGrowWithTheRun) {
     }
 }
 
-// The rod turns by 10 rad/s, and its end lies on the ring for most of the run: what is drawn of its way is a circle.
+// The rod rotates at 10 rad/s and its end is on the ring for most of the run, so that the drawn trail is a circle.
 TEST(Trace, TrailIsSampledWhereItIsDrawn) {
     const auto model = test::typed(R"toml(
 title = ""
@@ -125,7 +125,7 @@ radius = "0.04"
         for (std::size_t i = 1; i < shape.points.size(); ++i) {
             const Point middle{0.5 * (shape.points[i].x + shape.points[i - 1].x),
                                0.5 * (shape.points[i].y + shape.points[i - 1].y)};
-            // The rest of the way, which other turns have drawn, is as fine as the whole world needs.
+            // The rest of the trail, drawn in other turns, has the resolution of the whole world.
             const bool is_of_now = std::hypot(shape.points[i].x - shape.points[i - 1].x,
                                               shape.points[i].y - shape.points[i - 1].y) < 0.3 * size;
             if (std::hypot(middle.x - at.x, middle.y - at.y) > size || !is_of_now) continue;
@@ -136,7 +136,7 @@ radius = "0.04"
     EXPECT_GT(close, 4);
 }
 
-// A ramp of 40 m with waves of 1 m: 20 pixels each.
+// A ramp of 40 m with waves of 1 m, 20 pixels each.
 TEST(Boundaries, LineOfAWavyRampIsSmooth) {
     const auto model = test::typed(R"toml(
 title = ""
@@ -170,7 +170,7 @@ restitution = "0.7"
             EXPECT_NEAR(map.y(0.5 * (line[i - 1].y + line[i].y)), map.y(at(x)), 0.3);
             longest = std::max(longest, std::abs(line[i].x - line[i - 1].x));
         }
-        // All of it is there, from one side of the picture to the other.
+        // The whole line is drawn, from one side of the picture to the other.
         for (double x = picture.panel().x.low + 0.1; x < picture.panel().x.high - 0.1; x += 0.05) {
             double least = 1e9;
             for (const Point& p : line)
@@ -181,7 +181,7 @@ restitution = "0.7"
     }
 }
 
-// However small the picture is, the line is as wide as a pixel.
+// In a picture of any size, the line is at least one pixel wide.
 TEST(Boundaries, LineIsSeenInASmallPicture) {
     const Trajectory run = run_until("ball_on_sine", 5.0);
     const drawn::Picture picture(run, view("x", "y"), {300, 200});
@@ -197,7 +197,8 @@ TEST(Boundaries, LineIsSeenInASmallPicture) {
     EXPECT_TRUE(is_seen);
 }
 
-// Events by the thousand hide no curve: of a few the markers have edges, of more they are bare and apart, then a band.
+// Thousands of events hide no curve: a few markers have edges, more are thinned and without edges, and very many are a
+// band.
 TEST(Markers, AreThinnedBeforeTheyHideTheCurve) {
     const auto measure = [](const std::string& label, float size) {
         return 0.5F * size * static_cast<float>(label.size());

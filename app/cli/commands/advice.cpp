@@ -26,7 +26,7 @@ namespace {
 
 using Words = std::vector<std::string>;
 
-// An option or command of achilles, and what other programs call it.
+// An option or command of achilles and its names in other programs.
 struct OtherWords {
     std::string_view known, typed;
 };
@@ -49,7 +49,7 @@ constexpr OtherWords other_commands[] = {
     {"--help", "-help -? /? /help"},
 };
 
-// The first that a command has is meant.
+// The first entry that the command has is suggested.
 constexpr OtherWords other_options[] = {
     {"out", "output outfile o file filename save savefig export png svg pdf figure film movie mp4 dir"},
     {"json", "output"},
@@ -92,7 +92,7 @@ constexpr OtherWords other_options[] = {
     {"simultaneous", "moreau"},
 };
 
-// Options of other programs that achilles does not need, and what to do instead.
+// Options of other programs that achilles does not need, with an explanation.
 constexpr OtherWords no_options[] = {
     {"the step size follows from --tolerance; --samples N sets the number of rows in a file",
      "dt step stepsize step-size timestep"},
@@ -102,7 +102,7 @@ constexpr OtherWords no_options[] = {
     {"leave it out, and send the output to /dev/null", "quiet q silent"},
 };
 
-// "--T_end=5": the name t-end, and the value 5.
+// "--T_end=5": the name t-end and the value 5.
 struct TypedOption {
     explicit TypedOption(const std::string& word) {
         const std::size_t equals = std::min(word.find('='), word.size());
@@ -124,7 +124,7 @@ const CLI::Option* option_of(const CLI::App& command, std::string_view name) {
     return nullptr;
 }
 
-// "--out F.png", with the word that was typed for its value where there is one.
+// "--out F.png": the option with the word typed as its value, if any.
 std::string with_value(const CLI::Option& option, const std::string& value) {
     if (option.get_items_expected_max() == 0) return option.get_name();
     std::string type = option.get_type_name();
@@ -136,7 +136,7 @@ bool is_number(const std::string& word) {
     return !word.empty() && word.find_first_not_of("+-.0123456789eE") == word.npos;
 }
 
-// "write --start-time 0 --end 5" for 0:5, [0, 5] or 0:0.01:5; "" for one value.
+// "write --start-time 0 --end 5" for 0:5, [0, 5] or 0:0.01:5; "" for a single value.
 std::string span_of(std::string value) {
     for (char& c : value)
         if (std::string_view("[](),:").find(c) != std::string_view::npos) c = ' ';
@@ -166,7 +166,7 @@ class CommandLine {
         const CLI::Option* option = named_in(what);
         if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr && option != nullptr) {
             std::string choices = option->get_type_name();
-            choices.resize(std::min(choices.find(":{"), choices.size()));  // CLI11 repeats them
+            choices.resize(std::min(choices.find(":{"), choices.size()));  // CLI11 lists them twice
             for (std::size_t bar = choices.find('|'); bar != choices.npos; bar = choices.find('|'))
                 choices.replace(bar, 1, choices.find('|', bar + 1) == choices.npos ? " or " : ", ");
             return message(fmt::format("{} is {}", option->get_name(), choices), "");
@@ -185,7 +185,7 @@ class CommandLine {
         return fmt::format("'achilles {}{}--help' lists the options", name_, name_.empty() ? "" : " ");
     }
 
-    // The option that CLI11's message begins with, or ends with.
+    // The option at the start or the end of CLI11's message.
     const CLI::Option* named_in(const std::string& what) const {
         for (const CLI::Option* option : command_->get_options())
             if (const std::string name = option->get_name();
@@ -194,13 +194,13 @@ class CommandLine {
         return nullptr;
     }
 
-    // The word behind an option, where it is no option itself.
+    // The word after an option, unless it is an option itself.
     std::string value_behind(const std::string& typed) const {
         const auto at = std::find(words_.begin(), words_.end(), typed);
         return at == words_.end() || at + 1 == words_.end() || is_option(*(at + 1)) ? "" : *(at + 1);
     }
 
-    // The first word that is a system which can be read.
+    // The first word that names a readable system.
     std::optional<SystemDescription> system() const {
         for (const std::string& word : words_) {
             if (is_option(word)) continue;
@@ -213,14 +213,14 @@ class CommandLine {
         return std::nullopt;
     }
 
-    // "--set e=0.3", and where many values are given --over e=0:0.9:100.
+    // "--set e=0.3" or, for several values, --over e=0:0.9:100.
     std::string setting(const std::string& name, const std::string& value) const {
         const bool is_range = value.find(':') != value.npos;
         const char* const flag = is_range && option_of(*command_, "over") != nullptr ? "--over" : "--set";
         return fmt::format("write {} {}", flag, shell_word(name + "=" + (value.empty() ? "VALUE" : value)));
     }
 
-    // Another command that has the option, for the same system.
+    // Suggests another command that has the option.
     std::string elsewhere(const TypedOption& option) const {
         for (const CLI::App* other : program_.get_subcommands({}))
             if (const CLI::Option* known = option_of(*other, option.name); other != command_ && known != nullptr)
@@ -228,7 +228,7 @@ class CommandLine {
         return "";
     }
 
-    // A file that another command writes: a figure for .png.
+    // Suggests the command that writes this kind of file: `figure` for .png.
     std::string writer_of(const std::string& file) const {
         const std::string ending = ending_of(file);
         const auto has = [&](const char* flag) { return option_of(*command_, flag) != nullptr; };

@@ -1,5 +1,5 @@
-// The commands of the program, one function each: it adds its subcommand to the command line; when that was chosen, the
-// callback does the work and leaves the exit status.
+// The commands of the program, one function each. It adds its subcommand to the command line. The callback of the
+// subcommand does the work and sets the exit status.
 #pragma once
 
 #include <string>
@@ -17,20 +17,20 @@ namespace achilles {
 class Messages;
 class PictureJob;
 
-// Exit statuses. made_differently: `reproduce` could, but the bytes are not the same.
+// Exit statuses. made_differently: `reproduce` succeeded, but the bytes differ.
 constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_early = 3;
 
 void add_explore(CLI::App& program, int& status);
 void add_simulate(CLI::App& program, int& status);
-// Those that make pictures.
+// Commands that make pictures.
 void add_figure(CLI::App& program, int& status, PictureJob& job);
 void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_orbit(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
-// `ranks`: the processes that share the runs (study/ranks.hpp); null where this one is alone.
+// `ranks`: the processes that share the runs (study/ranks.hpp); null if there is only this process.
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks);
-// All of them.
+// Adds all commands that make pictures.
 void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks = nullptr);
 void add_prove(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
@@ -40,20 +40,20 @@ void add_check(CLI::App& program, int& status);
 
 // The program as a function.
 
-// Runs one command line, without the program's name. Returns the exit status. What is wrong with the command
-// line or with a file is one message on standard error, and status 2.
+// Runs a command line, given without the program's name. Returns the exit status. Errors in the command line or in a
+// file give one message on standard error and status 2.
 int run_program(const std::vector<std::string>& words);
 
-// What to type in place of a command line that cannot be read: the words of other programs, misspellings, and values that
-// stand in the wrong place.
+// Suggestions for command lines that cannot be parsed: terms of other programs, misspellings, misplaced values.
 
-// In the order in which --help lists them.
+// In the order of --help.
 std::vector<std::string> command_names(const CLI::App& program);
 
-// The first word is neither a command nor a system: "there is no command or system 'plot'; write achilles figure ...".
+// Error if the first word is neither a command nor a system: "there is no command or system 'plot'; write achilles
+// figure ...".
 InputError unknown_command(const CLI::App& program, const std::vector<std::string>& words);
 
-// What CLI11 could not read of the words of a command line: what is wrong, and what to type.
+// Turns a CLI11 error into a message with a suggestion.
 InputError unreadable_command_line(const CLI::ParseError& error, const CLI::App& program,
                                    const std::vector<std::string>& words);
 

@@ -31,7 +31,7 @@ std::optional<Number> parse(std::string_view text) {
     return value;
 }
 
-// Help lists the options that most runs need first, the others under a heading of their own.
+// Help lists the options needed most often first, the others under a separate heading.
 const char* group_of(const Option& option) {
     const bool is_usual = option.key == "end_time" || option.key == "tolerance";
     return is_usual ? "Options" : advanced_options;

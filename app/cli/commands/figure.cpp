@@ -35,10 +35,10 @@ struct FigureArguments {
     bool mechanism = false;
     std::string at;  // "": the start
     bool proof = false;
-    double width = 0.0;  // of its start
+    double width = 0.0;  // half-width of the start interval, for --proof
 };
 
-// Puts what is drawn of a finished run where it belongs.
+// Adds the picture of a finished run to the output. Returns the exit status.
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const ErrorEstimate* estimate,
         const std::string& format, PictureJob& job,
         const std::function<std::string(const PaperSize& page, const Notes&)>& draw) {
@@ -73,7 +73,7 @@ int put_mechanism(const FigureArguments& arguments, const Session& session, cons
                });
 }
 
-// What is to be proved, if anything is. `points` becomes the settings, in place of each interval its middle.
+// The boxes to prove, if a proof is requested. `points` receives the settings with the midpoint of each interval.
 std::optional<Spread> spread_of(const FigureArguments& arguments, const SystemDescription& description,
                                 std::vector<std::string>& points) {
     points = arguments.settings;
@@ -82,7 +82,7 @@ std::optional<Spread> spread_of(const FigureArguments& arguments, const SystemDe
     return take_spread(arguments.settings, arguments.width, description, points);
 }
 
-// The plots of the explorer after a journal and some commands more.
+// Draws the plots of the explorer after a journal and further commands.
 int draw_session(const FigureArguments& arguments, const std::string& format, PictureJob& job) {
     if (!arguments.views.empty())
         throw arguments.mechanism

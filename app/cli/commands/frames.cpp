@@ -37,7 +37,7 @@ struct FramesArguments {
     bool overwrite = false;
 };
 
-// The instants of the frames.
+// The times of the frames.
 struct Clock {
     double fps, speed, start, end;
     double last() const { return (end - start) * fps / speed; }
@@ -51,7 +51,7 @@ void check_count(const Clock& clock) {
                      "use a lower --fps, a higher --speed or an earlier --end");
 }
 
-// Without names, the first that are over time: they fit beside a mechanism.
+// Default views: the first ones over time, which fit beside a mechanism.
 std::vector<ViewDescription> views_for(const SystemDescription& description, const std::vector<std::string>& names) {
     std::vector<ViewDescription> views = views_of(description, names);
     constexpr std::size_t few = 3;
@@ -82,7 +82,7 @@ fs::path folder_of(const FramesArguments& arguments) {
     return is_film(arguments.out) ? frames_folder(arguments.out) : fs::path(arguments.out);
 }
 
-// A folder that ffmpeg, a shell and a person can read, and the command that joins what is in it.
+// Prints the folder and the command that joins its frames.
 void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept) {
     const fs::path folder = fs::absolute(folder_of(arguments));
     const StillSize& size = arguments.size;
@@ -96,12 +96,12 @@ void tell(const FramesArguments& arguments, std::size_t count, std::size_t kept)
     print_clean(stdout, "{}\n", line);
 }
 
-// The film in place of its frames; where ffmpeg fails these stay. Returns the exit status.
+// Replaces the frames by the joined animation; keeps them if ffmpeg fails. Returns the exit status.
 int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
     const fs::path folder = folder_of(arguments);
     if (arguments.progress) print_clean(stderr, "[joining {} frames\n", count);
     try {
-        // Lines are for the frames that are drawn.
+        // With --progress lines are printed only while frames are drawn.
         std::optional<Progress> progress;
         if (!arguments.progress) progress.emplace(count, "frames joined");
         job.put_text(arguments.out, joined({folder, arguments.fps, arguments.size.width, arguments.size.height},
@@ -120,7 +120,7 @@ int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
     return reached_end;
 }
 
-// Draws what is not there yet. Returns the exit status.
+// Draws the missing frames. Returns the exit status.
 int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const Clock& clock, Animation& animation,
               const std::function<Notes(const std::string&)>& notes_of) {
     const std::size_t count = clock.count();
@@ -149,7 +149,7 @@ int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const
     return reached_end;
 }
 
-// What is filmed: a run, and the plots beside it.
+// What is animated: a run, and the plots beside it.
 struct Scenario {
     Trajectory trajectory;
     std::vector<ViewDescription> views;
@@ -167,7 +167,8 @@ Scenario plain(const FramesArguments& arguments, PictureJob& job) {
     return {simulate(model, run), std::move(views)};
 }
 
-// After some commands of the explorer: its plots. Its thread ends here: processes are made after it.
+// The run and the plots of an explorer session after --do commands. The session's threads end here, since processes are
+// started later.
 Scenario after_steps(const FramesArguments& arguments, PictureJob& job) {
     if (!arguments.views.empty())
         throw InputError("--view " + arguments.views[0], {}, "--do already sets the plots",
@@ -220,7 +221,7 @@ int jobs_from(const std::string& text) {
     return static_cast<int>(number);
 }
 
-// Within limits that no film leaves, and where times are still told apart.
+// Parses a number within limits far beyond practical animations, for which frame times are still distinct.
 double within(const std::string& option, const std::string& text, double low, double high) {
     const double number = number_from(option, text);
     if (!(number >= low && number <= high))

@@ -1,4 +1,4 @@
-// help, show and new: the manual, a gallery file, and a system to start from.
+// The commands help, show and new: the manual, a gallery file, and a template of a system.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -51,7 +51,7 @@ void add_manual(CLI::App& program, int& status) {
     const auto topic = std::make_shared<std::string>();
     help->add_option("TOPIC", *topic, "page or command (default: the list of pages)")->type_name("");
     help->callback([topic, &program, &status] {
-        // Some commands have a page of their own, which says more than their options.
+        // Some commands have a manual page, which says more than their options.
         const auto pages = manual_topics();
         const bool has_page =
             std::any_of(pages.begin(), pages.end(), [&](const auto& page) { return page.name == *topic; });
@@ -85,7 +85,7 @@ void add_manual(CLI::App& program, int& status) {
 
 namespace {
 
-// The titles; a file that cannot be read is listed with what is wrong, and the others still are.
+// Prints names and titles. A file that cannot be read is listed with its error.
 void list() {
     std::size_t width = 0;
     for (const std::string& name : system_names()) width = std::max(width, name.size());

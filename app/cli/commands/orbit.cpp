@@ -1,4 +1,4 @@
-// orbit: a periodic run, its multipliers, its branch.
+// The command orbit: a periodic orbit, its Floquet multipliers and its branch.
 #include "study/orbit.hpp"
 
 #include <fmt/format.h>

@@ -25,7 +25,7 @@ Trajectory run(PictureJob& job, const std::string& system) {
     const auto model = std::make_shared<const Model>(job.inputs().system(system));
     Run paper = model->default_run();
     job.check(paper.options);
-    paper.options.truncation.conditions = Conditions::paper;  // its figures show its truncation
+    paper.options.truncation.conditions = Conditions::paper;  // the paper's figures use its truncation
     return simulate(model, paper);
 }
 

@@ -1,4 +1,4 @@
-// Reads the command line, runs a command, and prints what is wrong as one message with exit status 2.
+// Parses the command line, runs a command, and prints errors as one message with exit status 2.
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -47,7 +47,7 @@ void put_default_command(const CLI::App& program, std::vector<std::string>& word
     words.insert(words.begin(), "explore");
 }
 
-// Throws InputError where standard output has not taken all that was printed.
+// Throws InputError if standard output did not accept everything that was printed.
 void finish_output() {
     errno = 0;
     std::cout.flush();
@@ -57,7 +57,7 @@ void finish_output() {
                                  errno == 0 ? "" : std::strerror(errno)));
 }
 
-// The terminate handler, for an exception on a thread of a library: lack of memory still gets a sentence.
+// Terminate handler for exceptions on a library's thread: prints a message, in particular for lack of memory.
 [[noreturn]] void end_in_words() {
     try {
         if (const std::exception_ptr problem = std::current_exception()) std::rethrow_exception(problem);
@@ -89,10 +89,10 @@ int run(std::vector<std::string> words, Messages* ranks) {
     put_default_command(program, with_command);
     try {
         program.parse(
-            std::vector<std::string>(with_command.rbegin(), with_command.rend()));  // CLI11 takes them from the back
+            std::vector<std::string>(with_command.rbegin(), with_command.rend()));  // CLI11 expects reverse order
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
-            const int printed = program.exit(error);  // help, or the version
+            const int printed = program.exit(error);  // --help or --version
             finish_output();
             return printed;
         }
@@ -102,14 +102,14 @@ int run(std::vector<std::string> words, Messages* ranks) {
     return status;
 }
 
-// One of several processes that mpirun has started. A sweep is shared: rank 0 is the program, the others do what it tells them
-// and are silent. Any other command is what it is in every process.
+// Runs as one of several processes started by mpirun. Only sweeps are shared: rank 0 runs the program, the others
+// follow its orders and print nothing. All other commands run in every process.
 int run_as_rank(const Launch& launch, const std::vector<std::string>& words) {
     std::optional<Ranks> ranks;
     try {
         ranks.emplace(launch);
     } catch (const InputError&) {
-        // Rank 0 tells it, if it is so there too, and all are ended. One process that fails ends them at once: wait for that.
+        // Rank 0 reports the error if it has the same one. The first process to fail ends all, so wait for rank 0.
         if (launch.rank > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
         throw;
     }
@@ -131,7 +131,7 @@ int run_program(const std::vector<std::string>& words) {
     try {
         return run_or_throw(words);
     } catch (const InputError& error) {
-        // A message about a place in a file starts with that place, so that editors find it.
+        // A message about a place in a file starts with the place, so that editors find it.
         print_clean(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
     } catch (const NotEnoughMemory& error) {
         print_clean(stderr, "achilles: {}\n", error.what());
@@ -141,7 +141,7 @@ int run_program(const std::vector<std::string>& words) {
         return stopped_early;
     } catch (const std::system_error& error) {
         print_clean(stderr, "achilles: {}\n", error.what());
-        if (error.code() == std::errc::resource_unavailable_try_again ||  // no thread, no process
+        if (error.code() == std::errc::resource_unavailable_try_again ||  // no thread or process available
             error.code() == std::errc::not_enough_memory)
             return stopped_early;
     } catch (const std::exception& error) {

@@ -31,7 +31,7 @@ struct ProveArguments {
     bool verbose = false, timing = false;
 };
 
-// The start and the parameters as boxes. `points` becomes the settings with the middle of each interval.
+// The boxes of initial states and parameters. `points` receives the settings with the midpoint of each interval.
 Claim claim_of(const ProveArguments& arguments, const SystemDescription& description,
                std::vector<std::string>& points) {
     const Spread spread = take_spread(arguments.settings, arguments.width, description, points);
@@ -40,7 +40,7 @@ Claim claim_of(const ProveArguments& arguments, const SystemDescription& descrip
     return claim;
 }
 
-// Inside the run: the end is told anyway.
+// Times strictly inside the run; its end is always printed.
 std::vector<double> times_of(const ProveArguments& arguments, const Run& run) {
     const double start = run.options.start_time, end = run.options.end_time;
     if (arguments.samples && !arguments.times.empty())
@@ -112,7 +112,7 @@ void add_prove(CLI::App& program, int& status) {
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->get_option("--set")->description(
         "value of a parameter, a start x=0.3 or a rate x'=1.5, or an interval x=0.1..0.2; repeatable");
-    // How a run is computed means nothing to a proof.
+    // Hide integration options, which do not affect a proof.
     for (const char* idle : {"--tolerance", "--method", "--memory", "--simultaneous", "--conditions",
                              "--reinitialization", "--eps", "--eps-q", "--eps-v"})
         command->get_option(idle)->group("");

@@ -15,9 +15,9 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
-constexpr std::size_t most_words = 2000;                       // of the command that made it
+constexpr std::size_t most_words = 2000;                       // of the stored command line
 
-// What is wrong with a picture is told with its name.
+// Adds the name of the picture to errors.
 template <class Work>
 auto with_name(const std::string& picture, const Work& work) {
     try {
@@ -29,7 +29,7 @@ auto with_name(const std::string& picture, const Work& work) {
     }
 }
 
-// Runs the command that an origin tells; leaves what it made in the job. Only commands that make pictures run here.
+// Runs the command of an origin; its output is left in the job. Only commands that make pictures are available.
 int run_again(const std::string& picture, const Origin& origin, const std::string& format, PictureJob& job) {
     CLI::App program("what makes pictures", "achilles");
     program.require_subcommand(1);
@@ -41,7 +41,7 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
             picture, {},
             fmt::format("its command has {} words; at most {} are allowed here", words.size(), most_words));
     words.insert(words.end(), {"--out", "picture." + format});
-    std::reverse(words.begin(), words.end());  // CLI11 takes them from the back
+    std::reverse(words.begin(), words.end());  // CLI11 expects reverse order
     try {
         program.parse(words);
     } catch (const CLI::ParseError& error) {

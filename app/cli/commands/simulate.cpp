@@ -32,7 +32,7 @@ struct SimulateArguments {
     std::optional<int> samples;
     std::vector<std::string> of;
     bool verbose = false, timing = false, plain_names = false, units = false, derivatives = false;
-    int width = 0, height = 0;  // common options that mean nothing here
+    int width = 0, height = 0;  // common options without effect here
     double scale = 1.0;
 };
 
@@ -44,7 +44,7 @@ int samples_from(const std::string& text) {
     return static_cast<int>(count);
 }
 
-// What was asked for, and has no effect without a file of data.
+// Rejects options that have no effect without a data file.
 void check_files(const SimulateArguments& arguments) {
     const bool no_csv = arguments.csv.empty(), no_data = no_csv && arguments.json.empty();
     for (const auto& [flag, is_given, is_useless, needs] :
@@ -58,7 +58,7 @@ void check_files(const SimulateArguments& arguments) {
         throw InputError("--samples", {}, "the instants are already given by --times");
 }
 
-// A name that says otherwise than what is in the file is most likely a slip.
+// Warns if a file extension contradicts the content, which is probably a mistake.
 void warn_of_endings(const SimulateArguments& arguments) {
     for (const auto& [flag, path, other] :
          {std::tuple{"--json", &arguments.json, ".csv"}, std::tuple{"--csv", &arguments.csv, ".json"}})
@@ -88,7 +88,7 @@ int run(const SimulateArguments& arguments) {
     if (arguments.derivatives) Chain::check(run);
     warn(description, run);
     warn_of_endings(arguments);
-    // Tried before the work: a path that cannot be written is bad input, not a loss at the end.
+    // Checked before the work, so that a path that cannot be written does not lose results at the end.
     OutputFiles files;
     files.spare(find_system(arguments.system));
     if (!arguments.times.empty()) files.spare(arguments.times);
@@ -102,7 +102,7 @@ int run(const SimulateArguments& arguments) {
         dependence->quantities = quantities.of(trajectory, dependence->derivatives);
     }
     const bool is_summed_up = arguments.json.empty() && arguments.csv.empty();
-    // The estimate takes longer than the run, so it is left out where only CSV is written.
+    // The estimate takes longer than the run, so it is left out if only CSV is written.
     std::optional<ErrorEstimate> estimate;
     if (is_summed_up || !arguments.json.empty()) estimate = estimate_error(trajectory);
     const ErrorEstimate* const known = estimate ? &*estimate : nullptr;
@@ -119,7 +119,7 @@ int run(const SimulateArguments& arguments) {
         files.put("-", printable(text + (dependence ? summary(trajectory, *dependence) : "")));
     }
     files.commit();
-    // Not in the files: the same run gives the same bytes.
+    // Not written to the files, so that the same run gives the same bytes.
     if (arguments.verbose || arguments.timing)
         print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
                     trajectory.statistics.certificate_seconds);
@@ -162,7 +162,7 @@ void add_simulate(CLI::App& program, int& status) {
                       "print everything: impacts, certificates, assumptions, statistics, wall time");
     command->add_flag("--timing", arguments->timing, "print the wall time on standard error");
     add_size_options(*command, arguments->width, arguments->height, arguments->scale, "for pictures");
-    // Common options are taken; those that mean nothing here are not listed.
+    // Common options are accepted; those without effect are hidden from the help.
     for (const char* idle : {"--size", "--scale"}) command->get_option(idle)->group("");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = run(*arguments); });

@@ -1,4 +1,4 @@
-// sweep: many runs as a table and pictures of it.
+// The command sweep: many runs as a table, and pictures of it.
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -36,7 +36,7 @@ struct SweepArguments {
 std::atomic<bool> asked_to_stop{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// The chunks under way are finished. Who asks twice does not wait for them.
+// The first SIGINT or SIGTERM lets running chunks finish; a second one terminates at once.
 void stop_when_asked() {
     struct sigaction action {};
     action.sa_handler = [](int) { asked_to_stop = true; };
@@ -52,7 +52,7 @@ int threads_from(const std::string& text) {
     return static_cast<int>(count);
 }
 
-// What is told once of all runs: ends of the axes that no run of the file's ranges has.
+// Prints warnings that concern all runs, once: for the base run, and for ends of axes outside the ranges of the file.
 void warn_of(const SystemDescription& description, const Sweep& sweep) {
     warn(description, sweep.base);
     for (const SweepAxis& axis : sweep.axes) {
@@ -67,8 +67,8 @@ void warn_of(const SystemDescription& description, const Sweep& sweep) {
     }
 }
 
-// On standard error where files hold the table or a person reads: what the runs came to, and which files there are. What
-// exists in no run is said in any case.
+// Prints the summary and the list of files to standard error if files hold the table or it is a terminal. Quantities
+// that are undefined in every run are reported in any case.
 void print_summary(const SweepSummary& summary, const SweepOutput& output) {
     const std::vector<std::string> files = output.files();
     if (files.empty() && ::isatty(STDERR_FILENO) == 0) {
@@ -79,7 +79,7 @@ void print_summary(const SweepSummary& summary, const SweepOutput& output) {
     for (const std::string& file : files) print_clean(stderr, "wrote {}\n", file);
 }
 
-// `ranks`: the other processes that share it; may be null.
+// `ranks`: the other processes that share the sweep; may be null.
 int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = asked_run(description, arguments.settings, arguments.overrides);

@@ -1,4 +1,4 @@
-"""Values and options of a run, as on the command line: one table of options, one way to read a value."""
+"""Conversion and checks of Python arguments: values and options of a run, by the option table of the command line."""
 
 from __future__ import annotations
 
@@ -18,23 +18,23 @@ def _name(flag: str) -> str:
     return flag[2:].replace("-", "_")
 
 
-# By what they are called here: end as end_time, eps_q.
+# Flags by their Python names, such as end, end_time, eps_q.
 _flags: dict[str, str] = {row["key"]: row["flag"] for row in _table} | {_name(row["flag"]): row["flag"] for row in _table}
 
 
 def text_of(name: str, value: object) -> str:
-    """A number in the shortest form that reads back the same, or an expression as typed."""
+    """Text of a value: a number in the shortest form that reads back the same, or an expression as typed."""
     if isinstance(value, str):
         return value
     if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
-        value = value.item()  # of NumPy
+        value = value.item()  # a NumPy scalar
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
         raise TypeError(f"{name}: a number or a text such as 'pi/6' is expected, not {_kind(value)}")
     return repr(int(value)) if isinstance(value, numbers.Integral) else repr(float(value))
 
 
 def number_in(name: str, value: object, least: float, most: float) -> float:
-    """A number in this range."""
+    """Checks and returns a number in the range [least, most]."""
     if isinstance(value, str):
         raise TypeError(f"{name}: a number is expected, not {_kind(value)}")
     number = float(text_of(name, value))
@@ -44,7 +44,7 @@ def number_in(name: str, value: object, least: float, most: float) -> float:
 
 
 def whole_number_in(name: str, value: object, least: int, most: int) -> int:
-    """A whole number in this range."""
+    """Checks and returns an integer in the range [least, most]."""
     number = number_in(name, value, least, most)
     if number != int(number):
         raise InputError(f"{name}: a whole number from {least} to {most} is expected, not {value}")
@@ -52,7 +52,7 @@ def whole_number_in(name: str, value: object, least: int, most: int) -> int:
 
 
 def texts_in(name: str, value: object, example: str) -> list[str]:
-    """A text, or several."""
+    """Checks a string or a list of strings and returns a list."""
     texts = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [value]
     for text in texts:
         if not isinstance(text, str):
@@ -65,7 +65,7 @@ def _kind(value: object) -> str:
 
 
 class Asked:
-    """The values of a run as --set has them, and its options by flag."""
+    """Arguments of a run: settings in the form of --set, and options by flag."""
 
     settings: list[str]
     options: dict[str, str]
@@ -109,7 +109,7 @@ def _check_name(system: Any, name: str) -> None:
 
 
 def with_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Adds the options of the table to the signature and the docstring of a function that takes **values."""
+    """Decorator that adds all options to the signature and docstring of a function with a **values parameter."""
     signature = inspect.signature(function)
     kept = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
     rest = [p for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]

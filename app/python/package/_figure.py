@@ -42,12 +42,12 @@ class Figure:
 
     def _repr_svg_(self) -> str:
         svg = self.svg
-        return svg[svg.index("<svg") :]  # a page has no room for the head of a file
+        return svg[svg.index("<svg") :]  # HTML does not allow the XML declaration
 
 
 def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tuple[int, int], scale: float,
               paper: dict[str, float], columns: int, dark: bool, transparent: bool) -> Figure:
-    """A figure of these views, which must be known."""
+    """Checks the arguments and makes a figure. Raises InputError for a view that is not in `known`."""
     for view in views:
         if view not in known:
             guess = _core.did_you_mean(view, list(known)) if isinstance(view, str) else ""
@@ -59,7 +59,7 @@ def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tupl
 
 
 def _pixels(size: Any) -> tuple[int, int]:
-    """Width and height; "800x600" is the form of the command line."""
+    """Checks (width, height) in pixels. For the command-line form "800x600" the error names the Python form."""
     typed = re.fullmatch(r"\s*(\d+)\s*[x*,]\s*(\d+)\s*", size) if isinstance(size, str) else None
     if typed:
         raise TypeError(f"size: two numbers are expected, not a text; write size=({typed[1]}, {typed[2]})")

@@ -1,4 +1,4 @@
-"""Periodic runs."""
+"""Periodic orbits and their branches."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ class Branch:
 
 
 def _numbers(values: Any) -> np.ndarray:
-    """An array with NaN in place of None."""
+    """Makes an array with NaN in place of None."""
     return np.array([math.nan if value is None else value for value in values], dtype=float)
 
 
@@ -209,7 +209,7 @@ def orbit(system: System | str | os.PathLike[str], *,
 
 
 def _place(system: System, from_: Any) -> tuple[str, str | None]:
-    """The start of the search in the form of --from, and the contents of that file."""
+    """Returns the start of the search in the form of --from, and the content of that file or None."""
     if from_ is None:
         return "", None
     if isinstance(from_, (str, os.PathLike)):
@@ -226,7 +226,7 @@ def _place(system: System, from_: Any) -> tuple[str, str | None]:
 
 
 def _state(system: System, state: Mapping[str, Any], period: Any) -> str:
-    """A state as JSON."""
+    """Checks a state and converts it to JSON."""
     told: dict[str, Any] = {"t": _time("t", state.get("t", 0.0))}
     for name in ("q", "v"):
         if name not in state:
@@ -248,7 +248,7 @@ def _time(name: str, value: Any) -> float:
 
 
 def _shifts(shift: Any) -> list[str]:
-    """The shifts in the form of --shift."""
+    """Converts the shifts to the form of --shift."""
     if shift is None:
         return []
     if isinstance(shift, str):
@@ -261,7 +261,7 @@ def _shifts(shift: Any) -> list[str]:
 
 
 def _along(range_: Any) -> str:
-    """The branch in the form of --continue."""
+    """Converts the parameter range of a branch to the form of --continue."""
     if range_ is None:
         return ""
     if isinstance(range_, str):

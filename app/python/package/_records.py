@@ -139,12 +139,12 @@ def _record(pairs: list[tuple[str, Any]]) -> Record:
 
 
 def records(text: str) -> Record:
-    """JSON text of achilles as records."""
+    """Parses JSON output of achilles into records."""
     return json.loads(text, object_pairs_hook=_record)
 
 
 def derivative_records(value: Any) -> Any:
-    """Lists of numbers, or of lists of them, as arrays; objects as records."""
+    """Converts parsed JSON: nested lists of numbers to arrays, objects to records."""
     if isinstance(value, dict):
         return Record({name: derivative_records(each) for name, each in value.items()})
     if not isinstance(value, list) or any(isinstance(each, (dict, str)) for each in value):
@@ -153,7 +153,7 @@ def derivative_records(value: Any) -> Any:
 
 
 class _Result:
-    """Base of Run and Orbit. Their JSON is read on first use."""
+    """Base class of Run and Orbit. Their JSON is parsed on first use."""
 
     @functools.cached_property
     def _record(self) -> Record:
@@ -161,5 +161,5 @@ class _Result:
 
 
 def entry(name: str, doc: str) -> Any:
-    """A property of a result: this entry of its JSON."""
+    """Makes a property that returns this entry of the result's JSON."""
     return property(lambda result: result._record[name], doc=doc)

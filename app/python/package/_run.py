@@ -1,4 +1,4 @@
-"""Runs."""
+"""Runs: simulation, results, and states at given times."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Many runs as one table."""
+"""Parameter sweeps: many runs as one table."""
 
 from __future__ import annotations
 
@@ -77,8 +77,8 @@ class Sweep(Mapping):
         return table | {name: array.ravel() for name, array in self._values.items()}
 
     def _failures(self, points: np.ndarray) -> Iterator[str]:
-        """For each kind of failure, the number of runs and the first of them."""
-        _, first_rows = np.unique(points, return_index=True)  # a section has several rows of a run
+        """Yields a message for each kind of failure: the number of runs and the first of them."""
+        _, first_rows = np.unique(points, return_index=True)  # a section has several rows per run
         outcomes = self._values["outcome"].ravel()[first_rows]
         for outcome in dict.fromkeys(outcomes.tolist()):
             if outcome != "end time":
@@ -129,7 +129,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
 
 
 def _axes(over: Any) -> list[str]:
-    """The axes in the form of --over."""
+    """Converts the axes to the form of --over."""
     if isinstance(over, str):
         return [over]
     if isinstance(over, Mapping):

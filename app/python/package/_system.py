@@ -83,7 +83,7 @@ def gallery() -> dict[str, str]:
 
 
 def system_of(system: System | str | os.PathLike[str]) -> System:
-    """The system of an argument: a System, a path or a name."""
+    """Returns the system that an argument specifies: a System, a path or a name."""
     if isinstance(system, System):
         return system
     if isinstance(system, os.PathLike):
@@ -101,10 +101,10 @@ def _of_file(name: str) -> Any:
 
 @functools.lru_cache(maxsize=64)
 def _derived(text: str, name: str) -> Any:
-    """Derives each file once."""
+    """Derives a system; cached, so that each file is derived once."""
     return _core.system(text, name)
 
 
 def _escaped(words: str) -> str:
-    """Plain words inside \\text{}."""
+    """Escapes plain text for LaTeX's \\text{}."""
     return "".join("\\" + c if c in "&%$#_{}" else c for c in words.replace("\\", ""))
