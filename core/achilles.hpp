@@ -9,20 +9,20 @@
 //     make_sweep({.over = ..., .prints = ...}, run, description)                Sweep
 //     sweep_columns(model, sweep)             many runs, on all cores           SweepColumns
 //     simulate_many(), simulate_ends()        many runs, each reduced to what is wanted of it
-//     make_orbit_question({.along = ...}, run, model)                           OrbitQuestion: of a periodic run
-//     answer_to(question, model)              the run, its multipliers, branch  OrbitAnswer, or why there is none
+//     parse_orbit_request({.along = ...}, run, model)                           OrbitRequest: of a periodic run
+//     solve_orbit_request(question, model)          the run, its multipliers, branch  OrbitResult, or why there is none
 //
 // A Model never changes and may be used by several threads. What is wrong with a file, a name or an expression is thrown as an
 // InputError, which says where it stands and what would be right; what ends a run early is the trajectory's `outcome`.
 // Numbers are in the file's units, angles in rad.
 #pragma once
 
-#include "depend/error_estimate.hpp"
+#include "analysis/orbit.hpp"
+#include "analysis/sweep.hpp"
 #include "model/read_system.hpp"
 #include "output/sweep_columns.hpp"
-#include "simulate/many.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "simulate/batch.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
-#include "study/orbit.hpp"
-#include "study/sweep.hpp"
 #include "system/description.hpp"

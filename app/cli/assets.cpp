@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"
 

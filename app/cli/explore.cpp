@@ -23,7 +23,7 @@
 #include "pictures/origin.hpp"
 #include "pictures/thumbnails.hpp"
 #include "session/glossary.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "surface/window.hpp"
 
 namespace achilles {
@@ -53,8 +53,8 @@ class Clock {
 // and the panels.
 class Explorer {
  public:
-    Explorer(Session& session, Window& window, const ExploreOptions& options, FilmInHand& film, PanelState state,
-             Trust trust)
+    Explorer(Session& session, Window& window, const ExploreOptions& options, CurrentFilmJob& film, PanelState state,
+             FilePolicy trust)
         : session_(session),
           window_(window),
           film_(film),
@@ -88,7 +88,7 @@ class Explorer {
         std::vector<Command> commands = explorer(session_, state_);
         take_dropped(commands);
         if (!commands.empty()) {
-            lead_on(PanelState::OnTour::stop);  // user input ends the tour
+            lead_on(PanelState::TourAction::stop);  // user input ends the tour
             replayed_ = 0;
         }
         for (const Command& command : commands) take(command);
@@ -100,7 +100,7 @@ class Explorer {
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
             size != std::exchange(text_scale_, size))
             window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
-        lead_on(std::exchange(state_.tour_wants, PanelState::OnTour::nothing));
+        lead_on(std::exchange(state_.tour_wants, PanelState::TourAction::none));
         if (state_.editor.may_close) window_.close();
         // Redraw now and then to show the progress of a run.
         constexpr double progress_seconds = 0.25;
@@ -138,7 +138,7 @@ class Explorer {
             keep(command);  // recorded first, in case it crashes
             try {
                 if (!session_.apply(command) && record_) record_->take_back();
-            } catch (const Forbidden& problem) {
+            } catch (const FileAccessDenied& problem) {
                 if (record_) record_->take_back();
                 give_up(problem);
             }
@@ -165,7 +165,8 @@ class Explorer {
     }
 
     bool is_asking() const {
-        return state_.file_question || state_.editor.asking != EditorState::Asking::nothing || state_.editor.waiting;
+        return state_.file_question || state_.editor.asking != EditorState::OpenDialog::nothing ||
+               state_.editor.waiting;
     }
 
     // Handles dropped files one at a time, each after the questions and replay of the last one. Journals and pictures
@@ -190,9 +191,9 @@ class Explorer {
                 is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
             replayed_ += journal.size();
             if (replayed_ > most_replayed)
-                throw Forbidden(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
+                throw FileAccessDenied(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
             begin(journal);
-        } catch (const Forbidden& problem) {
+        } catch (const FileAccessDenied& problem) {
             // If nothing is left to ask, or an answer was no, the error stays.
             const auto& wants = problem.wants;
             if (wants.empty() || std::any_of(wants.begin(), wants.end(),
@@ -220,19 +221,19 @@ class Explorer {
 
     // Offers the texts left by earlier windows, one after the other.
     void recover() {
-        using Answer = RecoveryQuestion::Answer;
+        using RecoveryChoice = RecoveryQuestion::RecoveryChoice;
         if (unsaved_.empty() || tour_.runs()) return;
-        const Unsaved& text = unsaved_.front();
+        const RecoveredText& text = unsaved_.front();
         if (!state_.recovery_question) {
             const bool is_busy = is_typing(state_) || session_.document().is_changed();
             if (is_busy) return;
-            state_.recovery_question = RecoveryQuestion{text.name, text.when, Answer::none};
+            state_.recovery_question = RecoveryQuestion{text.name, text.when, RecoveryChoice::none};
             return window_.draw_again();
         }
-        const Answer answer = state_.recovery_question->answer;
-        if (answer == Answer::none) return;
+        const RecoveryChoice answer = state_.recovery_question->answer;
+        if (answer == RecoveryChoice::none) return;
         state_.recovery_question.reset();
-        if (answer == Answer::recover) {
+        if (answer == RecoveryChoice::recover) {
             take(text.steps[0]);
             if (!session_.error().empty()) take(command::New{});  // the file no longer exists
             take(text.steps[1]);
@@ -240,7 +241,7 @@ class Explorer {
             keep_text();
         }
         std::error_code ignored;
-        if (answer != Answer::later) std::filesystem::remove(text.file, ignored);
+        if (answer != RecoveryChoice::later) std::filesystem::remove(text.file, ignored);
         unsaved_.erase(unsaved_.begin());
     }
 
@@ -250,12 +251,12 @@ class Explorer {
         state_.recent = preferences_.recent();
     }
 
-    void lead_on(PanelState::OnTour wanted) {
-        if (wanted == PanelState::OnTour::next)
+    void lead_on(PanelState::TourAction wanted) {
+        if (wanted == PanelState::TourAction::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
-        if (wanted == PanelState::OnTour::back)
+        if (wanted == PanelState::TourAction::back)
             for (const Command& command : tour_.back()) take_from_tour(command);
-        if (wanted == PanelState::OnTour::stop && tour_.runs()) {
+        if (wanted == PanelState::TourAction::stop && tour_.runs()) {
             stop_tour();
             take(command::Say{""});
         }
@@ -283,15 +284,15 @@ class Explorer {
 
     Session& session_;
     Window& window_;
-    FilmInHand& film_;
+    CurrentFilmJob& film_;
     PanelState state_;
     std::optional<JournalFile> record_;
     Tour tour_;
     Preferences preferences_;
     double scale_, text_scale_ = 1.0;  // scale of the command line; scale of the session
     Recovery recovery_;
-    std::vector<Unsaved> unsaved_;  // from earlier windows, not offered yet
-    Trust trust_;
+    std::vector<RecoveredText> unsaved_;  // from earlier windows, not offered yet
+    FilePolicy trust_;
     std::deque<std::string> dropped_;  // dropped files not handled yet
     std::size_t replayed_ = 0;         // commands from journals since the last user input
     Clock clock_;
@@ -320,19 +321,19 @@ int explore(const ExploreOptions& options) {
     }
     if (!options.record.empty()) refuse_record(options.record);
     const std::string name = options.system ? *options.system : first_system();
-    const Trust trust =
+    const FilePolicy trust =
         trust_of(options.allow_files, {options.system.value_or(""), options.journal}, work_options(options.overrides));
     SystemSource library;
     library.find = find_system;
     library.budget = trust.budget;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
-    FilmInHand film;
+    CurrentFilmJob film;
     library.film = [&film](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
     // Opening the window takes time; read the gallery on another thread meanwhile.
     std::future<PanelState> state = std::async(std::launch::async, panel_state, true);
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
-                                   std::move(library), journal.empty() ? Patience(frame_patience) : Patience());
+                                   std::move(library), journal.empty() ? Timeout(frame_patience) : Timeout());
     Window window = window_for(options, name);
     // Created last, so that an existing record file is not lost if there is no display.
     Explorer explorer(session, window, options, film, state.get(), trust);
@@ -345,12 +346,12 @@ int explore(const ExploreOptions& options) {
     return reached_end;
 }
 
-void FilmInHand::begin(std::unique_ptr<FilmJob> begun) {
+void CurrentFilmJob::begin(std::unique_ptr<FilmJob> begun) {
     if (film_) throw InputError(begun->film(), {}, "another film is still being drawn", "wait for it, or stop it");
     film_ = std::move(begun);
 }
 
-bool FilmInHand::follow(Session& session, std::optional<FilmProgress>& progress) {
+bool CurrentFilmJob::follow(Session& session, std::optional<FilmProgress>& progress) {
     if (!film_) {
         progress.reset();
         return false;
@@ -411,7 +412,7 @@ std::vector<Command> opening(const Session& session, const ExploreOptions& optio
         const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
             return options.overrides.given(option) != nullptr;
         });
-        if (is_given) commands.emplace_back(command::UseOption(group[0], session.run().options));
+        if (is_given) commands.emplace_back(command::SetOption(group[0], session.run().options));
     }
     for (const std::string& setting : options.settings) {
         std::string name = setting.substr(0, setting.find('='));

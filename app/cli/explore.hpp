@@ -36,7 +36,7 @@ int explore(const ExploreOptions& options);
 int screenshot(const ScreenshotOptions& options, PictureJob& job);
 
 // The animation being drawn while the window is open; at most one.
-class FilmInHand {
+class CurrentFilmJob {
  public:
     // Throws InputError if another one is in progress.
     void begin(std::unique_ptr<FilmJob> begun);

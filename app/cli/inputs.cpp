@@ -27,8 +27,10 @@ InputError not_carried(const std::string& name) {
 Inputs::Inputs(std::vector<Source> kept, const std::string& command)
     : kept_(std::move(kept)),
       from_picture_(true),
-      trust_{
-          Trust::Files::imagined, {}, {}, std::make_shared<Budget>("to make it without this limit, run:\n" + command)} {
+      trust_{FilePolicy::Files::virtual_only,
+             {},
+             {},
+             std::make_shared<Budget>("to make it without this limit, run:\n" + command)} {
     trust_.budget->limit();
     time_limit_.arm(trust_.budget->how_to_allow());
 }
@@ -84,12 +86,13 @@ std::vector<Command> Inputs::steps(const std::vector<std::string>& lines) {
 void Inputs::count(const std::string& name, const std::vector<Command>& commands) {
     replayed_ += commands.size();
     if (replayed_ > most_replayed)
-        throw Forbidden(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
+        throw FileAccessDenied(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
     changes_ += static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), [](const Command& command) {
-        return change_of(command) == command::Change::together || change_of(command) == command::Change::alone;
+        return undo_policy_of(command) == command::UndoPolicy::merge_with_previous ||
+               undo_policy_of(command) == command::UndoPolicy::own_step;
     }));
     if (from_picture_ && changes_ > most_changes)
-        throw Forbidden(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
+        throw FileAccessDenied(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
 }
 
 std::string Inputs::first_system() const {
@@ -104,16 +107,16 @@ namespace {
 constexpr std::size_t largest_picture = std::size_t{1} << 28;  // bytes
 
 // The parts of a picture's command line that determine its session; its size is ignored.
-struct Asked {
+struct DroppedOptions {
     std::string kind, system, journal, at;
     bool dark = false;
     std::vector<std::string> settings, views, steps;
     OptionOverrides overrides;
 };
 
-Asked parsed(const std::string& command_line) {
+DroppedOptions parsed(const std::string& command_line) {
     std::vector<std::string> words = words_of(command_line);
-    Asked asked;
+    DroppedOptions asked;
     if (words.empty()) throw std::runtime_error("the picture does not contain the command that made it");
     asked.kind = words.front();
     words.erase(words.begin());
@@ -148,21 +151,21 @@ const Source* carried(const Origin& origin, Source::Kind kind, const std::string
 }
 
 // The commands collected so far, and the permission to read files.
-struct Opening {
+struct DroppedCommands {
     const std::string& picture;
-    const Trust& trust;
+    const FilePolicy& trust;
     std::vector<Command> commands{};
 };
 
 // Whether the file of that name still has the same text. The name comes from an untrusted picture, so a path is read
 // only with permission. Throws Forbidden if the user must be asked.
-bool is_held(const Source& source, const Opening& opening) {
+bool is_held(const Source& source, const DroppedCommands& opening) {
     std::error_code problem;
     if (is_system_path(source.name)) {
         if (!std::filesystem::is_regular_file(source.name, problem)) return false;
         const std::optional<bool> may = may_read(source.name, opening.trust);
         if (!may) {
-            Forbidden question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
+            FileAccessDenied question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
             question.wants = {want(source.name, false)};
             throw question;
         }
@@ -176,20 +179,20 @@ bool is_held(const Source& source, const Opening& opening) {
 }
 
 // Opens the system that the picture stores under this name.
-void open(const Source& source, Opening& opening) {
+void open(const Source& source, DroppedCommands& opening) {
     if (is_held(source, opening)) {
         opening.commands.emplace_back(command::Open{source.name});
         return;
     }
     opening.commands.emplace_back(command::New{});
-    opening.commands.emplace_back(command::Text{source.text});
+    opening.commands.emplace_back(command::SetText{source.text});
 }
 
 // The run and the plots that a command line specifies.
-void ask(const Asked& asked, const Source& source, std::vector<Command>& commands) {
+void ask(const DroppedOptions& asked, const Source& source, std::vector<Command>& commands) {
     const SystemDescription description = parse_system(source.text, source.name);
-    Run run = asked_run(description, asked.settings, asked.overrides);
-    command::Start start;
+    Run run = requested_run(description, asked.settings, asked.overrides);
+    command::SetStart start;
     for (const std::string& setting : asked.settings) {
         std::string name = setting.substr(0, setting.find('='));
         name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
@@ -199,11 +202,11 @@ void ask(const Asked& asked, const Source& source, std::vector<Command>& command
     for (const auto group : options_by_command(description.options, run.options))
         if (std::any_of(group.begin(), group.end(),
                         [&](const Option& option) { return asked.overrides.given(option) != nullptr; }))
-            commands.emplace_back(command::UseOption(group[0], run.options));
+            commands.emplace_back(command::SetOption(group[0], run.options));
     if (asked.views.empty()) return;
     const std::vector<ViewDescription> views = views_of(description, asked.views);
     const int columns = views.size() > 2 ? 2 : 1;
-    commands.emplace_back(command::Grid{columns, (static_cast<int>(views.size()) + columns - 1) / columns});
+    commands.emplace_back(command::SetGrid{columns, (static_cast<int>(views.size()) + columns - 1) / columns});
     for (std::size_t i = 0; i < views.size(); ++i) {
         command::PlotView plot{static_cast<int>(i) + 1, views[i].x.text, {}};
         for (const ::achilles::Text& y : views[i].y) plot.y.push_back(y.text);
@@ -213,7 +216,7 @@ void ask(const Asked& asked, const Source& source, std::vector<Command>& command
 
 // The commands of a journal, with their inputs taken from the picture. Commands that write files or start playback are
 // left out.
-void replay(const std::vector<Command>& journal, const Origin& origin, Opening& opening) {
+void replay(const std::vector<Command>& journal, const Origin& origin, DroppedCommands& opening) {
     for (const Command& command : journal) {
         if (const auto* opened = std::get_if<command::Open>(&command)) {
             if (const Source* source = carried(origin, Source::Kind::system, opened->system)) open(*source, opening);
@@ -226,8 +229,8 @@ void replay(const std::vector<Command>& journal, const Origin& origin, Opening& 
     }
 }
 
-std::vector<Command> session_of(const Origin& origin, Opening& opening) {
-    const Asked asked = parsed(origin.command);
+std::vector<Command> session_of(const Origin& origin, DroppedCommands& opening) {
+    const DroppedOptions asked = parsed(origin.command);
     if (asked.kind == "paper")
         throw std::runtime_error("a picture made by achilles paper cannot be opened as a session");
     const Source* source = carried(origin, Source::Kind::system, asked.system);
@@ -239,7 +242,7 @@ std::vector<Command> session_of(const Origin& origin, Opening& opening) {
         replay(parse_journal(journal->text, journal->name), origin, opening);
     replay(parse_steps(asked.steps), origin, opening);
     if (!asked.at.empty()) opening.commands.push_back(parse_command("seek " + asked.at, opening.picture));
-    if (asked.dark) opening.commands.emplace_back(command::UseTheme{true});
+    if (asked.dark) opening.commands.emplace_back(command::SetTheme{true});
     return opening.commands;
 }
 
@@ -247,8 +250,8 @@ std::vector<Command> session_of(const Origin& origin, Opening& opening) {
 
 bool is_picture(const std::string& path) { return !ending_of_picture(path).empty(); }
 
-std::vector<Command> session_in(const std::string& picture, const Trust& trust) {
-    Opening opening{picture, trust};
+std::vector<Command> session_in(const std::string& picture, const FilePolicy& trust) {
+    DroppedCommands opening{picture, trust};
     try {
         return session_of(origin_of(read_text(picture, largest_picture)), opening);
     } catch (const InputError&) {

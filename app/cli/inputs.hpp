@@ -31,7 +31,7 @@ class Inputs {
     Inputs(std::vector<Source> kept, const std::string& command);
 
     // What the journals may do with files; by default nothing. Ignored for a picture, whose journals access no files.
-    void trust(const Trust& trust) {
+    void trust(const FilePolicy& trust) {
         if (!from_picture_) trust_ = trust;
     }
 
@@ -66,7 +66,7 @@ class Inputs {
     std::vector<Source> kept_;
     std::vector<std::filesystem::path> files_read_;
     bool from_picture_ = false;
-    Trust trust_;
+    FilePolicy trust_;
     TimeLimit time_limit_;
     std::size_t replayed_ = 0, changes_ = 0;                     // commands, and how many of them start a new run
     std::map<std::pair<std::string, bool>, std::size_t> asked_;  // number of requests of each input of a picture
@@ -81,6 +81,6 @@ bool is_picture(const std::string& path);
 // of that name if the file may be read and still has the same text, else as an unsaved new text. File output of its
 // journal is left out. Throws Forbidden, with the questions to ask, before it reads a file that the user has not named.
 // Throws InputError if the file is not a picture of Achilles, or shows no session.
-std::vector<Command> session_in(const std::string& picture, const Trust& trust);
+std::vector<Command> session_in(const std::string& picture, const FilePolicy& trust);
 
 }  // namespace achilles

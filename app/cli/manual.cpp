@@ -10,7 +10,7 @@
 
 #include "cli/assets.hpp"
 #include "expression/expression.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
@@ -72,7 +72,7 @@ std::string options_table() {
         const std::string unit = option.unit.empty() ? "" : fmt::format(", {}", option.unit);
         rows.push_back({fmt::format("`{}`", option.key), fmt::format("[{}]", option.table),
                         fmt::format("`{}`", option.flag), fmt::format("`{}`", option.command), to_text(option.get({})),
-                        fmt::format("{}{}{}", option.about, unit, choice)});
+                        fmt::format("{}{}{}", option.help, unit, choice)});
     }
     return table(rows);
 }
@@ -87,7 +87,7 @@ std::string commands_list() { return fmt::format("    {}\n", fmt::join(command_u
 
 std::string words_table() {
     std::vector<std::vector<std::string>> rows{{"word", "formula", "meaning", "source"}};
-    for (const Term& term : glossary())
+    for (const GlossaryTerm& term : glossary())
         rows.push_back({std::string(term.word), term.formula.empty() ? "" : fmt::format("`{}`", term.formula),
                         std::string(term.meaning), std::string(term.source)});
     return table(rows);

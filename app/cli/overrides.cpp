@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "cli/terminal.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "model/model.hpp"
 #include "system/input_error.hpp"
@@ -62,11 +62,11 @@ const std::pair<const std::string, OptionValue>* OptionOverrides::given(const Op
 
 void apply(const OptionOverrides& overrides, Options& options) {
     const auto check = [](const Option& option, const auto& flag, const OptionValue& value) {
-        if (allows(option, value)) return;
+        if (is_valid_value(option, value)) return;
         if (std::holds_alternative<double>(value))
             throw InputError(flag, {},
                              fmt::format("the value must be positive and finite, but it is {}", to_text(value)));
-        throw InputError(flag, {}, std::string(option.wrong));
+        throw InputError(flag, {}, std::string(option.error_text));
     };
     for (const Option& option : all_options()) {
         if (const auto all = overrides.by_flag.find(common_flag(option)); all != overrides.by_flag.end())
@@ -78,19 +78,20 @@ void apply(const OptionOverrides& overrides, Options& options) {
     }
     for (const char* key : {"end_time", "start_time"})
         if (const auto* given = overrides.given(option(key)))
-            if (const auto fault = fault_of_times(options)) throw InputError(given->first, {}, *fault);
+            if (const auto fault = end_time_error(options)) throw InputError(given->first, {}, *fault);
 }
 
 Options work_options(const OptionOverrides& overrides) {
     Options options;
     for (const char* key : {"memory", "max_steps"})
-        if (const auto* given = overrides.given(option(key)); given != nullptr && allows(option(key), given->second))
+        if (const auto* given = overrides.given(option(key));
+            given != nullptr && is_valid_value(option(key), given->second))
             option(key).set(options, given->second);
     return options;
 }
 
-Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
-              const OptionOverrides& overrides) {
+Run requested_run(const SystemDescription& description, const std::vector<std::string>& settings,
+                  const OptionOverrides& overrides) {
     Run run = default_run(description);
     for (std::size_t i = 0; i < settings.size(); ++i) {
         const auto has_value = [&](std::size_t k) { return settings[k].find('=') != std::string::npos; };
@@ -138,19 +139,19 @@ Run without(const Model& model, const std::string& setting, Run run) {
 
 }  // namespace
 
-Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,
-                   std::vector<std::string>& points) {
-    Spread spread;
+InitialUncertainty parse_uncertainty(const std::vector<std::string>& settings, double width,
+                                     const SystemDescription& description, std::vector<std::string>& points) {
+    InitialUncertainty spread;
     spread.width = width;
     for (const std::string& setting : settings) {
-        const auto side = read_side(setting, description);
+        const auto side = parse_interval(setting, description);
         points.push_back(side ? fmt::format("{}={}", side->name, 0.5 * side->low + 0.5 * side->high) : setting);
         if (side) spread.sides.push_back(*side);
     }
     return spread;
 }
 
-void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings) {
+void validate_overrides(const Model& model, const Run& run, const std::vector<std::string>& settings) {
     try {
         model.check(run);
     } catch (const InputError& problem) {

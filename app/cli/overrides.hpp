@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "enclose/spread.hpp"
+#include "enclose/initial_uncertainty.hpp"
 #include "system/description.hpp"
 
 namespace achilles {
@@ -40,20 +40,20 @@ void apply(const OptionOverrides& overrides, Options& options);
 Options work_options(const OptionOverrides& overrides);
 
 // The run specified by a command line: the file's run with --set and options applied. Throws InputError.
-Run asked_run(const SystemDescription& description, const std::vector<std::string>& settings,
-              const OptionOverrides& overrides);
+Run requested_run(const SystemDescription& description, const std::vector<std::string>& settings,
+                  const OptionOverrides& overrides);
 
 // Names fixed by the command line: those of --set, and the flags of options.
 std::vector<std::string> fixed_names(const std::vector<std::string>& settings, const OptionOverrides& overrides);
 
 // Parses settings that may be intervals, NAME=LOW..HIGH. `points` receives the settings with the midpoint of each
 // interval. Throws InputError.
-Spread take_spread(const std::vector<std::string>& settings, double width, const SystemDescription& description,
-                   std::vector<std::string>& points);
+InitialUncertainty parse_uncertainty(const std::vector<std::string>& settings, double width,
+                                     const SystemDescription& description, std::vector<std::string>& points);
 
 // Model::check(), but if a --set value causes the error, the message names that setting instead of a line of the file.
 // Throws InputErrors.
-void check_asked(const Model& model, const Run& run, const std::vector<std::string>& settings);
+void validate_overrides(const Model& model, const Run& run, const std::vector<std::string>& settings);
 
 // Prints the warnings about a run to standard error: core's warnings(), outside_ranges() and unseen_lines().
 void warn(const SystemDescription& description, const Run& run);

@@ -9,7 +9,7 @@
 #include "journal/journal.hpp"
 #include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "surface/offscreen.hpp"
 
 namespace achilles {

@@ -11,13 +11,13 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "analysis/chunks.hpp"
 #include "cli/assets.hpp"
 #include "cli/terminal.hpp"
 #include "output/output.hpp"
+#include "pictures/export.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/picture_format.hpp"
-#include "pictures/take_away.hpp"
-#include "study/chunks.hpp"
 
 namespace achilles {
 
@@ -71,22 +71,23 @@ std::string_view rows_in(std::string_view bytes) { return bytes.substr(sizeof(st
 
 }  // namespace
 
-SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const SweepPictures& pictures,
+SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputOptions& asked, const SweepPictures& pictures,
                          const fs::path& system_file, const std::string& system_name)
     : table_(table), pictures_(pictures), csv_(asked.csv), hdf5_(asked.hdf5), units_(asked.units) {
     if (csv_.empty() && !keeps_rows()) csv_ = "-";
     if (units_ && csv_.empty()) throw InputError("--units", {}, "this needs --csv F");
     if (hdf5_ == "-") throw InputError("--hdf5 -", {}, "HDF5 output needs a file", "write --hdf5 F");
     if (!hdf5_.empty()) {
-        if (const std::string why = why_no_hdf5(); !why.empty()) throw InputError("--hdf5", {}, why, "write --csv F");
-        if (const std::string fault = fault_of_hdf5(table); !fault.empty()) throw InputError("--hdf5", {}, fault);
+        if (const std::string why = hdf5_unavailable_reason(); !why.empty())
+            throw InputError("--hdf5", {}, why, "write --csv F");
+        if (const std::string fault = hdf5_name_error(table); !fault.empty()) throw InputError("--hdf5", {}, fault);
     }
     const SystemDescription& description = table.model().description();
     const std::string name = is_system_path(system_name) ? system_file.filename().string() : system_name;
     origin_ = {"Achilles " + version(),
                "achilles sweep " + shell_word(name) + " " + to_text(table.sweep(), description),
                description.source_text};
-    files_.spare(system_file);
+    files_.protect_input(system_file);
     for (const std::string& file : {csv_, hdf5_})
         if (!file.empty()) files_.add(file);
     for (const std::string& file : pictures_.files()) files_.add(file);
@@ -121,7 +122,7 @@ SweepKey SweepOutput::key() const {
     return {origin_.software, to_text(table_.sweep(), table_.model().description()), files, origin_.system};
 }
 
-std::string kept_bytes(const SweepTable& table, SweepKept kept, const Rows& rows) {
+std::string serialize_rows(const SweepTable& table, RowStorage kept, const Rows& rows) {
     const std::string text = kept.text ? sweep_csv(table, rows) : "";
     if (!kept.in_log) return text;
     const std::uint64_t size = text.size();
@@ -167,7 +168,7 @@ void SweepOutput::make(const std::string& path, const std::function<void(const s
     }
 }
 
-bool SweepOutput::draw(const EachRows& each_rows) {
+bool SweepOutput::draw(const RowReader& each_rows) {
     if (pictures_.files().empty()) return true;
     const std::optional<Figure> figure = pictures_.figure(each_rows);
     if (!figure) return false;
@@ -184,7 +185,7 @@ bool SweepOutput::finish() {
     if (!log_) return true;
     if (!csv_.empty()) make(csv_, [&](const std::string& file) { write_csv(file); });
     if (!csv_.empty() && csv_ != "-") made_.push_back(csv_);
-    const EachRows each_rows = [&](const std::function<void(const Rows&)>& take) {
+    const RowReader each_rows = [&](const std::function<void(const Rows&)>& take) {
         log_->each([&](Chunk, std::string_view bytes) { take(rows_from(rows_in(bytes), table_)); });
     };
     if (!hdf5_.empty())
@@ -224,7 +225,7 @@ void SweepSummary::note(const Rows& rows) {
         }
         for (std::size_t i = 0; i < width; ++i) {
             const double x = rows.numbers[row * width + i];
-            Column one;
+            ColumnRange one;
             if (std::isfinite(x))
                 one.count = 1, one.first = one.last = point, one.low = one.high = x;
             else
@@ -234,7 +235,7 @@ void SweepSummary::note(const Rows& rows) {
     }
 }
 
-void SweepSummary::add(Column& column, const Column& more) {
+void SweepSummary::add(ColumnRange& column, const ColumnRange& more) {
     if (more.count > 0) {
         column.low = column.count > 0 ? std::min(column.low, more.low) : more.low;
         column.high = column.count > 0 ? std::max(column.high, more.high) : more.high;
@@ -250,13 +251,13 @@ void SweepSummary::add(Column& column, const Column& more) {
 std::string SweepSummary::behind(std::string bytes) const {
     bytes.append(reinterpret_cast<const char*>(&totals_), sizeof totals_);
     if (!columns_.empty())
-        bytes.append(reinterpret_cast<const char*>(columns_.data()), columns_.size() * sizeof(Column));
+        bytes.append(reinterpret_cast<const char*>(columns_.data()), columns_.size() * sizeof(ColumnRange));
     return bytes;
 }
 
 std::string SweepSummary::take(std::string bytes) {
-    std::vector<Column> columns(columns_.size());
-    const std::size_t size = columns.size() * sizeof(Column);
+    std::vector<ColumnRange> columns(columns_.size());
+    const std::size_t size = columns.size() * sizeof(ColumnRange);
     Totals totals;
     const char* const begin = bytes.data() + bytes.size() - size - sizeof totals;
     std::memcpy(&totals, begin, sizeof totals);
@@ -285,8 +286,8 @@ std::string SweepSummary::unit_of(std::size_t number) const {
 }
 
 // Where a quantity is undefined: "e >= 0.7125" if that is one end of one axis, else the first point; "" without axes.
-std::string SweepSummary::where_missing(const Column& column) const {
-    const Sweep& sweep = table_->sweep();
+std::string SweepSummary::where_missing(const ColumnRange& column) const {
+    const SweepSpec& sweep = table_->sweep();
     if (sweep.axes.empty()) return "";
     const auto at = [&](std::size_t axis, std::uint64_t point) {
         return fmt::format("{:.6g}", sweep.value(axis, point));
@@ -317,7 +318,7 @@ std::string SweepSummary::text() const {
     for (std::size_t i = 0; i < columns_.size(); ++i) width = std::max(width, name_of(i).size());
     const char* const things = is_section ? "rows" : "runs";
     for (std::size_t i = 0; i < columns_.size(); ++i) {
-        const Column& column = columns_[i];
+        const ColumnRange& column = columns_[i];
         text += fmt::format("  {:<{}}   ", name_of(i), width);
         if (column.count == 0) {
             text += fmt::format("exists in none of the {} runs\n", totals_.runs);
@@ -341,7 +342,7 @@ std::vector<std::string> SweepSummary::nowhere() const {
     return sentences;
 }
 
-SweepPictures::SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job)
+SweepPictures::SweepPictures(const SweepTable& table, const SweepPictureOptions& asked, const PictureJob& job)
     : table_(table), asked_(asked), job_(job) {
     if (asked_.files.empty()) {
         for (const auto& [is_given, option] :
@@ -381,7 +382,7 @@ void SweepPictures::try_to_draw() const {
     }
 }
 
-std::optional<Figure> SweepPictures::figure(const EachRows& each_rows) const {
+std::optional<Figure> SweepPictures::figure(const RowReader& each_rows) const {
     std::uint64_t count = 0;
     each_rows([&](const Rows& rows) { count += rows.count(); });
     const std::uint64_t every = (count + most_drawn_rows - 1) / most_drawn_rows;
@@ -424,7 +425,7 @@ std::string SweepPictures::bytes(const Figure& figure, const std::string& file) 
     return picture_of(figure, size, notes, format);
 }
 
-void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads) {
+void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& asked, PictureJob& job, int threads) {
     const SweepPictures pictures(table, asked, job);
     const std::uint64_t points = table.sweep().count();
     const std::atomic<bool> stop{false};

@@ -9,16 +9,16 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/table.hpp"
 #include "cli/write_files.hpp"
 #include "figure/sweep_figure.hpp"
 #include "output/sweep_files.hpp"
 #include "pictures/picture_format.hpp"
-#include "study/table.hpp"
 
 namespace achilles {
 
 // The pictures of a sweep.
-struct SweepPicturesAsked {
+struct SweepPictureOptions {
     std::vector<std::string> files;  // .png, .svg or .pdf
     SweepLook look;
     PictureSize size;
@@ -30,13 +30,13 @@ class SweepPictures {
  public:
     // Checks that they can be drawn, and throws InputError if not, before the sweep starts. Keeps references to the
     // table and the job.
-    SweepPictures(const SweepTable& table, const SweepPicturesAsked& asked, const PictureJob& job);
+    SweepPictures(const SweepTable& table, const SweepPictureOptions& asked, const PictureJob& job);
 
     const std::vector<std::string>& files() const { return asked_.files; }
     // Draws all rows at the end. Holds at most most_drawn_rows rows: if there are more, uses every second, third, ...
     // row. Columns without values are left out. If no column has a value, returns nothing and prints a warning to
     // standard error. Throws std::runtime_error if drawing fails.
-    std::optional<Figure> figure(const EachRows& each_rows) const;
+    std::optional<Figure> figure(const RowReader& each_rows) const;
     // The picture in the format of the file's extension. A height that was not given is at least what the panels need.
     std::string bytes(const Figure& figure, const std::string& file) const;
 
@@ -45,24 +45,24 @@ class SweepPictures {
     bool has_height() const { return asked_.page.width > 0.0 ? asked_.page.height > 0.0 : asked_.has_size; }
     PictureSize size_for(const Figure& figure, const std::string& format) const;
     const SweepTable& table_;
-    SweepPicturesAsked asked_;
+    SweepPictureOptions asked_;
     const PictureJob& job_;
 };
 
 // Makes the one picture that `reproduce` wants, without writing files.
-void reproduce_sweep(const SweepTable& table, const SweepPicturesAsked& asked, PictureJob& job, int threads);
+void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& asked, PictureJob& job, int threads);
 
-struct SweepOutputAsked {
+struct SweepOutputOptions {
     std::string csv, hdf5;  // file names; csv may be -, standard output
     bool units = false, resume = false;
 };
 
 // How rows are stored until the output is written: as text, as binary data, or in a log as both, separately.
-struct SweepKept {
+struct RowStorage {
     bool text = false, rows = false, in_log = false;
 };
 // The stored form of these rows. Thread-safe.
-std::string kept_bytes(const SweepTable& table, SweepKept kept, const Rows& rows);
+std::string serialize_rows(const SweepTable& table, RowStorage kept, const Rows& rows);
 
 // Output files of a sweep, written when it is finished. Until then the rows are stored in a log, F.part of the first
 // file F, from which --resume continues. A table that goes only to standard output or a device is written at once,
@@ -71,7 +71,7 @@ class SweepOutput {
  public:
     // Checks that the files can be written, before the sweep starts. Throws InputError. Keeps a reference to the
     // pictures.
-    SweepOutput(const SweepTable& table, const SweepOutputAsked& asked, const SweepPictures& pictures,
+    SweepOutput(const SweepTable& table, const SweepOutputOptions& asked, const SweepPictures& pictures,
                 const std::filesystem::path& system_file, const std::string& system_name);
     ~SweepOutput();
     SweepOutput(const SweepOutput&) = delete;
@@ -79,7 +79,7 @@ class SweepOutput {
 
     // Number of points finished earlier.
     std::uint64_t done() const { return log_ ? log_->done() : printed_; }
-    SweepKept kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
+    RowStorage kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
     // Appends the stored form of a chunk. Chunks must come in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
     // Writes the files. Returns false if a picture would be empty; it is then left out and the others are written.
@@ -94,7 +94,7 @@ class SweepOutput {
  private:
     SweepKey key() const;
     bool keeps_rows() const { return !hdf5_.empty() || !pictures_.files().empty(); }
-    bool draw(const EachRows& each_rows);
+    bool draw(const RowReader& each_rows);
     std::string name_of_csv() const;
     void write_csv(const std::string& file) const;
     void make(const std::string& path, const std::function<void(const std::string& file)>& write) const;
@@ -132,7 +132,7 @@ class SweepSummary {
     std::vector<std::string> nowhere() const;
 
  private:
-    struct Column {
+    struct ColumnRange {
         std::uint64_t count = 0, missing = 0;
         std::uint64_t first = most_points, last = 0, first_missing = most_points, last_missing = 0;  // points
         double low = 0.0, high = 0.0;
@@ -140,15 +140,15 @@ class SweepSummary {
     struct Totals {
         std::uint64_t runs = 0, whole = 0, rows = 0, last_point = most_points;
     };
-    static void add(Column& column, const Column& more);
-    std::string where_missing(const Column& column) const;
+    static void add(ColumnRange& column, const ColumnRange& more);
+    std::string where_missing(const ColumnRange& column) const;
     std::string name_of(std::size_t number) const;
     std::string unit_of(std::size_t number) const;
     const RunMeasures::Column& column_of(std::size_t number) const;
 
     const SweepTable* table_;
     Totals totals_;
-    std::vector<Column> columns_;
+    std::vector<ColumnRange> columns_;
 };
 
 }  // namespace achilles

@@ -67,23 +67,23 @@ void RunFailures::tell(const SweepTable& table) const {
     }
 }
 
-std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk) {
+std::string sweep_chunk(const SweepTable& table, RowStorage kept, Chunk chunk) {
     const Rows rows = table.rows(chunk.first, chunk.count);
     RunFailures failures;
     failures.note(rows);
     SweepSummary summary(table);
     summary.note(rows);
-    return summary.behind(failures.behind(kept_bytes(table, kept, rows)));
+    return summary.behind(failures.behind(serialize_rows(table, kept, rows)));
 }
 
 // Header lines, then the text of the system file.
-std::string sweep_order(const SweepTable& table, SweepKept kept, int threads) {
+std::string sweep_order(const SweepTable& table, RowStorage kept, int threads) {
     const SystemDescription& description = table.model().description();
     return fmt::format("{}\n{:d} {:d} {:d} {}\n{}\n{}", version(), kept.text, kept.rows, kept.in_log, threads,
                        to_text(table.sweep(), description), description.source_text);
 }
 
-Share sweep_share(std::string_view order) {
+RankTask sweep_share(std::string_view order) {
     const auto take_line = [&] {
         const std::size_t end = order.find('\n');
         const std::string line(order.substr(0, end));
@@ -93,7 +93,7 @@ Share sweep_share(std::string_view order) {
     if (const std::string other = take_line(); other != version())
         throw std::runtime_error(
             fmt::format("this process runs Achilles {}, but rank 0 runs {}", version(), printable(other)));
-    SweepKept kept;
+    RowStorage kept;
     int text = 0, rows = 0, in_log = 0, threads = 0;
     std::sscanf(take_line().c_str(), "%d %d %d %d", &text, &rows, &in_log, &threads);
     kept = {text != 0, rows != 0, in_log != 0};

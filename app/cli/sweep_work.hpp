@@ -5,8 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "analysis/distributed_chunks.hpp"
 #include "cli/sweep_output.hpp"
-#include "study/ranks.hpp"
 
 namespace achilles {
 
@@ -30,12 +30,12 @@ class RunFailures {
 };
 
 // The bytes of a chunk: the stored form of its rows, then its failures and its summary.
-std::string sweep_chunk(const SweepTable& table, SweepKept kept, Chunk chunk);
+std::string sweep_chunk(const SweepTable& table, RowStorage kept, Chunk chunk);
 
 // The description of a sweep for other processes, which use no files or options of their own.
-std::string sweep_order(const SweepTable& table, SweepKept kept, int threads);
+std::string sweep_order(const SweepTable& table, RowStorage kept, int threads);
 // The work that an order describes. Throws if the order is from another version of the program.
-Share sweep_share(std::string_view order);
+RankTask sweep_share(std::string_view order);
 
 // Main function of all ranks except 0: performs the orders of rank 0 until it ends. Only rank 0 handles Ctrl-C.
 void help_with_sweep(Messages& messages);

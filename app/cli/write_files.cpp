@@ -100,7 +100,7 @@ std::optional<OutputFiles::Identity> OutputFiles::identity_of(const std::string&
     return Identity{there.st_dev, there.st_ino};
 }
 
-void OutputFiles::spare(const fs::path& input) {
+void OutputFiles::protect_input(const fs::path& input) {
     if (const auto identity = identity_of(input.string())) spared_.emplace_back(input, *identity);
     refuse_inputs();
 }
@@ -165,7 +165,7 @@ void OutputFiles::put(const std::string& path, std::string content) {
 
 // Renames the temporary file to the target. If the file system can exchange names, the old file is kept until all are
 // renamed.
-void OutputFiles::take_name(File& file) {
+void OutputFiles::commit_rename(File& file) {
     const char *from = file.temporary.c_str(), *to = file.target.c_str();
     std::error_code problem;
     const fs::file_status there = fs::symlink_status(file.target, problem);
@@ -177,17 +177,17 @@ void OutputFiles::take_name(File& file) {
     file.temporary.clear();
 }
 
-void OutputFiles::give_back(File& file) {
+void OutputFiles::roll_back(File& file) {
     if (file.swapped)
         ::renameat2(AT_FDCWD, file.temporary.c_str(), AT_FDCWD, file.target.c_str(), RENAME_EXCHANGE);
     else if (file.made)
         ::unlink(file.target.c_str());
 }
 
-void OutputFiles::commit(Care care) {
+void OutputFiles::commit(Durability care) {
     refuse_inputs();
     for (File& file : files_)
-        if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Care::on_disk);
+        if (!file.in_place) write_all(open_temporary(file), file.path, file.content, care == Durability::fsync);
     // Devices can be full, so they are written before the renames, which need no space.
     for (const File& file : files_) {
         if (!file.in_place) continue;
@@ -198,15 +198,15 @@ void OutputFiles::commit(Care care) {
     try {
         for (File& file : files_) {
             if (file.in_place) continue;
-            take_name(file);
+            commit_rename(file);
             folders.insert(file.target.parent_path());
         }
     } catch (const InputError&) {
-        for (File& file : files_) give_back(file);
+        for (File& file : files_) roll_back(file);
         throw;
     }
     for (const fs::path& folder : folders)
-        if (care == Care::on_disk) keep_names(folder);
+        if (care == Durability::fsync) keep_names(folder);
 }
 
 }  // namespace achilles

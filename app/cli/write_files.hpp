@@ -26,7 +26,7 @@ class OutputFiles {
     OutputFiles& operator=(const OutputFiles&) = delete;
 
     // Registers an input file. Throws InputError for outputs that resolve to the same file (same device and inode).
-    void spare(const std::filesystem::path& input);
+    void protect_input(const std::filesystem::path& input);
     // Registers an output. Throws InputError if it cannot be written, was added before, or is an input.
     void add(const std::string& path);
     // Throws InputError if `path` is a registered output, which is also written for another purpose.
@@ -34,9 +34,9 @@ class OutputFiles {
     // Sets the content of a registered output.
     void put(const std::string& path, std::string content);
     // Writes all files. Throws InputError (e.g. disk full); then every file is as it was.
-    // `quick` does not flush to disk: for files that can be made again or are written often.
-    enum class Care { on_disk, quick };
-    void commit(Care care = Care::on_disk);
+    // `fast` does not flush to disk: for files that can be made again or are written often.
+    enum class Durability { fsync, fast };
+    void commit(Durability care = Durability::fsync);
 
  private:
     using Identity = std::pair<dev_t, ino_t>;
@@ -51,8 +51,8 @@ class OutputFiles {
     static std::optional<Identity> identity_of(const std::string& path);
     void refuse_inputs() const;
     static int open_temporary(File& file);
-    static void take_name(File& file);
-    static void give_back(File& file);
+    static void commit_rename(File& file);
+    static void roll_back(File& file);
     std::vector<File> files_;
     std::vector<std::pair<std::filesystem::path, Identity>> spared_;
 };

@@ -7,9 +7,9 @@
 #include <csignal>
 #include <string>
 
+#include "analysis/sweep.hpp"
 #include "journal/journal.hpp"
 #include "run/trajectory.hpp"
-#include "study/sweep.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -34,20 +34,20 @@ void Budget::allow(const Options& typed) {
 void Budget::check(const Options& options) const {
     if (!is_limited_) return;
     if (options.memory > allowed_.memory)
-        throw Forbidden(
+        throw FileAccessDenied(
             {}, {},
             fmt::format("a run would keep up to {:.4g} MB; a run of a journal or a picture may keep at most {:.4g} MB",
                         options.memory / 1e6, allowed_.memory / 1e6),
             how_to_allow_);
     if (options.max_steps > allowed_.max_steps)
-        throw Forbidden(
+        throw FileAccessDenied(
             {}, {},
             fmt::format("a run would take up to {} steps; a run of a journal or a picture may take at most {}",
                         options.max_steps, allowed_.max_steps),
             how_to_allow_);
 }
 
-void Budget::check(const Sweep& sweep) const {
+void Budget::check(const SweepSpec& sweep) const {
     if (!is_limited_) return;
     check(sweep.base.options);
     for (const SweepAxis& axis : sweep.axes)
@@ -57,16 +57,17 @@ void Budget::check(const Sweep& sweep) const {
             check(options);
         }
     if (sweep.count() > max_points)
-        throw Forbidden({}, {},
-                        fmt::format("the sweep has {} points; a sweep of a journal or a picture may have at most {}",
-                                    sweep.count(), max_points),
-                        how_to_allow_);
+        throw FileAccessDenied(
+            {}, {},
+            fmt::format("the sweep has {} points; a sweep of a journal or a picture may have at most {}", sweep.count(),
+                        max_points),
+            how_to_allow_);
 }
 
 void Budget::check_rows(std::uint64_t rows) const {
     if (is_limited_ && rows > max_points)
-        throw Forbidden({}, {}, fmt::format("the sections of the sweep have more than {} rows", max_points),
-                        how_to_allow_);
+        throw FileAccessDenied({}, {}, fmt::format("the sections of the sweep have more than {} rows", max_points),
+                               how_to_allow_);
 }
 
 void Budget::charge(const Trajectory& run) {
@@ -74,10 +75,11 @@ void Budget::charge(const Trajectory& run) {
     full_runs_ +=
         std::max(static_cast<double>(run.statistics.steps) / allowed_.max_steps, bytes_of(run) / allowed_.memory);
     if (full_runs_ > max_full_runs)
-        throw Forbidden({}, {},
-                        fmt::format("the runs of this journal or picture together take more than {} steps or {:.4g} MB",
-                                    max_full_runs * allowed_.max_steps, max_full_runs * allowed_.memory / 1e6),
-                        how_to_allow_);
+        throw FileAccessDenied(
+            {}, {},
+            fmt::format("the runs of this journal or picture together take more than {} steps or {:.4g} MB",
+                        max_full_runs * allowed_.max_steps, max_full_runs * allowed_.memory / 1e6),
+            how_to_allow_);
 }
 
 void TimeLimit::arm(const std::string& how_to_allow, unsigned seconds) {

@@ -10,7 +10,7 @@
 
 namespace achilles {
 
-struct Sweep;
+struct SweepSpec;
 struct Trajectory;
 
 // The limits of one session. They apply only after limit(): commands typed by the user are not limited.
@@ -36,7 +36,7 @@ class Budget {
 
     // Throw Forbidden if a run may use more memory or steps than the limits, or if a sweep has too many points.
     void check(const Options& options) const;
-    void check(const Sweep& sweep) const;
+    void check(const SweepSpec& sweep) const;
     void check_rows(std::uint64_t rows) const;  // rows of the sections of a sweep
     // Adds a run to the total. Throws Forbidden if the total exceeds max_full_runs.
     void charge(const Trajectory& run);

@@ -45,7 +45,7 @@ FileUse file_use(const Command& command) {
     return {};
 }
 
-bool is_named(const std::string& path, const Trust& trust) {
+bool is_named(const std::string& path, const FilePolicy& trust) {
     return std::any_of(trust.named.begin(), trust.named.end(), [&](const fs::path& file) {
         std::error_code problem;
         return fs::equivalent(file, path, problem);
@@ -54,26 +54,26 @@ bool is_named(const std::string& path, const Trust& trust) {
 
 // Whether this use is allowed. While a picture is reproduced everything is: it supplies all inputs and nothing is
 // written.
-bool is_allowed(const FileUse& use, const Trust& trust) {
-    if (use.path.empty() || trust.files != Trust::Files::refused || (is_named(use.path, trust) && !use.writes))
+bool is_allowed(const FileUse& use, const FilePolicy& trust) {
+    if (use.path.empty() || trust.files != FilePolicy::Files::refused || (is_named(use.path, trust) && !use.writes))
         return true;
     const auto answer = trust.answered.find(want(use.path, use.writes));
     return answer != trust.answered.end() && answer->second;
 }
 
-bool would_overwrite(const FileUse& use, const Trust& trust) {
+bool would_overwrite(const FileUse& use, const FilePolicy& trust) {
     std::error_code problem;
-    return use.writes && trust.files != Trust::Files::imagined && fs::exists(use.path, problem);
+    return use.writes && trust.files != FilePolicy::Files::virtual_only && fs::exists(use.path, problem);
 }
 
 // Throws Forbidden if the command sets an option beyond the budget.
 void check_work(const Command& command, const Budget* budget) {
-    const auto* use = std::get_if<command::UseOption>(&command);
+    const auto* use = std::get_if<command::SetOption>(&command);
     if (use == nullptr || budget == nullptr) return;
     Options options;
     const std::span<const Option> rows = options_set_by(use->name);
     for (std::size_t i = 0; i < use->values.size(); ++i)
-        if (allows(rows[i], use->values[i])) rows[i].set(options, use->values[i]);
+        if (is_valid_value(rows[i], use->values[i])) rows[i].set(options, use->values[i]);
     budget->check(options);
 }
 
@@ -91,8 +91,8 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
-Trust trust_of(bool allow_files, std::vector<fs::path> named, const Options& typed) {
-    Trust trust{allow_files ? Trust::Files::allowed : Trust::Files::refused, std::move(named)};
+FilePolicy trust_of(bool allow_files, std::vector<fs::path> named, const Options& typed) {
+    FilePolicy trust{allow_files ? FilePolicy::Files::allowed : FilePolicy::Files::refused, std::move(named)};
     if (allow_files) return trust;
     trust.budget = std::make_shared<Budget>("if you trust it: --allow-files");
     trust.budget->allow(typed);
@@ -104,20 +104,20 @@ std::string want(const std::string& file, bool writes) {
     return (writes ? "write " : "read ") + fs::absolute(file, problem).lexically_normal().string();
 }
 
-std::optional<bool> may_read(const std::string& file, const Trust& trust) {
+std::optional<bool> may_read(const std::string& file, const FilePolicy& trust) {
     if (is_allowed({file}, trust)) return true;
     return trust.answered.contains(want(file, false)) ? std::optional(false) : std::nullopt;
 }
 
-std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust) {
+std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const FilePolicy& trust) {
     std::vector<Command> commands;
-    std::optional<Forbidden> refused;
+    std::optional<FileAccessDenied> refused;
     std::set<std::string> wanted;
     if (trust.budget) trust.budget->limit();
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
         if (commands.size() == most_replayed)
-            throw Forbidden(name, at, fmt::format("a session replays at most {} commands", most_replayed));
+            throw FileAccessDenied(name, at, fmt::format("a session replays at most {} commands", most_replayed));
         const FileUse use = file_use(command);
         const auto refuse = [&](const std::string& reason, const char* hint) {
             if (!refused) refused.emplace(name, at, reason, hint, std::string(line));
@@ -132,13 +132,13 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
         }
         try {
             check_work(command, trust.budget.get());
-        } catch (const Forbidden& problem) {
+        } catch (const FileAccessDenied& problem) {
             refuse(problem.message, problem.hint.c_str());
         }
         drop_overwrite(command);
         commands.push_back(std::move(command));
     });
-    if (refused) throw Forbidden(*refused);
+    if (refused) throw FileAccessDenied(*refused);
     return commands;
 }
 
@@ -299,25 +299,26 @@ std::size_t skip_space(std::string_view text, std::size_t at) {
 
 }  // namespace
 
-Line::Line(std::string_view text, const std::string& file, int number) : text_(text), file_(file), number_(number) {
+JournalLine::JournalLine(std::string_view text, const std::string& file, int number)
+    : text_(text), file_(file), number_(number) {
     for (std::size_t at = skip_space(text, 0); at < text.size() && text[at] != '#'; at = skip_space(text, at)) {
         const int column = static_cast<int>(at) + 1;
         words_.push_back({text[at] == '"' ? quoted(at) : plain(at), column});
     }
 }
 
-InputError Line::error(int column, const std::string& message, const std::string& hint) const {
+InputError JournalLine::error(int column, const std::string& message, const std::string& hint) const {
     return {file_, {number_, column}, message, hint, std::string(text_)};
 }
 
-void Line::expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
+void JournalLine::expect_arguments(std::size_t least, std::size_t most, const std::string& usage) const {
     const int end = static_cast<int>(text_.find_last_not_of(spaces)) + 2;
     if (count() < least + 1) throw error(end, fmt::format("'{}' needs more arguments", words_[0].text), usage);
     if (count() > most + 1)
         throw error(words_[most + 1].column, fmt::format("unexpected argument '{}'", words_[most + 1].text), usage);
 }
 
-double Line::number(std::size_t i) const {
+double JournalLine::number(std::size_t i) const {
     try {
         return read_number(words_[i].text).value;
     } catch (const ParseError& problem) {
@@ -325,20 +326,20 @@ double Line::number(std::size_t i) const {
     }
 }
 
-int Line::whole_number(std::size_t i) const {
+int JournalLine::whole_number(std::size_t i) const {
     const double value = number(i);
     if (value != std::floor(value) || std::abs(value) > 1e9)
         throw error(words_[i].column, fmt::format("'{}' is not a whole number", words_[i].text));
     return static_cast<int>(value);
 }
 
-std::string Line::plain(std::size_t& at) const {
+std::string JournalLine::plain(std::size_t& at) const {
     const std::size_t begin = at;
     at = std::min(text_.find_first_of(spaces, at), text_.size());
     return std::string(text_.substr(begin, at - begin));
 }
 
-std::string Line::quoted(std::size_t& at) const {
+std::string JournalLine::quoted(std::size_t& at) const {
     const int column = static_cast<int>(at) + 1;
     std::string result;
     for (++at; at < text_.size() && text_[at] != '"'; ++at) {

@@ -25,11 +25,11 @@ std::vector<Command> read_journal(const std::filesystem::path& file);
 
 // What a journal may do with files. Journals may come from untrusted sources. Unless the user allows more, a journal
 // opens and replays only assets, by their names.
-struct Trust {
+struct FilePolicy {
     enum class Files {
-        refused,   // no files except those in `named`
-        allowed,   // reads and writes the paths it names, but replaces no existing file (--allow-files)
-        imagined,  // files are read from the picture being reproduced; nothing is written
+        refused,       // no files except those in `named`
+        allowed,       // reads and writes the paths it names, but replaces no existing file (--allow-files)
+        virtual_only,  // files are read from the picture being reproduced; nothing is written
     };
     Files files = Files::refused;
     std::vector<std::filesystem::path> named;  // files named by the user, which may be read
@@ -37,7 +37,7 @@ struct Trust {
     std::shared_ptr<Budget> budget{};          // limits of its work; null: no limits
 };
 // Has a budget unless `allow_files`. The budget allows the default memory and max_steps, or those of `typed` if larger.
-Trust trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
+FilePolicy trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
 
 // Maximum number of commands in all journals that one session replays. It stops a journal that replays itself.
 constexpr std::size_t most_replayed = 10000;
@@ -45,11 +45,11 @@ constexpr std::size_t most_replayed = 10000;
 // The question to the user about a file: "read /home/me/a.toml".
 std::string want(const std::string& file, bool writes);
 // Whether an untrusted journal may read this file; empty: ask the user.
-std::optional<bool> may_read(const std::string& file, const Trust& trust);
+std::optional<bool> may_read(const std::string& file, const FilePolicy& trust);
 
 // parse_journal() for an untrusted journal. `overwrite` in it is ignored. Throws InputError as parse_journal() does,
 // and Forbidden for file access or options that `trust` does not allow.
-std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const Trust& trust);
+std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const FilePolicy& trust);
 
 // Parses the --do "seek 3.2" arguments of a command line. Each is one line; blank lines are ignored.
 std::vector<Command> parse_steps(const std::vector<std::string>& lines);
@@ -107,10 +107,10 @@ class Tour {
 // Tokens of one journal line. A word with spaces, # or quotes is written in "double quotes".
 
 // The words of a line with their columns, for error messages. Keeps references to the text and the file name.
-class Line {
+class JournalLine {
  public:
     // Throws InputError for an unclosed quote. A # outside quotes starts a comment.
-    Line(std::string_view text, const std::string& file, int number);
+    JournalLine(std::string_view text, const std::string& file, int number);
 
     struct Word {
         std::string text;

@@ -7,7 +7,7 @@
 
 #include "cli/write_files.hpp"
 #include "journal/journal.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 
@@ -26,8 +26,8 @@ fs::path config_folder() {
 }
 
 bool is_of_looks(const Command& command) {
-    return std::holds_alternative<command::UseTheme>(command) || std::holds_alternative<command::Enlarge>(command) ||
-           std::holds_alternative<command::Size>(command);
+    return std::holds_alternative<command::SetTheme>(command) || std::holds_alternative<command::Enlarge>(command) ||
+           std::holds_alternative<command::SetPanelSize>(command);
 }
 
 std::string content_of(const fs::path& file) {
@@ -44,7 +44,7 @@ std::string content_of(const fs::path& file) {
 
 std::vector<Command> looks_of(const Session& session) {
     std::vector<Command> looks;
-    if (session.theme().dark) looks.emplace_back(command::UseTheme{true});
+    if (session.theme().dark) looks.emplace_back(command::SetTheme{true});
     for (const Command& step : steps_to(session.scene()))
         if (is_of_looks(step)) looks.push_back(step);
     return looks;
@@ -86,7 +86,7 @@ void Preferences::keep(const Session& session) {
         OutputFiles files;
         files.add(file_);
         files.put(file_, text);
-        files.commit(OutputFiles::Care::quick);
+        files.commit(OutputFiles::Durability::fast);
     } catch (const InputError&) {
         return;  // disk full or read-only folder: the settings still apply to this window
     }

@@ -11,7 +11,7 @@
 
 #include "cli/write_files.hpp"
 #include "journal/journal.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 
@@ -63,7 +63,7 @@ std::vector<Command> steps_in(const fs::path& file) {
     try {
         const std::vector<Command> steps = parse_journal(read_text(file, 4 * largest_file), file.string());
         const bool is_ours =
-            steps.size() == 2 && std::holds_alternative<command::Text>(steps[1]) &&
+            steps.size() == 2 && std::holds_alternative<command::SetText>(steps[1]) &&
             (std::holds_alternative<command::New>(steps[0]) || std::holds_alternative<command::Open>(steps[0]));
         return is_ours ? steps : std::vector<Command>();
     } catch (const InputError&) {
@@ -80,12 +80,13 @@ void Recovery::keep(const Document& document, const std::string& text) {
     if (file_.empty()) return;
     const bool is_new = document.name == new_document().name;
     const std::vector<Command> steps{
-        is_new ? Command(command::New{}) : Command(command::Open{name_anywhere(document.name)}), command::Text{text}};
+        is_new ? Command(command::New{}) : Command(command::Open{name_anywhere(document.name)}),
+        command::SetText{text}};
     try {
         OutputFiles files;
         files.add(file_);
         files.put(file_, journal_text(steps));
-        files.commit(OutputFiles::Care::quick);
+        files.commit(OutputFiles::Durability::fast);
     } catch (const InputError&) {
         file_.clear();  // disk full or read-only folder: try again at the next edit
     }
@@ -98,8 +99,8 @@ void Recovery::forget() {
     text_.clear();
 }
 
-std::vector<Unsaved> left_unsaved() {
-    std::vector<Unsaved> all;
+std::vector<RecoveredText> left_unsaved() {
+    std::vector<RecoveredText> all;
     std::error_code problem;
     const fs::path folder = state_folder();
     if (folder.empty()) return all;
@@ -115,7 +116,7 @@ std::vector<Unsaved> left_unsaved() {
         all.push_back(
             {entry.path(), open != nullptr ? open->system : new_document().name, local_time(entry.path()), steps});
     }
-    std::sort(all.begin(), all.end(), [](const Unsaved& a, const Unsaved& b) { return a.when > b.when; });
+    std::sort(all.begin(), all.end(), [](const RecoveredText& a, const RecoveredText& b) { return a.when > b.when; });
     return all;
 }
 

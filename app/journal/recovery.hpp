@@ -30,13 +30,13 @@ class Recovery {
 };
 
 // Unsaved text of a window that is no longer open.
-struct Unsaved {
+struct RecoveredText {
     std::filesystem::path file;
     std::string name, when;      // name of the document, and time of the last write
     std::vector<Command> steps;  // open the document, then set its text
 };
 
 // Newest first. Files of open windows and files of another kind are skipped.
-std::vector<Unsaved> left_unsaved();
+std::vector<RecoveredText> left_unsaved();
 
 }  // namespace achilles

@@ -51,13 +51,13 @@ void send(int to, const void* bytes, int size) {
 }
 
 // A message being received. If its sender is killed, the rest never arrives; nothing waits for that.
-struct Coming {
+struct PendingMessage {
     std::vector<char> bytes;
     int from = 0;
     MPI_Request request = MPI_REQUEST_NULL;
 };
-std::list<Coming> coming;
-std::list<Coming>::iterator come;  // the complete one
+std::list<PendingMessage> coming;
+std::list<PendingMessage>::iterator come;  // the complete one
 
 int next(int* from) {
     int is_there = 0;
@@ -66,7 +66,7 @@ int next(int* from) {
     if (is_there != 0) {
         int size = 0;
         MPI_Get_count(&status, MPI_BYTE, &size);
-        Coming& one = coming.emplace_back();
+        PendingMessage& one = coming.emplace_back();
         one.bytes.resize(static_cast<std::size_t>(size));
         one.from = status.MPI_SOURCE;
         MPI_Irecv(one.bytes.data(), size, MPI_BYTE, one.from, 0, MPI_COMM_WORLD, &one.request);

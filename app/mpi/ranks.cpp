@@ -98,8 +98,8 @@ void Ranks::send(int to, std::string_view bytes) {
     mpi_->send(to, bytes.data(), static_cast<int>(bytes.size()));
 }
 
-std::optional<Messages::Letter> Ranks::receive() {
-    Letter letter;
+std::optional<Messages::RankMessage> Ranks::receive() {
+    RankMessage letter;
     const int size = mpi_->next(&letter.from);
     if (size < 0) return {};
     letter.bytes.resize(static_cast<std::size_t>(size));

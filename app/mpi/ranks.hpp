@@ -4,7 +4,7 @@
 #include <memory>
 #include <optional>
 
-#include "study/ranks.hpp"
+#include "analysis/distributed_chunks.hpp"
 
 struct AchillesMpi;
 
@@ -32,7 +32,7 @@ class Ranks final : public Messages {
     int size() const override { return size_; }
     int cores() const override { return cores_; }
     void send(int to, std::string_view bytes) override;
-    std::optional<Letter> receive() override;
+    std::optional<RankMessage> receive() override;
     void leave() override { is_left_ = true; }
 
  private:

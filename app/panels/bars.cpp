@@ -22,16 +22,16 @@ namespace achilles {
 
 namespace {
 
-struct ShownPart {
+struct PanelSwitch {
     const char *what, *name;
     int key;
 };
-constexpr std::array<ShownPart, 6> panels{{{"controls", "Controls", '1'},
-                                       {"plots", "Plots", '2'},
-                                       {"events", "Events", '3'},
-                                       {"sweep", "Sweep", '4'},
-                                       {"depend", "Sensitivities", '5'},
-                                       {"orbit", "Periodic run", '6'}}};
+constexpr std::array<PanelSwitch, 6> panels{{{"controls", "Controls", '1'},
+                                             {"plots", "Plots", '2'},
+                                             {"events", "Events", '3'},
+                                             {"sweep", "Sweep", '4'},
+                                             {"depend", "Sensitivities", '5'},
+                                             {"orbit", "Periodic run", '6'}}};
 
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
@@ -94,12 +94,12 @@ void show_edit_menu(const Session& session, PanelState& state, Commands& command
 
 void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
     const Scene& scene = session.scene();
-    for (const ShownPart& panel : panels)
+    for (const PanelSwitch& panel : panels)
         if (menu_item(panel.name, state, scene.shows(panel.what)))
             commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
     if (menu_item("Automatic panel sizes", state))
         for (const std::string& panel : command::sized_panels)
-            if (scene.share(panel) > 0.0) commands.emplace_back(command::Size{panel, 0.0});
+            if (scene.share(panel) > 0.0) commands.emplace_back(command::SetPanelSize{panel, 0.0});
     ImGui::Separator();
     for (const auto& [what, name] : {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"},
                                      std::pair{"force", "Contact force"}, std::pair{"strobe", "Poses at events"}})
@@ -118,7 +118,7 @@ void show_view_menu(const Session& session, PanelState& state, Commands& command
     if (menu_item("Smaller", state)) enlarge(session, -1, commands);
     if (menu_item("Reset Zoom", state)) enlarge(session, 0, commands);
     if (menu_item("Dark theme", state, session.theme().dark))
-        commands.emplace_back(command::UseTheme{!session.theme().dark});
+        commands.emplace_back(command::SetTheme{!session.theme().dark});
 }
 
 // A square button with a picture. Returns true if pressed; `area` is where to draw.
@@ -136,7 +136,7 @@ bool switch_button(const std::string& name, const std::string& about, PanelState
 }
 
 // A small window icon whose left, right, lower or lower right part is filled if the panel is shown.
-void panel_switch(const Session& session, const ShownPart& panel, PanelState& state, Commands& commands) {
+void panel_switch(const Session& session, const PanelSwitch& panel, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows(panel.what);
     Rectangle r;
     if (switch_button(std::string("switch ") + panel.what,
@@ -160,7 +160,7 @@ void theme_switch(const Session& session, PanelState& state, Commands& commands)
     const bool dark = session.theme().dark;
     Rectangle r;
     if (switch_button("switch theme", dark ? "light theme (Ctrl+D)" : "dark theme (Ctrl+D)", state, r))
-        commands.emplace_back(command::UseTheme{!dark});
+        commands.emplace_back(command::SetTheme{!dark});
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 c{r.x + 0.5F * r.width, r.y + 0.5F * r.height};
     const float radius = units(6.5F);
@@ -176,10 +176,10 @@ void use_view_keys(const Session& session, PanelState& state, Commands& commands
     const ImGuiIO& io = ImGui::GetIO();
     if (takes_key(state, key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
     if (!io.KeyCtrl || io.KeyAlt) return;
-    for (const ShownPart& panel : panels)
+    for (const PanelSwitch& panel : panels)
         if (takes_key(state, panel.key, false))
             commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
-    if (takes_key(state, 'D', false)) commands.emplace_back(command::UseTheme{!session.theme().dark});
+    if (takes_key(state, 'D', false)) commands.emplace_back(command::SetTheme{!session.theme().dark});
     if (takes_key(state, '=', false)) enlarge(session, 1, commands);
     if (takes_key(state, '-', false)) enlarge(session, -1, commands);
     if (takes_key(state, '0', false)) enlarge(session, 0, commands);
@@ -289,7 +289,7 @@ void paint_share(double share) {
 
 // Progress of a run that takes longer than a frame: the larger of its fractions of the end time and of the impact
 // limit. Meanwhile the previous run is shown or, for a new system, its start.
-void show_progress(const Session& session, const PanelState& state, const Watch& watch) {
+void show_progress(const Session& session, const PanelState& state, const RunMonitor& watch) {
     const Run& run = session.run();
     const double time = watch.time, impacts = static_cast<double>(watch.impacts);
     const double share =
@@ -311,7 +311,7 @@ void show_progress(const Session& session, const PanelState& state, const Watch&
 // Progress or result of the proof.
 void show_proof(const Session& session) {
     const Options& options = session.run().options;
-    if (const ProofWatch* watch = session.proof_under_way()) {
+    if (const ProofMonitor* watch = session.proof_under_way()) {
         const double time = watch->time;
         paint_share(std::clamp((time - options.start_time) / (options.end_time - options.start_time), 0.0, 1.0));
         ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetColorU32(ImGuiCol_SliderGrab));
@@ -322,7 +322,7 @@ void show_proof(const Session& session) {
     const Proof* const proof = session.proof();
     if (proof == nullptr) return;
     const Enclosure& enclosure = proof->enclosure;
-    const std::string about = told(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
+    const std::string about = describe(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
     ImGui::PushStyleColor(ImGuiCol_Text, packed(enclosure.end ? text_color() : error_color()));
     ImGui::TextUnformatted(
         fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
@@ -373,7 +373,7 @@ void show_status(const Session& session, const PanelState& state) {
     ImGui::GetWindowDrawList()->AddLine(corner, {corner.x + ImGui::GetWindowWidth(), corner.y},
                                         ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
-    if (const Watch* watch = session.under_way()) return show_progress(session, state, *watch);
+    if (const RunMonitor* watch = session.under_way()) return show_progress(session, state, *watch);
     show_proof(session);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
@@ -385,11 +385,11 @@ void show_status(const Session& session, const PanelState& state) {
         ImGui::SameLine(0.0F, units(24.0F));
     }
     if (const auto warned = warnings(session.run().options); !warned.empty()) {
-        ImGui::TextUnformatted(fmt::format("minimum tolerances: {}", least_tolerance).c_str());
+        ImGui::TextUnformatted(fmt::format("minimum tolerances: {}", min_tolerance).c_str());
         for (const std::string& warning : warned) tooltip(warning);
         ImGui::SameLine(0.0F, units(24.0F));
     }
-    for (const Remark& remark : session.remarks()) {
+    for (const RunWarning& remark : session.remarks()) {
         const bool is_horizon = session.horizon() && &remark == session.remarks().data();
         ImGui::PushStyleColor(ImGuiCol_Text, packed(is_horizon ? error_color() : text_color()));
         ImGui::TextUnformatted(remark.label.c_str());

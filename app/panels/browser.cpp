@@ -219,7 +219,7 @@ bool path_line(PanelState& state, bool focuses) {
     return entered;
 }
 
-Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool entered) {
+BrowseResult browse(PanelState& state, const std::vector<std::string>& endings, bool entered) {
     BrowserState& browser = state.browser;
     const std::string& path = state.editor.path;
     if (!state.reads_folders) return {};

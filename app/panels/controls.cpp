@@ -12,7 +12,7 @@
 #include "panels/slider.hpp"
 #include "panels/sweep.hpp"
 #include "panels/widgets.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -135,7 +135,7 @@ void choice(const OptionRow& row, const Options& now, const Options& file, Panel
     const auto choose = [&](const OptionValue& value) {
         Options changed = now;
         chosen.set(changed, value);
-        commands.emplace_back(command::UseOption(chosen, changed));
+        commands.emplace_back(command::SetOption(chosen, changed));
     };
     label(row.title, units(row_name_width));
     tooltip(row.about);
@@ -200,13 +200,13 @@ void bounds(const Options& now, const Options& file, PanelState& state, Commands
     for (const OptionRow& row : each) moved(row, changed, file, state);
     if (all_moved)
         for (const OptionRow& row : each) option(row.key).set(changed, common);
-    if (changed != now) commands.emplace_back(command::UseOption(option("eps_q"), changed));
+    if (changed != now) commands.emplace_back(command::SetOption(option("eps_q"), changed));
 }
 
 // A slider for one option.
 void slide(const OptionRow& row, const Session& session, const Run& file, PanelState& state, Commands& commands) {
     Options changed = session.run().options;
-    if (moved(row, changed, file.options, state)) commands.emplace_back(command::UseOption(option(row.key), changed));
+    if (moved(row, changed, file.options, state)) commands.emplace_back(command::SetOption(option(row.key), changed));
 }
 
 // Options in the accuracy section.
@@ -299,7 +299,7 @@ std::size_t lines_that_fit(std::size_t lines) {
 }
 
 // One difference from the file on a line, with the file's value. A click restores that value.
-void show_difference(const Difference& difference, const std::string& of, PanelState& state, Commands& commands) {
+void show_difference(const RunDifference& difference, const std::string& of, PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const float width = std::max(ImGui::GetContentRegionAvail().x, 1.0F), line = ImGui::GetTextLineHeight();
     if (ImGui::InvisibleButton(("put back " + difference.name).c_str(), {width, line}))
@@ -335,7 +335,7 @@ void show_system(const Session& session, PanelState& state, Commands& commands) 
 
 void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,
                   Commands& commands) {
-    const std::vector<Difference> all = differences(session.description(), session.run(), session.file_run());
+    const std::vector<RunDifference> all = differences(session.description(), session.run(), session.file_run());
     const std::size_t count = std::min(lines, all.size());
     if (count == 0) return;
     section(("Differs from the " + of).c_str());

@@ -18,12 +18,12 @@ namespace achilles {
 
 namespace {
 
-std::string of_quantity(const Influences& known, double value, const char* format = "{:.4g}") {
+std::string of_quantity(const Sensitivities& known, double value, const char* format = "{:.4g}") {
     const ShownUnit unit = shown_unit(known.unit);
     return number_with_unit(number(value * unit.factor, format), unit.text);
 }
 
-double share_of(const Influences& known, const Influences::Of& by) {
+double share_of(const Sensitivities& known, const Sensitivities::Sensitivity& by) {
     const double most = known.largest();
     return most > 0.0 ? by.over_slider / most : 0.0;
 }
@@ -39,7 +39,7 @@ std::string slider_name(const SystemDescription& system, const std::string& name
 
 std::string no_derivative(const std::string& reason) { return "no derivative here: " + typeset_sentence(reason); }
 
-std::string explanation(const Session& session, const Influences& known, const Influences::Of& by) {
+std::string explanation(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by) {
     if (!by.reason.empty()) return no_derivative(by.reason);
     const SystemDescription& system = session.description();
     return fmt::format("derivative of {}: {};\nlinear change over the whole slider: {}",
@@ -85,9 +85,9 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
 
 // Status text: which run the values belong to, and what the bars mean.
 std::string remark(const Session& session) {
-    if (session.influences() == nullptr) return session.influences_job().is_busy() ? "computing\u2026" : "";
+    if (session.sensitivities() == nullptr) return session.influences_job().is_busy() ? "computing\u2026" : "";
     if (!session.influences_are_current()) return "from the previous run; this run is being computed";
-    if (!session.influences()->quantity.refused.empty()) return "";
+    if (!session.sensitivities()->quantity.refused.empty()) return "";
     return "bars: its linear change over each whole slider";
 }
 
@@ -101,7 +101,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
         menu_button("depend quantity", typeset(session.depend_text()), at.x, row, at.x + 0.4F * (right - at.x), state);
     tooltip("quantity to differentiate; certificates do not cover derivatives");
     show_quantities(session, state, commands);
-    if (const Influences* const known = session.influences(); known != nullptr) {
+    if (const Sensitivities* const known = session.sensitivities(); known != nullptr) {
         const std::string value = "= " + of_quantity(*known, known->quantity.value, "{:.9g}");
         const bool is_there = std::isfinite(known->quantity.value), is_old = !session.influences_are_current();
         const float width = is_there ? std::min(width_of(value), std::max(0.0F, right - x)) : 0.0F;
@@ -147,7 +147,7 @@ struct Lines {
 };
 
 // The scale above each column: zero, and plus and minus the largest value.
-void paint_scale(const Influences& known, const Lines& lines, std::size_t first) {
+void paint_scale(const Sensitivities& known, const Lines& lines, std::size_t first) {
     const float middle = lines.middle(first);
     const auto put = [&](const std::string& text, float x, float share) {
         const float width = width_of(text);
@@ -159,8 +159,8 @@ void paint_scale(const Influences& known, const Lines& lines, std::size_t first)
     put("+" + end, middle + lines.half(), 1.0F);
 }
 
-void paint_line(const Session& session, const Influences& known, const Influences::Of& by, const Lines& lines,
-                std::size_t i) {
+void paint_line(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by,
+                const Lines& lines, std::size_t i) {
     const ImVec2 at = lines.at(i);
     const bool is_old = !session.influences_are_current();
     const Color ink = is_old ? faint_color() : text_color();
@@ -181,8 +181,8 @@ void paint_line(const Session& session, const Influences& known, const Influence
     cell({left + lines.bar + units(8.0F), at.y}, text, units(number_width - 8.0F), ink);
 }
 
-void show_line(const Session& session, const Influences& known, const Influences::Of& by, const Lines& lines,
-               std::size_t i, PanelState& state, Commands& commands) {
+void show_line(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by,
+               const Lines& lines, std::size_t i, PanelState& state, Commands& commands) {
     const ImVec2 at = lines.at(i), size{lines.width - units(between), ImGui::GetTextLineHeight()};
     ImGui::SetCursorScreenPos(at);
     if (ImGui::InvisibleButton(by.name.c_str(), size))
@@ -200,7 +200,7 @@ void show_line(const Session& session, const Influences& known, const Influences
 void show_bars(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle room = remaining();
     const std::string& problem = session.influences_job().problem();
-    const Influences* const known = session.influences();
+    const Sensitivities* const known = session.sensitivities();
     if (!problem.empty()) return paragraph(no_derivative(problem), room.width, text_color());
     if (known == nullptr) return;
     if (!known->quantity.refused.empty())
@@ -214,7 +214,8 @@ void show_bars(const Session& session, PanelState& state, Commands& commands) {
 
 }  // namespace
 
-std::string derivative_text(const SystemDescription& system, const Influences& known, const Influences::Of& by) {
+std::string derivative_text(const SystemDescription& system, const Sensitivities& known,
+                            const Sensitivities::Sensitivity& by) {
     if (!by.reason.empty()) return "none";
     const ShownUnit unit = shown_unit_of_setting(system, by.name);
     const std::string text = of_quantity(known, by.derivative / unit.factor);
@@ -222,7 +223,7 @@ std::string derivative_text(const SystemDescription& system, const Influences& k
 }
 
 command::ShowSweep sweep_over(const Session& session, const std::string& name, const std::string& quantity) {
-    Sweep sweep;
+    SweepSpec sweep;
     SweepAxis axis = *axis_for(session, name);
     axis.logarithmic = goes_by_ratios(axis.low, axis.high);
     sweep.axes = {axis};
@@ -231,8 +232,8 @@ command::ShowSweep sweep_over(const Session& session, const std::string& name, c
 }
 
 void put_bar(const Session& session, Slider& slider) {
-    const Influences* const known = session.influences();
-    const Influences::Of* const by = known == nullptr ? nullptr : known->find(slider.varies);
+    const Sensitivities* const known = session.sensitivities();
+    const Sensitivities::Sensitivity* const by = known == nullptr ? nullptr : known->find(slider.varies);
     if (by == nullptr) return;
     slider.bar_about = explanation(session, *known, *by);
     slider.bar_is_old = !session.influences_are_current();

@@ -26,12 +26,12 @@ std::string as_system(const std::string& path) {
 }
 
 // Result of checking a path: a note, whether it can be used, and whether to ask first.
-struct Verdict {
+struct PathCheck {
     std::string note;
     bool is_good = false, asks = false;
 };
 
-Verdict to_open(const std::string& path) {
+PathCheck to_open(const std::string& path) {
     std::error_code problem;
     const fs::file_status status = fs::status(path, problem);
     if (path.empty()) return {"enter the path of a system file", false, false};
@@ -40,7 +40,7 @@ Verdict to_open(const std::string& path) {
     return {"", true, false};
 }
 
-Verdict to_save(const Document& document, const std::string& path) {
+PathCheck to_save(const Document& document, const std::string& path) {
     std::error_code problem;
     const fs::path target(path);
     const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -53,26 +53,26 @@ Verdict to_save(const Document& document, const std::string& path) {
     return {"A file of this name exists. Overwrite it?", true, true};
 }
 
-Verdict to_take_away(const Session& session, const PanelState& state, const std::string& typed) {
-    const TakeAwayForm& form = state.take_away;
+PathCheck to_take_away(const Session& session, const PanelState& state, const std::string& typed) {
+    const ExportForm& form = state.take_away;
     const std::string path = take_away_file(form, typed), ending = ending_of(path);
     const bool is_picture = !ending_of_picture(path).empty(),
                is_data = ending == "json" || ending == "csv" || ending == "journal";
-    const auto refuse = [](const std::string& why) { return Verdict{why, false, false}; };
-    if (!path.empty() && form.what == TakeAwayForm::What::film && !is_film(path))
+    const auto refuse = [](const std::string& why) { return PathCheck{why, false, false}; };
+    if (!path.empty() && form.what == ExportForm::ExportSubject::film && !is_film(path))
         return refuse("end the name in .mp4 or .gif");
-    if (!path.empty() && form.what != TakeAwayForm::What::film && is_film(path))
+    if (!path.empty() && form.what != ExportForm::ExportSubject::film && is_film(path))
         return refuse("this name is for a film: choose the film above");
-    if (!path.empty() && (form.plot > 0 || form.what == TakeAwayForm::What::mechanism) && !is_picture)
+    if (!path.empty() && (form.plot > 0 || form.what == ExportForm::ExportSubject::mechanism) && !is_picture)
         return refuse("end the name in .svg, .png or .pdf");
     if (!path.empty() && !is_picture && !is_film(path) && !is_data)
         return refuse("end the name in .svg, .png, .pdf, .json, .csv or .journal");
     if (ending == "pdf" && find_program("rsvg-convert").empty())
         return refuse("a PDF needs rsvg-convert (librsvg2-bin), which is not installed");
-    const TakeAwayNote note = is_data ? TakeAwayNote() : take_away_note(session, form);
+    const ExportNote note = is_data ? ExportNote() : take_away_note(session, form);
     if (note.is_wrong) return refuse(note.text);
     // A picture of the dialog must not depend on existing files.
-    return state.reads_folders ? to_save(Document(), path) : Verdict{"writes to " + path, true, false};
+    return state.reads_folders ? to_save(Document(), path) : PathCheck{"writes to " + path, true, false};
 }
 
 // "contact force" as part of a file name.
@@ -117,7 +117,7 @@ bool button(const char* name, PanelState& state, bool enabled = true) {
 }
 
 void close(EditorState& editor) {
-    editor.asking = EditorState::Asking::nothing;
+    editor.asking = EditorState::OpenDialog::nothing;
     ImGui::CloseCurrentPopup();
 }
 
@@ -139,8 +139,8 @@ bool path_chosen(const char* action, const std::vector<std::string>& endings, Pa
     EditorState& editor = state.editor;
     const bool entered = path_line(state, ImGui::IsWindowAppearing() || editor.keeps_path);
     const bool can_choose = std::string_view(action) == "Open";
-    const Browsed browsed = browse(state, endings, entered);
-    const Verdict verdict = judge(expanded(editor.path));
+    const BrowseResult browsed = browse(state, endings, entered);
+    const PathCheck verdict = judge(expanded(editor.path));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
     ImGui::TextUnformatted(verdict.note.empty() ? " " : fitted(verdict.note, remaining().width).c_str());
     ImGui::PopStyleColor();
@@ -205,7 +205,7 @@ void unsaved_dialog(PanelState& state, const Session& session, Commands& command
     if (button("Save", state)) {
         close(editor);
         save_or_ask(session, state, commands);
-        editor.has_saved = editor.asking == EditorState::Asking::nothing;
+        editor.has_saved = editor.asking == EditorState::OpenDialog::nothing;
     }
     ImGui::SameLine();
     if (button("Discard", state)) {
@@ -236,7 +236,7 @@ void file_dialog(PanelState& state) {
 }
 
 void recovery_dialog(PanelState& state) {
-    using Answer = RecoveryQuestion::Answer;
+    using RecoveryChoice = RecoveryQuestion::RecoveryChoice;
     RecoveryQuestion& question = *state.recovery_question;
     ImGui::PushTextWrapPos(0.0F);
     ImGui::TextUnformatted(
@@ -244,12 +244,12 @@ void recovery_dialog(PanelState& state) {
     ImGui::PopTextWrapPos();
     ImGui::Spacing();
     const bool entered = takes_key(state, key::enter, false);
-    if (button("Recover", state) || entered) question.answer = Answer::recover;
+    if (button("Recover", state) || entered) question.answer = RecoveryChoice::recover;
     ImGui::SameLine();
-    if (button("Discard", state)) question.answer = Answer::discard;
+    if (button("Discard", state)) question.answer = RecoveryChoice::discard;
     ImGui::SameLine();
-    if (button("Later", state) || is_escape(state)) question.answer = Answer::later;
-    if (question.answer != Answer::none) ImGui::CloseCurrentPopup();
+    if (button("Later", state) || is_escape(state)) question.answer = RecoveryChoice::later;
+    if (question.answer != RecoveryChoice::none) ImGui::CloseCurrentPopup();
 }
 
 // A question that does not concern the edited text; shown only if no other dialog is open.
@@ -274,7 +274,7 @@ void go_on_if_saved(const Session& session, EditorState& editor, Commands& comma
 
 void take_keys(const Session& session, PanelState& state, Commands& commands) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::Asking::nothing) return;
+    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::OpenDialog::nothing) return;
     if (takes_key(state, 'S', false)) save_or_ask(session, state, commands);
     if (takes_key(state, 'O', false)) ask_to_open(state);
     if (takes_key(state, 'N', false)) request(session, state, command::New{}, commands);
@@ -285,14 +285,14 @@ void take_keys(const Session& session, PanelState& state, Commands& commands) {
 
 void ask_to_open(PanelState& state) {
     state.editor.path.clear();
-    state.editor.asking = EditorState::Asking::open;
+    state.editor.asking = EditorState::OpenDialog::open;
 }
 
 void ask_to_save(const Session& session, PanelState& state) {
     const Document& document = session.document();
     // Propose a copy in the working directory for an asset, which must not be overwritten.
     state.editor.path = document.file.empty() ? fs::path(document.name).stem().string() + ".toml" : document.file;
-    state.editor.asking = EditorState::Asking::save;
+    state.editor.asking = EditorState::OpenDialog::save;
 }
 
 void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot) {
@@ -303,10 +303,10 @@ void ask_to_take_away(const Session& session, PanelState& state, const std::stri
     }
     const std::string dotted = "." + ending, name = stem + dotted;
     state.take_away.plot = plot;
-    state.take_away.what = is_film(name) ? TakeAwayForm::What::film : TakeAwayForm::What::plots;
+    state.take_away.what = is_film(name) ? ExportForm::ExportSubject::film : ExportForm::ExportSubject::plots;
     state.take_away.ending = ending;
     state.editor.path = state.reads_folders ? free_name(stem, dotted) : name;
-    state.editor.asking = EditorState::Asking::take_away;
+    state.editor.asking = EditorState::OpenDialog::take_away;
 }
 
 void save_or_ask(const Session& session, PanelState& state, Commands& commands) {
@@ -319,14 +319,14 @@ void request(const Session& session, PanelState& state, const Command& command, 
     if (!session.document().is_changed() && !is_typing(state)) return commands.push_back(command);
     state.editor.waiting = command;
     state.editor.is_closing = false;
-    state.editor.asking = EditorState::Asking::unsaved;
+    state.editor.asking = EditorState::OpenDialog::unsaved;
 }
 
 bool request_close(const Session& session, PanelState& state) {
     if (state.editor.may_close || (!session.document().is_changed() && !is_typing(state))) return true;
     state.editor.waiting.reset();
     state.editor.is_closing = true;
-    state.editor.asking = EditorState::Asking::unsaved;
+    state.editor.asking = EditorState::OpenDialog::unsaved;
     return false;
 }
 
@@ -334,17 +334,17 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     EditorState& editor = state.editor;
     go_on_if_saved(session, editor, commands);
     take_keys(session, state, commands);
-    using Asking = EditorState::Asking;
+    using OpenDialog = EditorState::OpenDialog;
     const bool wants_export = session.scene().shows("export");
-    if (wants_export && editor.asking == Asking::nothing) ask_to_take_away(session, state, "svg");
-    const bool was_open = editor.asking == Asking::take_away;
-    constexpr std::pair<Asking, const char*> titles[] = {{Asking::open, "Open a system"},
-                                                         {Asking::save, "Save the system"},
-                                                         {Asking::unsaved, "Unsaved changes"},
-                                                         {Asking::take_away, "Export"}};
+    if (wants_export && editor.asking == OpenDialog::nothing) ask_to_take_away(session, state, "svg");
+    const bool was_open = editor.asking == OpenDialog::take_away;
+    constexpr std::pair<OpenDialog, const char*> titles[] = {{OpenDialog::open, "Open a system"},
+                                                             {OpenDialog::save, "Save the system"},
+                                                             {OpenDialog::unsaved, "Unsaved changes"},
+                                                             {OpenDialog::take_away, "Export"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
-    const bool is_free = editor.asking == Asking::nothing;
+    const bool is_free = editor.asking == OpenDialog::nothing;
     question_dialog("File access", state.file_question, is_free, [&] { file_dialog(state); });
     question_dialog("Recover unsaved text", state.recovery_question, is_free && !state.file_question,
                     [&] { recovery_dialog(state); });
@@ -352,7 +352,7 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
     dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });
     dialog(titles[2].second, [&] { unsaved_dialog(state, session, commands); });
-    if (wants_export && was_open && editor.asking != Asking::take_away)
+    if (wants_export && was_open && editor.asking != OpenDialog::take_away)
         commands.emplace_back(command::Show{"export", false});
 }
 

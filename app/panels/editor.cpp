@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "panels/widgets.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 #include "system/input_error.hpp"
@@ -295,7 +295,7 @@ bool is_typing(const PanelState& state) { return state.editor.text != state.edit
 void hand_over_text(EditorState& editor, Commands& commands) {
     if (editor.text == editor.known) return;
     editor.known = editor.text;
-    commands.emplace_back(command::Text{editor.text});
+    commands.emplace_back(command::SetText{editor.text});
 }
 
 void toggle_editor(const Session& session, PanelState& state, Commands& commands) {

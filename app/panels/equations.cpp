@@ -21,7 +21,7 @@ namespace achilles {
 
 namespace {
 
-using Ink = SetSheet::Ink;
+using Ink = TypesetSheet::Ink;
 
 // Relative to the letter size.
 constexpr float caption_size = 0.867F, leading = 0.38F, before_heading = 1.0F, before_caption = 0.3F,
@@ -30,8 +30,8 @@ constexpr int most_columns = 3;
 
 // A block of lines that must stay together, positioned from (0, 0).
 struct Unit {
-    std::vector<SetSheet::Line> lines;
-    std::vector<SetSheet::Now> now;
+    std::vector<TypesetSheet::SheetLine> lines;
+    std::vector<TypesetSheet::ConditionPlace> now;
     float width = 0.0F, height = 0.0F;
     bool begins_group = false, is_heading = false;
 };
@@ -192,11 +192,11 @@ class Setter {
 };
 
 // Distributes the units over columns of about the same height. A group starts a new column rather than being split.
-SetSheet in_columns(const std::vector<Unit>& units, int columns, float column, float size) {
+TypesetSheet in_columns(const std::vector<Unit>& units, int columns, float column, float size) {
     float total = 0.0F;
     for (const Unit& unit : units) total += unit.height;
     const float target = total / static_cast<float>(columns);
-    SetSheet page;
+    TypesetSheet page;
     float x = 0.0F, y = 0.0F, widest = 0.0F;
     int at = 0;
     for (std::size_t i = 0; i < units.size(); ++i) {
@@ -212,12 +212,12 @@ SetSheet in_columns(const std::vector<Unit>& units, int columns, float column, f
         const float space = y == 0.0F && !unit.lines.empty()
                                 ? unit.lines.front().y - std::max(unit.lines.front().box.ascent, 0.72F * size)
                                 : 0.0F;
-        for (SetSheet::Line line : unit.lines) {
+        for (TypesetSheet::SheetLine line : unit.lines) {
             line.x += x;
             line.y += y - std::floor(space);
             page.lines.push_back(std::move(line));
         }
-        for (SetSheet::Now now : unit.now)
+        for (TypesetSheet::ConditionPlace now : unit.now)
             page.now.push_back({now.condition, now.x + x, now.y + y - std::floor(space), now.width});
         y += unit.height - std::floor(space);
         widest = std::max(widest, unit.width);
@@ -229,13 +229,14 @@ SetSheet in_columns(const std::vector<Unit>& units, int columns, float column, f
 
 }  // namespace
 
-SetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height) {
-    SetSheet page;
+TypesetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height) {
+    TypesetSheet page;
     for (int columns = 1; columns <= most_columns; ++columns) {
         const float gaps = static_cast<float>(columns - 1) * between_columns * size;
         const float column = std::floor((width - gaps) / static_cast<float>(columns));
         if (columns > 1 && column < least_column * size) break;
-        SetSheet next = in_columns(Setter(sheet, size, font, std::max(column, 1.0F)).units(), columns, column, size);
+        TypesetSheet next =
+            in_columns(Setter(sheet, size, font, std::max(column, 1.0F)).units(), columns, column, size);
         if (columns > 1 && (next.height >= page.height || next.width > width)) break;
         page = std::move(next);
         if (page.height <= height) break;
@@ -243,8 +244,7 @@ SetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& fo
     return page;
 }
 
-const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& model, const Run& run,
-                                          Patience patience) {
+const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& model, const Run& run, Timeout patience) {
     std::vector<double> signs;
     for (std::size_t i = 0; i < run.parameters.size(); ++i) {
         const auto& range = model->description().parameters[i].range;
@@ -252,12 +252,12 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
         signs.push_back(std::max(range[1], run.parameters[i]));
     }
     if (model != model_ || signs != signs_) {
-        if (worker_ == nullptr) worker_ = std::make_unique<Worker<Made>>();
+        if (worker_ == nullptr) worker_ = std::make_unique<Worker<SheetResult>>();
         if (model != model_) sheet_.reset();
         model_ = model;
         signs_ = signs;
         is_under_way_ = true;
-        worker_->start([model, run](const std::stop_token& stop) -> Made {
+        worker_->start([model, run](const std::stop_token& stop) -> SheetResult {
             try {
                 return std::make_shared<const EquationSheet>(equation_sheet(*model, run, stop));
             } catch (const std::exception& too_large) {  // too many terms, or out of memory
@@ -269,7 +269,7 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
         });
     }
     if (is_under_way_)
-        if (std::optional<Made> made = worker_->take(patience)) {
+        if (std::optional<SheetResult> made = worker_->take(patience)) {
             sheet_ = *made;
             is_under_way_ = false;
             set_for_.clear();
@@ -278,7 +278,7 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
     return sheet_.get();
 }
 
-const SetSheet& EquationsView::set(float size, const FormulaFont& font, float width, float height) {
+const TypesetSheet& EquationsView::set(float size, const FormulaFont& font, float width, float height) {
     const std::vector<float> key{size, width, height};
     if (set_for_ == key) return set_;
     set_for_ = key;
@@ -345,12 +345,12 @@ std::string told(const Session& session, const std::string& name) {
 }
 
 // The current state of a condition, and whether it applies now.
-struct Now {
+struct ConditionValue {
     std::string text;
     bool applies = false;
 };
 
-Now now_of(const Session& session, EquationsView& view, const SheetCondition& condition, std::size_t index) {
+ConditionValue now_of(const Session& session, EquationsView& view, const SheetCondition& condition, std::size_t index) {
     const Model& model = *session.model();
     const Mode mode = session.now().mode;
     const std::string contact =
@@ -382,18 +382,18 @@ class PageDrawing {
         bottom_ = high.y;
     }
 
-    void draw(const SetSheet& page) {
-        for (const SetSheet::Line& line : page.lines)
+    void draw(const TypesetSheet& page) {
+        for (const TypesetSheet::SheetLine& line : page.lines)
             if (is_seen(line.y - line.box.ascent, line.y + line.box.descent)) mark(line);
-        for (const SetSheet::Line& line : page.lines)
+        for (const TypesetSheet::SheetLine& line : page.lines)
             if (is_seen(line.y - line.box.ascent, line.y + line.box.descent))
                 paint_formula(list_, line.box, corner_.x + line.x, corner_.y + line.y, ink(line.ink));
     }
 
-    void draw(const SetSheet::Now& place, EquationsView& view) {
+    void draw(const TypesetSheet::ConditionPlace& place, EquationsView& view) {
         const float line = ImGui::GetTextLineHeight();
         if (!is_seen(place.y, place.y + 2.0F * line)) return;
-        const Now now = now_of(session_, view, sheet_.conditions[place.condition], place.condition);
+        const ConditionValue now = now_of(session_, view, sheet_.conditions[place.condition], place.condition);
         const ImVec2 at{std::round(corner_.x + place.x), std::round(corner_.y + place.y)};
         const float r = units(3.0F), text = units(12.0F);
         if (now.applies) list_->AddCircleFilled({at.x + r, at.y + 0.5F * line}, r, packed(current_theme().accent), 16);
@@ -402,10 +402,10 @@ class PageDrawing {
 
  private:
     bool is_seen(float from, float to) const { return corner_.y + to >= top_ && corner_.y + from <= bottom_; }
-    static Color ink(SetSheet::Ink ink) { return ink == SetSheet::Ink::caption ? faint_color() : text_color(); }
+    static Color ink(TypesetSheet::Ink ink) { return ink == TypesetSheet::Ink::caption ? faint_color() : text_color(); }
 
     // Highlights names that are pointed at, here or on a slider, and shows a tooltip.
-    void mark(const SetSheet::Line& line) {
+    void mark(const TypesetSheet::SheetLine& line) {
         for (const FormulaBox::Letters& one : line.box.letters) {
             if (one.name < 0) continue;
             const std::string& name = sheet_.symbols[static_cast<std::size_t>(one.name)].name;
@@ -463,8 +463,7 @@ void show_equations(const Session& session, PanelState& state, Commands& command
     if (state.equations == nullptr) state.equations = std::make_shared<EquationsView>();
     EquationsView& view = *state.equations;
     // A picture waits for the equations; a window does not.
-    const EquationSheet* sheet =
-        view.sheet(session.model(), session.run(), state.in_window ? Patience(0.0) : Patience());
+    const EquationSheet* sheet = view.sheet(session.model(), session.run(), state.in_window ? Timeout(0.0) : Timeout());
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(page_padding), units(8.0F)});
     begin_padded_child("equations", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
@@ -475,12 +474,12 @@ void show_equations(const Session& session, PanelState& state, Commands& command
         // Reserve the width of a scroll bar, so that its appearance does not change the layout.
         const float bar = ImGui::GetStyle().ScrollbarSize;
         const float width = ImGui::GetWindowWidth() - 2.0F * units(page_padding) - bar;
-        const SetSheet& page =
+        const TypesetSheet& page =
             view.set(ImGui::GetFontSize(), formula_font(), width, ImGui::GetWindowHeight() - 2.0F * units(8.0F));
         std::erase_if(state.places, [](const auto& place) { return place.first.starts_with("equation "); });
         PageDrawing drawing(session, state, *sheet, {room.x, room.y});
         drawing.draw(page);
-        for (const SetSheet::Now& now : page.now) drawing.draw(now, view);
+        for (const TypesetSheet::ConditionPlace& now : page.now) drawing.draw(now, view);
         ImGui::SetCursorScreenPos({room.x, room.y});
         ImGui::Dummy({page.width, page.height});
     }

@@ -14,47 +14,47 @@
 namespace achilles {
 
 // A typeset sheet of equations on a scrollable page.
-struct SetSheet {
+struct TypesetSheet {
     enum class Ink { heading, caption, formula };
-    struct Line {
+    struct SheetLine {
         float x = 0.0F, y = 0.0F;  // left end of its baseline, relative to the corner of the page
         FormulaBox box;
         Ink ink = Ink::formula;
         std::size_t block = 0;
     };
     // Place for the current value of a condition: its upper left corner and width.
-    struct Now {
+    struct ConditionPlace {
         std::size_t condition = 0;
         float x = 0.0F, y = 0.0F, width = 0.0F;
     };
-    std::vector<Line> lines;
-    std::vector<Now> now;
+    std::vector<SheetLine> lines;
+    std::vector<ConditionPlace> now;
     float width = 0.0F, height = 0.0F;
 };
 
 // Typesets the sheet in columns: as few as keep it within the height, if the width allows. `size`: of the letters.
-SetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height);
+TypesetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height);
 
 class EquationsView {
  public:
     // The sheet of this model, simplified with the signs that the parameter ranges and these values imply. With a
     // timeout: null until it is ready.
-    const EquationSheet* sheet(const std::shared_ptr<const Model>& model, const Run& run, Patience patience);
+    const EquationSheet* sheet(const std::shared_ptr<const Model>& model, const Run& run, Timeout patience);
     bool is_under_way() const { return is_under_way_; }
     // The sheet requested last, typeset.
-    const SetSheet& set(float size, const FormulaFont& font, float width, float height);
+    const TypesetSheet& set(float size, const FormulaFont& font, float width, float height);
     // The quantity that determines the sign of a condition's hddot, at a state.
     double value(std::size_t condition, const Model& model, const Run& run, const State& state, double t);
 
  private:
-    using Made = std::shared_ptr<const EquationSheet>;
-    std::unique_ptr<Worker<Made>> worker_;
+    using SheetResult = std::shared_ptr<const EquationSheet>;
+    std::unique_ptr<Worker<SheetResult>> worker_;
     bool is_under_way_ = false;
     std::shared_ptr<const Model> model_;  // of the last request
     std::vector<double> signs_;           // ranges and values of the parameters that determine the signs
-    Made sheet_;
+    SheetResult sheet_;
     std::vector<float> set_for_;
-    SetSheet set_;
+    TypesetSheet set_;
     std::map<std::size_t, Evaluator<double>> evaluators_;
     std::vector<double> parameters_;  // values in `evaluators_`
 };

@@ -134,7 +134,7 @@ std::string what_is_held(const Session& session, const Event& event, const Impac
         text += fmt::format("It opens {}, where the impulse would have to pull. ", joined_names(model, event.opened));
     if (event.joint && event.joint->order_matters)
         text += "The order of the impacts matters but is unknown: they are resolved together. ";
-    if (event.joint && event.joint->not_unique) text += "The impulses are not unique; this is one choice. ";
+    if (event.joint && event.joint->is_nonunique) text += "The impulses are not unique; this is one choice. ";
     return text;
 }
 
@@ -162,9 +162,9 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
         number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
     row("energy lost",
-        with(
-            number(without_noise(reason.energy_before - reason.energy_after, std::abs(reason.energy_before)), error, 6),
-            "energy"));
+        with(number(flush_noise_to_zero(reason.energy_before - reason.energy_after, std::abs(reason.energy_before)),
+                    error, 6),
+             "energy"));
     const bool several = session.model()->contacts() > 1;
     show_proved(session, index);
     std::string words =
@@ -191,7 +191,7 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
               {room.x + words, room.y, room.width - words, room.height}, units(1.0F));
     double most = 0.0;
     for (const auto& [t, lambda] : reason.force) most = std::max(most, std::abs(lambda));
-    row("\u03bb", number(without_noise(reason.lambda, most), "{:.2g}"));
+    row("\u03bb", number(flush_noise_to_zero(reason.lambda, most), "{:.2g}"));
     row("\u03bb\u0307", number(reason.lambda_rate));
     row("h\u2034", number(reason.jerk));
     show_proved(session, index);
@@ -284,7 +284,7 @@ std::vector<std::string> certificate_lines(const Event& event) {
         lines.push_back(fmt::format("error at \u03c4\u221e: q \u2264 {}, v \u2264 {}",
                                     bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity)));
     lines.push_back("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits));
-    if (c.below_rounding) lines.emplace_back("cut below rounding: no shorter flight is resolved");
+    if (c.cut_at_resolution) lines.emplace_back("cut below rounding: no shorter flight is resolved");
     for (std::string& line : lines) line = with_minus(std::move(line));
     return lines;
 }
@@ -358,7 +358,7 @@ void show_certificate(const Event& event) {
     ImGui::SetCursorPos({left + half, top});
     ImGui::BeginGroup();
     for (const Inequality& inequality : event.certificate->inequalities())
-        show_inequality(inequality, inequality.name == event.certificate->decisive);
+        show_inequality(inequality, inequality.name == event.certificate->tightest_bound);
     ImGui::EndGroup();
     ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
     ImGui::PushTextWrapPos(0.0F);

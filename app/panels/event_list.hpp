@@ -50,7 +50,7 @@ class EventRows {
         const std::vector<std::size_t> all_turns = turns(trajectory, true);
         folds_ = !state.show_impacts && !all_turns.empty();  // a run with only impacts is not folded
         std::size_t next = 0;
-        const std::vector<Chatter> chatters = chatters_of(trajectory);
+        const std::vector<ChatterPhases> chatters = chatters_of(trajectory);
         auto chatter = chatters.begin();
         for (const std::size_t turn : all_turns) {
             if (folds_ && chatter != chatters.end() && turn >= chatter->first_event) {
@@ -68,8 +68,8 @@ class EventRows {
     std::size_t size() const { return count_; }
     Row at(std::size_t index) const {
         const auto after = std::upper_bound(parts_.begin(), parts_.end(), index,
-                                            [](std::size_t i, const Part& part) { return i < part.row; });
-        const Part& part = *std::prev(after);
+                                            [](std::size_t i, const ListPart& part) { return i < part.row; });
+        const ListPart& part = *std::prev(after);
         const std::size_t within = index - part.row;
         if (part.is_folded && within == 0) return {part.first, part.count, part.is_open};
         return {part.first + within - (part.is_folded ? 1 : 0)};
@@ -77,20 +77,20 @@ class EventRows {
     // The row of this event, or the row into which it is folded.
     std::size_t row_of(std::size_t event) const {
         const auto after = std::upper_bound(parts_.begin(), parts_.end(), event,
-                                            [](std::size_t e, const Part& part) { return e < part.first; });
+                                            [](std::size_t e, const ListPart& part) { return e < part.first; });
         if (after == parts_.begin()) return 0;
-        const Part& part = *std::prev(after);
+        const ListPart& part = *std::prev(after);
         if (part.is_folded && !part.is_open) return part.row;
         return part.row + (part.is_folded ? 1 : 0) + event - part.first;
     }
 
  private:
-    struct Part {
+    struct ListPart {
         std::size_t first, count;
         bool is_folded, is_open;
         std::size_t row;
     };
-    void add(Part part) {
+    void add(ListPart part) {
         part.row = count_;
         count_ += (part.is_folded ? 1 : 0) + (part.is_folded && !part.is_open ? 0 : part.count);
         parts_.push_back(part);
@@ -102,7 +102,7 @@ class EventRows {
         add({first, count, count > 1 && folds_, has_chosen || state.unfolded.contains(first), 0});
     }
 
-    std::vector<Part> parts_;
+    std::vector<ListPart> parts_;
     std::size_t count_ = 0;
     bool folds_ = true;
 };

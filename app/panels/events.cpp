@@ -110,8 +110,8 @@ void show_comparing(float x, PanelState& state, Commands& commands) {
     if (ImGui::Button(both_ways)) {
         using namespace command;
         commands.insert(commands.end(),
-                        {UseConditions{Conditions::paper}, UseReinitialization{Reinitialization::euclidean}, Select{0},
-                         Pin{}, UseConditions{Conditions::sharp}, UseReinitialization{Reinitialization::kinetic}});
+                        {SetConditions{Conditions::paper}, SetReinitialization{Reinitialization::euclidean}, Select{0},
+                         Pin{}, SetConditions{Conditions::sharp}, SetReinitialization{Reinitialization::kinetic}});
     }
     remember(state, "compare");
     tooltip(
@@ -223,8 +223,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
     columns.put_words(at, proved + name, text_color());
     // At a Zeno point the loss of its whole impact sequence, as in the sentence.
-    const double lost =
-        is_zeno_point(event) ? pile_of(session.trajectory(), index).loss : energy_lost(session.trajectory(), index);
+    const double lost = is_zeno_point(event) ? bounce_sequence_of(session.trajectory(), index).loss
+                                             : energy_lost(session.trajectory(), index);
     columns.row(session, &event, lost, at, text_color());
 }
 
@@ -442,7 +442,7 @@ void EventColumns::titles(const Session& session, ImVec2 at) const {
 void EventColumns::row(const Session& session, const Event* event, double lost, ImVec2 at, const Color& color) const {
     // A smaller loss is rounding.
     const double size = 10.0 * std::max(std::abs(session.trajectory().loss), session.sentences().energy_scale());
-    const double shown_loss = without_noise(lost, size);
+    const double shown_loss = flush_noise_to_zero(lost, size);
     const Precision& precision = session.precision();
     if (shown_ > 0 && shown_loss != 0.0)
         put(at, 0,

@@ -81,13 +81,13 @@ void show_splitter(const Arrangement::Splitter& splitter, PanelState& state, Com
     else
         list->AddRectFilled({low.x, middle.y - half}, {low.x + size.x, middle.y + half}, color, half);
     if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
-        commands.emplace_back(command::Size{splitter.panel, 0.0});
+        commands.emplace_back(command::SetPanelSize{splitter.panel, 0.0});
         return;
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
     if (!is_held || (splitter.moves_sideways ? delta.x : delta.y) == 0.0F) return;
     const double share = std::clamp(splitter.share_at(mouse.x, mouse.y), 0.01, 0.99);
-    commands.emplace_back(command::Size{splitter.panel, std::round(share * 1e4) / 1e4});
+    commands.emplace_back(command::SetPanelSize{splitter.panel, std::round(share * 1e4) / 1e4});
 }
 
 // The error of the last command or, without the editor, of an invalid text.
@@ -134,7 +134,7 @@ void begin_change(PanelState& state, Commands& commands) {
     const auto& clicked = ImGui::GetIO().MouseClickedCount;
     if (!state.changing || (clicked[ImGuiMouseButton_Left] != 1 && clicked[ImGuiMouseButton_Right] != 1)) return;
     state.changing = false;
-    commands.emplace_back(command::Done{});
+    commands.emplace_back(command::EndEdit{});
 }
 
 // Escape for the panels; anything in front of them uses it first.
@@ -162,7 +162,7 @@ void show_highlight(const std::string& panel, const Arrangement& parts) {
     }
 }
 
-bool is_part_of_change(const Command& command) { return goes_on(command, command); }
+bool is_part_of_change(const Command& command) { return continues_edit(command, command); }
 
 }  // namespace
 

@@ -29,20 +29,21 @@ bool begins(const std::string& name, const std::array<std::string_view, count>& 
 Point middle(const Rectangle& area) { return {area.x + 0.5 * area.width, area.y + 0.5 * area.height}; }
 
 // Controls of the dialog in front or, without a dialog, all.
-std::vector<Stop> reachable(const Focus& focus) {
+std::vector<FocusTarget> reachable(const Focus& focus) {
     const unsigned front = front_dialog();
-    std::vector<Stop> stops;
-    for (const Stop& stop : focus.stops)
+    std::vector<FocusTarget> stops;
+    for (const FocusTarget& stop : focus.stops)
         if (front == 0 || stop.window == front) stops.push_back(stop);
     return stops;
 }
 
-int index_of(const std::vector<Stop>& stops, const std::string& name) {
-    const auto found = std::find_if(stops.begin(), stops.end(), [&](const Stop& stop) { return stop.name == name; });
+int index_of(const std::vector<FocusTarget>& stops, const std::string& name) {
+    const auto found =
+        std::find_if(stops.begin(), stops.end(), [&](const FocusTarget& stop) { return stop.name == name; });
     return found == stops.end() ? -1 : static_cast<int>(found - stops.begin());
 }
 
-void go_to(Focus& focus, const Stop& stop) {
+void go_to(Focus& focus, const FocusTarget& stop) {
     focus.at = stop.name;
     focus.scrolls = true;
 }
@@ -55,13 +56,14 @@ void paint_ring(const Rectangle& area) {
 }
 
 // Tab goes to the next control, Shift+Tab to the previous one; from a text field to the control after it.
-void tab(PanelState& state, const std::vector<Stop>& stops) {
+void tab(PanelState& state, const std::vector<FocusTarget>& stops) {
     if (stops.empty()) return;
     const int count = static_cast<int>(stops.size()), step = ImGui::GetIO().KeyShift ? -1 : 1;
     int from = index_of(stops, state.focus.at);
     if (ImGui::GetIO().WantTextInput) {
         const unsigned active = active_item();
-        const auto field = std::find_if(stops.begin(), stops.end(), [&](const Stop& s) { return s.id == active; });
+        const auto field =
+            std::find_if(stops.begin(), stops.end(), [&](const FocusTarget& s) { return s.id == active; });
         from = field == stops.end() ? from : static_cast<int>(field - stops.begin());
         let_go_of_item();
     }
@@ -69,7 +71,7 @@ void tab(PanelState& state, const std::vector<Stop>& stops) {
     go_to(state.focus, stops[static_cast<std::size_t>(next)]);
 }
 
-void arrows(Focus& focus, const std::vector<Stop>& stops, const Stop& here) {
+void arrows(Focus& focus, const std::vector<FocusTarget>& stops, const FocusTarget& here) {
     for (const auto& [code, dx, dy] : {std::tuple{key::left, -1, 0}, std::tuple{key::right, 1, 0},
                                        std::tuple{key::up, 0, -1}, std::tuple{key::down, 0, 1}}) {
         if (!is_pressed(code)) continue;
@@ -80,7 +82,7 @@ void arrows(Focus& focus, const std::vector<Stop>& stops, const Stop& here) {
 
 }  // namespace
 
-int neighbour(const std::vector<Stop>& stops, const Stop& from, int dx, int dy) {
+int neighbour(const std::vector<FocusTarget>& stops, const FocusTarget& from, int dx, int dy) {
     const Point here = middle(from.area);
     constexpr double aside = 3.0;  // cost of a sideways step
     double least = std::numeric_limits<double>::infinity();
@@ -138,7 +140,7 @@ void begin_focus(PanelState& state) {
 void use_focus(PanelState& state) {
     Focus& focus = state.focus;
     if (is_covered() && front_dialog() == 0) return;  // a menu has the keys
-    const std::vector<Stop> stops = reachable(focus);
+    const std::vector<FocusTarget> stops = reachable(focus);
     const ImGuiIO& io = ImGui::GetIO();
     // A window that opened or closed in this frame was not in front when the keys were pressed.
     const bool is_new = focus.front != front_popup();
@@ -148,7 +150,7 @@ void use_focus(PanelState& state) {
     state.browser.tab = false;
     const int at = index_of(stops, focus.at);
     if (at < 0) return focus.at.clear();
-    const Stop& here = stops[static_cast<std::size_t>(at)];
+    const FocusTarget& here = stops[static_cast<std::size_t>(at)];
     paint_ring(here.area);
     if (is_new || io.WantTextInput || focus.is_owned || io.KeyCtrl || io.KeyAlt) return;
     if (is_pressed(key::enter, false) || is_pressed(key::keypad_enter, false) || is_pressed(' ', false))

@@ -56,7 +56,7 @@ std::string formula_label(std::string_view formula) {
 
 // A term with its formula, its meaning and its source. The source is at the right end of the first line or, without
 // room, below.
-void show_term(const Term& term) {
+void show_term(const GlossaryTerm& term) {
     const float size = ImGui::GetFontSize(), column = ImGui::GetCursorPosX() + units(word_column);
     const std::string formula = formula_label(term.formula), source(term.source);
     ImGui::TextUnformatted(term.word.data(), term.word.data() + term.word.size());
@@ -83,7 +83,7 @@ void show_term(const Term& term) {
 
 void show_words() {
     heading("Words");
-    for (const Term& term : glossary()) show_term(term);
+    for (const GlossaryTerm& term : glossary()) show_term(term);
 }
 
 // A scrollable part of the card.

@@ -29,7 +29,7 @@ std::string explanation(const Lens& lens) {
 // Buttons that scroll to the start of the sequence, the cut, and the certified interval.
 void show_places(const Lens& lens, double width, PanelState& state, Commands& commands) {
     const auto place = [&](const char* name, double x, const char* about) {
-        if (ImGui::Button(name)) commands.emplace_back(command::Lens{x});
+        if (ImGui::Button(name)) commands.emplace_back(command::ShowLens{x});
         remember(state, std::string("lens ") + name);
         tooltip(about);
     };
@@ -48,11 +48,11 @@ void use_mouse(const Lens& lens, double low, double width, const Rectangle& insi
     double moved = 0.0;
     if (ImGui::IsItemHovered()) moved -= 0.25 * double{io.MouseWheel};
     if (ImGui::IsItemActive() && inside.width > 1.0F) moved -= width * double{io.MouseDelta.x} / double{inside.width};
-    if (moved != 0.0) commands.emplace_back(command::Lens{std::max(low + moved, lens.first() - 0.5 * width)});
+    if (moved != 0.0) commands.emplace_back(command::ShowLens{std::max(low + moved, lens.first() - 0.5 * width)});
 }
 
 void show_row(const Session& session, const Lens& lens, float height, PanelState& state, Commands& commands) {
-    const Lens::Part overview = lens.overview();
+    const Lens::LensPart overview = lens.overview();
     const double width = overview.high - overview.low, low = session.scene().lens().value_or(overview.low);
     const Panel panel = lens.panel(low, low + width, session.theme());
     Rectangle area = remaining();

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "figure/label.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
 
@@ -100,10 +100,10 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
         for (const auto& [camera, says] : cameras) {
             if (!menu_item(says, state, camera == mode)) continue;
             if (camera == CameraMode::fixed)
-                commands.emplace_back(command::Look{0.5 * (seen.x_low + seen.x_high), 0.5 * (seen.y_low + seen.y_high),
-                                                    seen.x_high - seen.x_low});
+                commands.emplace_back(command::LookAt{0.5 * (seen.x_low + seen.x_high),
+                                                      0.5 * (seen.y_low + seen.y_high), seen.x_high - seen.x_low});
             else
-                commands.emplace_back(command::Camera{std::string(to_text(camera))});
+                commands.emplace_back(command::SetCamera{std::string(to_text(camera))});
         }
         close_by_escape(state);
         ImGui::EndPopup();
@@ -124,11 +124,11 @@ void show_scale_bar(const Session& session, const Rectangle& area, double unit, 
 }
 
 bool shows_sides(const Session& session) {
-    return session.scene().shows("sides") && Sides(session.trajectory(), session.samples()).exist();
+    return session.scene().shows("sides") && TwoViews(session.trajectory(), session.samples()).exist();
 }
 
 double show_sides(const Session& session, const Rectangle& area) {
-    const Sides sides(session.trajectory(), session.samples());
+    const TwoViews sides(session.trajectory(), session.samples());
     const std::array<Drawing, 2> limits = sides.limits();
     const float gap = units(8.0F), top = ImGui::GetTextLineHeight() + units(6.0F);
     const bool beside = area.width >= area.height;
@@ -142,7 +142,7 @@ double show_sides(const Session& session, const Rectangle& area) {
         unit = paint(sides.draw(side, session.now(), seen, session.theme(), session.scene().shows("trail")), list,
                      picture, double{units(1.0F)})
                    .unit;
-        const std::string name = typeset(Sides::all()[side].name) + " across, " + typeset("z") + " up";
+        const std::string name = typeset(TwoViews::all()[side].name) + " across, " + typeset("z") + " up";
         paint_label(list, part.x + units(12.0F), part.y, name, faint_color(), ImGui::GetFontSize());
         part.x += beside ? part.width + gap : 0.0F;
         part.y += beside ? 0.0F : part.height + gap;
@@ -154,7 +154,7 @@ double show_sides(const Session& session, const Rectangle& area) {
 
 namespace {
 
-using Holding = HeldMechanism::What;
+using DragTarget = MechanismDrag::DragTarget;
 
 // The arrow, clipped to the area: its head then marks the direction.
 Point inside(const Point& from, const Point& to, const Rectangle& area) {
@@ -199,21 +199,21 @@ struct Picture {
 };
 
 // Largest velocity and force, for the arrow scale: those of the run or, during a drag, those at its start.
-std::pair<double, double> largest(const Session& session, const HeldMechanism& held) {
-    if (held.what == Holding::nothing) return {session.trail().fastest, session.trail().strongest};
+std::pair<double, double> largest(const Session& session, const MechanismDrag& held) {
+    if (held.what == DragTarget::none) return {session.trail().fastest, session.trail().strongest};
     return {held.fastest, held.strongest};
 }
 
-bool holds_start(const HeldMechanism& held) {
-    return held.has_moved && (held.what == Holding::body || held.what == Holding::arrow);
+bool holds_start(const MechanismDrag& held) {
+    return held.has_moved && (held.what == DragTarget::body || held.what == DragTarget::arrow);
 }
 
 // The state to draw: the current one or, while the start is dragged, the start. (A slow run is not waited for.)
-State shown_state(const Session& session, const HeldMechanism& held) {
+State shown_state(const Session& session, const MechanismDrag& held) {
     return holds_start(held) ? State{session.run().q, session.run().v} : session.now().state;
 }
 
-double shown_time(const Session& session, const HeldMechanism& held) {
+double shown_time(const Session& session, const MechanismDrag& held) {
     return holds_start(held) ? session.run().options.start_time : session.now().t;
 }
 
@@ -258,7 +258,7 @@ void add_ghosts(const Session& session, Drawing& drawing) {
     drawing.shapes.insert(drawing.shapes.begin(), ghosts.begin(), ghosts.end());
 }
 
-void paint_arrows(const Session& session, const HeldMechanism& held, Picture& picture) {
+void paint_arrows(const Session& session, const MechanismDrag& held, Picture& picture) {
     const auto [fastest, strongest] = largest(session, held);
     const Body& body = picture.bodies.front();
     const Point center = picture.centers.front(), v = body.velocity(shown_state(session, held).v);
@@ -276,7 +276,7 @@ void paint_arrows(const Session& session, const HeldMechanism& held, Picture& pi
     if (session.scene().shows("velocity")) arrow(center, inside(center, picture.tip, picture.area), text_color());
 }
 
-Picture paint_picture(const Session& session, const Rectangle& area, const HeldMechanism& held) {
+Picture paint_picture(const Session& session, const Rectangle& area, const MechanismDrag& held) {
     // While the start is dragged, no contact counts as held.
     Sample now = session.now();
     if (holds_start(held)) now = {}, now.state = shown_state(session, held), now.t = shown_time(session, held);
@@ -285,13 +285,13 @@ Picture paint_picture(const Session& session, const Rectangle& area, const HeldM
     // Parameters of the run that is shown, even if another was requested.
     const auto& parameters = (holds_start(held) ? session.run() : session.trajectory().run).parameters;
     Drawing seen = seen_world(session, area);
-    if (held.what == Holding::body || held.what == Holding::arrow) stand_still(seen, held.placement, area);
+    if (held.what == DragTarget::body || held.what == DragTarget::arrow) stand_still(seen, held.placement, area);
     const Scene& scene = session.scene();
     Drawing drawing = session.stage().draw(now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe")});
     add_ghosts(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
-    for (Grip& grip : session.mechanism().grips(parameters)) {
+    for (AnchorPoint& grip : session.mechanism().grips(parameters)) {
         const auto body = Body::of(grip, t, state);
         if (!body && picture.bodies.empty()) return picture;
         picture.bodies.push_back(body ? *body : picture.bodies.front());
@@ -309,7 +309,7 @@ double distance(const Point& a, const ImVec2& b) { return std::hypot(a.x - doubl
 ImVec2 pixel(const Point& point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
 // The view after zooming by `factor` about the mouse position and panning by `moved` pixels.
-command::Look look_again(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
+command::LookAt look_again(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
     const Rectangle& a = picture.area;
     const Point middle{a.x + 0.5 * a.width, a.y + 0.5 * a.height};
     const Point center = picture.placement.world(
@@ -318,8 +318,8 @@ command::Look look_again(const Picture& picture, const ImVec2& mouse, double fac
 }
 
 // The `start` command for coordinates, rates or both.
-command::Start start_of(const Session& session, const Vector* q, const Vector* v) {
-    command::Start start;
+command::SetStart start_of(const Session& session, const Vector* q, const Vector* v) {
+    command::SetStart start;
     const auto& coordinates = session.description().coordinates;
     for (std::size_t i = 0; i < coordinates.size(); ++i) {
         const auto at = static_cast<Eigen::Index>(i);
@@ -330,12 +330,12 @@ command::Start start_of(const Session& session, const Vector* q, const Vector* v
 }
 
 // Target position of the dragged object, pixels.
-Point wanted(const HeldMechanism& held) {
+Point wanted(const MechanismDrag& held) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     return {mouse.x + held.offset.x, mouse.y + held.offset.y};
 }
 
-void drag_body(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {
+void drag_body(const Session& session, const Picture& picture, const MechanismDrag& held, Commands& commands) {
     auto grips = session.mechanism().grips(session.run().parameters);
     if (held.grip >= grips.size()) return;
     const Point place = picture.placement.world(wanted(held));
@@ -346,7 +346,7 @@ void drag_body(const Session& session, const Picture& picture, const HeldMechani
     }
 }
 
-void drag_arrow(const Session& session, const Picture& picture, const HeldMechanism& held, Commands& commands) {
+void drag_arrow(const Session& session, const Picture& picture, const MechanismDrag& held, Commands& commands) {
     const Run& run = session.run();
     auto grip = session.mechanism().grip(run.parameters);
     const auto body = grip ? Body::of(*grip, run.options.start_time, {run.q, run.v}) : std::nullopt;
@@ -358,7 +358,7 @@ void drag_arrow(const Session& session, const Picture& picture, const HeldMechan
 
 // The object under the mouse: the tip of the velocity arrow, else the nearest body.
 struct Aim {
-    Holding what = Holding::world;
+    DragTarget what = DragTarget::background;
     std::size_t grip = 0;
     Point at;            // pixels
     double reach = 0.0;  // radius of its ring
@@ -370,28 +370,28 @@ Aim aim(const Session& session, const Picture& picture, const ImVec2& mouse) {
     if (picture.bodies.empty()) return best;
     if (session.scene().shows("velocity") && distance(picture.tip, mouse) <= reach &&
         distance(picture.tip, pixel(picture.centers.front())) > reach)
-        return {Holding::arrow, 0, picture.tip, reach};
+        return {DragTarget::arrow, 0, picture.tip, reach};
     double least = 0.0;
     for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
         const double own = std::max(reach, picture.bodies[i].radius() * picture.placement.unit);
         const double far = distance(picture.centers[i], mouse);
-        if (far > own || !picture.bodies[i].moves() || (best.what == Holding::body && far >= least)) continue;
-        best = {Holding::body, i, picture.centers[i], own};
+        if (far > own || !picture.bodies[i].moves() || (best.what == DragTarget::body && far >= least)) continue;
+        best = {DragTarget::body, i, picture.centers[i], own};
         least = far;
     }
     return best;
 }
 
-void take_hold(const Session& session, const Picture& picture, const Aim& aim, HeldMechanism& held) {
+void take_hold(const Session& session, const Picture& picture, const Aim& aim, MechanismDrag& held) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    const Point offset = aim.what == Holding::world ? Point{} : Point{aim.at.x - mouse.x, aim.at.y - mouse.y};
+    const Point offset = aim.what == DragTarget::background ? Point{} : Point{aim.at.x - mouse.x, aim.at.y - mouse.y};
     held = {aim.what, false, aim.grip, offset, picture.placement, session.trail().fastest, session.trail().strongest};
 }
 
-void drag(const Session& session, const Picture& picture, HeldMechanism& held, Commands& commands) {
+void drag(const Session& session, const Picture& picture, MechanismDrag& held, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta, mouse = ImGui::GetIO().MousePos;
     if (delta.x == 0.0F && delta.y == 0.0F) return;
-    if (held.what == Holding::world) {
+    if (held.what == DragTarget::background) {
         if (ImGui::IsMouseDragging(ImGuiMouseButton_Left))
             commands.emplace_back(look_again(picture, mouse, 1.0, delta));
         return;
@@ -399,8 +399,8 @@ void drag(const Session& session, const Picture& picture, HeldMechanism& held, C
     held.has_moved = true;
     const double start_time = session.run().options.start_time;
     if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});  // the drag changes the start
-    if (held.what == Holding::body) drag_body(session, picture, held, commands);
-    if (held.what == Holding::arrow) drag_arrow(session, picture, held, commands);
+    if (held.what == DragTarget::body) drag_body(session, picture, held, commands);
+    if (held.what == DragTarget::arrow) drag_arrow(session, picture, held, commands);
 }
 
 void mark_places(const Picture& picture, PanelState& state) {
@@ -423,16 +423,16 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     const Aim under = aim(session, picture, mouse);
     if (is_hovered && ImGui::GetIO().MouseWheel != 0.0F)
         commands.emplace_back(look_again(picture, mouse, std::pow(0.85, double{ImGui::GetIO().MouseWheel}), {}));
-    if (is_hovered && under.what != Holding::world) {
+    if (is_hovered && under.what != DragTarget::background) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(under.at), static_cast<float>(under.reach) + units(2.0F),
                                               packed(text_color(), 0.5F), 32, units(1.5F));
-        tooltip(under.what == Holding::arrow ? "drag to set the initial rates" : "drag to set the initial position");
+        tooltip(under.what == DragTarget::arrow ? "drag to set the initial rates" : "drag to set the initial position");
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
         commands.emplace_back(look_again(picture, mouse, 1.0, delta));
     if (ImGui::IsItemActivated()) take_hold(session, picture, under, state.held);
-    if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == Holding::world)
+    if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == DragTarget::background)
         commands.emplace_back(command::LookAll{});
     if (ImGui::IsItemActive())
         drag(session, picture, state.held, commands);
@@ -448,7 +448,7 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
     float x = right;
     const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
     const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
-    const bool has_sides = Sides(session.trajectory(), session.samples()).exist();
+    const bool has_sides = TwoViews(session.trajectory(), session.samples()).exist();
     for (const char* what : {"plane", "contours", "sides", "force", "velocity", "strobe", "trail"}) {
         // With the plane: the toggle for contours, and for the plane itself only if there is a mechanism. With side
         // views: the trail.

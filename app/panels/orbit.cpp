@@ -21,9 +21,9 @@ namespace achilles {
 
 // The request being edited, and the plots of the result.
 struct OrbitView {
-    AskedOrbit asked;
+    OrbitOptions asked;
     const Model* of = nullptr;  // the system of the request
-    const FoundOrbit* seen = nullptr;
+    const OrbitJobResult* seen = nullptr;
     std::string low, high, shift;  // as typed
     bool goes = false;             // the run starts on the orbit when it is found
     bool dark = false;
@@ -33,8 +33,8 @@ struct OrbitView {
 namespace {
 
 // The initial request: the file's [orbit] table while the run is the file's, else a search from the start of the run.
-AskedOrbit usual(const Session& session) {
-    AskedOrbit asked;
+OrbitOptions usual(const Session& session) {
+    OrbitOptions asked;
     const Run &now = session.run(), &file = session.file_run();
     if (!session.description().orbit || now.q != file.q || now.v != file.v) asked.from = "start";
     return asked;
@@ -130,13 +130,13 @@ void show_along(const Session& session, OrbitView& view, PanelState& state) {
     ImGui::EndPopup();
 }
 
-std::string from_text(const AskedOrbit& asked) {
+std::string from_text(const OrbitOptions& asked) {
     return asked.from.empty() ? "from the file's guess" : "from the " + asked.from;
 }
 
 // Status text of the search.
 std::string remark(const Session& session) {
-    if (const OrbitWatch* const watch = session.orbit_under_way())
+    if (const OrbitMonitor* const watch = session.orbit_under_way())
         return fmt::format("searching: {} runs tried", watch->runs.load());
     const auto found = session.orbit();
     if (!found || !found->answer.orbit) return "";
@@ -183,19 +183,19 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
 // ---- result ----
 
 // Index of the point to describe: that of the run or, without one, the first found.
-std::size_t told_point(const Session& session, const FoundOrbit& found) {
+std::size_t told_point(const Session& session, const OrbitJobResult& found) {
     return session.orbit_point().value_or(found.first());
 }
 
 // "b = 0.0667"
-std::string value_text(const FoundOrbit& found, const OrbitPoint& point) {
+std::string value_text(const OrbitJobResult& found, const OrbitPoint& point) {
     const Branch& branch = *found.answer.branch;
     const std::string& name = found.answer.orbit->run.model->description().parameters[branch.parameter].name;
     return typeset(name) + " = " + number(branch.value(point), "{:.8g}");
 }
 
 // "period doubling at b = 0.0667": a click goes to the nearest point.
-void show_happenings(const FoundOrbit& found, PanelState& state, Commands& commands) {
+void show_happenings(const OrbitJobResult& found, PanelState& state, Commands& commands) {
     const Branch& branch = *found.answer.branch;
     const auto each = [&](const char* what, const std::vector<OrbitPoint>& all) {
         for (std::size_t i = 0; i < all.size(); ++i) {
@@ -211,7 +211,7 @@ void show_happenings(const FoundOrbit& found, PanelState& state, Commands& comma
             const ImVec2 at = ImGui::GetCursorScreenPos();
             const float width = remaining().width;
             if (ImGui::InvisibleButton(id.c_str(), {width, ImGui::GetTextLineHeight()}))
-                commands.emplace_back(command::GoOnOrbit{static_cast<int>(nearest) + 1});
+                commands.emplace_back(command::SelectBranchPoint{static_cast<int>(nearest) + 1});
             remember(state, id);
             const bool lit = ImGui::IsItemHovered();
             tooltip("click to go to the nearest point of the branch");
@@ -221,12 +221,12 @@ void show_happenings(const FoundOrbit& found, PanelState& state, Commands& comma
     };
     each("fold", branch.folds);
     each("period doubling", branch.flips);
-    each("Neimark-Sacker", branch.circles);
-    each("Zeno point lost", branch.lost);
+    each("Neimark-Sacker", branch.neimark_sacker);
+    each("Zeno point lost", branch.zeno_lost);
     each("other events", branch.changes);
 }
 
-void show_slider(const Session& session, const FoundOrbit& found, PanelState& state, Commands& commands) {
+void show_slider(const Session& session, const OrbitJobResult& found, PanelState& state, Commands& commands) {
     const std::size_t now = told_point(session, found);
     int point = static_cast<int>(now) + 1;
     const float width = remaining().width;
@@ -234,12 +234,12 @@ void show_slider(const Session& session, const FoundOrbit& found, PanelState& st
     label(fmt::format("point {} of {}: {}", point, found.count(), value_text(found, found.point(now))), width);
     ImGui::SetNextItemWidth(width);
     if (ImGui::SliderInt("##branch", &point, 1, static_cast<int>(found.count()), "", ImGuiSliderFlags_AlwaysClamp))
-        commands.emplace_back(command::GoOnOrbit{point});
+        commands.emplace_back(command::SelectBranchPoint{point});
     remember(state, "branch");
     tooltip("move along the branch: the run starts at this point, with its parameters");
 }
 
-void show_numbers(const Session& session, const FoundOrbit& found, PanelState& state, Commands& commands) {
+void show_numbers(const Session& session, const OrbitJobResult& found, PanelState& state, Commands& commands) {
     const float width = remaining().width;
     const OrbitPoint& point = found.point(told_point(session, found));
     const auto line = [&](const std::string& text, const Color& color) { paragraph(with_minus(text), width, color); };
@@ -264,7 +264,7 @@ void show_numbers(const Session& session, const FoundOrbit& found, PanelState& s
 }
 
 // The point of the branch nearest to the mouse.
-std::optional<std::size_t> point_at(const FoundOrbit& found, const BranchPanel& panel, const PanelMap& map) {
+std::optional<std::size_t> point_at(const OrbitJobResult& found, const BranchPanel& panel, const PanelMap& map) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     std::optional<std::size_t> nearest;
     double least = 0.0;
@@ -277,7 +277,7 @@ std::optional<std::size_t> point_at(const FoundOrbit& found, const BranchPanel& 
     return nearest;
 }
 
-void show_panel(const Session& session, const FoundOrbit& found, const BranchPanel& shown, const Rectangle& cell,
+void show_panel(const Session& session, const OrbitJobResult& found, const BranchPanel& shown, const Rectangle& cell,
                 const std::string& name, PanelState& state, Commands& commands) {
     ImDrawList* const list = ImGui::GetWindowDrawList();
     const Rectangle area = paint(shown.panel, screen_style(session.theme()), list, cell, units(1.0F));
@@ -289,7 +289,7 @@ void show_panel(const Session& session, const FoundOrbit& found, const BranchPan
     const std::optional<std::size_t> under = point_at(found, shown, map);
     const auto on = session.orbit_point();
     if (under && ImGui::IsItemActive() && under != on)
-        commands.emplace_back(command::GoOnOrbit{static_cast<int>(*under) + 1});
+        commands.emplace_back(command::SelectBranchPoint{static_cast<int>(*under) + 1});
     tooltip("click or drag to move along the branch: solid is stable, dashed is unstable");
     if (!on || !std::isfinite(shown.values[*on])) return;
     const ImVec2 at{static_cast<float>(map.x(found.answer.branch->value(found.point(*on)))),
@@ -298,7 +298,7 @@ void show_panel(const Session& session, const FoundOrbit& found, const BranchPan
     list->AddCircleFilled(at, units(3.5F), packed(text_color()), 20);
 }
 
-void show_branch(const Session& session, const FoundOrbit& found, const OrbitView& view, const Rectangle& room,
+void show_branch(const Session& session, const OrbitJobResult& found, const OrbitView& view, const Rectangle& room,
                  PanelState& state, Commands& commands) {
     constexpr float least = 190.0F;
     const auto fit = static_cast<std::size_t>(std::max(room.width / units(least), 1.0F));
@@ -323,7 +323,7 @@ void show_found(const Session& session, const OrbitView& view, PanelState& state
         return;
     }
     if (!found->answer.orbit)
-        return paragraph("no periodic run found: " + typeset_sentence(found->answer.why), room.width, error_color());
+        return paragraph("no periodic run found: " + typeset_sentence(found->answer.reason), room.width, error_color());
     const float numbers = view.panels.empty() ? room.width : std::min(units(330.0F), 0.4F * room.width);
     begin_padded_child("orbit numbers", {numbers, room.height});
     show_numbers(session, *found, state, commands);
@@ -339,7 +339,7 @@ void show_orbit(const Session& session, PanelState& state, Commands& commands) {
     OrbitView& view = view_of(session, state);
     if (const auto found = session.orbit(); view.goes && found) {
         view.goes = false;
-        if (found->count() > 0) commands.emplace_back(command::GoOnOrbit{static_cast<int>(found->first()) + 1});
+        if (found->count() > 0) commands.emplace_back(command::SelectBranchPoint{static_cast<int>(found->first()) + 1});
     }
     show_head(session, view, state, commands);
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "panels/widgets.hpp"
-#include "session/finder.hpp"
+#include "session/command_search.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -78,7 +78,7 @@ void run(const std::string& line, const Session& session, PanelState& state, Com
 }
 
 // Chooses a row of the list: executes it, or completes the line with it.
-void take(const Found& found, const Session& session, PanelState& state, Commands& commands) {
+void take(const CommandMatch& found, const Session& session, PanelState& state, Commands& commands) {
     if (found.runs) {
         write_line(state.palette, found.line);
         run(found.line, session, state, commands);
@@ -116,7 +116,7 @@ bool show_line(PanelState& state) {
 }
 
 // Returns the row that was clicked; -1: none.
-int show_rows(const std::vector<Found>& found, PanelState& state) {
+int show_rows(const std::vector<CommandMatch>& found, PanelState& state) {
     PaletteState& palette = state.palette;
     int clicked = -1;
     const int count = static_cast<int>(found.size()), first = std::clamp(palette.chosen - most_rows + 1, 0, count);
@@ -126,7 +126,7 @@ int show_rows(const std::vector<Found>& found, PanelState& state) {
         ImGui::PushID(i);
         if (ImGui::Selectable("##row", i == palette.chosen, ImGuiSelectableFlags_DontClosePopups)) clicked = i;
         ImGui::PopID();
-        const Found& row = found[static_cast<std::size_t>(i)];
+        const CommandMatch& row = found[static_cast<std::size_t>(i)];
         remember(state, "command " + row.line);
         // The name is brighter than the rest.
         const std::string name = row.usage.substr(0, row.usage.find(' '));
@@ -142,14 +142,14 @@ int show_rows(const std::vector<Found>& found, PanelState& state) {
 
 // The error of the last command. Otherwise the usage of the current one, if the list does not show it, and the effect
 // of Enter.
-void show_answer(const std::vector<Found>& found, const PaletteState& palette) {
+void show_answer(const std::vector<CommandMatch>& found, const PaletteState& palette) {
     const float width = ImGui::GetContentRegionAvail().x;
     if (!palette.wrong.empty()) return show_message(palette.wrong, width);
     if (found.empty()) {
         const std::string usage = usage_of(palette.text);
         return paragraph(usage.empty() ? "no matching command" : usage, width, faint_color());
     }
-    const Found& chosen = found[static_cast<std::size_t>(palette.chosen)];
+    const CommandMatch& chosen = found[static_cast<std::size_t>(palette.chosen)];
     if (ImGui::CalcTextSize(chosen.usage.c_str()).x > width) paragraph(chosen.usage, width, faint_color());
     paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
 }
@@ -176,7 +176,7 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
         if (palette.wrong.empty()) commands.emplace_back(command::Show{"palette", false});
     }
     const bool entered = show_line(state);
-    const std::vector<Found> found = find_commands(palette.text, completions(session, state));
+    const std::vector<CommandMatch> found = find_commands(palette.text, completions(session, state));
     choose(state, static_cast<int>(found.size()));
     const int clicked = show_rows(found, state);
     ImGui::Separator();

@@ -37,8 +37,8 @@ struct EditorState {
     float height = 0.0F;      // visible height of the text, pixels
     bool is_active = false;   // it has the keyboard
 
-    enum class Asking { nothing, open, save, unsaved, take_away };
-    Asking asking = Asking::nothing;
+    enum class OpenDialog { nothing, open, save, unsaved, take_away };
+    OpenDialog asking = OpenDialog::nothing;
     std::string path;                // path typed in a dialog
     bool keeps_path = false;         // the path entered was wrong: the field keeps the keyboard
     std::optional<Command> waiting;  // command to perform after the changes are saved or discarded
@@ -58,13 +58,13 @@ struct FileQuestion {
 // Text left unsaved by an earlier window, and the user's answer.
 struct RecoveryQuestion {
     std::string name, when;
-    enum class Answer { none, recover, discard, later } answer = Answer::none;
+    enum class RecoveryChoice { none, recover, discard, later } answer = RecoveryChoice::none;
 };
 
 // Contents of the export dialog; the path is in EditorState.
-struct TakeAwayForm {
+struct ExportForm {
     int plot = 0;  // from 1; 0: all plots
-    enum class What { plots, mechanism, film } what = What::plots;
+    enum class ExportSubject { plots, mechanism, film } what = ExportSubject::plots;
     std::string ending = "svg";  // file extension, used if the path has none
     bool on_paper = false;       // size in mm; else 1200 x 800 pixels
     // Width and height in mm, font in pt, resolution in pixels per inch. Height 0: fits the plots.
@@ -133,8 +133,8 @@ struct PlotBox {
 
 // Mouse drag in the mechanism view. While it lasts, the camera and the arrow scale are frozen so that the target does
 // not move under the mouse.
-struct HeldMechanism {
-    enum class What { nothing, body, arrow, world } what = What::nothing;
+struct MechanismDrag {
+    enum class DragTarget { none, body, arrow, background } what = DragTarget::none;
     bool has_moved = false;                 // from then on the start is shown, which the drag changes
     std::size_t grip = 0;                   // which body, index into Mechanism::grips()
     Point offset;                           // from the mouse to the target, pixels
@@ -214,7 +214,7 @@ struct PanelState {
     bool opens_manual = false;
     bool on_tour = false;                           // a tour is running: its caption has buttons
     std::size_t tour_said = 0, tour_sentences = 0;  // number of captions shown so far, and in total
-    enum class OnTour { nothing, back, next, stop } tour_wants = OnTour::nothing;  // button pressed
+    enum class TourAction { none, back, next, stop } tour_wants = TourAction::none;  // button pressed
     int copies = 0;                    // Session::copies() at the last copy to the clipboard
     double width = 0.0, height = 0.0;  // surface in the last frame, pixels
     bool reads_folders = true;         // false in a picture, which must not show private folders
@@ -224,7 +224,7 @@ struct PanelState {
     EditorState editor;
     BrowserState browser;
     bool browser_has_field = false;  // the path field has the keyboard
-    TakeAwayForm take_away;
+    ExportForm take_away;
     std::optional<FilmProgress> film;
     std::shared_ptr<Thumbnails> thumbnails;  // for the gallery; null: none
     Focus focus;
@@ -235,7 +235,7 @@ struct PanelState {
     PlotMenu plot_menu;
     PaletteState palette;
     PlotBox box;
-    HeldMechanism held;
+    MechanismDrag held;
     PlaneView plane;
     SweepState sweep;
     std::string depend;  // the quantity being typed
@@ -286,20 +286,20 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
 // The path field with shell-like keys; returns true if Enter was pressed. browse() shows the folder below it.
 // `has_taken`: the entry or click was used to open a folder or fill the field. `is_chosen`: a file was chosen.
 bool path_line(PanelState& state, bool focuses);
-struct Browsed {
+struct BrowseResult {
     bool has_taken = false, is_chosen = false;
 };
-Browsed browse(PanelState& state, const std::vector<std::string>& endings, bool entered);
+BrowseResult browse(PanelState& state, const std::vector<std::string>& endings, bool entered);
 // The export options above the path, and a note on the resulting file below it.
 void show_take_away_form(const Session& session, PanelState& state);
-struct TakeAwayNote {
+struct ExportNote {
     std::string text;
     bool is_wrong = false;  // the export is not possible
 };
-TakeAwayNote take_away_note(const Session& session, const TakeAwayForm& form);
-command::Export take_away_command(const TakeAwayForm& form, const std::string& file, bool overwrite);
+ExportNote take_away_note(const Session& session, const ExportForm& form);
+command::Export take_away_command(const ExportForm& form, const std::string& file, bool overwrite);
 // The output file: the path, with the form's extension if it has none.
-std::string take_away_file(const TakeAwayForm& form, const std::string& path);
+std::string take_away_file(const ExportForm& form, const std::string& path);
 // Progress of an animation.
 void show_film(PanelState& state);
 // The gallery (Ctrl+G): pictures of the systems, while the scene shows "gallery".

@@ -149,9 +149,9 @@ LabelBox around(const Point& p, double width, double height) {
 }
 
 // Grid cells of the plot that are covered by the run: by its curve and markers, or by its markers alone.
-class Trodden {
+class OccupiedCells {
  public:
-    Trodden(const Panel& panel, const PanelMap& map, const Rectangle& plot, bool by_signs_alone)
+    OccupiedCells(const Panel& panel, const PanelMap& map, const Rectangle& plot, bool by_signs_alone)
         : plot_(plot),
           side_(double{units(9.0F)}),
           columns_(static_cast<int>(double{plot.width} / side_) + 1),
@@ -197,8 +197,9 @@ class Trodden {
 };
 
 // A free place for a label on one of these lines, or beside it (1 or -1), far from other labels and off the run.
-std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map, const LabelBox& inside,
-                              double width, double height, const std::vector<LabelBox>& taken, const Trodden& run) {
+std::optional<Point> room_for(const std::vector<Point>& line, double beside, const PanelMap& map,
+                              const LabelBox& inside, double width, double height, const std::vector<LabelBox>& taken,
+                              const OccupiedCells& run) {
     constexpr double far = 1e3;
     constexpr std::size_t looked_at = 60;
     const std::size_t segments = line.size() / 3, step = std::max<std::size_t>(1, segments / looked_at);
@@ -238,13 +239,13 @@ void name_plane_lines(const Session& session, const Panel& panel, const PanelMap
     const float size = 0.85F * ImGui::GetFontSize();
     const double edge = double{units(4.0F)}, height = 1.2 * double{size};
     const LabelBox inside{double{plot.x} + edge, double{plot.y} + edge, double{plot.x} + double{plot.width} - edge,
-                     double{plot.y} + double{plot.height} - edge};
+                          double{plot.y} + double{plot.height} - edge};
     std::vector<LabelBox> taken;
     for (const Point& place : places) taken.push_back(around(place, 5.0 * edge, 5.0 * edge));
-    const Trodden run(panel, map, plot, false), signs(panel, map, plot, true);
+    const OccupiedCells run(panel, map, plot, false), signs(panel, map, plot, true);
     const auto name = [&](const std::vector<Point>& line, const std::string& text, const Color& color, bool always) {
         const double width = double{label_width(text, size)} + 2.0 * edge;
-        const auto room = [&](double beside, const Trodden& clear) {
+        const auto room = [&](double beside, const OccupiedCells& clear) {
             return room_for(line, beside, map, inside, width, height, taken, clear);
         };
         std::optional<Point> at = room(0.0, run);
@@ -461,7 +462,7 @@ void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, 
     x.of(wanted) = to.x / x.factor;
     y.of(wanted) = to.y / y.factor;
     wanted.q = start_towards(session, wanted.q);
-    commands.emplace_back(command::Start{{{x.text, x.of(wanted)}, {y.text, y.of(wanted)}}});
+    commands.emplace_back(command::SetStart{{{x.text, x.of(wanted)}, {y.text, y.of(wanted)}}});
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
     return curves.size() == 2 ? phase_color(session.theme(), session.now().phase) : curves[2 * curve].stroke.color;
 }
 
-struct Place {
+struct PlotPlace {
     std::size_t plot;
     Rectangle area;  // inside the axes
     Rectangle cell;  // the whole card
@@ -39,7 +39,7 @@ struct Place {
 };
 
 // Marks a time, the current one or that under the mouse: a line in plots over time, else a dot on every curve.
-void paint_instant(const Session& session, const Place& place, const Sample& sample, float strength) {
+void paint_instant(const Session& session, const PlotPlace& place, const Sample& sample, float strength) {
     const PanelMap& map = place.map;
     const std::vector<double> values = session.values(place.plot, sample);
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -62,7 +62,7 @@ void paint_instant(const Session& session, const Place& place, const Sample& sam
 }
 
 // Lines of text in the corner farthest from a time at pixel x.
-void paint_lines(const Session& session, const Place& place, double x, const std::vector<std::string>& lines) {
+void paint_lines(const Session& session, const PlotPlace& place, double x, const std::vector<std::string>& lines) {
     const float size = 0.87F * ImGui::GetFontSize(), line = 1.15F * size, padding = units(5.0F);
     float width = 0.0F;
     for (const std::string& text : lines) width = std::max(width, label_width(text, size));
@@ -83,7 +83,7 @@ void paint_lines(const Session& session, const Place& place, double x, const std
 }
 
 // The values at the time under the mouse, in the corner farthest from it.
-void paint_values(const Session& session, const Place& place, const Sample& sample) {
+void paint_values(const Session& session, const PlotPlace& place, const Sample& sample) {
     const auto& quantities = session.plotted().list()[place.plot].prepared->quantities();
     const auto& hidden = session.plotted().list()[place.plot].framing.hidden;
     const std::vector<double> values = session.values(place.plot, sample), errors = session.errors(place.plot, sample);
@@ -98,7 +98,7 @@ void paint_values(const Session& session, const Place& place, const Sample& samp
 }
 
 // The same for a plot of differences, in which a line marks the time.
-void paint_differences(const Session& session, const Place& place, double t, float strength, bool with_values) {
+void paint_differences(const Session& session, const PlotPlace& place, double t, float strength, bool with_values) {
     const Plot& plot = session.plotted().list()[place.plot];
     const Rectangle& area = place.area;
     const float at = std::floor(static_cast<float>(place.map.x(t))) + 0.5F;
@@ -130,7 +130,7 @@ command::Zoom zoom_to(const PanelMap& map, std::size_t plot, double left, double
     return {static_cast<int>(plot) + 1, map.x.value(left), map.x.value(right), map.y.value(bottom), map.y.value(top)};
 }
 
-void use_wheel(const Place& place, bool along_x, bool along_y, Commands& commands) {
+void use_wheel(const PlotPlace& place, bool along_x, bool along_y, Commands& commands) {
     const float wheel = ImGui::GetIO().MouseWheel;
     if (wheel == 0.0F) return;
     const PanelMap& map = place.map;
@@ -143,7 +143,7 @@ void use_wheel(const Place& place, bool along_x, bool along_y, Commands& command
 }
 
 // Pans with the mouse.
-void use_drag(const Place& place, Commands& commands) {
+void use_drag(const PlotPlace& place, Commands& commands) {
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (!ImGui::IsMouseDragging(ImGuiMouseButton_Left, static_cast<float>(click)) || (delta.x == 0 && delta.y == 0))
         return;
@@ -154,7 +154,7 @@ void use_drag(const Place& place, Commands& commands) {
 }
 
 // Right button: draws a box and zooms to it on release.
-void use_box(const Place& place, PanelState& state, Commands& commands) {
+void use_box(const PlotPlace& place, PanelState& state, Commands& commands) {
     const int number = static_cast<int>(place.plot);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const Rectangle& a = place.area;
@@ -179,7 +179,7 @@ void use_box(const Place& place, PanelState& state, Commands& commands) {
 
 // Number of the event whose marker is within reach of the mouse; empty if none. In a plot over time only events near
 // that time are tested, else all events of a run with not too many.
-std::optional<int> event_at(const Session& session, const Place& place) {
+std::optional<int> event_at(const Session& session, const PlotPlace& place) {
     constexpr std::size_t most = 3000;
     const auto& events = session.trajectory().events;
     const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -207,7 +207,7 @@ std::optional<int> event_at(const Session& session, const Place& place) {
     return nearest.found();
 }
 
-void use_click(const Session& session, const Place& place, Commands& commands) {
+void use_click(const Session& session, const PlotPlace& place, Commands& commands) {
     const int number = static_cast<int>(place.plot) + 1;
     if (ImGui::IsItemHovered() && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
         commands.emplace_back(command::Fit{number});
@@ -234,7 +234,7 @@ bool hot(const std::string& name, const Rectangle& area) {
     return ImGui::IsItemHovered();
 }
 
-void use_mouse(const Session& session, const Place& place, PanelState& state, Commands& commands) {
+void use_mouse(const Session& session, const PlotPlace& place, PanelState& state, Commands& commands) {
     const Rectangle &a = place.area, &c = place.cell;
     const std::string name = "plot " + std::to_string(place.plot);
     if (hot("x axis of " + name, {a.x, a.y + a.height, a.width, c.y + c.height - a.y - a.height}))
@@ -324,7 +324,7 @@ void show_plot(const Session& session, std::size_t plot, const Rectangle& cell, 
     const Rectangle area = paint(panel, screen_style(session.theme()), ImGui::GetWindowDrawList(), inner, units(1.0F));
     show_head(session, plot, row, state, commands);
     if (area.width < 2.0F || area.height < 2.0F) return;
-    const Place place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};
+    const PlotPlace place{plot, area, cell, session.plotted().list()[plot].over_time(), PanelMap(panel, area)};
     if (session.plotted().list()[plot].framing.difference) {
         if (session.pinned().empty()) paint_lines(session, place, double{area.x}, {"no run is pinned"});
         paint_differences(session, place, session.time(), 1.0F, false);
@@ -442,7 +442,7 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     const float y = ImGui::GetCursorPosY();
     for (const auto& [columns, rows] : grids) {
         if (grid_button(columns, rows, plots.columns() == columns && plots.rows() == rows, state))
-            commands.emplace_back(command::Grid{columns, rows});
+            commands.emplace_back(command::SetGrid{columns, rows});
         ImGui::SameLine(0.0F, units(2.0F));
     }
     const char* text = "link time";

@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "output/contacts.hpp"
+#include "output/event_descriptions.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
-#include "output/sentences.hpp"
 #include "paint/paint.hpp"
 #include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
@@ -54,7 +54,7 @@ std::string name_of(const Trajectory& trajectory, const Result& result) {
 std::vector<Result> results_of(const Trajectory& trajectory) {
     std::vector<Result> results;
     int zeno = 0;
-    const std::vector<Chatter> chatters = chatters_of(trajectory);
+    const std::vector<ChatterPhases> chatters = chatters_of(trajectory);
     auto chatter = chatters.begin();
     for (const std::size_t turn : turns(trajectory, true)) {
         const Event& event = trajectory.events[turn];
@@ -100,14 +100,15 @@ Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
 }
 
 // The visible cells: results [begin, begin + size). Only these are measured, since a run may have thousands.
-struct Shown {
+struct VisibleResults {
     std::size_t begin = 0;
     std::vector<Cell> cells;
 };
 
 // As many as fit from `begin` on; at the end of the run the strip is filled with earlier ones.
-Shown shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin, const Strip& strip) {
-    Shown shown{begin, {}};
+VisibleResults shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin,
+                          const Strip& strip) {
+    VisibleResults shown{begin, {}};
     float x = 0.0F;
     const auto fits = [&](const Cell& cell) { return shown.cells.empty() || x + cell.width <= strip.room; };
     for (std::size_t i = begin; i < results.size(); ++i) {
@@ -127,7 +128,8 @@ Shown shown_from(const Session& session, const std::vector<Result>& results, std
 }
 
 // The cells around result `seen`, which is near the middle.
-Shown shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen, const Strip& strip) {
+VisibleResults shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen,
+                            const Strip& strip) {
     std::size_t begin = seen;
     float x = 0.5F * cell_of(session, results[seen], strip).width;
     while (begin > 0) {
@@ -139,8 +141,8 @@ Shown shown_around(const Session& session, const std::vector<Result>& results, s
 }
 
 // The user's scroll position, until the current time reaches another result.
-Shown shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
-               const Strip& strip) {
+VisibleResults shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
+                        const Strip& strip) {
     ResultStrip& by_hand = state.strip;
     if (by_hand.seen != results[seen].event || by_hand.count != results.size()) {
         by_hand = {};
@@ -151,7 +153,7 @@ Shown shown_by(const Session& session, PanelState& state, const std::vector<Resu
 }
 
 // A drag scrolls by whole cells, the wheel by one.
-void use_hand(const Shown& shown, std::size_t count, bool is_hovered, PanelState& state) {
+void use_hand(const VisibleResults& shown, std::size_t count, bool is_hovered, PanelState& state) {
     ResultStrip& strip = state.strip;
     const ImGuiIO& io = ImGui::GetIO();
     const auto move = [&](int cells) {
@@ -217,12 +219,12 @@ void show_sentence(const Session& session, ImVec2 at, float width) {
                                         [](double t, const Event& event) { return t < event.t; });
     const std::size_t reached = session.selected() > 0 ? static_cast<std::size_t>(session.selected())
                                                        : static_cast<std::size_t>(after - events.begin());
-    const Sentences& sentences = session.sentences();
+    const EventDescriptions& sentences = session.sentences();
     cell(at, typeset_sentence(reached == 0 ? sentences.start() : sentences.of(reached - 1)), width, text_color());
 }
 
 // "‹ 3" or "12 ›": the number of results before or after the visible ones; a click scrolls by one strip.
-void show_more(bool is_before, std::size_t count, ImVec2 at, const Shown& shown, PanelState& state) {
+void show_more(bool is_before, std::size_t count, ImVec2 at, const VisibleResults& shown, PanelState& state) {
     if (count == 0) return;
     const bool is_low = shown.cells.front().time.empty();
     const float height = (is_low ? 1.0F : 2.0F) * ImGui::GetTextLineHeightWithSpacing();
@@ -315,7 +317,7 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     // Always reserve room for both arrows, so that the cells do not jump when one appears.
     const float inset = units(arrow_width + 6.0F);
     const bool is_low = lines < 2;
-    Shown shown = shown_from(session, results, 0, {width, is_low});
+    VisibleResults shown = shown_from(session, results, 0, {width, is_low});
     const bool has_all = shown.cells.size() == results.size();
     if (!has_all) shown = shown_by(session, state, results, seen, {width - 2.0F * inset, is_low});
     const bool is_hovered = ImGui::IsWindowHovered(ImGuiHoveredFlags_AllowWhenBlockedByActiveItem);

@@ -297,7 +297,7 @@ void point_at(const Slider& slider, PanelState& state) {
 }  // namespace
 
 double typed_number(const std::string& text, const std::string& unit, double factor) {
-    const GivenNumber given = read_number(text, unit);
+    const ParsedNumber given = read_number(text, unit);
     return given.has_unit || given.has_pi ? given.value : given.value / factor;
 }
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "figure/label.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/precision.hpp"
@@ -154,7 +154,7 @@ namespace {
 
 constexpr float energy_padding = 6.0F, gap = 4.0F, bar_height = 9.0F, course_height = 40.0F, inset = 8.0F;
 
-struct Part {
+struct EnergyPart {
     const char *name, *about;
     Color color;
     float alpha;
@@ -162,7 +162,7 @@ struct Part {
 // The last part is striped, to distinguish its gray from the other.
 constexpr std::size_t striped = 3;
 
-std::array<Part, 4> parts(const Theme& theme) {
+std::array<EnergyPart, 4> parts(const Theme& theme) {
     return {{{"kinetic", "kinetic energy", theme.ink, 0.85F},
              {"potential", "potential energy; the bar shows the part above the minimum of this run", theme.ink, 0.3F},
              {"impact loss", "energy lost in all impacts and in the restarts at Zeno points",
@@ -173,7 +173,7 @@ std::array<Part, 4> parts(const Theme& theme) {
               theme.faint, 0.8F}}};
 }
 
-void fill(const Part& part, bool stripes, ImVec2 low, ImVec2 high) {
+void fill(const EnergyPart& part, bool stripes, ImVec2 low, ImVec2 high) {
     ImDrawList* list = ImGui::GetWindowDrawList();
     if (!stripes) return list->AddRectFilled(low, high, packed(part.color, part.alpha));
     const float step = std::max(2.0F, std::floor(units(2.0F)));
@@ -185,7 +185,7 @@ void fill(const Part& part, bool stripes, ImVec2 low, ImVec2 high) {
 std::string valued(const Session& session, double value, double error) {
     const std::string unit = typeset_unit(session.sentences().energy_unit());
     const double size = 10.0 * std::max(session.sentences().energy_scale(), std::abs(session.trajectory().loss));
-    const std::string text = std::isfinite(value) ? number(without_noise(value, size), error, 4) : "\u2013";
+    const std::string text = std::isfinite(value) ? number(flush_noise_to_zero(value, size), error, 4) : "\u2013";
     return unit.empty() ? text : text + " " + unit;
 }
 
@@ -247,7 +247,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
     std::array<ImU32, 4> colors{};
     for (std::size_t i = 0; i < all.size(); ++i) colors[i] = packed(all[i].color, all[i].alpha);
     const float stripe = std::max(2.0F, std::floor(units(2.0F)));
-    const ImU32 stripe_color = packed(all[striped].color, 0.15F);
+    const ImU32 between = packed(all[striped].color, 0.15F);
     for (float x = 0.0F; x + 1.0F <= width; x += 1.0F) {
         const double t = start + double{(x + 1.0F) / width} * (end - start);
         if (t > reached + (end - start) / width) break;
@@ -255,7 +255,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
         float from = bottom;
         for (std::size_t i = 0; i < ends.size(); ++i) {
             const float to = std::min(from, bottom - length(ends[i], course.full(), height));
-            const ImU32 color = i == striped && std::fmod(x, 2.0F * stripe) >= stripe ? stripe_color : colors[i];
+            const ImU32 color = i == striped && std::fmod(x, 2.0F * stripe) >= stripe ? between : colors[i];
             if (to < from) list->AddRectFilled({left + x, to}, {left + x + 1.0F, from}, color);
             from = to;
         }

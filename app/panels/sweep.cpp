@@ -31,7 +31,7 @@ constexpr std::uint64_t finest_points = 512;
 constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
 
 // Quantities offered in the menu, and the derivative of the first with respect to the x axis.
-std::vector<std::string> usual_prints(const SystemDescription& description, const Sweep& sweep) {
+std::vector<std::string> usual_prints(const SystemDescription& description, const SweepSpec& sweep) {
     const bool is_section = sweep.at.has_value();
     std::vector<std::string> prints;
     if (!is_section) prints = {"zeno_time(1)", "zeno_time(2)", "zeno_points", "impacts", "releases", "least_gap"};
@@ -86,7 +86,7 @@ bool limits_entered(const SystemDescription& description, SweepAxis& axis, Sweep
 
 void show_axis_menu(const Session& session, std::size_t place, PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup(popups[place])) return;
-    Sweep sweep = session.sweep();
+    SweepSpec sweep = session.sweep();
     const SystemDescription& description = session.description();
     const bool has_axis = place < sweep.axes.size();
     const auto is_other = [&](const std::string& name) {
@@ -103,7 +103,7 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
         if (ImGui::Selectable(("##" + name).c_str(), chosen, ImGuiSelectableFlags_DontClosePopups,
                               {units(200.0F), 0.0F}) &&
             !chosen) {
-            Sweep changed = sweep;
+            SweepSpec changed = sweep;
             changed.axes.resize(std::max(changed.axes.size(), place + 1));
             changed.axes[place] = *axis_for(session, name);
             commands.emplace_back(showing(changed, description));
@@ -130,9 +130,9 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
     ImGui::EndPopup();
 }
 
-void show_moments(const Sweep& sweep, const Session& session, PanelState& state, Commands& commands) {
+void show_moments(const SweepSpec& sweep, const Session& session, PanelState& state, Commands& commands) {
     const auto ask = [&](std::optional<Section> at) {
-        Sweep changed = sweep;
+        SweepSpec changed = sweep;
         changed.at = std::move(at);
         if (!changed.at && changed.axes.empty())
             return commands.emplace_back(command::ShowSweep{default_sweep(session.description())}), void();
@@ -157,10 +157,10 @@ void show_moments(const Sweep& sweep, const Session& session, PanelState& state,
 
 void show_print_menu(const Session& session, PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup("sweep print")) return;
-    const Sweep sweep = session.sweep();
+    const SweepSpec sweep = session.sweep();
     const SystemDescription& description = session.description();
     const auto ask = [&](const std::string& print) {
-        Sweep changed = sweep;
+        SweepSpec changed = sweep;
         // For a single run the quantity is plotted over the first coordinate.
         const bool is_alone = sweep.axes.empty();
         changed.prints = {print};
@@ -188,8 +188,8 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
 
 }  // namespace
 
-command::ShowSweep showing(const Sweep& sweep, const SystemDescription& description) {
-    Sweep bare = sweep;
+command::ShowSweep showing(const SweepSpec& sweep, const SystemDescription& description) {
+    SweepSpec bare = sweep;
     bare.base = default_run(description);
     return {to_text(bare, description)};
 }
@@ -211,7 +211,7 @@ std::optional<SweepAxis> axis_for(const Session& session, const std::string& nam
 }
 
 void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& state, Commands& commands) {
-    const Sweep sweep = session.sweep();
+    const SweepSpec sweep = session.sweep();
     const float right = row.x + row.width, third = row.width / 3.0F;
     std::string asked;
     for (const std::string& print : sweep.prints) asked += (asked.empty() ? "" : ", ") + typeset(print);
@@ -267,7 +267,7 @@ const Panel& composed(const Session& session, SweepState& state) {
 // The current run's value of the plotted quantity, as displayed; empty while the run is under way or if undefined.
 std::optional<double> present_number(const Session& session, SweepState& state) {
     if (session.under_way() != nullptr || session.shows_start()) return std::nullopt;
-    const Sweep sweep = session.sweep();
+    const SweepSpec sweep = session.sweep();
     if (state.measured_run == session.trajectory().run && state.measured == sweep.prints) return state.measure;
     state.measured_run = session.trajectory().run;
     state.measured = sweep.prints;
@@ -275,7 +275,7 @@ std::optional<double> present_number(const Session& session, SweepState& state) 
     const RunMeasures measures(session.model(), sweep);
     if (measures.columns().front().kind != RunMeasures::Column::Kind::number) return std::nullopt;
     std::vector<double> numbers;
-    Measuring(measures).at_end(session.trajectory(), numbers);
+    MeasureEvaluator(measures).at_end(session.trajectory(), numbers);
     if (std::isfinite(numbers.front()))
         state.measure = shown_unit(measures.columns().front().unit).factor * numbers.front();
     return state.measure;
@@ -334,7 +334,7 @@ void show_cross_hair(const Session& session, const SweepData& data, const Rectan
 
 // Commands that move the current run to a point. All values are set at once: an intermediate state might be infeasible.
 void go_to(const SweepData& data, const std::vector<double>& values, Commands& commands) {
-    command::Start start;
+    command::SetStart start;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const SweepAxis& axis = data.sweep.axes[i];
         const double value = std::clamp(values[i], std::min(axis.low, axis.high), std::max(axis.low, axis.high));
@@ -345,7 +345,7 @@ void go_to(const SweepData& data, const std::vector<double>& values, Commands& c
         }
         Options changed = data.sweep.base.options;
         for (const Option* option : options) option->set(changed, value);
-        commands.emplace_back(command::UseOption(*options.front(), changed));
+        commands.emplace_back(command::SetOption(*options.front(), changed));
     }
     if (!start.values.empty()) commands.emplace_back(std::move(start));
 }
@@ -434,7 +434,7 @@ void tell(const Session& session, const SweepData& data, const std::vector<doubl
     if (state.told_of != &data || state.told_point != point) {
         state.told_of = &data;
         state.told_point = point;
-        Sweep sweep = data.sweep;
+        SweepSpec sweep = data.sweep;
         state.told.clear();
         for (std::size_t i = 0; i < sweep.axes.size(); ++i)
             state.told += fmt::format("{} = {}\n", data.names[i],
@@ -455,7 +455,7 @@ void take_dropped_name(const Session& session, std::size_t place, const Rectangl
     if (!ImGui::BeginDragDropTarget()) return;
     if (const ImGuiPayload* const dropped = ImGui::AcceptDragDropPayload(dragged_name)) {
         const std::string name(static_cast<const char*>(dropped->Data), static_cast<std::size_t>(dropped->DataSize));
-        Sweep sweep = session.sweep();
+        SweepSpec sweep = session.sweep();
         const std::size_t at = std::min(place, sweep.axes.size());
         const auto twice = std::find_if(sweep.axes.begin(), sweep.axes.end(),
                                         [&](const SweepAxis& axis) { return axis.name == name; });

@@ -169,8 +169,8 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
 // Left and Right step between events, Home and End go to the ends.
 void use_keys(const Session& session, const PanelState& state, Commands& commands) {
     if (has_keys(state) || ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
-    if (takes_key(state, key::left)) commands.emplace_back(command::Step{-1});
-    if (takes_key(state, key::right)) commands.emplace_back(command::Step{1});
+    if (takes_key(state, key::left)) commands.emplace_back(command::StepEvents{-1});
+    if (takes_key(state, key::right)) commands.emplace_back(command::StepEvents{1});
     if (takes_key(state, key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
     if (takes_key(state, key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
 }
@@ -228,9 +228,10 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     const float between = units(4.0F);
     play_button(session, state, commands);
     ImGui::SameLine(0.0F, between);
-    if (step_button("step back", -1.0F, "previous event (left arrow)", state)) commands.emplace_back(command::Step{-1});
+    if (step_button("step back", -1.0F, "previous event (left arrow)", state))
+        commands.emplace_back(command::StepEvents{-1});
     ImGui::SameLine(0.0F, between);
-    if (step_button("step on", 1.0F, "next event (right arrow)", state)) commands.emplace_back(command::Step{1});
+    if (step_button("step on", 1.0F, "next event (right arrow)", state)) commands.emplace_back(command::StepEvents{1});
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     // Reserve the maximum width, so that the following items do not move.

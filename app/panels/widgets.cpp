@@ -49,7 +49,7 @@ Color error_color() { return current_theme().error; }
 std::string fitted(const std::string& text, float width) {
     const float size = ImGui::GetFontSize();
     return shortened(
-        text, [&](const std::string& part) { return label_width(part, size) <= width; }, Cut::letters);
+        text, [&](const std::string& part) { return label_width(part, size) <= width; }, EllipsisMode::letters);
 }
 
 void cell(const ImVec2& at, const std::string& name, const std::string& value, float width, const Color& color) {

@@ -132,7 +132,7 @@ void FrameFolder::write(std::size_t number, std::string png) const {
     const std::string path = file(number).string();
     files.add(path);
     files.put(path, std::move(png));
-    files.commit(OutputFiles::Care::quick);
+    files.commit(OutputFiles::Durability::fast);
 }
 
 void FrameFolder::try_to_write(std::size_t number) const { OutputFiles().add(file(number).string()); }

@@ -71,15 +71,15 @@ std::string parameters_text(const Trajectory& trajectory) {
 
 std::string options_text(const Options& options) {
     std::string text;
-    for (const Option* option : told_options({"tolerance", "method"}))
-        if (!option->quiet || option->get(options) != option->get({}))
-            text += (text.empty() ? "" : ", ") + phrase(*option, options);
+    for (const Option* option : options_in_report_order({"tolerance", "method"}))
+        if (!option->omit_if_default || option->get(options) != option->get({}))
+            text += (text.empty() ? "" : ", ") + summary_text(*option, options);
     return text;
 }
 
 std::string certificates_text(const Trajectory& trajectory) {
     std::string text;
-    for (const Remark& remark : remarks(trajectory)) text += remark.sentence + "\n";
+    for (const RunWarning& remark : remarks(trajectory)) text += remark.sentence + "\n";
     for (const Event& event : trajectory.events)
         if (event.certificate)
             text += fmt::format("{} at t = {}: {}\n", names_of(event).name, event.t,
@@ -153,16 +153,17 @@ std::vector<std::string> words_of(std::string_view text) {
     return words;
 }
 
-Notes notes(const Origin& origin, const std::vector<Shown>& runs) {
+Notes notes(const Origin& origin, const std::vector<PictureRun>& runs) {
     Notes result;
     const auto add = [&](std::string_view key, const std::string& text) { result.push_back({std::string(key), text}); };
     std::string title;
-    for (const Shown& run : runs) title += (title.empty() ? "" : "; ") + run.trajectory->model->description().title;
+    for (const PictureRun& run : runs)
+        title += (title.empty() ? "" : "; ") + run.trajectory->model->description().title;
     add(title_key, title);
     add(software_key, origin.software);
     add(command_key, origin.command);
     if (!origin.picture.empty()) add(picture_key, origin.picture);
-    for (const Shown& run : runs) {
+    for (const PictureRun& run : runs) {
         const std::string name = runs.size() > 1 ? run.system + ": " : "";
         add("Achilles Parameters", name + parameters_text(*run.trajectory));
         add("Achilles Options", name + options_text(run.trajectory->run.options));

@@ -34,12 +34,12 @@ std::string command_line(const std::vector<std::string>& words);
 std::vector<std::string> words_of(std::string_view command_line);
 
 // A run shown in a picture.
-struct Shown {
+struct PictureRun {
     std::string system;  // name or path
     const Trajectory* trajectory;
 };
 // The origin, the titles of the systems, and every run's parameters, start, options and certificates.
-Notes notes(const Origin& origin, const std::vector<Shown>& runs);
+Notes notes(const Origin& origin, const std::vector<PictureRun>& runs);
 
 // "png", "svg" or "pdf", detected from the content; "" for other content.
 std::string picture_format(std::string_view file);

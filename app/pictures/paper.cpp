@@ -88,7 +88,7 @@ Panel threshold_panel(const Trajectory& ball) {
     if (certified != nullptr) cut.points.push_back({0.0, certified->t});
     for (int i = 1; i <= parts; ++i) {
         const double speed = static_cast<double>(i) / parts;
-        const double t = rest_time_with_threshold(ball, speed);
+        const double t = contact_time_with_velocity_threshold(ball, speed);
         // The curve jumps where one more impact falls below the threshold.
         if (!cut.points.empty() && std::isfinite(t) && std::abs(t - cut.points.back().y) > 1e-3)
             cut.points.push_back({speed - 0.5 / parts, cut.points.back().y}),
@@ -108,7 +108,8 @@ Panel threshold_panel(const Trajectory& ball) {
 Panel widths_panel(const Trajectory& ball, const Trajectory& pendulum) {
     const Theme theme = light_theme();
     constexpr std::array names{"first", "second", "third"};
-    constexpr std::array shapes{Markers::Shape::circle, Markers::Shape::square, Markers::Shape::triangle};
+    constexpr std::array shapes{Markers::MarkerShape::circle, Markers::MarkerShape::square,
+                                Markers::MarkerShape::triangle};
     Panel panel;
     panel.title = "(b)\u00A0\u00A0width of the certified intervals of Zeno times";
     panel.x.label = "impact speed at the cut (m/s, rad/s)";
@@ -153,7 +154,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     for (std::size_t i = 0; i < panels.size(); ++i) {
         Figure single = empty_page();
         single.panels.push_back(panels[i]);
-        dress_for_print(single, std::span(runs).subspan(i < 4 ? 0 : 1, 1));
+        apply_print_style(single, std::span(runs).subspan(i < 4 ? 0 : 1, 1));
         // Panels with equal axes are wide and low here: use a smaller height.
         const int height = panels[i].equal_axes ? 380 : 600;
         figures.push_back({"fig4" + panels[i].title.substr(1, 1), 900, height, single});
@@ -161,7 +162,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
     Figure page = empty_page();
     page.columns = 2;
     page.panels = panels;
-    dress_for_print(page, runs);
+    apply_print_style(page, runs);
     figures.push_back({"fig4", 1400, 1050, page});
     Figure more = empty_page();
     more.grid.a = 0;
@@ -195,7 +196,7 @@ std::vector<std::vector<CertifiedWidth>> certified_widths(const Trajectory& traj
     return widths;
 }
 
-double rest_time_with_threshold(const Trajectory& ball, double speed) {
+double contact_time_with_velocity_threshold(const Trajectory& ball, double speed) {
     Run run = ball.run;
     run.options.truncation.conditions =
         // The sharp conditions would end the impact sequence before the threshold.
@@ -225,7 +226,7 @@ double rest_time_with_threshold(const Trajectory& ball, double speed) {
 namespace {
 
 // A number of the paper for comparison with ours.
-struct Stated {
+struct PaperNumber {
     std::string what, paper, unit;
     double stated;  // as a number; NaN if the paper gives none
     std::optional<double> ours;
@@ -238,7 +239,7 @@ std::string row(const std::string& what, const std::string& paper, const std::st
     return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
 }
 
-std::string row(const Stated& s) {
+std::string row(const PaperNumber& s) {
     const std::string unit = s.unit.empty() ? "" : " " + s.unit;
     const double zero = 0.0;  // avoids printing "-0"
     return row(s.what, s.paper, s.ours ? fmt::format("{:.9g}{}", *s.ours + zero, unit) : "none",
@@ -277,7 +278,7 @@ std::string paper_table(const Trajectory& ball, const Trajectory& pendulum) {
     constexpr double none = std::numeric_limits<double>::quiet_NaN();
     const auto time = [](const Trajectory& run, Event::Kind kind, int n) { return time_of(nth(run, kind, n)); };
     const std::string read = "read off the plot";
-    const Stated all[] = {
+    const PaperNumber all[] = {
         {"ball, first Zeno time", "about 3", "", 3.0, time(ball, Event::Kind::zeno, 0), read},
         {"ball, release", "about 4", "", 4.0, time(ball, Event::Kind::release, 0), read},
         {"ball, second Zeno time", "about 11", "", 11.0, time(ball, Event::Kind::zeno, 1), "see below"},
@@ -289,13 +290,13 @@ std::string paper_table(const Trajectory& ball, const Trajectory& pendulum) {
          "hddot = g sin(theta1)/L~"}};
     std::string text = "Or & Ames 2009, Fig. 4: the paper's numbers and ours\n\n";
     text += row("", "paper", "Achilles", "difference", "");
-    for (const Stated& stated : all) text += row(stated);
+    for (const PaperNumber& stated : all) text += row(stated);
     const auto last = time(ball, Event::Kind::zeno, 1);
     text += fmt::format(
         "\nThe second Zeno time of the ball is {}, not 11. A simulation that comes to rest at the first impact with\n"
         "hddot < 0 and a speed below 1 does so at {:.4g} in the second valley, which one would read as about 11.\n"
         "The restitution is 0.5; the paper's text for Example 3 prints 10.5.\n",
-        last ? fmt::format("{:.9g}", *last) : "none", rest_time_with_threshold(ball, 1.0));
+        last ? fmt::format("{:.9g}", *last) : "none", contact_time_with_velocity_threshold(ball, 1.0));
     return text +
            "\nCertified intervals of the Zeno times (s; sharp conditions), each for the motion from the computed state "
            "at the cut:\n\n" +

@@ -20,7 +20,7 @@ std::vector<NamedFigure> paper_figures(const Trajectory& ball, const Trajectory&
 // Time at which the ball comes to rest in the second valley with a velocity threshold instead of a certificate: every
 // impact sequence is cut at the first impact with hddot < 0 and a speed below `speed` (m/s). NaN if it never comes to
 // rest.
-double rest_time_with_threshold(const Trajectory& ball, double speed);
+double contact_time_with_velocity_threshold(const Trajectory& ball, double speed);
 
 // Width of the certified interval of the Zeno time as a function of the impact speed at the cut. Computed by repeating
 // the run with the sharp conditions and tolerances from 0.1 to 1e-8. One list per Zeno event of the run.

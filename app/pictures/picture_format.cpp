@@ -113,12 +113,12 @@ std::vector<char*> environment() {
     return all;
 }
 
-struct Written {
+struct ConverterResult {
     std::string pdf, problems;  // `pdf` is empty on failure
 };
 
 // Converts an SVG to the given format, `points` wide.
-Written written(std::FILE* svg, const std::string& format, double points) {
+ConverterResult written(std::FILE* svg, const std::string& format, double points) {
     const File out = temporary(), problems = temporary();
     ::lseek(::fileno(svg), 0, SEEK_SET);  // an earlier call may have moved the file position
     std::string wide = fmt::format("--width={:.3f}pt", points), kind = "--format=" + format;
@@ -157,7 +157,7 @@ std::string pdf_of_svg(const std::string& svg, double width_mm) {
     // option uses an older cairo, which does not.
     std::string pdf = written(in.get(), "pdf1.4", points).pdf;
     if (!pdf.empty()) return pdf;
-    Written last = written(in.get(), "pdf", points);
+    ConverterResult last = written(in.get(), "pdf", points);
     if (last.pdf.empty())
         throw std::runtime_error(fmt::format("{} could not write the PDF: {}", writer, last.problems));
     return std::move(last.pdf);

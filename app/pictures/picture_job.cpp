@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "cli/assets.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "image/notes.hpp"
 #include "output/output.hpp"
 #include "paint/paint.hpp"
@@ -33,7 +33,7 @@ void PictureJob::check(const Options& options) const {
     if (inputs_.budget()) inputs_.budget()->check(options);
 }
 
-void PictureJob::check(const Sweep& sweep) const {
+void PictureJob::check(const SweepSpec& sweep) const {
     if (inputs_.budget()) inputs_.budget()->check(sweep);
 }
 
@@ -43,15 +43,15 @@ void PictureJob::check_rows(std::uint64_t rows) const {
 
 void PictureJob::add(const std::string& path) {
     if (reproduces_) return;
-    for (const auto& file : inputs_.files_read()) files_.spare(file);
+    for (const auto& file : inputs_.files_read()) files_.protect_input(file);
     files_.add(path);
 }
 
-Notes PictureJob::notes_of(const std::string& picture, const std::vector<Shown>& runs) const {
+Notes PictureJob::notes_of(const std::string& picture, const std::vector<PictureRun>& runs) const {
     return notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs);
 }
 
-void PictureJob::put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs,
+void PictureJob::put(const std::string& path, const std::string& picture, const std::vector<PictureRun>& runs,
                      const Make& make) {
     if (reproduces_ && picture != wanted_) return;
     const std::string bytes = make(notes_of(picture, runs));
@@ -68,7 +68,7 @@ void PictureJob::put_text(const std::string& path, const std::string& text) {
 void PictureJob::commit() {
     inputs_.end_time_limit();
     if (reproduces_) return;
-    for (const auto& file : inputs_.files_read()) files_.spare(file);
+    for (const auto& file : inputs_.files_read()) files_.protect_input(file);
     files_.commit();
 }
 

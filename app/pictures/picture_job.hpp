@@ -15,7 +15,7 @@
 
 namespace achilles {
 
-struct Sweep;
+struct SweepSpec;
 
 class PictureJob {
  public:
@@ -28,19 +28,20 @@ class PictureJob {
     bool reproduces() const { return reproduces_; }
 
     // The notes to store in a picture.
-    Notes notes_of(const std::string& picture, const std::vector<Shown>& runs) const;
+    Notes notes_of(const std::string& picture, const std::vector<PictureRun>& runs) const;
 
     // Throws InputError if a reproduced picture would have too many pixels, since it may come from an untrusted source.
     void check_size(int width, int height) const;
     // Budget checks for a run, a sweep, and the rows of a sweep so far. Throw Forbidden.
     void check(const Options& options) const;
-    void check(const Sweep& sweep) const;
+    void check(const SweepSpec& sweep) const;
     void check_rows(std::uint64_t rows) const;
     // Registers an output and checks that it can be written, before the work starts. Throws InputError if not.
     void add(const std::string& path);
     // Adds a picture to the output. `make` returns the content and is called only if this picture is wanted.
     using Make = std::function<std::string(const Notes&)>;
-    void put(const std::string& path, const std::string& picture, const std::vector<Shown>& runs, const Make& make);
+    void put(const std::string& path, const std::string& picture, const std::vector<PictureRun>& runs,
+             const Make& make);
     // For a command that writes its pictures itself: the picture that `reproduce` wants.
     void keep(std::string picture) { made_ = std::move(picture); }
     void put_text(const std::string& path, const std::string& text);

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "figure/compose.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "model/read_system.hpp"
 #include "simulate/simulate.hpp"
 
@@ -37,7 +37,7 @@ Thumbnail drawn(const std::filesystem::path& system) {
     for (const Sample& sample : samples)
         if (sample.t <= now.t || past.size() < 2) past.push_back(sample);
     const Drawing seen = widened(mechanism.limits(trajectory, past), thumbnail_shape, 1.0);
-    Stage stage(mechanism, trajectory, samples);
+    MechanismScene stage(mechanism, trajectory, samples);
     const auto in = [&](const Theme& theme) { return stage.draw(now, seen, theme, {}); };
     return {in(light_theme()), in(dark_theme())};
 }

@@ -1,16 +1,16 @@
 // Figures for Python: their appearance and the notes stored in them.
 #include "module.hpp"
 #include "output/output.hpp"
+#include "pictures/export.hpp"
 #include "pictures/picture_format.hpp"
-#include "pictures/take_away.hpp"
 
 namespace py = pybind11;
 
 namespace achilles::python {
 
-Look look_of(const AskedLook& asked, const std::string& format) {
+FigureStyle look_of(const FigureStyleTuple& asked, const std::string& format) {
     const auto& [views, size, scale, page, columns, dark, transparent] = asked;
-    Look look;
+    FigureStyle look;
     look.views = views;
     look.size = {size[0], size[1], scale};
     look.page = {page[0], page[1], page[2], page[3]};
@@ -26,7 +26,7 @@ Look look_of(const AskedLook& asked, const std::string& format) {
     return look;
 }
 
-void add(std::vector<std::string>& words, const Look& look) {
+void add(std::vector<std::string>& words, const FigureStyle& look) {
     const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
     for (const std::string& view : look.views) add("--view", view);
     if (look.page.width > 0.0) {
@@ -43,14 +43,14 @@ void add(std::vector<std::string>& words, const Look& look) {
     if (look.style.transparent) words.emplace_back("--transparent");
 }
 
-std::string picture_of(const Figure& figure, const Look& look, const std::string& format, const std::string& command,
-                       const std::vector<Source>& sources, const Trajectory& shown) {
+std::string picture_of(const Figure& figure, const FigureStyle& look, const std::string& format,
+                       const std::string& command, const std::vector<Source>& sources, const Trajectory& shown) {
     const Origin origin{"Achilles " + version(), command, "", sources};
     return achilles::picture_of(figure, size_of(look.page, look.size, figure, format),
                                 notes(origin, {{sources[0].name, &shown}}), format);
 }
 
-py::bytes unlocked(const std::function<std::string()>& make) {
+py::bytes without_gil(const std::function<std::string()>& make) {
     std::string bytes;
     {
         const py::gil_scoped_release released;

@@ -16,8 +16,8 @@ namespace py = pybind11;
 
 namespace achilles::python {
 
-void work_and_listen(const std::function<void()>& work, const std::function<void()>& stop,
-                     const std::function<void()>& tick) {
+void run_interruptibly(const std::function<void()>& work, const std::function<void()>& stop,
+                       const std::function<void()>& tick) {
     constexpr std::chrono::milliseconds between(50);
     std::mutex mutex;
     std::condition_variable changed;

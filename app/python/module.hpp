@@ -22,30 +22,30 @@
 namespace achilles::python {
 
 // A system, ready for runs. Immutable.
-struct System {
-    System(std::string text, std::string name);
+struct PythonSystem {
+    PythonSystem(std::string text, std::string name);
     std::string name;  // name in the gallery, a path, or "<text>"
     std::shared_ptr<const Model> model;
 };
 
 // Arguments of one run: settings as for --set, and options by flag, as typed.
-struct Asked {
+struct RunArguments {
     std::vector<std::string> settings;
     std::map<std::string, std::string> options;
 };
-OptionOverrides overrides_of(const Asked& asked);
-Run run_of(const System& system, const Asked& asked);
+OptionOverrides overrides_of(const RunArguments& asked);
+Run run_of(const PythonSystem& system, const RunArguments& asked);
 // The warnings that the command line would print.
-std::vector<std::string> warnings_of(const System& system, const Run& run);
+std::vector<std::string> warnings_of(const PythonSystem& system, const Run& run);
 
 // Runs `work` on another thread while this thread, without the GIL, polls for signals. If a signal raises an exception
 // (Ctrl-C), calls `stop` and rethrows it when the work has ended. Calls `tick` at intervals, with the GIL; an exception
 // from it is treated like a signal.
-void work_and_listen(const std::function<void()>& work, const std::function<void()>& stop,
-                     const std::function<void()>& tick);
+void run_interruptibly(const std::function<void()>& work, const std::function<void()>& stop,
+                       const std::function<void()>& tick);
 
 // Appearance of a figure: the views of these names, or all if there are none; size and style.
-struct Look {
+struct FigureStyle {
     std::vector<std::string> views;
     PictureSize size;
     PaperSize page;
@@ -53,18 +53,18 @@ struct Look {
 };
 // The same as a Python tuple: views, size in pixels, scale, page (width and height in mm, font in pt, dpi), columns,
 // dark, transparent.
-using AskedLook =
+using FigureStyleTuple =
     std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
 // Converts it for a picture format. Throws InputError.
-Look look_of(const AskedLook& asked, const std::string& format);
+FigureStyle look_of(const FigureStyleTuple& asked, const std::string& format);
 // Appends the equivalent options of the command line.
-void add(std::vector<std::string>& words, const Look& look);
+void add(std::vector<std::string>& words, const FigureStyle& look);
 // The picture as file content, with the command line that reproduces it and the files which that reads, the system
 // first.
-std::string picture_of(const Figure& figure, const Look& look, const std::string& format, const std::string& command,
-                       const std::vector<Source>& sources, const Trajectory& shown);
+std::string picture_of(const Figure& figure, const FigureStyle& look, const std::string& format,
+                       const std::string& command, const std::vector<Source>& sources, const Trajectory& shown);
 // Calls `make` without the GIL and returns the result.
-pybind11::bytes unlocked(const std::function<std::string()>& make);
+pybind11::bytes without_gil(const std::function<std::string()>& make);
 
 // For classes whose objects only this module creates. The default __new__ would leave their value uninitialized, and
 // any method call would read invalid memory. Construction, copying and unpickling raise TypeError instead.

@@ -4,7 +4,7 @@
 #include "module.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace py = pybind11;
 
@@ -13,18 +13,18 @@ namespace achilles::python {
 namespace {
 
 // An orbit request and its result.
-struct Found {
-    std::shared_ptr<const System> system;
+struct PythonOrbit {
+    std::shared_ptr<const PythonSystem> system;
     std::vector<std::string> words;  // the equivalent command line, without options of a picture
     std::vector<Source> sources;     // files that the command line reads
-    OrbitAnswer answer;
+    OrbitResult answer;
     std::vector<std::string> warnings;
 
     const Orbit& orbit() const { return *answer.orbit; }
     const Branch* branch() const { return answer.branch ? &*answer.branch : nullptr; }
 };
 
-std::vector<std::string> words_of(const System& system, const AskedOrbit& asked, const Asked& of_run) {
+std::vector<std::string> words_of(const PythonSystem& system, const OrbitOptions& asked, const RunArguments& of_run) {
     std::vector<std::string> words{"orbit", system.name};
     const auto add = [&](const std::string& flag, const std::string& value) {
         if (!value.empty()) words.insert(words.end(), {flag, value});
@@ -40,10 +40,10 @@ std::vector<std::string> words_of(const System& system, const AskedOrbit& asked,
 }
 
 // `json`: the content of the file named by `from`, if the search starts at a state.
-std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, AskedOrbit asked,
-                                const std::optional<std::string>& json, const Asked& of_run) {
+std::shared_ptr<PythonOrbit> found_by(const std::shared_ptr<const PythonSystem>& system, OrbitOptions asked,
+                                      const std::optional<std::string>& json, const RunArguments& of_run) {
     const Model& model = *system->model;
-    const auto found = std::make_shared<Found>();
+    const auto found = std::make_shared<PythonOrbit>();
     found->system = system;
     found->words = words_of(*system, asked, of_run);
     found->sources = {{Source::Kind::system, system->name, model.description().source_text}};
@@ -56,22 +56,22 @@ std::shared_ptr<Found> found_by(const std::shared_ptr<const System>& system, Ask
         found->sources.push_back({Source::Kind::system, asked.from, *json});
     }
     const Run run = run_of(*system, of_run);
-    check_asked(model, run, asked.settings);
+    validate_overrides(model, run, asked.settings);
     found->warnings = warnings_of(*system, run);
     std::stop_source source;
-    OrbitWatch watch;
+    OrbitMonitor watch;
     watch.stop = source.get_token();
     const auto work = [&] {
-        found->answer = answer_to(make_orbit_question(asked, run, system->model), system->model, &watch);
+        found->answer = solve_orbit_request(parse_orbit_request(asked, run, system->model), system->model, &watch);
     };
-    work_and_listen(
+    run_interruptibly(
         work, [&] { source.request_stop(); }, [] {});
     return found;
 }
 
 // The same picture as `achilles orbit --out`.
-std::string draw(const Found& found, const AskedLook& asked, const std::string& format) {
-    const Look look = look_of(asked, format);
+std::string draw(const PythonOrbit& found, const FigureStyleTuple& asked, const std::string& format) {
+    const FigureStyle look = look_of(asked, format);
     const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
     const Figure figure = found.branch() != nullptr ? compose_branch(found.orbit(), *found.branch(), views, look.style)
                                                     : publication(found.orbit().run, views, look.style);
@@ -81,10 +81,10 @@ std::string draw(const Found& found, const AskedLook& asked, const std::string& 
 }
 
 // The arguments that turn the file's run into one period of the orbit.
-Asked of_period(const Found& found) {
+RunArguments of_period(const PythonOrbit& found) {
     const Model& model = *found.system->model;
     const std::vector<std::string> words = run_options(model.description(), model.default_run(), found.orbit().run.run);
-    Asked asked;
+    RunArguments asked;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
         if (words[i] == "--set")
             asked.settings.push_back(words[i + 1]);
@@ -98,27 +98,27 @@ Asked of_period(const Found& found) {
 
 void bind_orbits(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<Found, std::shared_ptr<Found>>(module, "Orbit", made_here_alone())
-        .def_readonly("warnings", &Found::warnings)
+    py::class_<PythonOrbit, std::shared_ptr<PythonOrbit>>(module, "Orbit", made_here_alone())
+        .def_readonly("warnings", &PythonOrbit::warnings)
         // If no orbit was found: the reason. The other properties must not be used then.
-        .def_property_readonly("why", [](const Found& f) { return f.answer.orbit ? "" : f.answer.why; })
-        .def_property_readonly("command", [](const Found& f) { return shell_line(f.words); })
+        .def_property_readonly("why", [](const PythonOrbit& f) { return f.answer.orbit ? "" : f.answer.reason; })
+        .def_property_readonly("command", [](const PythonOrbit& f) { return shell_line(f.words); })
         .def("of_period",
-             [](const Found& f) {
-                 const Asked asked = of_period(f);
+             [](const PythonOrbit& f) {
+                 const RunArguments asked = of_period(f);
                  return std::pair(asked.settings, asked.options);
              })
         .def(
-            "summary", [](const Found& f) { return orbit_answer(f.orbit(), f.branch()); }, released)
+            "summary", [](const PythonOrbit& f) { return orbit_answer(f.orbit(), f.branch()); }, released)
         .def(
-            "json", [](const Found& f) { return to_json(f.orbit(), f.branch()); }, released)
-        .def("figure", [](const Found& f, const AskedLook& look, const std::string& format) {
-            return unlocked([&] { return draw(f, look, format); });
+            "json", [](const PythonOrbit& f) { return to_json(f.orbit(), f.branch()); }, released)
+        .def("figure", [](const PythonOrbit& f, const FigureStyleTuple& look, const std::string& format) {
+            return without_gil([&] { return draw(f, look, format); });
         });
     module.def("orbit",
-               [](const std::shared_ptr<const System>& system, std::string from, const std::optional<std::string>& json,
-                  std::string period, std::vector<std::string> shifts, std::string along,
-                  std::vector<std::string> settings, std::map<std::string, std::string> options) {
+               [](const std::shared_ptr<const PythonSystem>& system, std::string from,
+                  const std::optional<std::string>& json, std::string period, std::vector<std::string> shifts,
+                  std::string along, std::vector<std::string> settings, std::map<std::string, std::string> options) {
                    return found_by(system, {std::move(from), std::move(period), std::move(shifts), std::move(along)},
                                    json, {std::move(settings), std::move(options)});
                });

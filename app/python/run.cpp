@@ -5,14 +5,14 @@
 #include <mutex>
 #include <optional>
 
-#include "depend/error_estimate.hpp"
-#include "depend/quantities.hpp"
 #include "module.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
-#include "session/recipe.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "sensitivity/quantities.hpp"
+#include "session/replay_script.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/simulate.hpp"
 
@@ -30,9 +30,9 @@ struct Table {
     py::ssize_t coordinates = 0;
 };
 
-struct Made {
-    std::shared_ptr<const System> system;
-    Asked asked;
+struct PythonRun {
+    std::shared_ptr<const PythonSystem> system;
+    RunArguments asked;
     Trajectory trajectory;
     std::vector<std::string> warnings;
     // Computed on first use: it takes longer than the run.
@@ -72,13 +72,13 @@ std::shared_ptr<const Table> table_of(const Trajectory& trajectory, const std::v
 }
 
 // The arrays of a run, t first; by default at the rows of its CSV.
-py::dict arrays_of(const std::shared_ptr<Made>& made, const std::optional<Times>& times) {
+py::dict arrays_of(const std::shared_ptr<PythonRun>& made, const std::optional<Times>& times) {
     std::shared_ptr<const Table> table;
     {
         const std::vector<double> instants =
             times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
         const py::gil_scoped_release released;
-        const Ground ground;
+        const FloatEnvironmentGuard ground;
         table = table_of(made->trajectory,
                          times ? samples_at(made->trajectory, instants) : samples_of_curve(made->trajectory));
     }
@@ -92,13 +92,13 @@ py::dict arrays_of(const std::shared_ptr<Made>& made, const std::optional<Times>
 }
 
 // Values of a view expression, at the given times or at the rows of the CSV.
-py::array_t<double> values_of(const Made& made, const std::string& expression, const std::optional<Times>& times) {
+py::array_t<double> values_of(const PythonRun& made, const std::string& expression, const std::optional<Times>& times) {
     const std::vector<double> instants =
         times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
     std::vector<double> values;
     {
         const py::gil_scoped_release released;
-        const Ground ground;
+        const FloatEnvironmentGuard ground;
         const Trajectory& trajectory = made.trajectory;
         const std::array<Text, 1> texts{Text{expression, {}}};
         const Program program = trajectory.model->compile_view(texts);
@@ -112,19 +112,19 @@ py::array_t<double> values_of(const Made& made, const std::string& expression, c
     return py::array_t<double>(static_cast<py::ssize_t>(values.size()), values.data());
 }
 
-std::shared_ptr<Made> made_from(const std::shared_ptr<const System>& system, std::vector<std::string> settings,
-                                std::map<std::string, std::string> options) {
-    const auto made = std::make_shared<Made>();
+std::shared_ptr<PythonRun> made_from(const std::shared_ptr<const PythonSystem>& system,
+                                     std::vector<std::string> settings, std::map<std::string, std::string> options) {
+    const auto made = std::make_shared<PythonRun>();
     made->system = system;
     made->asked = {std::move(settings), std::move(options)};
     const Run run = run_of(*system, made->asked);
-    check_asked(*system->model, run, made->asked.settings);
+    validate_overrides(*system->model, run, made->asked.settings);
     made->warnings = warnings_of(*system, run);
     std::stop_source source;
-    Watch watch;
+    RunMonitor watch;
     watch.stop = source.get_token();
-    work_and_listen([&] { made->trajectory = simulate(system->model, run, &watch); }, [&] { source.request_stop(); },
-                    [] {});
+    run_interruptibly([&] { made->trajectory = simulate(system->model, run, &watch); }, [&] { source.request_stop(); },
+                      [] {});
     return made;
 }
 
@@ -134,7 +134,7 @@ Instants instants_from(const std::optional<Times>& times) {
 }
 
 // The equivalent command line, which pictures store.
-std::string command_of(const Made& made, const Look& look) {
+std::string command_of(const PythonRun& made, const FigureStyle& look) {
     const Model& model = *made.system->model;
     std::vector<std::string> words{"figure", made.system->name};
     add(words, look);
@@ -144,8 +144,8 @@ std::string command_of(const Made& made, const Look& look) {
 }
 
 // The same picture as `achilles figure`.
-std::string draw(const Made& made, const AskedLook& asked, const std::string& format) {
-    const Look look = look_of(asked, format);
+std::string draw(const PythonRun& made, const FigureStyleTuple& asked, const std::string& format) {
+    const FigureStyle look = look_of(asked, format);
     const SystemDescription& description = made.system->model->description();
     return picture_of(publication(made.trajectory, views_of(description, look.views), look.style, nullptr,
                                   horizon_before_end(made.trajectory, made.estimate())),
@@ -157,48 +157,48 @@ std::string draw(const Made& made, const AskedLook& asked, const std::string& fo
 
 void bind_runs(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<Made, std::shared_ptr<Made>>(module, "Run", made_here_alone())
-        .def_readonly("warnings", &Made::warnings)
-        .def_property_readonly("settings", [](const Made& m) { return m.asked.settings; })
-        .def_property_readonly("given", [](const Made& m) { return m.asked.options; })
-        .def_property_readonly("start_time", [](const Made& m) { return m.trajectory.run.options.start_time; })
-        .def_property_readonly("end_time", [](const Made& m) { return m.trajectory.end_time; })
-        .def_property_readonly("outcome", [](const Made& m) { return to_text(m.trajectory.outcome.kind); })
-        .def_property_readonly("message", [](const Made& m) { return m.trajectory.outcome.message; })
-        .def_property_readonly("seconds", [](const Made& m) { return m.trajectory.statistics.seconds; })
+    py::class_<PythonRun, std::shared_ptr<PythonRun>>(module, "Run", made_here_alone())
+        .def_readonly("warnings", &PythonRun::warnings)
+        .def_property_readonly("settings", [](const PythonRun& m) { return m.asked.settings; })
+        .def_property_readonly("given", [](const PythonRun& m) { return m.asked.options; })
+        .def_property_readonly("start_time", [](const PythonRun& m) { return m.trajectory.run.options.start_time; })
+        .def_property_readonly("end_time", [](const PythonRun& m) { return m.trajectory.end_time; })
+        .def_property_readonly("outcome", [](const PythonRun& m) { return to_text(m.trajectory.outcome.kind); })
+        .def_property_readonly("message", [](const PythonRun& m) { return m.trajectory.outcome.message; })
+        .def_property_readonly("seconds", [](const PythonRun& m) { return m.trajectory.statistics.seconds; })
         .def(
             "remarks",
-            [](const Made& m) {
+            [](const PythonRun& m) {
                 std::vector<std::string> sentences;
-                for (const Remark& remark : remarks(m.trajectory)) sentences.push_back(remark.sentence);
+                for (const RunWarning& remark : remarks(m.trajectory)) sentences.push_back(remark.sentence);
                 return sentences;
             },
             released)
         .def_property_readonly("trusted_until",
-                               [](const Made& m) {
-                                   const py::gil_scoped_release unlocked;
+                               [](const PythonRun& m) {
+                                   const py::gil_scoped_release without_gil;
                                    return m.estimate().trusted_until;
                                })
         .def("arrays", &arrays_of)
         .def("values", &values_of)
         .def(
             "summary",
-            [](const Made& m) {
+            [](const PythonRun& m) {
                 return answer(m.trajectory, m.estimate(),
                               prove_line(m.system->name, m.asked.settings, overrides_of(m.asked)));
             },
             released)
         .def("json",
-             [](const Made& m, const std::optional<Times>& times) {
+             [](const PythonRun& m, const std::optional<Times>& times) {
                  const Instants instants = instants_from(times);
-                 const py::gil_scoped_release unlocked;
+                 const py::gil_scoped_release without_gil;
                  return to_json(m.trajectory, instants, nullptr, &m.estimate());
              })
         // The run repeated with derivatives, and the derivatives of expressions.
         .def(
             "dependence",
-            [](const Made& m, std::vector<std::string> of) {
-                const Ground ground;
+            [](const PythonRun& m, std::vector<std::string> of) {
+                const FloatEnvironmentGuard ground;
                 const Quantities quantities(m.system->model, std::move(of));
                 Dependence dependence{differentiate(m.trajectory), {}};
                 dependence.quantities = quantities.of(m.trajectory, dependence.derivatives);
@@ -206,13 +206,13 @@ void bind_runs(py::module_& module) {
             },
             released)
         .def("csv",
-             [](const Made& m, const std::optional<Times>& times, bool plain_names, bool units) {
+             [](const PythonRun& m, const std::optional<Times>& times, bool plain_names, bool units) {
                  const CsvStyle style{instants_from(times), plain_names, units};
-                 const py::gil_scoped_release unlocked;
+                 const py::gil_scoped_release without_gil;
                  return to_csv(m.trajectory, style);
              })
-        .def("figure", [](const Made& m, const AskedLook& look, const std::string& format) {
-            return unlocked([&] { return draw(m, look, format); });
+        .def("figure", [](const PythonRun& m, const FigureStyleTuple& look, const std::string& format) {
+            return without_gil([&] { return draw(m, look, format); });
         });
     module.def("simulate", &made_from);
     module.def("equidistant", &equidistant);

@@ -5,11 +5,11 @@
 #include <map>
 #include <mutex>
 
+#include "analysis/chunks.hpp"
 #include "cli/overrides.hpp"
 #include "module.hpp"
 #include "output/contacts.hpp"
 #include "output/sweep_files.hpp"
-#include "study/chunks.hpp"
 
 namespace py = pybind11;
 
@@ -66,7 +66,7 @@ py::array owned(std::vector<double>&& numbers, py::ssize_t width) {
 
 // Each axis: its values along the axis, on the grid, and in every row.
 py::list axes_of(const SweepTable& table, const Columns& columns) {
-    const Sweep& sweep = table.sweep();
+    const SweepSpec& sweep = table.sweep();
     py::list axes;
     for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
         const SweepAxis& axis = sweep.axes[i];
@@ -79,7 +79,7 @@ py::list axes_of(const SweepTable& table, const Columns& columns) {
     return axes;
 }
 
-py::dict told(const System& system, const SweepTable& table, Columns columns) {
+py::dict told(const PythonSystem& system, const SweepTable& table, Columns columns) {
     constexpr std::array<const char*, 3> kinds{"number", "held", "outcome"};
     py::list prints;
     for (const RunMeasures::Column& column : table.measures().columns())
@@ -100,8 +100,8 @@ py::dict told(const System& system, const SweepTable& table, Columns columns) {
     return result;
 }
 
-py::dict swept(const std::shared_ptr<const System>& system, AskedSweep sweep, const Asked& asked, int threads,
-               const py::object& progress) {
+py::dict swept(const std::shared_ptr<const PythonSystem>& system, SweepOptions sweep, const RunArguments& asked,
+               int threads, const py::object& progress) {
     sweep.fixed = fixed_names(asked.settings, overrides_of(asked));
     const SweepTable table(system->model, make_sweep(sweep, run_of(*system, asked), system->model->description()));
     const std::uint64_t points = table.sweep().count();
@@ -116,7 +116,7 @@ py::dict swept(const std::shared_ptr<const System>& system, AskedSweep sweep, co
         append(columns, table, rows_from(bytes, table));
         done = chunk.first + chunk.count;
     };
-    work_and_listen([&] { do_chunks(0, points, threads, task, write, stop); }, [&] { stop = true; }, tick);
+    run_interruptibly([&] { do_chunks(0, points, threads, task, write, stop); }, [&] { stop = true; }, tick);
     tick();
     return told(*system, table, std::move(columns));
 }
@@ -125,7 +125,7 @@ py::dict swept(const std::shared_ptr<const System>& system, AskedSweep sweep, co
 
 void bind_sweeps(py::module_& module) {
     using Text = std::optional<std::string>;
-    module.def("sweep", [](const std::shared_ptr<const System>& system, std::vector<std::string> over,
+    module.def("sweep", [](const std::shared_ptr<const PythonSystem>& system, std::vector<std::string> over,
                            std::vector<std::string> prints, const Text& at, const Text& after, const Text& random,
                            const Text& seed, std::vector<std::string> settings,
                            std::map<std::string, std::string> options, int threads, const py::object& progress) {

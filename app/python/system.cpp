@@ -6,7 +6,7 @@
 
 #include "check/check.hpp"
 #include "cli/assets.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "module.hpp"
@@ -16,10 +16,10 @@ namespace py = pybind11;
 
 namespace achilles::python {
 
-System::System(std::string text, std::string name_)
+PythonSystem::PythonSystem(std::string text, std::string name_)
     : name(std::move(name_)), model(std::make_shared<const Model>(parse_system(std::move(text), name))) {}
 
-OptionOverrides overrides_of(const Asked& asked) {
+OptionOverrides overrides_of(const RunArguments& asked) {
     OptionOverrides overrides;
     for (const Option& option : all_options())
         for (const std::string& flag : {std::string(option.flag), common_flag(option)})
@@ -28,11 +28,11 @@ OptionOverrides overrides_of(const Asked& asked) {
     return overrides;
 }
 
-Run run_of(const System& system, const Asked& asked) {
-    return asked_run(system.model->description(), asked.settings, overrides_of(asked));
+Run run_of(const PythonSystem& system, const RunArguments& asked) {
+    return requested_run(system.model->description(), asked.settings, overrides_of(asked));
 }
 
-std::vector<std::string> warnings_of(const System& system, const Run& run) {
+std::vector<std::string> warnings_of(const PythonSystem& system, const Run& run) {
     const SystemDescription& description = system.model->description();
     std::vector<std::string> all = warnings(run.options);
     for (const auto& more : {outside_ranges(description, run), unseen_lines(description)})
@@ -60,12 +60,12 @@ py::list option_table() {
         if (const std::string common = common_flag(option);
             common != option.flag && &option == &options_set_by(option.command)[0])
             add(option.command, common, "set eps_q, eps_v and eps_t together", option);
-        add(option.key, std::string(option.flag), option.about, option);
+        add(option.key, std::string(option.flag), option.help, option);
     }
     return rows;
 }
 
-py::dict parameters_of(const System& system) {
+py::dict parameters_of(const PythonSystem& system) {
     const Run run = system.model->default_run();
     const SystemDescription& description = system.model->description();
     py::dict values;
@@ -76,14 +76,14 @@ py::dict parameters_of(const System& system) {
     return values;
 }
 
-py::dict options_of(const System& system) {
+py::dict options_of(const PythonSystem& system) {
     py::dict values;
     for (const Option& option : all_options())
         values[py::str(std::string(option.key))] = value_of(option.get(system.model->description().options));
     return values;
 }
 
-py::dict units_of(const System& system) {
+py::dict units_of(const PythonSystem& system) {
     const SystemDescription& description = system.model->description();
     py::dict units;
     for (const std::string& name : settable_names(description))
@@ -92,7 +92,7 @@ py::dict units_of(const System& system) {
 }
 
 // Each coordinate's name, and its initial value and rate.
-std::vector<std::tuple<std::string, double, double>> start_of(const System& system) {
+std::vector<std::tuple<std::string, double, double>> start_of(const PythonSystem& system) {
     std::vector<std::tuple<std::string, double, double>> start;
     for (const CoordinateDescription& coordinate : system.model->description().coordinates)
         start.emplace_back(coordinate.name, coordinate.start, coordinate.rate);
@@ -107,7 +107,7 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
 }
 
 // The derived equations as displayed formulas, each with its description: (words, LaTeX).
-std::vector<std::pair<std::string, std::string>> equations_of(const System& system) {
+std::vector<std::pair<std::string, std::string>> equations_of(const PythonSystem& system) {
     const EquationSheet sheet = equation_sheet(*system.model, system.model->default_run());
     std::vector<std::pair<std::string, std::string>> equations;
     std::string words;
@@ -132,22 +132,25 @@ std::vector<std::pair<std::string, std::string>> equations_of(const System& syst
 }  // namespace
 
 void bind_systems(py::module_& module) {
-    py::class_<System, std::shared_ptr<System>>(module, "System", made_here_alone())
-        .def_readonly("name", &System::name)
-        .def_property_readonly("title", [](const System& s) { return s.model->description().title; })
-        .def_property_readonly("source", [](const System& s) { return s.model->description().source; })
-        .def_property_readonly("text", [](const System& s) { return s.model->description().source_text; })
+    py::class_<PythonSystem, std::shared_ptr<PythonSystem>>(module, "System", made_here_alone())
+        .def_readonly("name", &PythonSystem::name)
+        .def_property_readonly("title", [](const PythonSystem& s) { return s.model->description().title; })
+        .def_property_readonly("source", [](const PythonSystem& s) { return s.model->description().source; })
+        .def_property_readonly("text", [](const PythonSystem& s) { return s.model->description().source_text; })
         .def_property_readonly("start", &start_of)
         .def_property_readonly("parameters", &parameters_of)
-        .def_property_readonly("contacts", [](const System& s) { return names_of(s.model->description().constraints); })
-        .def_property_readonly("views", [](const System& s) { return names_of(s.model->description().views); })
-        .def_property_readonly("settable", [](const System& s) { return settable_names(s.model->description()); })
+        .def_property_readonly("contacts",
+                               [](const PythonSystem& s) { return names_of(s.model->description().constraints); })
+        .def_property_readonly("views", [](const PythonSystem& s) { return names_of(s.model->description().views); })
+        .def_property_readonly("settable", [](const PythonSystem& s) { return settable_names(s.model->description()); })
         .def_property_readonly("options", &options_of)
         .def_property_readonly("units", &units_of)
         .def("equations", &equations_of, py::call_guard<py::gil_scoped_release>());
     module.def(
         "system",
-        [](std::string text, std::string name) { return std::make_shared<System>(std::move(text), std::move(name)); },
+        [](std::string text, std::string name) {
+            return std::make_shared<PythonSystem>(std::move(text), std::move(name));
+        },
         py::call_guard<py::gil_scoped_release>());
     module.def("option_table", &option_table);
     module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& names) {

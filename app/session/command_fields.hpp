@@ -11,29 +11,29 @@
 namespace achilles::command {
 
 // What a command changes, which determines how undo treats it.
-enum class Change {
-    none,   // only the playback state; the error of the last change stays visible
-    view,   // the view, or a file: not undone
-    alone,  // the system or the run: one undo step
-    // As `alone`, but merged with the previous step if that set the same thing (the same first field).
-    together,
+enum class UndoPolicy {
+    none,      // only the playback state; the error of the last change stays visible
+    view,      // the view, or a file: not undone
+    own_step,  // the system or the run: one undo step
+    // As `own_step`, but merged with the previous step if that set the same thing (the same first field).
+    merge_with_previous,
 };
 
 // The value of a named quantity. A value typed with a unit (30 deg) keeps its text; the system checks whether the unit
 // fits.
-struct Given {
+struct ValueArgument {
     double value = 0.0;
     std::string text = {};
 
-    Given() = default;
-    Given(double number) : value(number) {}  // NOLINT: most are numbers
-    Given(double number, std::string said) : value(number), text(std::move(said)) {}
-    friend bool operator==(const Given&, const Given&) = default;
+    ValueArgument() = default;
+    ValueArgument(double number) : value(number) {}  // NOLINT: most are numbers
+    ValueArgument(double number, std::string said) : value(number), text(std::move(said)) {}
+    friend bool operator==(const ValueArgument&, const ValueArgument&) = default;
 };
 
 // Text format of a field. Default: strings, finite numbers and integers are one word; a list takes the rest of the
 // line.
-struct How {
+struct FieldFormat {
     // Words for a bool; if one is empty, that value is written by leaving the word out.
     std::string_view yes = {}, no = {};
     bool is_name = false;                              // the two words are names of the command itself, not arguments
@@ -48,47 +48,47 @@ struct How {
     bool may_lack = false;
     std::string_view complaint = {};  // error message; {} is the offending word and, for a string, the suggestion
 };
-constexpr How in_quotes{.in_quotes = true};
-constexpr How on_off{.yes = "on", .no = "off", .complaint = "'{}' is neither on nor off"};
-constexpr How x_or_y{.yes = "x", .no = "y", .complaint = "the axis must be x or y"};
-constexpr How length_after(std::string_view word) {
+constexpr FieldFormat in_quotes{.in_quotes = true};
+constexpr FieldFormat on_off{.yes = "on", .no = "off", .complaint = "'{}' is neither on nor off"};
+constexpr FieldFormat x_or_y{.yes = "x", .no = "y", .complaint = "the axis must be x or y"};
+constexpr FieldFormat length_after(std::string_view word) {
     return {.fits = [](double x) { return x > 0.0; }, .after = word, .complaint = "this must be above 0, not {}"};
 }
-constexpr How overwrite{.yes = "overwrite", .complaint = "'{}' is not expected here"};
+constexpr FieldFormat overwrite{.yes = "overwrite", .complaint = "'{}' is not expected here"};
 
 template <class Kind, class Value>
 struct Field {
     Value Kind::*member;
-    How how{};
+    FieldFormat how{};
 
-    constexpr Field(Value Kind::*of_it, const How& written) : member(of_it), how(written) {}
+    constexpr Field(Value Kind::*of_it, const FieldFormat& written) : member(of_it), how(written) {}
     constexpr explicit Field(Value Kind::*of_it) : member(of_it) {}
 };
 
 template <class... Fields>
-struct Said {
+struct CommandSpec {
     std::string_view name;
     std::string_view usage;  // error text for a malformed line; {} is the name
-    Change change;
+    UndoPolicy change;
     std::tuple<Fields...> fields;  // members, or Fields if they need a format
 
-    constexpr Said(std::string_view called, std::string_view written, Change changed, Fields... of_it)
+    constexpr CommandSpec(std::string_view called, std::string_view written, UndoPolicy changed, Fields... of_it)
         : name(called), usage(written), change(changed), fields(of_it...) {}
 };
 constexpr std::string_view alone = "it takes no arguments";
 
 template <class Kind>
-concept Spoken = requires {
-    Kind::said;
+concept HasCommandSpec = requires {
+    Kind::spec;
 };
 
 // Calls what(Field) for every field of a command type, in order.
-template <Spoken Kind, class What>
+template <HasCommandSpec Kind, class What>
 constexpr void for_each_field(const What& what) {
-    std::apply([&](const auto&... field) { (what(Field(field)), ...); }, Kind::said.fields);
+    std::apply([&](const auto&... field) { (what(Field(field)), ...); }, Kind::spec.fields);
 }
 
-template <Spoken Kind>
+template <HasCommandSpec Kind>
 bool operator==(const Kind& a, const Kind& b) {
     bool same = true;
     for_each_field<Kind>([&](const auto& field) { same = same && a.*field.member == b.*field.member; });

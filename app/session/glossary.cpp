@@ -8,42 +8,47 @@ namespace achilles {
 namespace {
 
 constexpr std::array terms{
-    Term{"gap", "gap >= 0", "How far a contact is from closing. It is never negative.", "theory 1"},
-    Term{"hybrid phase", "M*a + b = 0", "Free flight and impacts, as long as no contact is held.", "paper (2), Def. 4"},
-    Term{"impact", "v(after) = v(before) - (1 + e)*gap'*n",
-         "The gap closes, and the velocity jumps along n, the direction of the impulse.", "paper (4)"},
-    Term{"impact speed", "w = -gap'(before)", "How fast the gap closes at an impact.", "theory 3"},
-    Term{"restitution", "e = -gap'(after)/gap'(before)",
-         "The normal speed after an impact over that before: 0 is plastic, 1 is elastic.", "paper (4)"},
-    Term{"normal acceleration", "gap''",
-         "Of the gap in free motion. Where it is negative, the bodies are pressed together.", "paper (8)"},
-    Term{"Zeno point", "gap = 0, gap' = 0, gap'' < 0",
-         "The limit of infinitely many impacts in finite time: with 0 < e < 1 each flight is about e times the last.",
-         "paper, Thm. 2"},
-    Term{"truncation", "w < c1, w < c2, w < c3",
-         "Impacts are cut at the first one where the error of the cut is certified to be small.", "paper, Def. 7"},
-    Term{"conditions", "a_min <= -gap'' <= a_max",
-         "What is certified before the cut: the paper's inequalities, or sharp ones with their own neighborhood.",
-         "paper (9)-(11); theory 6"},
-    Term{"certificate", "t(Zeno) - t(cut) <= A*w",
-         "Interval bounds on the Zeno time, and on the distance of the true Zeno point from the computed one.",
-         "paper, Thm. 3; theory 4"},
-    Term{
+    GlossaryTerm{"gap", "gap >= 0", "How far a contact is from closing. It is never negative.", "theory 1"},
+    GlossaryTerm{"hybrid phase", "M*a + b = 0", "Free flight and impacts, as long as no contact is held.",
+                 "paper (2), Def. 4"},
+    GlossaryTerm{"impact", "v(after) = v(before) - (1 + e)*gap'*n",
+                 "The gap closes, and the velocity jumps along n, the direction of the impulse.", "paper (4)"},
+    GlossaryTerm{"impact speed", "w = -gap'(before)", "How fast the gap closes at an impact.", "theory 3"},
+    GlossaryTerm{"restitution", "e = -gap'(after)/gap'(before)",
+                 "The normal speed after an impact over that before: 0 is plastic, 1 is elastic.", "paper (4)"},
+    GlossaryTerm{"normal acceleration", "gap''",
+                 "Of the gap in free motion. Where it is negative, the bodies are pressed together.", "paper (8)"},
+    GlossaryTerm{
+        "Zeno point", "gap = 0, gap' = 0, gap'' < 0",
+        "The limit of infinitely many impacts in finite time: with 0 < e < 1 each flight is about e times the last.",
+        "paper, Thm. 2"},
+    GlossaryTerm{"truncation", "w < c1, w < c2, w < c3",
+                 "Impacts are cut at the first one where the error of the cut is certified to be small.",
+                 "paper, Def. 7"},
+    GlossaryTerm{
+        "conditions", "a_min <= -gap'' <= a_max",
+        "What is certified before the cut: the paper's inequalities, or sharp ones with their own neighborhood.",
+        "paper (9)-(11); theory 6"},
+    GlossaryTerm{"certificate", "t(Zeno) - t(cut) <= A*w",
+                 "Interval bounds on the Zeno time, and on the distance of the true Zeno point from the computed one.",
+                 "paper, Thm. 3; theory 4"},
+    GlossaryTerm{
         "restart", "v(after) = v - gap'*n",
         "Where the motion continues after the cut: by a plastic impact (kinetic), or the paper's Euclidean projection.",
         "paper, Def. 7; theory 5"},
-    Term{"constrained phase", "gap = 0, gap' = 0, lambda > 0", "The contact is held: the motion stays on the surface.",
-         "paper (5), Def. 5"},
-    Term{"contact force", "lambda = -gap''/W", "The force that holds the gap closed. It can push, but not pull.",
-         "paper (6)"},
-    Term{"release", "lambda = 0", "The contact force has fallen to zero, and the body leaves the surface.",
-         "paper, Def. 5"},
-    Term{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
-         "paper, Defs. 4, 5"},
-    Term{"work and loss", "energy = energy(0) + work - loss",
-         "Work is done by forces, dampers (negative) and moving contacts; loss is what impacts dissipate.", ""},
-    Term{"undecided", "",
-         "Double precision cannot decide what comes next, even at the minimum tolerances: the run stops.", "theory 6"},
+    GlossaryTerm{"constrained phase", "gap = 0, gap' = 0, lambda > 0",
+                 "The contact is held: the motion stays on the surface.", "paper (5), Def. 5"},
+    GlossaryTerm{"contact force", "lambda = -gap''/W",
+                 "The force that holds the gap closed. It can push, but not pull.", "paper (6)"},
+    GlossaryTerm{"release", "lambda = 0", "The contact force has fallen to zero, and the body leaves the surface.",
+                 "paper, Def. 5"},
+    GlossaryTerm{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
+                 "paper, Defs. 4, 5"},
+    GlossaryTerm{"work and loss", "energy = energy(0) + work - loss",
+                 "Work is done by forces, dampers (negative) and moving contacts; loss is what impacts dissipate.", ""},
+    GlossaryTerm{"undecided", "",
+                 "Double precision cannot decide what comes next, even at the minimum tolerances: the run stops.",
+                 "theory 6"},
 };
 
 constexpr std::array keys{
@@ -84,7 +89,7 @@ constexpr std::array keys{
 
 }  // namespace
 
-std::span<const Term> glossary() { return terms; }
+std::span<const GlossaryTerm> glossary() { return terms; }
 std::span<const Shortcut> shortcuts() { return keys; }
 
 std::string_view shortcut_of(std::string_view menu) {

@@ -9,7 +9,7 @@
 namespace achilles {
 
 // A technical term.
-struct Term {
+struct GlossaryTerm {
     std::string_view word;
     // In the notation of a system file, for typeset(). v is the velocity, n the direction of the impulse.
     std::string_view formula;
@@ -17,7 +17,7 @@ struct Term {
     std::string_view source;   // where it is defined: the paper, or the theory files of core for extensions
 };
 // In the order in which they occur in a run.
-std::span<const Term> glossary();
+std::span<const GlossaryTerm> glossary();
 
 // A keyboard or mouse shortcut.
 struct Shortcut {

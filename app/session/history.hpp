@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-template <class Moment>
+template <class UndoState>
 class History {
  public:
     bool can_undo() const { return !undone_to_.empty(); }
@@ -17,15 +17,15 @@ class History {
 
     // Records a command that led from state `before` to `now`. Commands without an effect are not recorded, and a step
     // is dropped again if later commands of it restore the original state.
-    void remember(const Command& command, const Moment& before, const Moment& now) {
+    void remember(const Command& command, const UndoState& before, const UndoState& now) {
         constexpr std::size_t most = 200;
-        if (change_of(command) < command::Change::alone) {
+        if (undo_policy_of(command) < command::UndoPolicy::own_step) {
             // Any other command ends the merging of changes. Seek does not, since it is part of dragging.
             if (!std::holds_alternative<command::Seek>(command)) changed_by_.reset();
             return;
         }
         if (now == before) return;
-        if (!changed_by_ || !goes_on(*changed_by_, command)) undone_to_.push_back(before);
+        if (!changed_by_ || !continues_edit(*changed_by_, command)) undone_to_.push_back(before);
         if (undone_to_.size() > most) undone_to_.erase(undone_to_.begin());
         redone_to_.clear();
         changed_by_ = command;
@@ -35,19 +35,19 @@ class History {
     }
 
     // Returns the state to go to; `now` is the current state. Requires can_undo() or can_redo().
-    Moment undo(Moment now) { return go(undone_to_, redone_to_, std::move(now)); }
-    Moment redo(Moment now) { return go(redone_to_, undone_to_, std::move(now)); }
+    UndoState undo(UndoState now) { return go(undone_to_, redone_to_, std::move(now)); }
+    UndoState redo(UndoState now) { return go(redone_to_, undone_to_, std::move(now)); }
 
  private:
-    Moment go(std::vector<Moment>& from, std::vector<Moment>& to, Moment now) {
+    UndoState go(std::vector<UndoState>& from, std::vector<UndoState>& to, UndoState now) {
         to.push_back(std::move(now));
-        Moment back = std::move(from.back());
+        UndoState back = std::move(from.back());
         from.pop_back();
         changed_by_.reset();
         return back;
     }
 
-    std::vector<Moment> undone_to_, redone_to_;
+    std::vector<UndoState> undone_to_, redone_to_;
     std::optional<Command> changed_by_;  // the last change, which the next command may continue
 };
 

@@ -141,7 +141,7 @@ Plot& Plots::at(int number) {
     return list_[static_cast<std::size_t>(number - 1)];
 }
 
-void Plots::perform(const command::Grid& command) {
+void Plots::perform(const command::SetGrid& command) {
     if (command.columns < 1 || command.columns > most_columns || command.rows < 1 || command.rows > most_rows)
         throw refusal(fmt::format("a grid of {} by {} plots cannot be shown", command.columns, command.rows),
                       fmt::format("there can be up to {} columns and {} rows", most_columns, most_rows));
@@ -166,16 +166,16 @@ void Plots::perform(const command::PlotView& command) {
 
 void Plots::perform(const command::Zoom& command) {
     const Framing before = at(command.plot).framing;
-    perform(command::Range{command.plot, false, command.y_low, command.y_high});
+    perform(command::SetRange{command.plot, false, command.y_low, command.y_high});
     try {
-        perform(command::Range{command.plot, true, command.x_low, command.x_high});
+        perform(command::SetRange{command.plot, true, command.x_low, command.x_high});
     } catch (const InputError&) {
         at(command.plot).framing = before;
         throw;
     }
 }
 
-void Plots::perform(const command::Range& command) {
+void Plots::perform(const command::SetRange& command) {
     Plot& plot = at(command.plot);
     if (!(command.low < command.high) || !std::isfinite(command.high - command.low))
         throw refusal(fmt::format("an axis cannot go from {} to {}", command.low, command.high));
@@ -313,7 +313,7 @@ void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
     if (x && y)
         steps.take(command::Zoom{number, (*goal.x)[0], (*goal.x)[1], (*goal.y)[0], (*goal.y)[1]});
     else if (x || y)
-        steps.take(command::Range{number, x, (*(x ? goal.x : goal.y))[0], (*(x ? goal.x : goal.y))[1]});
+        steps.take(command::SetRange{number, x, (*(x ? goal.x : goal.y))[0], (*(x ? goal.x : goal.y))[1]});
     for (const std::size_t curve : goal.hidden)
         if (!framing().hidden.contains(curve))
             steps.take(command::ShowCurve{number, static_cast<int>(curve) + 1, false});
@@ -322,7 +322,7 @@ void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
 std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_one) {
     Steps steps(plots);
     if (always_grid || steps.now.columns() != plots.columns() || steps.now.rows() != plots.rows())
-        steps.take(command::Grid{plots.columns(), plots.rows()});
+        steps.take(command::SetGrid{plots.columns(), plots.rows()});
     for (std::size_t i = 0; i < plots.list().size(); ++i) {
         const ViewDescription& view = plots.list()[i].view;
         if (same_expressions(view, steps.now.list()[i].view)) continue;

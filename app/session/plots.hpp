@@ -37,10 +37,10 @@ class Plots {
 
     // Each applies a command and increments revision(). Throws InputError and changes nothing if the command is
     // invalid.
-    void perform(const command::Grid& command);
+    void perform(const command::SetGrid& command);
     void perform(const command::PlotView& command);
     void perform(const command::Zoom& command);
-    void perform(const command::Range& command);
+    void perform(const command::SetRange& command);
     void perform(const command::Fit& command);
     void perform(const command::AxisScale& command);
     void perform(const command::ShowCurve& command);

@@ -14,7 +14,7 @@
 #include "number/angle.hpp"
 #include "output/contacts.hpp"
 #include "output/precision.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 
@@ -23,7 +23,7 @@ std::vector<VaryingInput> varying_inputs(std::span<const Run* const> runs, const
     for (std::size_t i = 1; i < runs.size(); ++i) {
         // Every list has the same order: a new name is inserted after the last match.
         std::size_t at = 0;
-        for (const Difference& difference : differences(description, *runs[i], *runs[0])) {
+        for (const RunDifference& difference : differences(description, *runs[i], *runs[0])) {
             auto found = std::find_if(all.begin(), all.end(),
                                       [&](const VaryingInput& input) { return input.name == difference.name; });
             if (found == all.end())
@@ -78,13 +78,13 @@ std::string told(double value, double error, int digits) {
 const std::string nothing = "\u2013";
 
 // An event in the table: a contact comes to rest, is released, or is opened by an impact.
-struct Step {
+struct RunStep {
     std::string name;
     double t = 0.0, error = 0.0;  // s
 };
 
-std::vector<Step> steps_of(const Trajectory& run, const Precision& precision) {
-    std::vector<Step> steps;
+std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision) {
+    std::vector<RunStep> steps;
     for (std::size_t i = 0; i < run.events.size(); ++i) {
         const Event& event = run.events[i];
         const double error = precision.of_event(i);
@@ -99,23 +99,23 @@ std::vector<Step> steps_of(const Trajectory& run, const Precision& precision) {
 }
 
 // Where the event sequences of two runs begin to differ.
-struct Parting {
+struct RunDivergence {
     std::string after;     // the last common event: "release 2"; empty: they differ from the start
     std::string sentence;  // the next event of each run
 };
-std::optional<Parting> parting(const std::vector<Step>& present, double present_end, const std::vector<Step>& other,
-                               double other_end) {
+std::optional<RunDivergence> parting(const std::vector<RunStep>& present, double present_end,
+                                     const std::vector<RunStep>& other, double other_end) {
     std::size_t same = 0;
     while (same < present.size() && same < other.size() && present[same].name == other[same].name) ++same;
     if (same == present.size() && same == other.size()) return std::nullopt;
-    Parting result;
+    RunDivergence result;
     if (same > 0) {
         const std::string& last = present[same - 1].name;
         const auto count = std::count_if(present.begin(), present.begin() + static_cast<std::ptrdiff_t>(same),
-                                         [&](const Step& step) { return step.name == last; });
+                                         [&](const RunStep& step) { return step.name == last; });
         result.after = fmt::format("{} {}", last, count);
     }
-    const auto goes_on = [&](const std::vector<Step>& steps, double end) {
+    const auto goes_on = [&](const std::vector<RunStep>& steps, double end) {
         return same < steps.size()
                    ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, steps[same].error, 5))
                    : fmt::format("no further event until {} s", told(end, 0.0, 5));
@@ -196,11 +196,11 @@ class Table {
     // events.
     void courses() {
         constexpr std::size_t most = 60;
-        const std::vector<std::vector<Step>>& all = courses_;
+        const std::vector<std::vector<RunStep>>& all = courses_;
         std::map<std::string, std::vector<std::vector<Value>>> times;  // per name and run: times of its occurrences
         std::vector<std::pair<std::string, std::size_t>> order;        // rows: name and number of the occurrence
         for (std::size_t i = 0; i < all.size(); ++i)
-            for (const Step& step : all[i]) {
+            for (const RunStep& step : all[i]) {
                 auto& of_runs = times[step.name];
                 of_runs.resize(all.size());
                 of_runs[i].push_back({step.t, step.error});
@@ -254,7 +254,7 @@ class Table {
     std::vector<const Trajectory*> runs_;
     std::vector<Precision> precisions_;
     int digits_;
-    std::vector<std::vector<Step>> courses_;
+    std::vector<std::vector<RunStep>> courses_;
     RunTable table_;
 };
 

@@ -7,10 +7,10 @@
 #include <utility>
 #include <vector>
 
-#include "depend/error_estimate.hpp"
+#include "figure/contact_geometry.hpp"
 #include "figure/figure.hpp"
-#include "figure/touch.hpp"
 #include "run/trajectory.hpp"
+#include "sensitivity/error_estimate.hpp"
 #include "simulate/sampler.hpp"
 #include "system/description.hpp"
 
@@ -31,7 +31,7 @@ struct PinnedRun {
         return *estimate ? horizon_before_end(*trajectory, **estimate) : std::nullopt;
     }
     // Contact geometry of its disks in the drawing of `touched`, for a world of size `touched_size`.
-    std::shared_ptr<const Touch> touch;
+    std::shared_ptr<const ContactGeometry> touch;
     std::shared_ptr<const Mechanism> touched;
     double touched_size = 0.0;
     std::string name;          // how it differs from the other runs; empty: no difference

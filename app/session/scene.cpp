@@ -6,12 +6,12 @@
 #include <cmath>
 #include <vector>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "session/command.hpp"
 
 namespace achilles {
 
-void Scene::perform(const command::Look& command) {
+void Scene::perform(const command::LookAt& command) {
     if (!(command.width > 0.0) || !std::isfinite(command.x) || !std::isfinite(command.y) ||
         !std::isfinite(command.width))
         throw refusal(fmt::format("a view {} wide cannot be shown", command.width));
@@ -24,7 +24,7 @@ void Scene::perform(const command::LookAll&) {
     camera_ = CameraMode::fit;
 }
 
-void Scene::perform(const command::Camera& command) {
+void Scene::perform(const command::SetCamera& command) {
     const auto mode = camera_mode_from(command.mode);
     if (!mode)
         throw refusal(
@@ -103,7 +103,7 @@ void Scene::perform(const command::Speed& command) {
 
 void Scene::perform(const command::Loop& command) { loops_ = command.on; }
 
-void Scene::perform(const command::Lens& command) {
+void Scene::perform(const command::ShowLens& command) {
     lens_ = std::clamp(command.from, -100.0, 1e9);
     shown_.insert("lens");
 }
@@ -113,7 +113,7 @@ double Scene::share(const std::string& panel) const {
     return found == shares_.end() ? 0.0 : found->second;
 }
 
-void Scene::perform(const command::Size& command) {
+void Scene::perform(const command::SetPanelSize& command) {
     if (!(command.share >= 0.0 && command.share < 1.0))
         throw refusal(fmt::format("a panel cannot take {} of the window", command.share));
     shares_[command.panel] = command.share;
@@ -145,7 +145,7 @@ std::vector<Command> steps_to(const Scene& scene) {
     std::vector<Command> steps;
     if (scene.look_) steps.emplace_back(*scene.look_);
     if (scene.camera() != (scene.look_ ? CameraMode::fixed : CameraMode::fit))
-        steps.emplace_back(command::Camera{std::string(to_text(scene.camera()))});
+        steps.emplace_back(command::SetCamera{std::string(to_text(scene.camera()))});
     Scene before;
     if (scene.plane()) before.perform(*scene.plane()), steps.emplace_back(*scene.plane());
     if (scene.sweep())
@@ -161,7 +161,7 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
     if (scene.loops()) steps.emplace_back(command::Loop{true});
     for (const std::string& panel : command::sized_panels)
-        if (scene.share(panel) > 0.0) steps.emplace_back(command::Size{panel, scene.share(panel)});
+        if (scene.share(panel) > 0.0) steps.emplace_back(command::SetPanelSize{panel, scene.share(panel)});
     if (scene.enlarged() != 1.0) steps.emplace_back(command::Enlarge{scene.enlarged()});
     if (scene.presents()) steps.emplace_back(command::Present{true});
     if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});

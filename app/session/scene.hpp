@@ -16,7 +16,7 @@ class Scene {
  public:
     CameraMode camera() const { return camera_; }
     // View of a fixed camera. Empty: the whole extent of the run, or the view that another camera mode computes.
-    std::optional<command::Look> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
+    std::optional<command::LookAt> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
     // True if `what`, one of command::shown_things, is visible.
     bool shows(const std::string& what) const { return shown_.contains(what); }
     // The panel at the place of the events: one of command::shown_below, or "events"; empty: none.
@@ -46,9 +46,9 @@ class Scene {
     double text_scale(double width, double height) const;
 
     // Each applies a command. Throws InputError and changes nothing if the command is invalid.
-    void perform(const command::Look& command);
+    void perform(const command::LookAt& command);
     void perform(const command::LookAll& command);
-    void perform(const command::Camera& command);
+    void perform(const command::SetCamera& command);
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
     void perform(const command::ShowPlane& command);       // the caller has checked the names it uses
@@ -57,8 +57,8 @@ class Scene {
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);
-    void perform(const command::Lens& command);
-    void perform(const command::Size& command);
+    void perform(const command::ShowLens& command);
+    void perform(const command::SetPanelSize& command);
     void perform(const command::Say& command);
     void perform(const command::Highlight& command);
     void perform(const command::Enlarge& command);
@@ -73,7 +73,7 @@ class Scene {
 
  private:
     CameraMode camera_ = CameraMode::fit;
-    std::optional<command::Look> look_;  // the last view of a fixed camera
+    std::optional<command::LookAt> look_;  // the last view of a fixed camera
     friend std::vector<Command> steps_to(const Scene& scene);
     std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
     double speed_ = 1.0;

@@ -8,10 +8,10 @@
 #include <new>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "figure/plane.hpp"
-#include "figure/stage.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
@@ -21,14 +21,14 @@
 
 namespace achilles {
 
-Session::System::System(const std::string& name_as_opened, const SystemDescription& description)
+Session::OpenSystem::OpenSystem(const std::string& name_as_opened, const SystemDescription& description)
     : name(name_as_opened),
       model(std::make_shared<const Model>(description)),
       mechanism(*model),
       file_run(model->default_run()) {}
 
-Session::Simulated::Simulated(std::shared_ptr<const System> of, Trajectory made, const Plots& plotted,
-                              const Theme& theme)
+Session::FinishedRun::FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted,
+                                  const Theme& theme)
     : trajectory(std::move(made)),
       system(std::move(of)),
       sampler(trajectory),
@@ -36,25 +36,25 @@ Session::Simulated::Simulated(std::shared_ptr<const System> of, Trajectory made,
       scale(scale_of(trajectory)),
       least_gap(achilles::least_gap(trajectory)),
       remarks(achilles::remarks(trajectory)),
-      sentences(trajectory, nullptr, Sentences::Angles::degrees),
+      sentences(trajectory, nullptr, EventDescriptions::Angles::degrees),
       quantity(default_quantity(trajectory)),
-      stage(std::make_unique<Stage>(system->mechanism, trajectory, samples)),
+      stage(std::make_unique<MechanismScene>(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
       dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
-Session::Simulated::~Simulated() = default;
+Session::FinishedRun::~FinishedRun() = default;
 
 const Trail& Session::trail() const { return simulated_->stage->trail(); }
 
 const Drawing& Session::limits() const { return simulated_->stage->limits(); }
 
 Session::Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
-                 Patience patience)
+                 Timeout patience)
     : library_(std::move(library)),
       patience_(patience),
       document_{name, first.file == name ? name : "", first.file, first.source_text, first.source_text, {}},
-      system_(std::make_shared<const System>(name, first)),
+      system_(std::make_shared<const OpenSystem>(name, first)),
       plots_(system_->model),
       orbit_job_(std::make_shared<OrbitJob>()) {
     change_system(system_, plots_, run);
@@ -65,22 +65,22 @@ bool Session::apply(const Command& command) {
         receive_pins(patience_);
         receive(patience_);
     }
-    const Moment before = moment();
+    const UndoState before = undo_state();
     const std::string noticed = std::exchange(notice_, {});
     warnings_.clear();
     try {
         std::visit([this](const auto& what) { perform(what); }, command);
         // Playback commands and the end of an edit must not clear the error of the last change.
-        const bool changes_nothing = change_of(command) == command::Change::none;
+        const bool changes_nothing = undo_policy_of(command) == command::UndoPolicy::none;
         if (!changes_nothing) error_.clear();
         if (changes_nothing && notice_.empty()) notice_ = noticed;
-        history_.remember(command, before, moment());
+        history_.remember(command, before, undo_state());
         follow_sweep();
         follow_proof(0.0);
         // Batch replay waits for this, too: the result of a journal must not depend on timing.
-        follow_dependence(patience_ ? Patience(0.0) : patience_);
+        follow_dependence(patience_ ? Timeout(0.0) : patience_);
         return true;
-    } catch (const Forbidden&) {
+    } catch (const FileAccessDenied&) {
         throw;
     } catch (const InputError& problem) {
         error_ = problem.what();
@@ -89,7 +89,7 @@ bool Session::apply(const Command& command) {
 }
 
 // Restores an earlier state.
-void Session::restore(Moment back) {
+void Session::restore(UndoState back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
     if (!same_system(back.system->model->description(), description())) {
@@ -104,19 +104,19 @@ void Session::restore(Moment back) {
 void Session::perform(const command::Undo&) {
     if (!can_undo()) throw refusal("there is nothing to undo");
     // Back to the last valid system; invalid texts in between can only be redone.
-    Moment back = history_.undo(moment());
+    UndoState back = history_.undo(undo_state());
     while (!back.document.problems.empty() && can_undo()) back = history_.undo(std::move(back));
     restore(std::move(back));
 }
 
 void Session::perform(const command::Redo&) {
     if (!can_redo()) throw refusal("there is nothing to redo");
-    restore(history_.redo(moment()));
+    restore(history_.redo(undo_state()));
 }
 
 void Session::perform(const command::Reset&) { rerun(system_->file_run); }
 
-void Session::perform(const command::UseTheme& command) {
+void Session::perform(const command::SetTheme& command) {
     theme_ = command.dark ? dark_theme() : light_theme();
     compose_plots();
 }
@@ -135,7 +135,7 @@ void Session::begin_document(Document document) {
         const SystemDescription description = parse_system(document_.text, document_.source);
         Run run = default_run(description);
         if (library_.finish) library_.finish(run.options);
-        const auto system = std::make_shared<const System>(document_.name, description);
+        const auto system = std::make_shared<const OpenSystem>(document_.name, description);
         system->model->check(run);
         playing_ = false;
         selected_ = 0;
@@ -146,7 +146,7 @@ void Session::begin_document(Document document) {
         change_system(system, Plots(system->model), run);
         for (const std::string& told : outside_ranges(description, run)) warn(told);
         for (const std::string& told : unseen_lines(description)) warn(told);
-    } catch (const Forbidden&) {
+    } catch (const FileAccessDenied&) {
         throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
@@ -154,7 +154,7 @@ void Session::begin_document(Document document) {
     }
 }
 
-void Session::perform(const command::Text& command) {
+void Session::perform(const command::SetText& command) {
     document_.text = command.text;
     read_document();
 }
@@ -176,7 +176,7 @@ void Session::read_document() {
     document_.problems.clear();
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
-        const auto system = std::make_shared<const System>(document_.name, description);
+        const auto system = std::make_shared<const OpenSystem>(document_.name, description);
         Run run = carried_over(this->description(), asked_, *system->model);
         try {
             system->model->check(run);
@@ -187,7 +187,7 @@ void Session::read_document() {
         placed_ = command::Seek{time_};
         if (!same_system(description, this->description())) let_go();
         change_system(system, plots_.carried_over(system->model), run);
-    } catch (const Forbidden&) {
+    } catch (const FileAccessDenied&) {
         throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
@@ -206,7 +206,7 @@ void Session::keep_plane() {
 }
 
 // Shows the start of the system until its run is finished. The run must have a valid start.
-void Session::change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run) {
+void Session::change_system(const std::shared_ptr<const OpenSystem>& system, const Plots& plots, const Run& run) {
     if (library_.budget) library_.budget->check(run.options);  // before any change
     put_aside_pin();
     system_ = system;
@@ -220,9 +220,9 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
     if (simulated_ != nullptr) return;
     std::stop_source at_once;
     at_once.request_stop();
-    Watch watch;
+    RunMonitor watch;
     watch.stop = at_once.get_token();
-    simulated_ = std::make_shared<Simulated>(system_, simulate(system_->model, run, &watch), plots_, theme_);
+    simulated_ = std::make_shared<FinishedRun>(system_, simulate(system_->model, run, &watch), plots_, theme_);
     compose_pinned();
     move_to(run.options.start_time);
 }
@@ -230,7 +230,7 @@ void Session::change_system(const std::shared_ptr<const System>& system, const P
 namespace {
 
 // Throws if a value is given in a unit that does not fit the name.
-void check_unit(const SystemDescription& description, const std::string& name, const command::Given& given) {
+void check_unit(const SystemDescription& description, const std::string& name, const command::ValueArgument& given) {
     if (given.text.empty()) return;
     try {
         read_number(given.text, unit_of(description, name));
@@ -242,12 +242,12 @@ void check_unit(const SystemDescription& description, const std::string& name, c
 }  // namespace
 
 void Session::perform(const command::Set& command) {
-    perform(command::Start{{{command.name, command.value}}});
+    perform(command::SetStart{{{command.name, command.value}}});
     for (const std::string& told : warnings_) notice_ += (notice_.empty() ? "" : "; ") + told;
 }
 
 // Sends no notice: a drag makes many of these commands, and notices would flicker over the mechanism.
-void Session::perform(const command::Start& command) {
+void Session::perform(const command::SetStart& command) {
     Run changed = run();
     for (const auto& [name, given] : command.values) {
         double* const found = find_value(description(), changed, name);
@@ -277,12 +277,12 @@ std::optional<double> Session::value(const std::string& name) const {
     return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
-void Session::perform(const command::UseOption& command) {
+void Session::perform(const command::SetOption& command) {
     Run changed = run();
     for (std::size_t i = 0; i < command.values.size(); ++i) {
         const Option& option = options_set_by(command.name)[i];
-        if (!allows(option, command.values[i]))
-            throw refusal(fmt::format(fmt::runtime(option.wrong), to_text(command.values[i])));
+        if (!is_valid_value(option, command.values[i]))
+            throw refusal(fmt::format(fmt::runtime(option.error_text), to_text(command.values[i])));
         option.set(changed.options, command.values[i]);
     }
     const std::vector<std::string> before = achilles::warnings(run().options);
@@ -297,15 +297,15 @@ void Session::rerun(const Run& run) {
     if (library_.budget) library_.budget->check(run.options);
     put_aside_pin();
     asked_ = run;
-    const auto watch = std::make_shared<Watch>();
+    const auto watch = std::make_shared<RunMonitor>();
     watch_ = watch;
     began_ = std::chrono::steady_clock::now();
     worker_->start([system = system_, run, plots = plots_, theme = theme_, watch](const std::stop_token& stop) {
         watch->stop = stop;
         Trajectory trajectory = simulate(system->model, run, watch.get());
         // Do not build plots of a long run that was stopped: the next run, or a closing window, would wait for them.
-        if (stop.stop_requested()) return std::shared_ptr<Simulated>();
-        return std::make_shared<Simulated>(system, std::move(trajectory), plots, theme);
+        if (stop.stop_requested()) return std::shared_ptr<FinishedRun>();
+        return std::make_shared<FinishedRun>(system, std::move(trajectory), plots, theme);
     });
     receive(patience_);
     if (library_.budget && watch_ == nullptr) library_.budget->charge(trajectory());
@@ -324,7 +324,7 @@ void Session::estimate() {
     receive_estimate(patience_);
 }
 
-void Session::receive_estimate(Patience patience) {
+void Session::receive_estimate(Timeout patience) {
     if (simulated_->estimate || shows_start()) return;
     try {
         simulated_->estimate = estimator_->take(patience);
@@ -348,9 +348,9 @@ void Session::use_horizon() {
     }
 }
 
-void Session::receive(Patience patience) {
+void Session::receive(Timeout patience) {
     if (watch_ == nullptr) return;
-    std::optional<std::shared_ptr<Simulated>> motion;
+    std::optional<std::shared_ptr<FinishedRun>> motion;
     try {
         motion = worker_->take(patience);
     } catch (const std::bad_alloc&) {  // without a previous run the session cannot continue
@@ -393,8 +393,8 @@ std::vector<double> Session::errors(std::size_t plot, const Sample& sample) cons
     return errors_at(simulated_->trajectory, sample, *plots_.list()[plot].prepared, precision());
 }
 
-template <class Other>
-void Session::perform(const Other& command) {
+template <class OtherCommand>
+void Session::perform(const OtherCommand& command) {
     if constexpr (requires { scene_.perform(command); }) {
         scene_.perform(command);
     } else {
@@ -446,7 +446,7 @@ const Event* Session::selected_zeno() const {
 }
 
 // The lens needs a Zeno point to look at.
-void Session::perform(const command::Lens& command) {
+void Session::perform(const command::ShowLens& command) {
     if (selected_zeno() == nullptr) {
         const auto& events = trajectory().events;
         const auto first =
@@ -469,7 +469,7 @@ void Session::move_to(double time) {
 }
 
 // Goes to the next event or the last one before the current time; beyond those, to the end or the start.
-void Session::perform(const command::Step& command) {
+void Session::perform(const command::StepEvents& command) {
     const auto& events = trajectory().events;
     const double start = run().options.start_time;
     double time = time_;

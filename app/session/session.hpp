@@ -10,12 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "depend/error_estimate.hpp"
 #include "figure/body.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
+#include "output/event_descriptions.hpp"
 #include "output/output.hpp"
-#include "output/sentences.hpp"
+#include "sensitivity/error_estimate.hpp"
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
@@ -32,9 +32,9 @@ namespace achilles {
 class Budget;
 class FilmJob;
 class OrbitJob;
-class Stage;
-struct FoundOrbit;
-struct OrbitWatch;
+class MechanismScene;
+struct OrbitJobResult;
+struct OrbitMonitor;
 
 // How a session finds the systems that `open` names, and where `save` writes them. All functions throw InputError.
 struct SystemSource {
@@ -65,9 +65,9 @@ class Session {
     // Opens `first` under the name `name` with the given run. Throws InputError if it cannot be derived or cannot
     // start.
     Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
-            Patience patience = {});
+            Timeout patience = {});
     // Opens it with the run that the description specifies.
-    Session(const std::string& name, const SystemDescription& first, SystemSource library, Patience patience = {})
+    Session(const std::string& name, const SystemDescription& first, SystemSource library, Timeout patience = {})
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Performs a command. On failure everything stays as it was, except error() or, for a text that is not a valid
@@ -81,7 +81,7 @@ class Session {
     // Sets notice(): something was done that is not visible otherwise.
     void tell(const std::string& done) { notice_ = done; }
 
-    void set_patience(Patience patience) { patience_ = patience; }
+    void set_patience(Timeout patience) { patience_ = patience; }
     // `ready` is called on another thread when update() would receive a result.
     void on_ready(const std::function<void()>& ready);
     // Receives the results that are ready.
@@ -97,7 +97,7 @@ class Session {
     // Waits for all work under way, so that a picture shows final results.
     void settle();
     // Progress of the run requested last; null if it is the one that is shown.
-    const Watch* under_way() const { return watch_.get(); }
+    const RunMonitor* under_way() const { return watch_.get(); }
     // True while the first run of a system is not finished: only its start is shown.
     bool shows_start() const { return trajectory().outcome.kind == Outcome::Kind::cancelled; }
     // Elapsed wall time of the run under way, s.
@@ -137,7 +137,7 @@ class Session {
     // The panel of a plot: the current run over the visible pinned ones, or the difference to them.
     const Panel& drawn(std::size_t plot) const { return drawn_.empty() ? plots()[plot] : drawn_[plot]; }
     // The sweep around the current run, its command arguments, and its results so far.
-    Sweep sweep() const;
+    SweepSpec sweep() const;
     std::string sweep_text() const;
     const SweepJob& sweep_job() const { return *sweep_job_; }
     // The proof for the run that is shown; null: none yet. A proof for another start, parameter or end does not count.
@@ -147,18 +147,18 @@ class Session {
         return event < enclosed_.size() ? enclosed_[event] : nullptr;
     }
     // Progress of the requested proof; null: none is under way.
-    const ProofWatch* proof_under_way() const;
+    const ProofMonitor* proof_under_way() const;
     // The command that requests this proof; empty if there is none and none is under way.
     std::optional<command::Prove> proof_command() const;
     // The sensitivities shown by "depend": the quantity and its derivatives; null: none yet. Until those of the current
     // run are computed they are those of an earlier run, and influences_are_current() is false.
     std::string depend_text() const;
-    const Influences* influences() const { return influences_job_->influences(); }
+    const Sensitivities* sensitivities() const { return influences_job_->sensitivities(); }
     bool influences_are_current() const;
-    const InfluencesJob& influences_job() const { return *influences_job_; }
+    const SensitivitiesJob& influences_job() const { return *influences_job_; }
     // The result of the last orbit search in this system; null: no search, or it is under way.
-    std::shared_ptr<const FoundOrbit> orbit() const;
-    const OrbitWatch* orbit_under_way() const;
+    std::shared_ptr<const OrbitJobResult> orbit() const;
+    const OrbitMonitor* orbit_under_way() const;
     // Index (from 0) of the point on its branch from which the requested run starts; empty: none.
     std::optional<std::size_t> orbit_point() const;
     // The command that leads to it from the current run; empty if there is none.
@@ -174,12 +174,12 @@ class Session {
     std::span<const Sample> samples() const { return simulated_->samples; }
     const State& scale() const { return simulated_->scale; }  // scale_of() of the run
     double least_gap() const { return simulated_->least_gap; }
-    std::span<const Remark> remarks() const { return simulated_->remarks; }
-    const Sentences& sentences() const { return simulated_->sentences; }  // about its events
+    std::span<const RunWarning> remarks() const { return simulated_->remarks; }
+    const EventDescriptions& sentences() const { return simulated_->sentences; }  // about its events
     // The world extent that the mechanism needs during the whole run.
     const Drawing& limits() const;
     // The camera and mechanism view along the run that is shown.
-    Stage& stage() const { return *simulated_->stage; }
+    MechanismScene& stage() const { return *simulated_->stage; }
     // The selected plots, and their panels for the run that is shown.
     const Plots& plotted() const { return plots_; }
     const std::vector<Panel>& plots() const { return simulated_->plots; }
@@ -208,30 +208,30 @@ class Session {
 
  private:
     // A system, derived and compiled. Nothing in it depends on parameter values.
-    struct System {
-        System(const std::string& name, const SystemDescription& description);
+    struct OpenSystem {
+        OpenSystem(const std::string& name, const SystemDescription& description);
         std::string name;
         std::shared_ptr<const Model> model;
         Mechanism mechanism;
         Run file_run;
     };
     // One run and everything derived from it for display.
-    struct Simulated {
-        Simulated(std::shared_ptr<const System> of, Trajectory made, const Plots& plotted, const Theme& theme);
-        ~Simulated();
-        Simulated(const Simulated&) = delete;  // `stage` refers to other members
-        Simulated& operator=(const Simulated&) = delete;
+    struct FinishedRun {
+        FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted, const Theme& theme);
+        ~FinishedRun();
+        FinishedRun(const FinishedRun&) = delete;  // `stage` refers to other members
+        FinishedRun& operator=(const FinishedRun&) = delete;
         Trajectory trajectory;
-        std::shared_ptr<const System> system;
+        std::shared_ptr<const OpenSystem> system;
         Sampler sampler;
         std::vector<Sample> samples;
         State scale;
         double least_gap;
-        std::vector<Remark> remarks;
-        Sentences sentences;
+        std::vector<RunWarning> remarks;
+        EventDescriptions sentences;
         std::optional<ErrorEstimate> estimate;  // computed after everything else
         std::string quantity;                   // default_quantity() of the run
-        std::unique_ptr<Stage> stage;
+        std::unique_ptr<MechanismScene> stage;
         int revision = 0;   // revision of the plots shown in `plots`
         bool dark = false;  // theme of `plots`
         std::vector<Panel> plots;
@@ -239,12 +239,12 @@ class Session {
 
     void perform(const command::Open& command);
     void perform(const command::Set& command);
-    void perform(const command::UseOption& command);
+    void perform(const command::SetOption& command);
     void perform(const command::Seek& command);
     void perform(const command::Play& command);
     void perform(const command::Pause& command);
     void perform(const command::Select& command);
-    void perform(const command::Lens& command);
+    void perform(const command::ShowLens& command);
     void perform(const command::ShowPlane& command);
     void perform(const command::ShowSweep& command);
     void perform(const command::ShowDependence& command);
@@ -252,11 +252,11 @@ class Session {
     void perform(const command::StopProof& command);
     void perform(const command::FindOrbit& command);
     void perform(const command::StopOrbit& command);
-    void perform(const command::GoOnOrbit& command);
+    void perform(const command::SelectBranchPoint& command);
     void perform(const command::New& command);
-    void perform(const command::Text& command);
+    void perform(const command::SetText& command);
     void perform(const command::Save& command);
-    void perform(const command::Start& command);
+    void perform(const command::SetStart& command);
     void perform(const command::Undo& command);
     void perform(const command::Redo& command);
     void perform(const command::Pin& command);
@@ -264,38 +264,38 @@ class Session {
     void perform(const command::UnpinAll& command);
     void perform(const command::ShowPinned& command);
     void perform(const command::Recall& command);
-    void perform(const command::Step& command);
+    void perform(const command::StepEvents& command);
     void perform(const command::Reset& command);
-    void perform(const command::Done&) {}  // only the undo history uses it
-    void perform(const command::UseTheme& command);
+    void perform(const command::EndEdit&) {}  // only the undo history uses it
+    void perform(const command::SetTheme& command);
     void perform(const command::Export& command);
     void perform(const command::Copy& command);
     void perform(const command::Wait& command);
     void perform(const command::Replay& command);
     // All other commands change the plots or the view state.
-    template <class Other>
-    void perform(const Other& command);
+    template <class OtherCommand>
+    void perform(const OtherCommand& command);
     // Everything that undo restores.
-    struct Moment {
+    struct UndoState {
         Document document;
-        std::shared_ptr<const System> system;
+        std::shared_ptr<const OpenSystem> system;
         Plots plots;
         Run run;
         std::vector<PinnedRun> pinned;  // not undone themselves, but restored with their system
-        friend bool operator==(const Moment& a, const Moment& b) {
+        friend bool operator==(const UndoState& a, const UndoState& b) {
             return a.system == b.system && a.run == b.run && a.document.name == b.document.name &&
                    a.document.text == b.document.text && a.plots == b.plots;
         }
     };
-    Moment moment() const { return {document_, system_, plots_, asked_, pinned_}; }
-    void restore(Moment back);
+    UndoState undo_state() const { return {document_, system_, plots_, asked_, pinned_}; }
+    void restore(UndoState back);
     void compose_pinned();
-    void pin(int place, int number, const std::shared_ptr<Simulated>& run);
+    void pin(int place, int number, const std::shared_ptr<FinishedRun>& run);
     bool waits_at(int place) const;
     void put_aside_pin();
     void let_pins_go();
     void stop_pin(std::size_t i);
-    void receive_pins(Patience patience);
+    void receive_pins(Timeout patience);
     void let_go();
     void begin_document(Document document);
     void read_document();
@@ -308,15 +308,15 @@ class Session {
     void keep_sweep();
     void keep_dependence();
     void follow_sweep();
-    void follow_dependence(Patience patience);
-    void follow_proof(Patience patience);
-    void receive_proof(Patience patience);
-    void receive_orbit(Patience patience);
-    void change_system(const std::shared_ptr<const System>& system, const Plots& plots, const Run& run);
+    void follow_dependence(Timeout patience);
+    void follow_proof(Timeout patience);
+    void receive_proof(Timeout patience);
+    void receive_orbit(Timeout patience);
+    void change_system(const std::shared_ptr<const OpenSystem>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
-    void receive(Patience patience);
+    void receive(Timeout patience);
     void estimate();
-    void receive_estimate(Patience patience);
+    void receive_estimate(Timeout patience);
     void use_horizon();
     void compose_plots();
     void place(const Command& command);
@@ -324,16 +324,16 @@ class Session {
     void warn(const std::string& warning);
 
     SystemSource library_;
-    Patience patience_;
+    Timeout patience_;
     Theme theme_ = light_theme();
     Document document_;
-    std::shared_ptr<const System> system_;
+    std::shared_ptr<const OpenSystem> system_;
     Plots plots_;
     Scene scene_;
     Run asked_;
     // A run of this system. It differs from the run requested while that is under way.
-    std::shared_ptr<Simulated> simulated_;
-    std::shared_ptr<const Watch> watch_;           // monitor of the run under way
+    std::shared_ptr<FinishedRun> simulated_;
+    std::shared_ptr<const RunMonitor> watch_;      // monitor of the run under way
     std::chrono::steady_clock::time_point began_;  // start of that run
     std::optional<Command> placed_;                // last command that set the playback position meanwhile
     Sample now_;
@@ -344,7 +344,7 @@ class Session {
     std::vector<std::string> warnings_;
     std::string copied_;
     int copies_ = 0, replaying_ = 0;
-    History<Moment> history_;
+    History<UndoState> history_;
     std::vector<PinnedRun> pinned_;
     std::string name_;
     RunTable run_table_;
@@ -352,24 +352,24 @@ class Session {
     std::optional<int> pin_waits_;  // place at which the run under way will be pinned
     int pins_asked_ = 0;            // total number of pin requests; that run is the last of them
     // A run computed beside the current one, to be pinned at this place.
-    using Runner = Worker<std::shared_ptr<Simulated>>;
-    struct PinUnderWay {
+    using Runner = Worker<std::shared_ptr<FinishedRun>>;
+    struct PendingPin {
         int place, number;
         Run run;
         std::unique_ptr<Runner> worker;
     };
-    std::vector<PinUnderWay> pins_;                 // in order of request
+    std::vector<PendingPin> pins_;                  // in order of request
     std::vector<std::unique_ptr<Runner>> stopped_;  // cancelled workers, until they have released their memory
     std::function<void()> ready_;
-    struct AskedProof {
-        std::shared_ptr<const System> system;
+    struct ProofRequest {
+        std::shared_ptr<const OpenSystem> system;
         Run run;
-        Spread spread;
+        InitialUncertainty spread;
     };
-    std::optional<AskedProof> proof_asked_;       // until it is finished
+    std::optional<ProofRequest> proof_asked_;     // until it is finished
     std::vector<const EnclosedEvent*> enclosed_;  // one per event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
-    std::unique_ptr<InfluencesJob> influences_job_ = std::make_unique<InfluencesJob>();
+    std::unique_ptr<SensitivitiesJob> influences_job_ = std::make_unique<SensitivitiesJob>();
     std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();

@@ -4,11 +4,11 @@
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "output/proof.hpp"
+#include "pictures/export.hpp"
 #include "pictures/film.hpp"
-#include "pictures/take_away.hpp"
 #include "session/command.hpp"
-#include "session/study_jobs.hpp"
 #include "session/session.hpp"
+#include "session/study_jobs.hpp"
 
 namespace achilles {
 
@@ -81,18 +81,18 @@ void Session::perform(const command::Replay& command) {
 namespace {
 
 // "zeno_time(1) = 2.7, by g -0.4, ...", for the current run.
-std::string to_text(const Influences& known) {
+std::string to_text(const Sensitivities& known) {
     std::string text = fmt::format("{} = {:.9g}", known.quantity.expression, known.quantity.value);
-    for (const Influences::Of& by : known.all)
+    for (const Sensitivities::Sensitivity& by : known.all)
         text += by.reason.empty() ? fmt::format(", by {} {:.6g}", by.name, by.derivative)
                                   : fmt::format(", by {} none: {}", by.name, by.reason);
     return text + "\n";
 }
 
 // "orbit --from start: period 3.5, 17 points, on point 3"
-std::string to_text(const FoundOrbit& found, std::optional<std::size_t> on) {
+std::string to_text(const OrbitJobResult& found, std::optional<std::size_t> on) {
     const auto& orbit = found.answer.orbit;
-    if (!orbit) return fmt::format("orbit {}: none, {}\n", found.text, found.answer.why);
+    if (!orbit) return fmt::format("orbit {}: none, {}\n", found.text, found.answer.reason);
     return fmt::format("orbit {}: period {:.9g}, {} points{}\n", found.text, orbit->period, found.count(),
                        on ? fmt::format(", on point {}", *on + 1) : "");
 }
@@ -118,7 +118,7 @@ std::string to_text(const Session& session) {
         text += fmt::format("{}: {} until {}\n", to_text(*session.proof_command()),
                             to_text(proof->enclosure.outcome.kind), reach_text(proof->enclosure, 9));
     if (session.orbit() != nullptr) text += to_text(*session.orbit(), session.orbit_point());
-    if (session.influences_are_current()) text += to_text(*session.influences());
+    if (session.influences_are_current()) text += to_text(*session.sensitivities());
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
     if (const auto horizon = session.horizon()) text += fmt::format("trusted until {:.9g}\n", *horizon);

@@ -8,8 +8,8 @@
 #include "figure/difference.hpp"
 #include "output/proof.hpp"
 #include "session/command.hpp"
-#include "session/study_jobs.hpp"
 #include "session/session.hpp"
+#include "session/study_jobs.hpp"
 
 namespace achilles {
 
@@ -54,7 +54,7 @@ void Session::perform(const command::Pin& command) {
     const auto same =
         std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& p) { return p.trajectory->run == asked_; });
     if (same != pinned_.end()) throw refusal(fmt::format("this run is already pinned, as {}", same->place));
-    const auto made = std::find_if(pins_.begin(), pins_.end(), [&](const PinUnderWay& p) { return p.run == asked_; });
+    const auto made = std::find_if(pins_.begin(), pins_.end(), [&](const PendingPin& p) { return p.run == asked_; });
     if (pin_waits_ || made != pins_.end())
         throw refusal(fmt::format("this run will be pinned, as {}, when it has finished",
                                   pin_waits_ ? *pin_waits_ : made->place));
@@ -81,7 +81,7 @@ void Session::perform(const command::Pin& command) {
 }
 
 // Throws InputError if all runs together would need more memory than one run may use.
-void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) {
+void Session::pin(int place, int number, const std::shared_ptr<FinishedRun>& all) {
     double bytes = bytes_of(all->trajectory);
     for (const PinnedRun& run : pinned_) bytes += bytes_of(*run.trajectory);
     if (const double most = all->trajectory.run.options.memory; bytes > most)
@@ -102,12 +102,12 @@ void Session::pin(int place, int number, const std::shared_ptr<Simulated>& all) 
 
 bool Session::waits_at(int place) const {
     return pin_waits_ == place ||
-           std::any_of(pins_.begin(), pins_.end(), [&](const PinUnderWay& pin) { return pin.place == place; });
+           std::any_of(pins_.begin(), pins_.end(), [&](const PendingPin& pin) { return pin.place == place; });
 }
 
 std::vector<int> Session::pins_under_way() const {
     std::vector<int> places;
-    for (const PinUnderWay& pin : pins_) places.push_back(pin.place);
+    for (const PendingPin& pin : pins_) places.push_back(pin.place);
     if (pin_waits_) places.push_back(*pin_waits_);
     return places;
 }
@@ -120,7 +120,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     proof_job_->on_ready(ready);
     influences_job_->on_ready(ready);
     orbit_job_->on_ready(ready);
-    for (const PinUnderWay& pin : pins_) pin.worker->on_ready(ready);
+    for (const PendingPin& pin : pins_) pin.worker->on_ready(ready);
 }
 
 // Another run is about to start while one to be pinned is under way: that one continues on a worker of its own.
@@ -135,11 +135,11 @@ void Session::put_aside_pin() {
 }
 
 // Receives finished runs in the order of their requests.
-void Session::receive_pins(Patience patience) {
+void Session::receive_pins(Timeout patience) {
     std::erase_if(stopped_, [](const auto& worker) { return worker->take(0.0).has_value(); });
     while (!pins_.empty()) {
         try {
-            const std::optional<std::shared_ptr<Simulated>> run = pins_.front().worker->take(patience);
+            const std::optional<std::shared_ptr<FinishedRun>> run = pins_.front().worker->take(patience);
             if (!run) return;
             pin(pins_.front().place, pins_.front().number, *run);
         } catch (const InputError& problem) {
@@ -154,7 +154,7 @@ void Session::receive_pins(Patience patience) {
 
 // Cancels a pin. Its worker is kept until it has released the run, which may take time for a long one.
 void Session::stop_pin(std::size_t i) {
-    pins_[i].worker->start([](const std::stop_token&) { return std::shared_ptr<Simulated>(); });
+    pins_[i].worker->start([](const std::stop_token&) { return std::shared_ptr<FinishedRun>(); });
     stopped_.push_back(std::move(pins_[i].worker));
     pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(i));
 }
@@ -239,7 +239,7 @@ void Session::compose_pinned() {
         if (run.touched.get() != &mechanism() || run.touched_size != limits().size) {
             run.touched = {system_, &mechanism()};
             run.touched_size = limits().size;
-            run.touch = std::make_shared<const Touch>(mechanism(), *run.trajectory, run.touched_size);
+            run.touch = std::make_shared<const ContactGeometry>(mechanism(), *run.trajectory, run.touched_size);
         }
         if (run.revision != plots_.revision() || run.dark != theme_.dark || run.plots.size() != plots_.list().size())
             run.plots = plots_.compose(*run.trajectory, *run.samples, theme_, run.horizon());

@@ -9,8 +9,8 @@
 #include "figure/sweep_figure.hpp"
 #include "journal/journal.hpp"
 #include "session/command.hpp"
-#include "session/study_jobs.hpp"
 #include "session/session.hpp"
+#include "session/study_jobs.hpp"
 
 namespace achilles {
 
@@ -21,8 +21,8 @@ namespace {
 constexpr std::uint64_t points = 512;  // along an axis, at the finest level
 
 // The text may not set values or options: those come from the current run.
-Sweep sweep_of(const std::string& text, const SystemDescription& description) {
-    Sweep sweep = read_sweep(text, description);
+SweepSpec sweep_of(const std::string& text, const SystemDescription& description) {
+    SweepSpec sweep = read_sweep(text, description);
     if (sweep.base != default_run(description))
         throw refusal("--set and the options of a run are not allowed here", "the sliders set what does not vary");
     if (sweep.axes.size() > 2) throw refusal("at most two axes can be shown");
@@ -45,7 +45,7 @@ std::string default_sweep(const SystemDescription& description) {
         });
     };
     std::stable_partition(order.begin(), order.end(), restitutes);
-    Sweep sweep;
+    SweepSpec sweep;
     sweep.base = default_run(description);
     if (!order.empty()) {
         const ParameterDescription& first = *order.front();
@@ -60,15 +60,15 @@ std::string default_sweep(const SystemDescription& description) {
 
 std::string Session::sweep_text() const { return scene_.sweep().value_or(default_sweep(description())); }
 
-Sweep Session::sweep() const {
-    Sweep sweep = sweep_of(sweep_text(), description());
+SweepSpec Session::sweep() const {
+    SweepSpec sweep = sweep_of(sweep_text(), description());
     sweep.base = asked_;
     return sweep;
 }
 
 // Throws InputError if the sweep cannot be made with the options of the current run.
 void Session::check_sweep(const std::string& text) const {
-    Sweep sweep = sweep_of(text, description());
+    SweepSpec sweep = sweep_of(text, description());
     sweep.base.options = asked_.options;
     if (library_.budget) library_.budget->check(sweep);
     const RunMeasures measures(system_->model, sweep);
@@ -110,7 +110,7 @@ const Proof* Session::proof() const {
     return is_its ? proof : nullptr;
 }
 
-const ProofWatch* Session::proof_under_way() const { return proof_job_->under_way(); }
+const ProofMonitor* Session::proof_under_way() const { return proof_job_->under_way(); }
 
 std::optional<command::Prove> Session::proof_command() const {
     if (proof_asked_) return prove_command(proof_asked_->spread);
@@ -118,21 +118,21 @@ std::optional<command::Prove> Session::proof_command() const {
 }
 
 void Session::perform(const command::Prove& command) {
-    Spread spread;
+    InitialUncertainty spread;
     spread.width = command.width;
     for (const std::string& interval : command.intervals) {
-        const auto side = read_side(interval, description());
+        const auto side = parse_interval(interval, description());
         if (!side)
-            throw refusal(fmt::format("'{}' is not an interval", interval), std::string(command::Prove::said.usage));
+            throw refusal(fmt::format("'{}' is not an interval", interval), std::string(command::Prove::spec.usage));
         const double present = *value(side->name);
         if (!(side->low <= present && present <= side->high))
             throw refusal(fmt::format("{} = {} in the present run is not in [{}, {}]", side->name, present, side->low,
                                       side->high));
         spread.sides.push_back(*side);
     }
-    check(*system_->model, claim_of(description(), asked_, spread));
+    check(*system_->model, problem_of(description(), asked_, spread));
     proof_job_->forget();
-    proof_asked_ = AskedProof{system_, asked_, spread};
+    proof_asked_ = ProofRequest{system_, asked_, spread};
     follow_proof(patience_);
     compose_pinned();
 }
@@ -145,14 +145,15 @@ void Session::perform(const command::StopProof&) {
 
 // Drops a request for another run than the current one; starts the proof once its run is finished. Throws InputError if
 // proofs do not cover the system.
-void Session::follow_proof(Patience patience) {
+void Session::follow_proof(Timeout patience) {
     if (proof_asked_ && (proof_asked_->system != system_ || !same_to_a_proof(proof_asked_->run, asked_))) {
         proof_asked_.reset();
         proof_job_->stop();
     }
     try {
         if (proof_asked_ && watch_ == nullptr && proof_job_->under_way() == nullptr)
-            proof_job_->begin(system_->model, proof_asked_->spread, claim_to_draw(trajectory(), proof_asked_->spread));
+            proof_job_->begin(system_->model, proof_asked_->spread,
+                              problem_to_draw(trajectory(), proof_asked_->spread));
         if (!proof_job_->update(patience)) return;
         proof_asked_.reset();
         compose_pinned();
@@ -165,7 +166,7 @@ void Session::follow_proof(Patience patience) {
     }
 }
 
-void Session::receive_proof(Patience patience) {
+void Session::receive_proof(Timeout patience) {
     try {
         follow_proof(patience);
     } catch (const InputError& problem) {
@@ -178,7 +179,7 @@ void Session::receive_proof(Patience patience) {
 std::string Session::depend_text() const { return scene_.depends().value_or(simulated_->quantity); }
 
 bool Session::influences_are_current() const {
-    const Influences* const known = influences();
+    const Sensitivities* const known = sensitivities();
     return known != nullptr && watch_ == nullptr && known->run.get() == &trajectory() &&
            known->quantity.expression == depend_text();
 }
@@ -198,7 +199,7 @@ void Session::keep_dependence() {
 }
 
 // Follows the run that is shown. What takes less than half a frame is available in the same frame.
-void Session::follow_dependence(Patience patience) {
+void Session::follow_dependence(Timeout patience) {
     constexpr double glance = 0.008;
     if (!scene_.shows("depend") || shows_start()) return influences_job_->forget();
     const bool is_new = influences_job_->ask({simulated_, &simulated_->trajectory}, depend_text());
@@ -207,13 +208,13 @@ void Session::follow_dependence(Patience patience) {
 
 std::optional<TangentLine> Session::sweep_tangent() const {
     if (!influences_are_current()) return std::nullopt;
-    const Sweep shown = sweep();
-    if (shown.axes.size() != 1 || shown.at || shown.prints.front() != influences()->quantity.expression)
+    const SweepSpec shown = sweep();
+    if (shown.axes.size() != 1 || shown.at || shown.prints.front() != sensitivities()->quantity.expression)
         return std::nullopt;
     const SweepAxis& axis = shown.axes.front();
-    const Influences::Of* const by = influences()->find(axis.name);
+    const Sensitivities::Sensitivity* const by = sensitivities()->find(axis.name);
     if (by == nullptr || !std::isfinite(by->derivative)) return std::nullopt;
-    return TangentLine{*value(axis.name), influences()->quantity.value, by->derivative, axis.logarithmic};
+    return TangentLine{*value(axis.name), sensitivities()->quantity.value, by->derivative, axis.logarithmic};
 }
 
 // ---- periodic orbit near the current run, and its branch ----
@@ -226,16 +227,16 @@ bool begin_alike(const Run& a, const Run& b) {
 
 }  // namespace
 
-std::shared_ptr<const FoundOrbit> Session::orbit() const { return orbit_job_->result(); }
+std::shared_ptr<const OrbitJobResult> Session::orbit() const { return orbit_job_->result(); }
 
-const OrbitWatch* Session::orbit_under_way() const { return orbit_job_->under_way(); }
+const OrbitMonitor* Session::orbit_under_way() const { return orbit_job_->under_way(); }
 
-void Session::receive_orbit(Patience patience) { orbit_job_->update(patience); }
+void Session::receive_orbit(Timeout patience) { orbit_job_->update(patience); }
 
 void Session::perform(const command::FindOrbit& command) {
     or_refuse<command::FindOrbit>([&] {
         orbit_job_->begin(system_->model, command.text, asked_,
-                          make_orbit_question(read_orbit(command.text), asked_, system_->model));
+                          parse_orbit_request(read_orbit(command.text), asked_, system_->model));
     });
     scene_.perform(command::Show{"orbit", true});
     receive_orbit(patience_);
@@ -243,7 +244,7 @@ void Session::perform(const command::FindOrbit& command) {
 
 void Session::perform(const command::StopOrbit&) { orbit_job_->forget(); }
 
-void Session::perform(const command::GoOnOrbit& command) {
+void Session::perform(const command::SelectBranchPoint& command) {
     const auto found = orbit();
     if (found == nullptr || found->count() == 0)
         throw refusal(orbit_under_way() != nullptr ? "the search for a periodic run is under way"
@@ -267,7 +268,7 @@ std::optional<command::FindOrbit> Session::orbit_command() const {
     if (found == nullptr) return std::nullopt;
     if (begin_alike(found->base, asked_)) return command::FindOrbit{found->text};
     if (!orbit_point()) return std::nullopt;
-    AskedOrbit asked = read_orbit(found->text);
+    OrbitOptions asked = read_orbit(found->text);
     asked.from = "start";
     return command::FindOrbit{to_text(asked)};
 }

@@ -11,10 +11,10 @@
 #include <span>
 #include <utility>
 
+#include "analysis/chunks.hpp"
+#include "analysis/measures.hpp"
 #include "figure/sweep_figure.hpp"
 #include "model/model.hpp"
-#include "study/chunks.hpp"
-#include "study/measures.hpp"
 
 namespace achilles {
 
@@ -23,11 +23,11 @@ namespace achilles {
 namespace {
 
 // The derivative of one slider's input, scaled by the range and position of the slider.
-Influences::Of influence(const std::string& name, const std::array<double, 2>& range, double value,
-                         const Quantity& quantity, const Derivatives& derivatives) {
+Sensitivities::Sensitivity sensitivity(const std::string& name, const std::array<double, 2>& range, double value,
+                                       const Quantity& quantity, const Derivatives& derivatives) {
     const auto at = std::find(derivatives.directions.begin(), derivatives.directions.end(), name);
     const auto k = static_cast<std::size_t>(at - derivatives.directions.begin());
-    Influences::Of one{name, quantity.derivatives[static_cast<Eigen::Index>(k)], 0.0, ""};
+    Sensitivities::Sensitivity one{name, quantity.derivatives[static_cast<Eigen::Index>(k)], 0.0, ""};
     const double reach =
         goes_by_ratios(range[0], range[1]) ? value * std::log(range[1] / range[0]) : range[1] - range[0];
     one.over_slider = one.derivative * reach;
@@ -42,27 +42,27 @@ Influences::Of influence(const std::string& name, const std::array<double, 2>& r
 
 bool goes_by_ratios(double low, double high) { return low > 0.0 && high / low >= 100.0; }
 
-const Influences::Of* Influences::find(const std::string& name) const {
-    const auto found = std::find_if(all.begin(), all.end(), [&](const Of& one) { return one.name == name; });
+const Sensitivities::Sensitivity* Sensitivities::find(const std::string& name) const {
+    const auto found = std::find_if(all.begin(), all.end(), [&](const Sensitivity& one) { return one.name == name; });
     return found == all.end() ? nullptr : &*found;
 }
 
-double Influences::largest() const {
+double Sensitivities::largest() const {
     double most = 0.0;
-    for (const Of& one : all)
+    for (const Sensitivity& one : all)
         if (std::isfinite(one.over_slider)) most = std::max(most, std::abs(one.over_slider));
     return most;
 }
 
-Influences influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run) {
+Sensitivities influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run) {
     const Derivatives derivatives = differentiate(*run);
-    Influences result{run, Quantities(run->model, {quantity}).of(*run, derivatives).front(), {}, {}};
-    Sweep sweep;
+    Sensitivities result{run, Quantities(run->model, {quantity}).of(*run, derivatives).front(), {}, {}};
+    SweepSpec sweep;
     sweep.prints = {quantity};
     result.unit = RunMeasures(run->model, sweep).columns().front().unit;
     const SystemDescription& system = run->model->description();
     const auto add = [&](const std::string& name, const std::array<double, 2>& range, double value) {
-        result.all.push_back(influence(name, range, value, result.quantity, derivatives));
+        result.all.push_back(sensitivity(name, range, value, result.quantity, derivatives));
     };
     for (std::size_t i = 0; i < system.parameters.size(); ++i)
         add(system.parameters[i].name, system.parameters[i].range, run->run.parameters[i]);
@@ -73,7 +73,7 @@ Influences influences_on(const std::string& quantity, const std::shared_ptr<cons
     }
     // Derivatives that are rounding noise beside the others become 0.
     const double size = std::max(result.largest(), std::abs(result.quantity.value));
-    for (Influences::Of& one : result.all)
+    for (Sensitivities::Sensitivity& one : result.all)
         if (std::abs(one.over_slider) < 1e-12 * size) one.derivative = one.over_slider = 0.0;
     return result;
 }
@@ -89,31 +89,31 @@ double TangentLine::at(double other_x) const {
     return y + slope * (logarithmic ? x * std::log(other_x / x) : other_x - x);
 }
 
-bool InfluencesJob::ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity) {
+bool SensitivitiesJob::ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity) {
     if (asked_ && asked_->run == run && asked_->quantity == quantity) return false;
-    asked_ = Asked{run, quantity};
+    asked_ = SensitivityRequest{run, quantity};
     problem_.clear();
-    const Influences* const known = influences();
+    const Sensitivities* const known = sensitivities();
     if (known != nullptr && (known->quantity.expression != quantity || known->run->model != run->model)) job_.drop();
     if (!begun_) begin();
     return true;
 }
 
-void InfluencesJob::forget() {
+void SensitivitiesJob::forget() {
     job_.forget();
     asked_.reset(), begun_.reset();
     problem_.clear();
 }
 
-void InfluencesJob::begin() {
+void SensitivitiesJob::begin() {
     begun_ = asked_;
     job_.start([asked = *asked_](const StopMonitor&) { return influences_on(asked.quantity, asked.run); });
 }
 
-void InfluencesJob::update(Patience patience) {
+void SensitivitiesJob::update(Timeout patience) {
     using Clock = std::chrono::steady_clock;
     const auto began = Clock::now();
-    const auto left = [&]() -> Patience {
+    const auto left = [&]() -> Timeout {
         if (!patience) return patience;
         return std::max(0.0, *patience - std::chrono::duration<double>(Clock::now() - began).count());
     };
@@ -126,7 +126,7 @@ void InfluencesJob::update(Patience patience) {
         } catch (const std::bad_alloc&) {
             problem = "there is not enough memory for the derivatives of this run";
         }
-        const Asked of = *std::exchange(begun_, std::nullopt);
+        const SensitivityRequest of = *std::exchange(begun_, std::nullopt);
         const bool is_wanted = of.quantity == asked_->quantity && of.run->model == asked_->run->model;
         if (is_wanted) problem_ = problem;
         if (!is_wanted || !problem.empty()) job_.drop();
@@ -138,21 +138,22 @@ void InfluencesJob::update(Patience patience) {
 
 // ---- a proof ----
 
-void ProofJob::begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim) {
+void ProofJob::begin(const std::shared_ptr<const Model>& model, const InitialUncertainty& spread,
+                     const EnclosureProblem& claim) {
     model_ = model;
     drop();
-    const auto watch = std::make_shared<ProofWatch>();
+    const auto watch = std::make_shared<ProofMonitor>();
     watch->time = claim.run.options.start_time;
     start(
-        [model, spread, claim](ProofWatch& monitor) {
+        [model, spread, claim](ProofMonitor& monitor) {
             return Proof{spread, claim, prove(model, claim, &monitor)};
         },
         watch);
 }
 
-command::Prove prove_command(const Spread& spread) {
+command::Prove prove_command(const InitialUncertainty& spread) {
     command::Prove command{spread.width, {}};
-    for (const Spread::Side& side : spread.sides) command.intervals.push_back(to_text(side));
+    for (const InitialUncertainty::VariableRange& side : spread.sides) command.intervals.push_back(to_text(side));
     return command;
 }
 
@@ -171,16 +172,16 @@ namespace {
 constexpr std::uint64_t map_steps[] = {16, 64, 160}, curve_steps[] = {32, 128}, section_steps[] = {16, 64};
 constexpr double lengths[] = {1.0 / 64.0, 1.0 / 16.0, 1.0 / 4.0};  // for a single run
 
-struct Stopped {};  // thrown to the Job, which discards it
+struct JobStopped {};  // thrown to the Job, which discards it
 
-SweepData table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep, const std::stop_token& stop) {
+SweepData table_of(const std::shared_ptr<const Model>& model, const SweepSpec& sweep, const std::stop_token& stop) {
     const SweepTable table(model, sweep);
     SweepData data(table);
     std::mutex mutex;
     std::map<std::uint64_t, SweepData> waiting;  // finished chunks, by their first point
     const std::atomic<bool> never{false};
     const auto go_on = [&] {
-        if (stop.stop_requested()) throw Stopped();
+        if (stop.stop_requested()) throw JobStopped();
     };
     const auto task = [&](Chunk chunk) {
         SweepData part(table);
@@ -203,11 +204,11 @@ SweepData table_of(const std::shared_ptr<const Model>& model, const Sweep& sweep
 
 }  // namespace
 
-std::vector<Sweep> coarse_to_fine(const Sweep& sweep) {
-    std::vector<Sweep> levels;
+std::vector<SweepSpec> coarse_to_fine(const SweepSpec& sweep) {
+    std::vector<SweepSpec> levels;
     if (sweep.axes.empty()) {
         for (const double share : lengths) {
-            Sweep shorter = sweep;
+            SweepSpec shorter = sweep;
             const double start = sweep.base.options.start_time,
                          end = start + share * (sweep.base.options.end_time - start);
             if (sweep.at && sweep.at->after && !(*sweep.at->after < end)) continue;
@@ -219,7 +220,7 @@ std::vector<Sweep> coarse_to_fine(const Sweep& sweep) {
                                                  : sweep.axes.size() > 1 ? std::span<const std::uint64_t>(map_steps)
                                                                          : std::span<const std::uint64_t>(curve_steps);
     for (const std::uint64_t most : steps) {
-        Sweep coarse = sweep;
+        SweepSpec coarse = sweep;
         for (SweepAxis& axis : coarse.axes) axis.count = std::min(axis.count, most);
         if (coarse.random) coarse.random->count = std::min(coarse.random->count, most * most);
         if (coarse != sweep) levels.push_back(std::move(coarse));
@@ -228,7 +229,7 @@ std::vector<Sweep> coarse_to_fine(const Sweep& sweep) {
     return levels;
 }
 
-void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Sweep> sweep) {
+void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<SweepSpec> sweep) {
     if (sweep && !sweep->axes.empty()) sweep->base = SweepPoints(*sweep, model->description()).run(0);
     if (model == model_ && sweep == sweep_) return;
     const bool alike = model == model_ && sweep && sweep_ && sweep->prints == sweep_->prints && sweep->at == sweep_->at;
@@ -237,7 +238,7 @@ void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Swee
     if (!alike) job_.drop();
     is_current_ = false;
     problem_.clear();
-    levels_ = sweep_ ? coarse_to_fine(*sweep_) : std::vector<Sweep>();
+    levels_ = sweep_ ? coarse_to_fine(*sweep_) : std::vector<SweepSpec>();
     next_ = 0;
     begin();
 }
@@ -249,7 +250,7 @@ void SweepJob::begin() {
     });
 }
 
-void SweepJob::update(Patience patience) {
+void SweepJob::update(Timeout patience) {
     while (is_busy()) {
         try {
             if (!job_.update(patience)) return;
@@ -267,7 +268,7 @@ void SweepJob::update(Patience patience) {
 }
 
 double SweepJob::share() const {
-    const auto work = [](const Sweep& sweep) {
+    const auto work = [](const SweepSpec& sweep) {
         return static_cast<double>(sweep.count()) *
                (sweep.axes.empty() ? sweep.base.options.end_time - sweep.base.options.start_time : 1.0);
     };
@@ -279,7 +280,7 @@ double SweepJob::share() const {
     return all > 0.0 ? done / all : 1.0;
 }
 
-std::size_t FoundOrbit::first() const {
+std::size_t OrbitJobResult::first() const {
     for (std::size_t i = 0; i < count(); ++i)
         if (point(i).parameters == answer.orbit->parameters) return i;
     return 0;
@@ -297,14 +298,14 @@ Run run_on(const OrbitPoint& point, Run run) {
 }
 
 void OrbitJob::begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
-                     OrbitQuestion question) {
+                     OrbitRequest question) {
     drop();
-    start([model, text, base, question = std::move(question)](OrbitWatch& watch) {
-        FoundOrbit found{text, base, {}};
+    start([model, text, base, question = std::move(question)](OrbitMonitor& watch) {
+        OrbitJobResult found{text, base, {}};
         try {
-            found.answer = answer_to(question, model, &watch);
+            found.answer = solve_orbit_request(question, model, &watch);
         } catch (const InputError& problem) {  // of an attempted start
-            found.answer.why = problem.message;
+            found.answer.reason = problem.message;
         }
         return found;
     });

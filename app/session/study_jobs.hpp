@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "depend/quantities.hpp"
+#include "analysis/orbit.hpp"
+#include "analysis/table.hpp"
 #include "figure/proof.hpp"
+#include "sensitivity/quantities.hpp"
 #include "session/command.hpp"
 #include "session/worker.hpp"
-#include "study/orbit.hpp"
-#include "study/table.hpp"
 
 namespace achilles {
 
@@ -23,11 +23,11 @@ namespace achilles {
 bool goes_by_ratios(double low, double high);
 
 // A quantity of one run and its derivatives with respect to all parameters and initial values, in the file's units.
-struct Influences {
+struct Sensitivities {
     std::shared_ptr<const Trajectory> run;
     Quantity quantity;
     std::string unit;  // unit of the quantity; "" if unknown
-    struct Of {
+    struct Sensitivity {
         std::string name;         // of a parameter, or of the initial coordinate x or rate x'
         double derivative = 0.0;  // of the quantity; NaN if it does not exist
         // Linear estimate of the change of the quantity over the whole slider range. For a logarithmic slider the
@@ -35,15 +35,15 @@ struct Influences {
         double over_slider = 0.0;
         std::string reason;  // why there is no derivative; else empty
     };
-    std::vector<Of> all;  // in the order of the sliders
+    std::vector<Sensitivity> all;  // in the order of the sliders
 
-    const Of* find(const std::string& name) const;
+    const Sensitivity* find(const std::string& name) const;
     // The largest |over_slider|; 0 if no derivative exists.
     double largest() const;
 };
 
 // Throws InputError if the expression is invalid, or if the run has no derivatives at all.
-Influences influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run);
+Sensitivities influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run);
 // The initial choice: the last Zeno time or, without one, the final value of the first coordinate.
 std::string default_quantity(const Trajectory& run);
 
@@ -54,40 +54,41 @@ struct TangentLine {
     double at(double other_x) const;
 };
 
-class InfluencesJob {
+class SensitivitiesJob {
  public:
     // Sets what to compute. Returns true if the request differs from the last one. Work under way is finished first, so
     // that results still appear while a slider is being dragged.
     bool ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity);
     void forget();
     // Receives a finished result and starts the pending request. Without a timeout: waits until that is finished, too.
-    void update(Patience patience);
+    void update(Timeout patience);
     // `ready` is called on another thread when update() would receive a result.
     void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
     // The last result: for the quantity requested last, but possibly for an earlier run. Null: none yet.
-    const Influences* influences() const { return job_.result().get(); }
+    const Sensitivities* sensitivities() const { return job_.result().get(); }
     bool is_busy() const { return begun_.has_value(); }
     const std::string& problem() const { return problem_; }  // why there is no result; else empty
 
  private:
-    struct Asked {
+    struct SensitivityRequest {
         std::shared_ptr<const Trajectory> run;
         std::string quantity;
-        friend bool operator==(const Asked&, const Asked&) = default;
+        friend bool operator==(const SensitivityRequest&, const SensitivityRequest&) = default;
     };
     void begin();
-    std::optional<Asked> asked_, begun_;  // the last request, and the one under way
+    std::optional<SensitivityRequest> asked_, begun_;  // the last request, and the one under way
     std::string problem_;
-    Job<Influences> job_;
+    Job<Sensitivities> job_;
 };
 
 // A proof of a whole run.
-class ProofJob : public Job<Proof, ProofWatch> {
+class ProofJob : public Job<Proof, ProofMonitor> {
  public:
     // Starts a proof for a run of this model and drops the last one. update() throws InputError if proofs do not cover
     // the system.
-    void begin(const std::shared_ptr<const Model>& model, const Spread& spread, const Claim& claim);
+    void begin(const std::shared_ptr<const Model>& model, const InitialUncertainty& spread,
+               const EnclosureProblem& claim);
     // The model of the last proof; null before the first.
     const std::shared_ptr<const Model>& model() const { return model_; }
 
@@ -96,7 +97,7 @@ class ProofJob : public Job<Proof, ProofWatch> {
 };
 
 // The command that requests a proof with this spread.
-command::Prove prove_command(const Spread& spread);
+command::Prove prove_command(const InitialUncertainty& spread);
 
 // True if a proof for run `a` also holds for run `b`: integration options do not matter.
 bool same_to_a_proof(const Run& a, const Run& b);
@@ -105,15 +106,15 @@ bool same_to_a_proof(const Run& a, const Run& b);
 
 // The sweep with increasing numbers of points; the first gives the first picture, the last is `sweep` itself. A section
 // of a single run uses increasing run lengths instead.
-std::vector<Sweep> coarse_to_fine(const Sweep& sweep);
+std::vector<SweepSpec> coarse_to_fine(const SweepSpec& sweep);
 
 class SweepJob {
  public:
     // Sets the sweep of this model to compute; empty: stop. Work and data of the same sweep are kept; the base's values
     // of the swept inputs are ignored in this comparison.
-    void ask(const std::shared_ptr<const Model>& model, std::optional<Sweep> sweep);
+    void ask(const std::shared_ptr<const Model>& model, std::optional<SweepSpec> sweep);
     // Receives a finished level and starts the next finer one. Without a timeout: waits for the finest.
-    void update(Patience patience);
+    void update(Timeout patience);
     // `ready` is called on another thread when update() would receive a result.
     void on_ready(std::function<void()> ready) { job_.on_ready(std::move(ready)); }
 
@@ -128,8 +129,8 @@ class SweepJob {
  private:
     void begin();  // the next level
     std::shared_ptr<const Model> model_;
-    std::optional<Sweep> sweep_;
-    std::vector<Sweep> levels_;
+    std::optional<SweepSpec> sweep_;
+    std::vector<SweepSpec> levels_;
     std::size_t next_ = 0;  // the level under way
     bool is_current_ = false;
     std::string problem_;
@@ -139,10 +140,10 @@ class SweepJob {
 // The search for a periodic orbit and its branch, on its own thread.
 
 // The result of an orbit search, and its request.
-struct FoundOrbit {
+struct OrbitJobResult {
     std::string text;  // arguments of the command
     Run base;          // the run it started from
-    OrbitAnswer answer;
+    OrbitResult answer;
 
     // The points to browse: those of the branch or, without one, the orbit alone. Empty: none found.
     std::size_t count() const { return answer.branch ? answer.branch->points.size() : answer.orbit ? 1 : 0; }
@@ -154,11 +155,11 @@ struct FoundOrbit {
 // `run` on this periodic orbit: with its start and parameters, and at least one period long.
 Run run_on(const OrbitPoint& point, Run run);
 
-class OrbitJob : public Job<FoundOrbit, OrbitWatch> {
+class OrbitJob : public Job<OrbitJobResult, OrbitMonitor> {
  public:
     // Starts a search. Drops the last result and stops a search under way.
     void begin(const std::shared_ptr<const Model>& model, const std::string& text, const Run& base,
-               OrbitQuestion question);
+               OrbitRequest question);
 };
 
 }  // namespace achilles

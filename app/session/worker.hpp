@@ -15,7 +15,7 @@
 namespace achilles {
 
 // Timeout in seconds; nullopt waits indefinitely.
-using Patience = std::optional<double>;
+using Timeout = std::optional<double>;
 
 template <class Result>
 class Worker {
@@ -51,7 +51,7 @@ class Worker {
 
     // The result of the newest job. Empty if it is not ready in time, or was already taken. Rethrows an exception of
     // the job.
-    std::optional<Result> take(Patience patience) {
+    std::optional<Result> take(Timeout patience) {
         std::unique_lock lock(mutex_);
         const auto ready = [this] { return !busy_; };
         if (patience)
@@ -59,18 +59,18 @@ class Worker {
         else
             changed_.wait(lock, ready);
         if (!answer_) return std::nullopt;
-        const Answer answer = *std::exchange(answer_, std::nullopt);
+        const JobResult answer = *std::exchange(answer_, std::nullopt);
         if (answer.problem) std::rethrow_exception(answer.problem);
         return answer.result;
     }
 
  private:
-    struct Answer {
+    struct JobResult {
         std::optional<Result> result;
         std::exception_ptr problem;
     };
 
-    static Answer done(const Job& job, const std::stop_token& stop) {
+    static JobResult done(const Job& job, const std::stop_token& stop) {
         try {
             return {job(stop), nullptr};
         } catch (...) {
@@ -84,7 +84,7 @@ class Worker {
             const Job job = std::exchange(job_, nullptr);
             const std::stop_token stop = current_.get_token();
             lock.unlock();
-            Answer answer = done(job, stop);
+            JobResult answer = done(job, stop);
             lock.lock();
             if (stop.stop_requested()) {
                 lock.unlock();
@@ -105,11 +105,11 @@ class Worker {
     std::mutex mutex_;
     std::condition_variable_any changed_;
     std::function<void()> ready_;
-    Job job_;                       // not started yet
-    std::stop_source current_;      // of the newest job
-    std::optional<Answer> answer_;  // of the newest job
-    bool busy_ = false;             // the newest job has no answer yet
-    std::jthread thread_;           // the last member, since the thread uses all others
+    Job job_;                          // not started yet
+    std::stop_source current_;         // of the newest job
+    std::optional<JobResult> answer_;  // of the newest job
+    bool busy_ = false;                // the newest job has no answer yet
+    std::jthread thread_;              // the last member, since the thread uses all others
 };
 
 // The monitor of work that reports no progress.
@@ -145,7 +145,7 @@ class Job {
         drop();
     }
     // Receives a result: true if there was one. Rethrows an exception of the work; the last result is kept then.
-    bool update(Patience patience) {
+    bool update(Timeout patience) {
         if (monitor_ == nullptr) return false;
         try {
             const auto made = worker_.take(patience);

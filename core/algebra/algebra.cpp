@@ -38,7 +38,7 @@ std::optional<std::size_t> Algebra::find(Expression expression) const {
 
 std::size_t Algebra::atom_of(Expression expression) {
     if (const auto known = find(expression)) return *known;
-    if (atoms_.size() == most_atoms) throw TooLong("it has too many symbols and functions");
+    if (atoms_.size() == most_atoms) throw SimplificationLimit("it has too many symbols and functions");
     const std::size_t index = atoms_.size();
     atoms_.push_back({expression, {}, {}});
     index_.emplace(expression.id(), index);
@@ -92,7 +92,7 @@ Fraction Algebra::divide(const Fraction& a, const Fraction& b) {
 
 Fraction Algebra::power(const Fraction& base, int exponent) {
     if (exponent < 0) return divide({Multinomial(1)}, power(base, -exponent));
-    if (exponent > 255) throw TooLong("a power beyond 255");
+    if (exponent > 255) throw SimplificationLimit("a power beyond 255");
     Fraction result{Multinomial(1)};
     for (int i = 0; i < exponent; ++i) result = multiply(result, base);
     return result;
@@ -203,8 +203,8 @@ namespace {
 using boost::multiprecision::cpp_rational;
 using Term = Multinomial::Term;
 
-void put(Factored& result, const Multinomial& base, int exponent) {
-    for (Factored::Factor& factor : result.factors)
+void put(FactoredForm& result, const Multinomial& base, int exponent) {
+    for (FactoredForm::Factor& factor : result.factors)
         if (factor.base == base) {
             factor.exponent += exponent;
             return;
@@ -212,14 +212,14 @@ void put(Factored& result, const Multinomial& base, int exponent) {
     result.factors.push_back({base, exponent});
 }
 
-void scale(Factored& result, const Integer& number, int exponent) {
+void scale(FactoredForm& result, const Integer& number, int exponent) {
     for (int i = 0; i < std::abs(exponent); ++i)
         result.number *= exponent > 0 ? cpp_rational(number) : cpp_rational(1, number);
 }
 
 class Splitter {
  public:
-    Splitter(Algebra& algebra, Factored& result) : algebra_(algebra), work_(algebra.work()), result_(result) {}
+    Splitter(Algebra& algebra, FactoredForm& result) : algebra_(algebra), work_(algebra.work()), result_(result) {}
 
     // Adds the factors of a nonzero polynomial.
     void split(const Multinomial& polynomial, int exponent) {
@@ -258,13 +258,13 @@ class Splitter {
 
     Algebra& algebra_;
     Work& work_;
-    Factored& result_;
+    FactoredForm& result_;
 };
 
 }  // namespace
 
-Factored factor(const Fraction& fraction, Algebra& algebra) {
-    Factored result;
+FactoredForm factor(const Fraction& fraction, Algebra& algebra) {
+    FactoredForm result;
     if (fraction.is_zero()) {
         result.number = 0;
         return result;
@@ -273,25 +273,25 @@ Factored factor(const Fraction& fraction, Algebra& algebra) {
     splitter.split(fraction.numerator, 1);
     splitter.split(fraction.denominator, -1);
     // Rewrites sqrt(u) u as sqrt(u)^3.
-    for (Factored::Factor& root : result.factors) {
+    for (FactoredForm::Factor& root : result.factors) {
         const auto atom = root.base.atoms();
         if (root.base.terms().size() != 1 || atom.size() != 1 || !algebra.square(atom[0])) continue;
-        for (Factored::Factor& other : result.factors)
+        for (FactoredForm::Factor& other : result.factors)
             if (other.base == *algebra.square(atom[0]) && (other.exponent > 0) == (root.exponent > 0))
                 root.exponent += 2 * std::exchange(other.exponent, 0);
     }
-    std::erase_if(result.factors, [](const Factored::Factor& factor) { return factor.exponent == 0; });
+    std::erase_if(result.factors, [](const FactoredForm::Factor& factor) { return factor.exponent == 0; });
     return result;
 }
 
-Factored operator*(Factored a, const Factored& b) {
+FactoredForm operator*(FactoredForm a, const FactoredForm& b) {
     a.number *= b.number;
-    for (const Factored::Factor& factor : b.factors) put(a, factor.base, factor.exponent);
-    std::erase_if(a.factors, [](const Factored::Factor& factor) { return factor.exponent == 0; });
+    for (const FactoredForm::Factor& factor : b.factors) put(a, factor.base, factor.exponent);
+    std::erase_if(a.factors, [](const FactoredForm::Factor& factor) { return factor.exponent == 0; });
     return a;
 }
 
-Fraction expand(const Factored& factored, Algebra& algebra) {
+Fraction expand(const FactoredForm& factored, Algebra& algebra) {
     Fraction result{Multinomial(numerator(factored.number)), Multinomial(denominator(factored.number))};
     for (const auto& [base, exponent] : factored.factors)
         for (int i = 0; i < std::abs(exponent); ++i)

@@ -26,7 +26,7 @@ struct Fraction {
 class Algebra {
  public:
     // Creates atoms and nodes in the graph. `work` limits the number of products of terms; beyond it all functions
-    // throw TooLong. If `expand_angles`, sines and cosines of sums are expanded into products.
+    // throw SimplificationLimit. If `expand_angles`, sines and cosines of sums are expanded into products.
     Algebra(Graph& graph, Work work, bool expand_angles = false);
 
     // Throws std::domain_error if a denominator is identically 0.
@@ -78,7 +78,7 @@ class Algebra {
 
 // number times bases to integer powers. The bases are primitive (their coefficients have no common divisor) and
 // distinct.
-struct Factored {
+struct FactoredForm {
     struct Factor {
         Multinomial base;
         int exponent = 1;
@@ -89,10 +89,10 @@ struct Factored {
 
 // Factors found by greatest common divisors: atoms, common contents, repeated factors. A factor with 1 - cos^2 is
 // written with sin^2 if that has fewer terms.
-Factored factor(const Fraction& fraction, Algebra& algebra);
+FactoredForm factor(const Fraction& fraction, Algebra& algebra);
 
-Factored operator*(Factored a, const Factored& b);
-Fraction expand(const Factored& factored, Algebra& algebra);
+FactoredForm operator*(FactoredForm a, const FactoredForm& b);
+Fraction expand(const FactoredForm& factored, Algebra& algebra);
 
 // What is known about the sign of an atom.
 enum class Sign { unknown, not_negative, positive };

@@ -14,7 +14,7 @@ Monomial product(const Monomial& a, const Monomial& b) {
     Monomial result;
     for (std::size_t i = 0; i < most_atoms; ++i) {
         const int sum = a[i] + b[i];
-        if (sum > 255) throw TooLong("a power beyond 255");
+        if (sum > 255) throw SimplificationLimit("a power beyond 255");
         result[i] = static_cast<std::uint8_t>(sum);
     }
     return result;
@@ -40,7 +40,7 @@ Multinomial merged(const Multinomial& a, const Multinomial& b, bool minus) {
 
 void Work::spend(std::size_t products) {
     left -= static_cast<long>(products);
-    if (left < 0) throw TooLong("it takes too many operations");
+    if (left < 0) throw SimplificationLimit("it takes too many operations");
 }
 
 Multinomial::Multinomial(const Integer& value) {
@@ -65,7 +65,8 @@ Multinomial::Multinomial(std::vector<Term> terms) {
     }
     if (!terms_.empty() && terms_.back().coefficient == 0) terms_.pop_back();
     for (const Term& term : terms_)
-        if (msb(abs(term.coefficient)) > most_coefficient_bits) throw TooLong("a coefficient of too many digits");
+        if (msb(abs(term.coefficient)) > most_coefficient_bits)
+            throw SimplificationLimit("a coefficient of too many digits");
 }
 
 bool Multinomial::is_number() const {

@@ -16,14 +16,14 @@ namespace achilles {
 using Integer = boost::multiprecision::cpp_int;
 
 // Thrown if a simplification takes too much work, too many atoms, or too large powers or coefficients.
-struct TooLong : std::runtime_error {
+struct SimplificationLimit : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
 // The work left for a simplification, in products of two terms.
 struct Work {
     long left = 0;
-    void spend(std::size_t products);  // throws TooLong
+    void spend(std::size_t products);  // throws SimplificationLimit
 };
 
 inline constexpr std::size_t most_atoms = 48;

@@ -14,7 +14,7 @@ namespace {
 constexpr long most_work = 400000;
 
 // Solution of number atom + rest = 0.
-struct Solved {
+struct LinearSolution {
     std::size_t atom;
     Multinomial number, rest;
 };
@@ -46,14 +46,14 @@ class Elimination {
 
  private:
     // Solves for an unknown symbol that no function depends on, or for a function.
-    std::optional<Solved> solve(const Multinomial& zero, bool for_a_symbol) const {
+    std::optional<LinearSolution> solve(const Multinomial& zero, bool for_a_symbol) const {
         const std::vector<std::size_t> atoms = zero.atoms();
         for (const std::size_t atom : atoms) {
             if (is_unknown(atom) != for_a_symbol || (!for_a_symbol && !is_moving_function(atom))) continue;
             const std::vector<Multinomial> parts = zero.coefficients(atom);
             if (parts.size() != 2 || !parts[1].is_number()) continue;
             if (for_a_symbol && is_inside(slot_of(atom), atoms, atom)) continue;
-            return Solved{atom, parts[1], parts[0]};
+            return LinearSolution{atom, parts[1], parts[0]};
         }
         return std::nullopt;
     }
@@ -75,7 +75,7 @@ class Elimination {
     }
 
     // Substitutes atom = -rest/number in a polynomial of degree d in the atom, and multiplies by number^d.
-    Multinomial replaced(const Multinomial& polynomial, const Solved& solved) {
+    Multinomial replaced(const Multinomial& polynomial, const LinearSolution& solved) {
         const std::vector<Multinomial> parts = polynomial.coefficients(solved.atom);
         Multinomial result, power(1);
         for (std::size_t k = 0; k < parts.size(); ++k) {  // powers of the number: Horner's rule, from below
@@ -94,8 +94,8 @@ template <class Proof>
 bool is_proved(const Proof& proof) {
     try {
         return proof();
-    } catch (const TooLong&) {
-    } catch (const TooLarge&) {
+    } catch (const SimplificationLimit&) {
+    } catch (const ExpressionTooLarge&) {
     } catch (const std::domain_error&) {
     }
     return false;

@@ -50,7 +50,7 @@ int Writer::degree_of_highest(const Monomial& powers) const {
     return degree;
 }
 
-bool Writer::before(const Item& a, const Item& b) const {
+bool Writer::before(const SumTerm& a, const SumTerm& b) const {
     const int x = degree_of_highest(a.powers), y = degree_of_highest(b.powers);
     if (x != y) return x > y;
     for (const std::size_t i : order_)
@@ -59,9 +59,9 @@ bool Writer::before(const Item& a, const Item& b) const {
 }
 
 // |number| * atoms * bracket
-Written Writer::product(const Rational& number, const Monomial& powers, const Written* bracket) const {
+FormattedTerm Writer::product(const Rational& number, const Monomial& powers, const FormattedTerm* bracket) const {
     const Rational size = abs(number);
-    std::vector<Written> factors;
+    std::vector<FormattedTerm> factors;
     for (const std::size_t i : order_) {
         if (powers[i] == 0) continue;
         factors.push_back(powers[i] == 1 ? written_[i] : write_power(written_[i], powers[i], notation_));
@@ -71,7 +71,7 @@ Written Writer::product(const Rational& number, const Monomial& powers, const Wr
     const bool divide = notation_ == Notation::text && !factors.empty();
     const Rational front = divide ? Rational(numerator(size)) : size;
     if (front != 1 || factors.empty()) factors.insert(factors.begin(), write_number(front, notation_));
-    Written result = factors.front();
+    FormattedTerm result = factors.front();
     for (std::size_t i = 1; i < factors.size(); ++i) result = write_product(result, factors[i], notation_);
     if (divide && denominator(size) != 1)
         result = write_quotient(result, write_number(Rational(denominator(size)), notation_), notation_);
@@ -79,10 +79,10 @@ Written Writer::product(const Rational& number, const Monomial& powers, const Wr
 }
 
 // Several terms with a common factor, as that factor times a bracket.
-Writer::Piece Writer::collected(std::vector<Item> items, const Monomial& shared) const {
+Writer::Piece Writer::collected(std::vector<SumTerm> items, const Monomial& shared) const {
     bool alike = true, whole = true;
     boost::multiprecision::cpp_int divisor = 0;
-    for (Item& item : items) {
+    for (SumTerm& item : items) {
         for (std::size_t i = 0; i < most_atoms; ++i)
             item.powers[i] = static_cast<std::uint8_t>(item.powers[i] - shared[i]);
         alike = alike && abs(item.number) == abs(items.front().number);
@@ -90,16 +90,16 @@ Writer::Piece Writer::collected(std::vector<Item> items, const Monomial& shared)
         divisor = gcd(divisor, numerator(item.number));
     }
     Rational number = alike ? Rational(abs(items.front().number)) : whole ? Rational(divisor) : Rational(1);
-    if (std::all_of(items.begin(), items.end(), [](const Item& item) { return item.number < 0; })) number = -number;
-    for (Item& item : items) item.number /= number;
-    const Written bracket = sum(std::move(items));
+    if (std::all_of(items.begin(), items.end(), [](const SumTerm& item) { return item.number < 0; })) number = -number;
+    for (SumTerm& item : items) item.number /= number;
+    const FormattedTerm bracket = sum(std::move(items));
     if (number == 1 && shared == Monomial{}) return {false, bracket};
     return {number < 0, product(number, shared, &bracket)};
 }
 
 // The terms that share the next bracket: those with the same rates. If all terms have the same rates, those that
 // contain the most frequent atom to the same power. Empty if the remaining terms are written one by one.
-std::vector<std::size_t> Writer::next_group(const std::vector<Item>& items,
+std::vector<std::size_t> Writer::next_group(const std::vector<SumTerm>& items,
                                             const std::vector<std::size_t>& left) const {
     const auto rates = [&](std::size_t item) {
         Monomial powers = items[item].powers;
@@ -130,16 +130,16 @@ std::vector<std::size_t> Writer::next_group(const std::vector<Item>& items,
     return best;
 }
 
-Written Writer::sum(std::vector<Item> items) const {
-    std::sort(items.begin(), items.end(), [&](const Item& a, const Item& b) { return before(a, b); });
+FormattedTerm Writer::sum(std::vector<SumTerm> items) const {
+    std::sort(items.begin(), items.end(), [&](const SumTerm& a, const SumTerm& b) { return before(a, b); });
     std::vector<std::pair<std::size_t, Piece>> pieces;  // by index of the first term
     std::vector<std::size_t> left(items.size());
     std::iota(left.begin(), left.end(), std::size_t{0});
     for (std::vector<std::size_t> group = next_group(items, left); !group.empty(); group = next_group(items, left)) {
-        std::vector<Item> with;
+        std::vector<SumTerm> with;
         for (const std::size_t i : group) with.push_back(items[i]);
         Monomial shared = with.front().powers;
-        for (const Item& item : with) shared = common(shared, item.powers);
+        for (const SumTerm& item : with) shared = common(shared, item.powers);
         pieces.emplace_back(group.front(), collected(std::move(with), shared));
         std::erase_if(left, [&](std::size_t i) { return std::find(group.begin(), group.end(), i) != group.end(); });
     }
@@ -151,7 +151,7 @@ Written Writer::sum(std::vector<Item> items) const {
         std::find_if(pieces.begin(), pieces.end(), [](const auto& piece) { return !piece.second.negative; });
     if (plus != pieces.end()) std::rotate(pieces.begin(), plus, plus + 1);
     if (pieces.empty()) return write_number(0, notation_);
-    Written result = pieces.front().second.written;
+    FormattedTerm result = pieces.front().second.written;
     if (pieces.front().second.negative) result = {fmt::format("-{}", inside(result, 2, notation_)), 1, {}};
     for (std::size_t i = 1; i < pieces.size(); ++i)
         result = write_sum(result, pieces[i].second.negative, pieces[i].second.written, notation_);
@@ -159,7 +159,7 @@ Written Writer::sum(std::vector<Item> items) const {
 }
 
 // Writes c - c cos(u)^2 as c sin(u)^2, if sin(u) is an atom.
-void Writer::gather_sines(std::vector<Item>& items, const Algebra& algebra) const {
+void Writer::gather_sines(std::vector<SumTerm>& items, const Algebra& algebra) const {
     for (std::size_t cosine = 0; cosine < written_.size(); ++cosine) {
         const std::optional<std::size_t> sine = algebra.sine_of(cosine);
         if (!sine || *sine >= written_.size()) continue;
@@ -167,7 +167,7 @@ void Writer::gather_sines(std::vector<Item>& items, const Algebra& algebra) cons
             if (items[i].powers[cosine] < 2) continue;
             Monomial rest = items[i].powers;
             rest[cosine] = static_cast<std::uint8_t>(rest[cosine] - 2);
-            const auto whole = std::find_if(items.begin(), items.end(), [&](const Item& item) {
+            const auto whole = std::find_if(items.begin(), items.end(), [&](const SumTerm& item) {
                 return item.powers == rest && item.number == -items[i].number;
             });
             if (whole == items.end()) continue;
@@ -177,21 +177,21 @@ void Writer::gather_sines(std::vector<Item>& items, const Algebra& algebra) cons
     }
 }
 
-Written Writer::write(const Multinomial& polynomial) const { return write(Factored{1, {{polynomial, 1}}}); }
+FormattedTerm Writer::write(const Multinomial& polynomial) const { return write(FactoredForm{1, {{polynomial, 1}}}); }
 
-Written Writer::write(const Fraction& fraction, Algebra& algebra) const {
+FormattedTerm Writer::write(const Fraction& fraction, Algebra& algebra) const {
     if (!fraction.denominator.is_number() || fraction.is_zero()) return write(factor(fraction, algebra));
-    std::vector<Item> items;
+    std::vector<SumTerm> items;
     for (const Multinomial::Term& term : fraction.numerator.terms())
         items.push_back({Rational(term.coefficient, fraction.denominator.number()), term.powers});
     gather_sines(items, algebra);
     if (items.size() == 1) return sum(std::move(items));
     const Piece all = collected(std::move(items), Monomial{});
-    return all.negative ? Written{fmt::format("-{}", inside(all.written, 2, notation_)), 1, {}} : all.written;
+    return all.negative ? FormattedTerm{fmt::format("-{}", inside(all.written, 2, notation_)), 1, {}} : all.written;
 }
 
-Written Writer::write(const Factored& given) const {
-    Factored factored = given;
+FormattedTerm Writer::write(const FactoredForm& given) const {
+    FactoredForm factored = given;
     if (factored.number < 0) {
         // Writes -(a - b) as b - a.
         for (auto& [base, exponent] : factored.factors) {
@@ -205,10 +205,10 @@ Written Writer::write(const Factored& given) const {
     }
     struct Side {
         Monomial powers{};
-        std::vector<Written> brackets;
+        std::vector<FormattedTerm> brackets;
     } top, bottom;
     const auto bracket = [&](const Multinomial& base) {
-        std::vector<Item> items;
+        std::vector<SumTerm> items;
         for (const Multinomial::Term& term : base.terms()) items.push_back({Rational(term.coefficient), term.powers});
         return sum(std::move(items));
     };
@@ -219,20 +219,20 @@ Written Writer::write(const Factored& given) const {
             for (std::size_t i = 0; i < most_atoms; ++i)
                 side.powers[i] = static_cast<std::uint8_t>(side.powers[i] + base.terms().front().powers[i] * size);
         } else {
-            const Written written = bracket(base);
+            const FormattedTerm written = bracket(base);
             side.brackets.push_back(size == 1 ? written : write_power(written, size, notation_));
         }
     }
     const auto written = [&](const Rational& number, const Side& side) {
         if (side.brackets.empty()) return product(number, side.powers, nullptr);
         if (side.brackets.size() == 1 && abs(number) == 1 && side.powers == Monomial{}) return side.brackets.front();
-        Written result = product(number, side.powers, &side.brackets.front());
+        FormattedTerm result = product(number, side.powers, &side.brackets.front());
         for (std::size_t i = 1; i < side.brackets.size(); ++i)
             result = write_product(result, side.brackets[i], notation_);
         return result;
     };
     const bool whole = bottom.powers == Monomial{} && bottom.brackets.empty();
-    Written result = written(whole ? factored.number : Rational(numerator(factored.number)), top);
+    FormattedTerm result = written(whole ? factored.number : Rational(numerator(factored.number)), top);
     if (!whole) result = write_quotient(result, written(Rational(denominator(factored.number)), bottom), notation_);
     if (factored.number < 0) result = {fmt::format("-{}", inside(result, 2, notation_)), 1, {}};
     return result;

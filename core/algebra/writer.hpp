@@ -16,33 +16,33 @@ class Writer {
     // of the highest degree in symbols of the highest rank.
     Writer(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks, Notation notation);
 
-    Written write(const Multinomial& polynomial) const;
+    FormattedTerm write(const Multinomial& polynomial) const;
     // A polynomial over a number becomes a sum with fractional coefficients, anything else a quotient of products.
-    Written write(const Fraction& fraction, Algebra& algebra) const;
-    Written write(const Factored& factored) const;
+    FormattedTerm write(const Fraction& fraction, Algebra& algebra) const;
+    FormattedTerm write(const FactoredForm& factored) const;
 
  private:
     using Rational = boost::multiprecision::cpp_rational;
-    struct Item {  // a term of a sum
+    struct SumTerm {  // a term of a sum
         Rational number;
         Monomial powers;
     };
     struct Piece {  // one term of a formatted sum, or several terms with their common factor
         bool negative = false;
-        Written written;
+        FormattedTerm written;
     };
-    void gather_sines(std::vector<Item>& items, const Algebra& algebra) const;
-    Written sum(std::vector<Item> items) const;
-    std::vector<std::size_t> next_group(const std::vector<Item>& items, const std::vector<std::size_t>& left) const;
-    Written product(const Rational& number, const Monomial& powers, const Written* bracket) const;
-    Piece collected(std::vector<Item> items, const Monomial& shared) const;
+    void gather_sines(std::vector<SumTerm>& items, const Algebra& algebra) const;
+    FormattedTerm sum(std::vector<SumTerm> items) const;
+    std::vector<std::size_t> next_group(const std::vector<SumTerm>& items, const std::vector<std::size_t>& left) const;
+    FormattedTerm product(const Rational& number, const Monomial& powers, const FormattedTerm* bracket) const;
+    Piece collected(std::vector<SumTerm> items, const Monomial& shared) const;
     int degree_of_highest(const Monomial& powers) const;
-    bool before(const Item& a, const Item& b) const;
+    bool before(const SumTerm& a, const SumTerm& b) const;
 
     Notation notation_;
-    std::vector<Written> written_;    // by atom
-    std::vector<std::size_t> order_;  // atoms in the order of a product
-    std::vector<bool> highest_;       // by atom: is it a symbol of the highest rank?
+    std::vector<FormattedTerm> written_;  // by atom
+    std::vector<std::size_t> order_;      // atoms in the order of a product
+    std::vector<bool> highest_;           // by atom: is it a symbol of the highest rank?
 };
 
 }  // namespace achilles

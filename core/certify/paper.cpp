@@ -30,7 +30,7 @@ struct PaperConditions::Bounds {
 };
 
 PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                                 ContactSet unpressed, const Ground& ground)
+                                 ContactSet unpressed, const FloatEnvironmentGuard& ground)
     : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
       point_(model.evaluator(model.programs_of(contact, mode).definition7_terms, run.parameters)),
       hddot_(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
@@ -118,7 +118,7 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
         if (!(needed_t < tolerances.eps_t) || !(needed_q < tolerances.eps_q) || !(needed_v < tolerances.eps_v))
             return std::nullopt;
         if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) {
-            std::optional<Certificate::Others> others;
+            std::optional<Certificate::OtherContactBounds> others;
             if (!prove_others(bounds->box, others)) return std::nullopt;
             Certificate certificate = certificate_of(collision, *bounds);
             certificate.others = std::move(others);
@@ -156,7 +156,7 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
 
 Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) {
     // The tighter interval for tau_inf (theory.md 4) is valid, because -hddot stays in [a_min, a_max].
-    const Wait wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
+    const AccumulationTime wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
     Certificate certificate =
         certificate_at(collision.before.t, wait, estimated_wait(trend_at(collision), mid(e_), collision.speed));
     // The c_i use the tolerances of the run: the bounds over V are smaller than the radii of V, which are smaller than
@@ -170,7 +170,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
                                          condition("c2: position", b.position, truncation_.eps_q),
                                          condition("c3: velocity", b.velocity, truncation_.eps_v)};
     certificate.decision = decision;
-    certificate.decisive = decision.closest().name;
+    certificate.tightest_bound = decision.closest().name;
     certificate.assumptions = {{"e a_max/a_min", b.e1.hi(), 1.0}, {"normal acceleration", -b.a_min.lo(), 0.0}};
     certificate.position_bound = (b.position * b.w).hi();
     certificate.a_min = b.a_min.lo();

@@ -33,7 +33,7 @@ namespace achilles {
 class PaperConditions : public TruncationConditions {
  public:
     PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                    ContactSet unpressed, const Ground& ground);
+                    ContactSet unpressed, const FloatEnvironmentGuard& ground);
 
     bool fails_at_point(const Collision& collision) override;
 

@@ -21,15 +21,15 @@ double times(const Interval& x, const Interval& factor) {
 // Bounds over X: of -hddot, of the height of flights (h_m), and of the accumulation time.
 struct SharpConditions::Time {
     Interval a_min, a_max, r, height;
-    Interval longest;  // T, by the attained bounds
-    Wait wait;         // as certified
+    Interval longest;       // T, by the attained bounds
+    AccumulationTime wait;  // as certified
     double half_width() const {
         return (Interval(0.5) * (Interval(wait.latest.hi()) - Interval(wait.earliest.lo()))).hi();
     }
 };
 
 SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                                 ContactSet unpressed, const Ground& ground)
+                                 ContactSet unpressed, const FloatEnvironmentGuard& ground)
     : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
       hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
                    model.evaluator<Interval>(model.bouncing(contact, mode).shadow, run.parameters),
@@ -55,7 +55,7 @@ bool SharpConditions::fails_by_speed(double speed) {
 // If that does not decide: the maximum distance from the constrained motion in the next flight, to leading order.
 bool SharpConditions::fails_at_point(const Collision& collision) {
     if (fails_by_speed(collision.speed)) return true;
-    const Trend trend = trend_at(collision);
+    const AccelerationTrend trend = trend_at(collision);
     const double e = mid(e_), w = collision.speed;
     if (!(trend.a > 0.0) || !(e < 1.0)) return true;
     if ((collision.restart - collision.tangential).norm() > truncation_.eps_v) return true;
@@ -82,21 +82,22 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
     if (!certainly_less(square(e_) * r, one)) return std::nullopt;
-    const Wait wait = wait_for_zeno(e_, a_min, a_max, box_.w);
+    const AccumulationTime wait = wait_for_zeno(e_, a_min, a_max, box_.w);
     return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
 }
 
 // Intersects the enclosure of the accumulation time with the one of third order in w (truncation.hpp). Call
 // time_over_box() first: this uses the slopes of hddot over the box X, and encloses hddot at the collision and
 // sigma = 0.
-void SharpConditions::sharpen(Time& time, const Trend& trend) {
+void SharpConditions::sharpen(Time& time, const AccelerationTrend& trend) {
     for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = box_.q0[i];
         variables_[dof_ + i] = box_.s0[i];
     }
     variables_[2 * dof_] = Interval(0.0);
     if (!autonomous_) variables_.back() = box_.t0;
-    const Drift drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
+    const AccelerationBounds drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(),
+                                   -hddot_.Xi()};
     const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
     // Only the lower end of `earliest` and the upper end of `latest` are used.
@@ -171,7 +172,7 @@ void SharpConditions::begin_box(const Collision& collision) {
 
 // Predicts in double the radii that the inclusion test will require, so that the first box usually succeeds. Any radii
 // may be tried.
-void SharpConditions::predict_radii(const Collision& collision, const Trend& trend) {
+void SharpConditions::predict_radii(const Collision& collision, const AccelerationTrend& trend) {
     const double e = mid(e_), w = collision.speed;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), h = e * w * e * w / (2.0 * trend.a);
     box_.duration = inflated(T);
@@ -193,7 +194,7 @@ void SharpConditions::predict_radii(const Collision& collision, const Trend& tre
 
 // The certificate of the collision, whatever the tolerances; nullopt if nothing can be proved.
 std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
-    const Trend trend = trend_at(collision);
+    const AccelerationTrend trend = trend_at(collision);
     if (!(trend.a > 0.0) || !(mid(e_) < 1.0)) return std::nullopt;
     begin_box(collision);
     predict_radii(collision, trend);
@@ -201,7 +202,7 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
         auto time = time_over_box();
         if (!time) return std::nullopt;
         if (!contain(*time)) continue;
-        std::optional<Certificate::Others> others;
+        std::optional<Certificate::OtherContactBounds> others;
         if (!prove_others(variables_, others)) return std::nullopt;
         sharpen(*time, trend);
         find_shadow(*time);
@@ -212,7 +213,8 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
     return std::nullopt;
 }
 
-Certificate SharpConditions::certificate_of(const Collision& collision, const Time& time, const Trend& trend) const {
+Certificate SharpConditions::certificate_of(const Collision& collision, const Time& time,
+                                            const AccelerationTrend& trend) const {
     Certificate c = certificate_at(collision.before.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
     Interval q(0.0), v(0.0);
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -241,8 +243,8 @@ std::optional<Certificate> SharpConditions::do_certify(const Collision& collisio
     auto certificate = prove(collision);
     if (!certificate || !certificate->uniform_position) return std::nullopt;
     const Certificate::Decision& decision = *certificate->decision;
-    const double position = decision.position.share();
-    const double cubic = std::max(decision.time.share(), decision.velocity.share());
+    const double position = decision.position.ratio();
+    const double cubic = std::max(decision.time.ratio(), decision.velocity.ratio());
     if (position <= 1.0 && cubic <= 1.0) return certificate;
     if (position > cubic) {
         remember(collision.speed, position, 2);

@@ -45,7 +45,7 @@ namespace achilles {
 class SharpConditions : public TruncationConditions {
  public:
     SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                    ContactSet unpressed, const Ground& ground);
+                    ContactSet unpressed, const FloatEnvironmentGuard& ground);
     bool fails_at_point(const Collision& collision) override;
     bool fails_by_speed(double speed) override;
     void restart(const Interval& e) override {
@@ -60,23 +60,23 @@ class SharpConditions : public TruncationConditions {
  private:
     struct Time;
     // X: a box in (q, s), sigma and t.
-    struct Box : CollisionBox {
+    struct SharpBox : CollisionBox {
         std::vector<Interval> d;  // v* - s, if the restart velocity is v*
         Interval w, sigma;
-        explicit Box(std::size_t dof) : CollisionBox(dof), d(dof) {}
+        explicit SharpBox(std::size_t dof) : CollisionBox(dof), d(dof) {}
     };
-    struct Shadow {
+    struct ShadowingBound {
         std::vector<Interval> E_q, E_s;  // at tau_inf
         std::vector<Interval> uniform;   // bound on q at all times
     };
     std::optional<Certificate> prove(const Collision& collision);
     void begin_box(const Collision& collision);
-    void predict_radii(const Collision& collision, const Trend& trend);
+    void predict_radii(const Collision& collision, const AccelerationTrend& trend);
     std::optional<Time> time_over_box();
     bool contain(const Time& time);
-    void sharpen(Time& time, const Trend& trend);
+    void sharpen(Time& time, const AccelerationTrend& trend);
     void find_shadow(const Time& time);
-    Certificate certificate_of(const Collision& collision, const Time& time, const Trend& trend) const;
+    Certificate certificate_of(const Collision& collision, const Time& time, const AccelerationTrend& trend) const;
     void remember(double speed, double too_wide, int power);
 
     ShadowTerms<Range> hddot_;
@@ -87,8 +87,8 @@ class SharpConditions : public TruncationConditions {
     int power_ = 3;
     double last_speed_ = 0.0;  // speed of the last collision that was examined
     // Data of the current proof, kept as members so that further proofs allocate no memory.
-    Box box_;
-    Shadow shadow_;
+    SharpBox box_;
+    ShadowingBound shadow_;
     std::vector<Interval> variables_;      // q, s, sigma, t over the box
     std::vector<double> need_q_, need_s_;  // radii that the last inclusion test required
     std::vector<double> rising_;           // q', s' just before the impact

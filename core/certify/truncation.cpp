@@ -12,12 +12,12 @@
 
 namespace achilles {
 
-Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w) {
+AccumulationTime wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w) {
     const Interval one(1.0), r = a_max / a_min, rebound = Interval(2.0) * e * (one + e) * w;
     return {rebound / (a_max * (one - square(e) / r)), rebound / (a_min * (one - square(e) * r))};
 }
 
-double estimated_wait(const Trend& trend, double e, double w) {
+double estimated_wait(const AccelerationTrend& trend, double e, double w) {
     return estimated_wait(trend.a, trend.b, trend.c, e, w);
 }
 
@@ -28,7 +28,7 @@ namespace {
 struct Psi {
     Interval with_time, without;
 };
-Psi sizes_of_psi(const Trend& trend, const Interval& e, const Interval& per_a) {
+Psi sizes_of_psi(const AccelerationTrend& trend, const Interval& e, const Interval& per_a) {
     const Interval one(1.0), half(0.5), K = (one + e) / (one - e), e2 = square(e);
     const Interval by_a = Interval(trend.b) * square(per_a), with_c = Interval(trend.c) * per_a;
     const Interval cB = -half * by_a * K, cC = -half * (by_a + with_c) * per_a, cF = cB * per_a;
@@ -40,8 +40,8 @@ Psi sizes_of_psi(const Trend& trend, const Interval& e, const Interval& per_a) {
 
 }  // namespace
 
-Interval third_order_error(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
-                           const Interval& a_max, const Interval& w, const Interval& latest) {
+Interval third_order_error(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
+                           const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest) {
     const Interval a(trend.a), one(1.0), two(2.0), T(latest.hi()), per_a = one / a, per_a_min = one / a_min;
     const Interval e2 = square(e), h_m = Interval(0.5) * square(e * w) * per_a_min, middle(mid(drift.Phi));
     const Interval rho = abs(drift.start - a) + abs(drift.by_sigma - Interval(trend.c)) * w +
@@ -56,8 +56,8 @@ Interval third_order_error(const Trend& trend, const Drift& drift, const Interva
     return T * (doubled * rho + d_m * S);
 }
 
-Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
-                          const Interval& a_max, const Interval& w, const Interval& latest) {
+Interval third_order_wait(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
+                          const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest) {
     const Interval one(1.0), two(2.0), per_a = one / Interval(trend.a), T0 = two * per_a / (one - e) * e * w;
     const Interval off = third_order_error(trend, drift, e, a_min, a_max, w, latest);
     const Interval curving = (two * Interval(trend.b) * per_a + Interval(trend.c)) / Interval(6.0);
@@ -68,7 +68,7 @@ Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
                                                             std::size_t contact, Mode mode, ContactSet unpressed) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     if (run.options.truncation.conditions == Conditions::paper)
         return std::make_unique<PaperConditions>(model, run, e, contact, mode, unpressed, ground);
     return std::make_unique<SharpConditions>(model, run, e, contact, mode, unpressed, ground);
@@ -105,8 +105,8 @@ void CollisionBox::put_into(std::vector<Interval>& variables) const {
     }
 }
 
-ConditionsBase::ConditionsBase(const Model& model, const Run& run, const Neighbours* others,
-                               std::vector<std::uint32_t> variables, ContactSet unpressed, const Ground&)
+ConditionsBase::ConditionsBase(const Model& model, const Run& run, const OtherContactTerms* others,
+                               std::vector<std::uint32_t> variables, ContactSet unpressed, const FloatEnvironmentGuard&)
     : dof_(static_cast<std::size_t>(model.dof())),
       truncation_(run.options.truncation),
       variables_(std::move(variables)),
@@ -115,7 +115,8 @@ ConditionsBase::ConditionsBase(const Model& model, const Run& run, const Neighbo
     if (neighbours_ != nullptr) others_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
 }
 
-bool ConditionsBase::prove_others(const std::vector<Interval>& box, std::optional<Certificate::Others>& proved) {
+bool ConditionsBase::prove_others(const std::vector<Interval>& box,
+                                  std::optional<Certificate::OtherContactBounds>& proved) {
     if (neighbours_ == nullptr) return true;
     set_box(others_, box);
     others_.run();
@@ -123,7 +124,7 @@ bool ConditionsBase::prove_others(const std::vector<Interval>& box, std::optiona
     return proved.has_value();
 }
 
-Certificate ConditionsBase::certificate_at(double tau_k, const Wait& wait, double estimated) const {
+Certificate ConditionsBase::certificate_at(double tau_k, const AccumulationTime& wait, double estimated) const {
     Certificate certificate;
     certificate.certified = true;
     certificate.conditions = truncation_.conditions;
@@ -141,11 +142,11 @@ void ConditionsBase::decide(Certificate& c, double half_width) const {
     c.decision = {{"time bound", half_width, truncation_.eps_t},
                   {"uniform position", c.uniform_position.value_or(none), truncation_.eps_q},
                   {"shadowing velocity", c.shadowing_velocity.value_or(none), truncation_.eps_v}};
-    c.decisive = c.decision->closest().name;
+    c.tightest_bound = c.decision->closest().name;
 }
 
 TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
-                                           Mode mode, ContactSet unpressed, const Ground& ground)
+                                           Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground)
     : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.neighbours(contact, mode),
                      model.bouncing(contact, mode).variables, unpressed, ground),
       sigma_(model.layout().sigma()),
@@ -154,15 +155,15 @@ TruncationConditions::TruncationConditions(const Model& model, const Run& run, c
       contact_(model.evaluator<Interval>(model.programs_of(contact, mode).contact_terms, run.parameters)),
       trend_(model.evaluator(model.bouncing(contact, mode).trend, run.parameters)) {}
 
-Trend TruncationConditions::trend_at(const Collision& collision) {
+AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
     set_state(trend_, collision.with(collision.tangential));
     trend_.run();
     return {-trend_.hddot(), -trend_.rate(), -trend_.by_sigma()};
 }
 
-std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
-                                                 ContactSet unpressed) {
-    Certificate::Others others;
+std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactTerms& neighbours,
+                                                             const Evaluator<Interval>& program, ContactSet unpressed) {
+    Certificate::OtherContactBounds others;
     const std::size_t bouncing = neighbours.bouncing.size();
     std::size_t next = bouncing;
     for (const std::size_t contact : neighbours.held) {
@@ -170,7 +171,8 @@ std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, c
         next += 2;
         const bool is_unpressed = unpressed.contains(contact);
         if (!(is_unpressed || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
-        Certificate::Others::Held held{contact, 0.0, 0.0, is_unpressed ? 0.0 : (-hddot / W).lo()};
+        Certificate::OtherContactBounds::HeldContactBound held{contact, 0.0, 0.0,
+                                                               is_unpressed ? 0.0 : (-hddot / W).lo()};
         for (std::size_t k = 0; k < bouncing; ++k) {
             const Interval kappa = program.output(next++);
             if (!(kappa.lo() >= 0.0)) {
@@ -190,7 +192,7 @@ std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, c
     return others;
 }
 
-Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i) {
+Interval transmission(const OtherContactTerms& neighbours, const Evaluator<Interval>& program, std::size_t i) {
     const std::size_t bouncing = neighbours.bouncing.size();
     return program.output(bouncing + i * (2 + bouncing) + 2);
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "model/model.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "number/interval.hpp"
 #include "run/trajectory.hpp"
 
@@ -17,20 +17,20 @@ namespace achilles {
 
 // Bounds on tau_inf - tau_k if -hddot stays in [a_min, a_max] and e^2 a_max/a_min < 1 (theory.md 4). They are attained:
 //     A_lo w <= tau_inf - tau_k <= A w,   A = 2 e (1+e)/(a_min (1 - e^2 r)),   A_lo = 2 e (1+e)/(a_max (1 - e^2/r)).
-struct Wait {
+struct AccumulationTime {
     Interval earliest, latest;
 };
-Wait wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w);
+AccumulationTime wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w);
 
 // The variation of -hddot along a bouncing motion, at the restart (q, s) and sigma = 0: its value a, its rate b along
 // the constrained motion, and its derivative c with respect to sigma = hdot.
-struct Trend {
+struct AccelerationTrend {
     double a = 0.0, b = 0.0, c = 0.0;
 };
 
 // Estimate of the accumulation time (s) to second order in w (theory-truncation.md 3):
 //     T0 - T0^2 (b/(3a) + c/6),   T0 = 2 e w/(a (1 - e)).    Needs a > 0, e < 1.
-double estimated_wait(const Trend& trend, double e, double w);
+double estimated_wait(const AccelerationTrend& trend, double e, double w);
 // The same for any number type.
 template <class Number>
 Number estimated_wait(const Number& a, const Number& b, const Number& c, const Number& e, const Number& w) {
@@ -40,7 +40,7 @@ Number estimated_wait(const Number& a, const Number& b, const Number& c, const N
 
 // Enclosures of the terms of -hddot = G(q, s, sigma) over a box that contains the bouncing motion. P, Phi and Xi are
 // those of model/bouncing.hpp with G in place of hddot.
-struct Drift {
+struct AccelerationBounds {
     Interval start;       // G(q, s, 0) at the collision
     Interval by_sigma;    // dG/dsigma over the box
     Interval P, Phi, Xi;  // over the box
@@ -57,11 +57,11 @@ struct Drift {
 // falls at the rate 1 if hddot = -a. The contribution of delta is integrated by parts with the quadratic form Psi in
 // (t, hdot, z), which is also continuous across impacts and has the coefficients cA to cG. The result is undefined if
 // the enclosures are.
-Interval third_order_wait(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
-                          const Interval& a_max, const Interval& w, const Interval& latest);
+Interval third_order_wait(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
+                          const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest);
 // Only the bound T (2 rho/(a (1-e)) + d_m S); its upper end is the result.
-Interval third_order_error(const Trend& trend, const Drift& drift, const Interval& e, const Interval& a_min,
-                           const Interval& a_max, const Interval& w, const Interval& latest);
+Interval third_order_error(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
+                           const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest);
 
 // ---- the truncation conditions: PaperConditions and SharpConditions ----
 
@@ -96,8 +96,8 @@ class ConditionsBase {
  protected:
     // A box has one interval for each of the variables. `others` is null if there are no other contacts. Those in
     // `unpressed` need no contact force.
-    ConditionsBase(const Model& model, const Run& run, const Neighbours* others, std::vector<std::uint32_t> variables,
-                   ContactSet unpressed, const Ground&);
+    ConditionsBase(const Model& model, const Run& run, const OtherContactTerms* others,
+                   std::vector<std::uint32_t> variables, ContactSet unpressed, const FloatEnvironmentGuard&);
 
     void set_box(auto& program, const std::vector<Interval>& box) const {
         for (std::size_t i = 0; i < variables_.size(); ++i) program.input(variables_[i]) = box[i];
@@ -105,10 +105,10 @@ class ConditionsBase {
     // Whether the other contacts are proved to keep their states (theory-gaps.md 2.3): over the box every held contact
     // is pressed, impulses press it further, and every other gap is open. If there are others, `proved` receives their
     // bounds.
-    bool prove_others(const std::vector<Interval>& box, std::optional<Certificate::Others>& proved);
+    bool prove_others(const std::vector<Interval>& box, std::optional<Certificate::OtherContactBounds>& proved);
     // A certificate with tau_inf in [tau_k + earliest, tau_k + latest]. Its estimate of tau_inf is clamped to that
     // interval, and to at least tau_k.
-    Certificate certificate_at(double tau_k, const Wait& wait, double estimated) const;
+    Certificate certificate_at(double tau_k, const AccumulationTime& wait, double estimated) const;
     // Adds the decision by the half width of the time interval and the shadowing bounds.
     void decide(Certificate& certificate, double half_width) const;
 
@@ -118,14 +118,14 @@ class ConditionsBase {
  private:
     std::vector<std::uint32_t> variables_;
     ContactSet unpressed_;
-    const Neighbours* neighbours_;
+    const OtherContactTerms* neighbours_;
     Evaluator<Interval> others_;
 };
 
 class TruncationConditions : protected ConditionsBase {
  public:
     TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                         ContactSet unpressed, const Ground& ground);
+                         ContactSet unpressed, const FloatEnvironmentGuard& ground);
     virtual ~TruncationConditions() = default;
     // Fast check: true if the conditions obviously fail.
     virtual bool fails_at_point(const Collision& collision) = 0;
@@ -137,15 +137,15 @@ class TruncationConditions : protected ConditionsBase {
     // The certificate if the conditions are proved for the tolerances of the run; otherwise nullopt. Slow: call
     // fails_at_point() first.
     std::optional<Certificate> certify(const Collision& collision) {
-        const Ground ground;
+        const FloatEnvironmentGuard ground;
         return do_certify(collision);
     }
     // The certificate that can be proved here whatever the tolerances, for a collision after which no further flight
     // can be resolved numerically.
     std::optional<Certificate> prove_any(const Collision& collision) {
-        const Ground ground;
+        const FloatEnvironmentGuard ground;
         auto certificate = do_prove_any(collision);
-        if (certificate) certificate->below_rounding = true;
+        if (certificate) certificate->cut_at_resolution = true;
         return certificate;
     }
 
@@ -153,7 +153,7 @@ class TruncationConditions : protected ConditionsBase {
     virtual std::optional<Certificate> do_certify(const Collision& collision) = 0;
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
     // The variation of -hddot at a collision.
-    Trend trend_at(const Collision& collision);
+    AccelerationTrend trend_at(const Collision& collision);
 
     std::uint32_t sigma_;
     bool autonomous_;
@@ -181,10 +181,10 @@ Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>
 // The bounds on the other contacts from the outputs of their program, which must have run. Returns nullopt if one of
 // them is not proved pressed, or open. Contacts in `unpressed`, which need no force (theory-gaps.md 2.7), need not be
 // pressed.
-std::optional<Certificate::Others> others_proved(const Neighbours& neighbours, const Evaluator<Interval>& program,
-                                                 ContactSet unpressed);
+std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactTerms& neighbours,
+                                                             const Evaluator<Interval>& program, ContactSet unpressed);
 
 // kappa of held contact i for the bouncing contact, from a program that has run.
-Interval transmission(const Neighbours& neighbours, const Evaluator<Interval>& program, std::size_t i);
+Interval transmission(const OtherContactTerms& neighbours, const Evaluator<Interval>& program, std::size_t i);
 
 }  // namespace achilles

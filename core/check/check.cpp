@@ -15,10 +15,10 @@ namespace {
 
 class Report : EquationsOnPage {
  public:
-    Report(const Model& model, const Run& run, const Simplified& simplified, Notation notation)
+    Report(const Model& model, const Run& run, const SimplifiedEquations& simplified, Notation notation)
         : EquationsOnPage(model, run, simplified, Page(notation)) {}
 
-    std::string write(const Disagreement& disagreement, double deriving) {
+    std::string write(const MaxDifference& disagreement, double deriving) {
         const SystemDescription& system = model_.description();
         page_.title(system.title, system.source);
         page_.heading("Coordinates");
@@ -95,7 +95,7 @@ class Report : EquationsOnPage {
     void given() {
         const Equations& e = model_.equations();
         const SystemDescription& system = model_.description();
-        const auto show = [&](const Both& left, Expression expression, const Text& text) {
+        const auto show = [&](const TextAndLatex& left, Expression expression, const Text& text) {
             page_.formula(
                 left, is_text() ? text.text : achilles::write(expression, model_.slot_names(), Notation::latex).text);
         };
@@ -122,8 +122,8 @@ class Report : EquationsOnPage {
         }
     }
 
-    void checks(const Disagreement& disagreement, double deriving) {
-        const auto list = [](const std::vector<Disagreement::Quantity>& quantities) {
+    void checks(const MaxDifference& disagreement, double deriving) {
+        const auto list = [](const std::vector<MaxDifference::CheckedQuantity>& quantities) {
             std::vector<std::string> parts;
             for (const auto& [quantity, largest] : quantities)
                 parts.push_back(fmt::format("{} {:.1e}", quantity, largest));
@@ -148,12 +148,12 @@ class Report : EquationsOnPage {
 
 namespace {
 
-class Answer : EquationsOnPage {
+class CheckReport : EquationsOnPage {
  public:
-    Answer(const Model& model, const Run& run, const Simplified& simplified)
+    CheckReport(const Model& model, const Run& run, const SimplifiedEquations& simplified)
         : EquationsOnPage(model, run, simplified, Page(Notation::text)) {}
 
-    std::string write(const Disagreement& disagreement) {
+    std::string write(const MaxDifference& disagreement) {
         for (std::size_t i = 0; i < model_.contacts(); ++i) condition(i, simplified_.contacts[i].zeno);
         if (const std::size_t count = simplified_.while_held.size(); count > 0)
             page_.sentence({counted(count, "more Zeno condition") + " while other contacts are held: --verbose", {}});
@@ -172,7 +172,7 @@ class Answer : EquationsOnPage {
         return fmt::format("{} {}{}", count, noun, count == 1 ? "" : "s");
     }
 
-    std::string first_line(const Disagreement& disagreement) const {
+    std::string first_line(const MaxDifference& disagreement) const {
         const SystemDescription& system = model_.description();
         if (disagreement.largest() > most_disagreement)
             return fmt::format("{}: FAILED, the derived equations differ from finite differences by {:.1e}",
@@ -181,7 +181,7 @@ class Answer : EquationsOnPage {
                            counted(system.parameters.size(), "parameter"), counted(model_.contacts(), "contact"));
     }
 
-    static std::string verified(const Disagreement& disagreement) {
+    static std::string verified(const MaxDifference& disagreement) {
         if (disagreement.states == 0)
             return "Equations not verified: at none of the random states were all terms defined and M positive "
                    "definite";
@@ -222,20 +222,20 @@ class Answer : EquationsOnPage {
 }  // namespace
 
 std::string check_answer(const Model& model, const Run& run, double& disagreement) {
-    const Simplified simplified(model, run);
-    const Disagreement found = compare_with_differences(model, run, simplified);
+    const SimplifiedEquations simplified(model, run);
+    const MaxDifference found = compare_with_differences(model, run, simplified);
     disagreement = found.largest();
     return check_answer(model, run, simplified, found);
 }
 
-std::string check_answer(const Model& model, const Run& run, const Simplified& simplified,
-                         const Disagreement& disagreement) {
-    return Answer(model, run, simplified).write(disagreement);
+std::string check_answer(const Model& model, const Run& run, const SimplifiedEquations& simplified,
+                         const MaxDifference& disagreement) {
+    return CheckReport(model, run, simplified).write(disagreement);
 }
 
 std::string check_report(const Model& model, const Run& run, double deriving, Notation notation, double& disagreement) {
-    const Simplified simplified(model, run);
-    const Disagreement found = compare_with_differences(model, run, simplified);
+    const SimplifiedEquations simplified(model, run);
+    const MaxDifference found = compare_with_differences(model, run, simplified);
     disagreement = found.largest();
     return Report(model, run, simplified, notation).write(found, deriving);
 }
@@ -245,7 +245,7 @@ namespace {
 // The Zeno conditions come first.
 class SheetWriter : EquationsOnPage {
  public:
-    SheetWriter(const Model& model, const Run& run, const Simplified& simplified)
+    SheetWriter(const Model& model, const Run& run, const SimplifiedEquations& simplified)
         : EquationsOnPage(model, run, simplified, Page(Notation::latex, no_limit)) {}
 
     EquationSheet write() {
@@ -292,7 +292,7 @@ class SheetWriter : EquationsOnPage {
 }  // namespace
 
 EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop) {
-    const Simplified simplified(model, run, std::move(stop));
+    const SimplifiedEquations simplified(model, run, std::move(stop));
     return SheetWriter(model, run, simplified).write();
 }
 

@@ -13,7 +13,7 @@
 
 namespace achilles {
 
-class Simplified;
+class SimplifiedEquations;
 
 // The full report: simplifies the equations, compares them with differences of L, and formats them. `deriving`, the
 // time to derive the model (s), is the only number that differs between runs. `disagreement` returns the largest
@@ -23,8 +23,8 @@ std::string check_report(const Model& model, const Run& run, double deriving, No
 // The default output, at most a page for a small system: whether the derived equations agree with differences of L,
 // when impacts end in a Zeno point, and the equations of motion. check_report() has all details.
 std::string check_answer(const Model& model, const Run& run, double& disagreement);
-std::string check_answer(const Model& model, const Run& run, const Simplified& simplified,
-                         const Disagreement& disagreement);
+std::string check_answer(const Model& model, const Run& run, const SimplifiedEquations& simplified,
+                         const MaxDifference& disagreement);
 
 // A larger difference is an error in the derivation: with 50 digits and steps of 1e-11, less than 1e-15 remains for a
 // sufficiently smooth system.

@@ -10,7 +10,7 @@
 
 #include "check/simplified.hpp"
 #include "expression/graph.hpp"
-#include "model/flat.hpp"
+#include "model/degenerate_gap.hpp"
 #include "output/page.hpp"
 
 namespace achilles {
@@ -96,8 +96,8 @@ double written_size(Expression expression) {
 }
 
 // The numerator and the denominator without factoring.
-Factored unfactored(const Fraction& fraction) {
-    Factored result;
+FactoredForm unfactored(const Fraction& fraction) {
+    FactoredForm result;
     const auto put = [&](const Multinomial& base, int exponent) {
         if (base.terms().size() != 1) return result.factors.push_back({base, exponent});
         const Multinomial::Term& term = base.terms().front();
@@ -165,7 +165,7 @@ void EquationsOnPage::unwritten_conditions() {
     page_.sentence({left_out, left_out});
 }
 
-void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
+void EquationsOnPage::matrix(const TextAndLatex& left, const std::vector<std::optional<Fraction>>& entries,
                              std::span<const Expression> derived, std::size_t columns) {
     std::vector<std::vector<std::string>> rows;
     std::vector<std::size_t> widths(columns, 0);
@@ -189,8 +189,8 @@ void EquationsOnPage::matrix(const Both& left, const std::vector<std::optional<F
 }
 
 // The simplified formula, or the derived expression if there is none.
-void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived,
-                              const Both& definition) {
+void EquationsOnPage::formula(const TextAndLatex& left, const std::optional<Fraction>& fraction, Expression derived,
+                              const TextAndLatex& definition) {
     if (!fraction) return unsimplified(left, derived, definition);
     if (terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
     page_.formula(left, is_text() ? definition.text : definition.latex);
@@ -199,7 +199,7 @@ void EquationsOnPage::formula(const Both& left, const std::optional<Fraction>& f
 }
 
 // The derived expression if it is short enough, else the definition.
-void EquationsOnPage::unsimplified(const Both& left, Expression derived, const Both& definition) {
+void EquationsOnPage::unsimplified(const TextAndLatex& left, Expression derived, const TextAndLatex& definition) {
     const double size = written_size(derived);
     const bool short_enough = size <= most_symbols;
     page_.formula(left, short_enough ? achilles::write(derived, model_.slot_names(), page_.notation()).text
@@ -215,7 +215,7 @@ std::string EquationsOnPage::written(const Fraction& fraction, const Writer& wri
     algebra.work() = Work{1000000};
     try {
         return writer.write(fraction, algebra).text;
-    } catch (const TooLong&) {
+    } catch (const SimplificationLimit&) {
         return writer.write(unfactored(fraction)).text;
     }
 }
@@ -227,21 +227,21 @@ EquationsOnPage::Quotient EquationsOnPage::factor_or_sum(const Fraction& fractio
     algebra.work() = Work{1000000};
     try {
         return split(factor(fraction, algebra), result.whole, writer_);
-    } catch (const TooLong&) {
+    } catch (const SimplificationLimit&) {
         return split(unfactored(fraction), result.whole, writer_);
     }
 }
 
-EquationsOnPage::Quotient EquationsOnPage::split(const Factored& factored, const std::string& whole,
+EquationsOnPage::Quotient EquationsOnPage::split(const FactoredForm& factored, const std::string& whole,
                                                  const Writer& writer) {
-    Factored top{numerator(factored.number), {}}, bottom{denominator(factored.number), {}};
+    FactoredForm top{numerator(factored.number), {}}, bottom{denominator(factored.number), {}};
     for (const auto& [base, exponent] : factored.factors)
         (exponent > 0 ? top : bottom).factors.push_back({base, std::abs(exponent)});
     return {whole, writer.write(top).text, writer.write(bottom).text};
 }
 
 // A quotient too wide for one line is written as N/D, with N and D below.
-void EquationsOnPage::long_formula(Page& page, const Both& left, const Quotient& quotient) {
+void EquationsOnPage::long_formula(Page& page, const TextAndLatex& left, const Quotient& quotient) {
     const std::size_t length = visible_length(quotient.whole, page.notation()) + left.text.size() + 5;
     const bool tall = page.notation() == Notation::latex && !quotient.top.empty();
     const std::size_t across = tall ? std::max(visible_length(quotient.top, page.notation()),
@@ -265,7 +265,7 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
         page_.sentence({line, line});
     }
     const Writer writer = writer_of(zeno);
-    const Factored whole = zeno.positive * zeno.decisive;
+    const FactoredForm whole = zeno.positive * zeno.decisive;
     const std::string hddot = writer.write(whole).text;
     const bool divided = !zeno.positive.factors.empty() || zeno.positive.number != 1;
     if (zeno.verdict == ZenoCondition::Verdict::depends) {
@@ -315,7 +315,7 @@ std::vector<std::string> EquationsOnPage::on_surface(const ZenoCondition& zeno) 
         zeno.algebra->work() = Work{1000000};
         try {
             values.push_back(zeno.algebra->simplify(value));
-        } catch (const TooLong&) {
+        } catch (const SimplificationLimit&) {
             return {};
         }
     }

@@ -17,7 +17,7 @@ namespace achilles {
 
 class EquationsOnPage {
  protected:
-    EquationsOnPage(const Model& model, const Run& run, const Simplified& simplified, Page page)
+    EquationsOnPage(const Model& model, const Run& run, const SimplifiedEquations& simplified, Page page)
         : model_(model),
           run_(run),
           simplified_(simplified),
@@ -39,7 +39,7 @@ class EquationsOnPage {
     // The equations of a contact. If `named`, each formula has a caption, and the gap is included.
     void contact(std::size_t index, bool forces, bool named = false);
     // As one matrix if the page is wide enough, else entry by entry.
-    void matrix(const Both& left, const std::vector<std::optional<Fraction>>& entries,
+    void matrix(const TextAndLatex& left, const std::vector<std::optional<Fraction>>& entries,
                 std::span<const Expression> derived, std::size_t columns);
     // The result for the sign of hddot on the surface.
     void zeno(const std::optional<ZenoCondition>& found);
@@ -55,7 +55,7 @@ class EquationsOnPage {
 
     const Model& model_;
     const Run& run_;
-    const Simplified& simplified_;
+    const SimplifiedEquations& simplified_;
     Page page_;
     Writer writer_;
 
@@ -67,11 +67,12 @@ class EquationsOnPage {
     // As a product of factors; as a quotient of sums if factoring takes too much work.
     std::string written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const;
     std::string written(const Fraction& fraction) const { return written(fraction, writer_, simplified_.algebra()); }
-    void formula(const Both& left, const std::optional<Fraction>& fraction, Expression derived, const Both& definition);
-    void unsimplified(const Both& left, Expression derived, const Both& definition);
+    void formula(const TextAndLatex& left, const std::optional<Fraction>& fraction, Expression derived,
+                 const TextAndLatex& definition);
+    void unsimplified(const TextAndLatex& left, Expression derived, const TextAndLatex& definition);
     Quotient factor_or_sum(const Fraction& fraction) const;
-    static Quotient split(const Factored& factored, const std::string& whole, const Writer& writer);
-    static void long_formula(Page& page, const Both& left, const Quotient& quotient);
+    static Quotient split(const FactoredForm& factored, const std::string& whole, const Writer& writer);
+    static void long_formula(Page& page, const TextAndLatex& left, const Quotient& quotient);
     std::string grounds(const ZenoCondition& zeno) const;
     void reason(const ZenoCondition& zeno, const Writer& writer);
 };

@@ -150,9 +150,9 @@ bool is_finite(const Reals& values) {
 }
 
 // Gaps, their rates, and their gradients dh as rows, for the projection to the contact surfaces.
-class Surface {
+class SurfacePoints {
  public:
-    Surface(const Model& model, const Run& run, const std::vector<std::size_t>& contacts)
+    SurfacePoints(const Model& model, const Run& run, const std::vector<std::size_t>& contacts)
         : count_(static_cast<Eigen::Index>(contacts.size())), functions_(model, run, outputs(model, contacts)) {}
 
     // Projects a state to h = 0 by Newton's method and its rates to hdot = 0. Returns false if that fails.
@@ -185,10 +185,10 @@ class Surface {
 };
 
 // A Zeno condition as printed, and the derived hddot that it should equal on the surfaces of these contacts.
-class InContact {
+class ZenoConditionCheck {
  public:
-    InContact(const Model& model, const Run& run, const ZenoCondition& zeno, Expression hddot,
-              const std::vector<std::size_t>& contacts)
+    ZenoConditionCheck(const Model& model, const Run& run, const ZenoCondition& zeno, Expression hddot,
+                       const std::vector<std::size_t>& contacts)
         : surface_(model, run, contacts), hddot_(model, run, {hddot}), shown_(model, run, {as_expression(zeno)}) {}
 
     // The relative difference; nullopt if no state on the surfaces is found from this point.
@@ -203,19 +203,19 @@ class InContact {
     static Expression as_expression(const ZenoCondition& zeno) {
         Algebra& algebra = *zeno.algebra;
         algebra.work() = Work{1000000};
-        const Factored whole = zeno.positive * zeno.decisive;
+        const FactoredForm whole = zeno.positive * zeno.decisive;
         try {
             return algebra.expression(expand(whole, algebra));
-        } catch (const TooLong&) {
+        } catch (const SimplificationLimit&) {
             return expression_of(whole, algebra);
         }
     }
-    Surface surface_;
+    SurfacePoints surface_;
     Functions hddot_, shown_;
 };
 
 // The printed equations as expressions, and the derived equations that they should equal.
-struct Printed {
+struct PrintedEquations {
     std::vector<Expression> written, derived;
     std::vector<std::string> names;
 };
@@ -225,9 +225,9 @@ std::string name_of(const Model& model, const std::string& quantity, std::size_t
     return model.contacts() == 1 ? quantity : quantity + " " + model.description().constraints[contact].name;
 }
 
-Printed printed_equations(const Model& model, const Simplified& simplified) {
+PrintedEquations printed_equations(const Model& model, const SimplifiedEquations& simplified) {
     const Equations& e = model.equations();
-    Printed printed;
+    PrintedEquations printed;
     const auto add = [&](const std::string& name, const std::optional<Fraction>& fraction, Expression derived) {
         if (!fraction) return;
         printed.written.push_back(simplified.algebra().expression(*fraction));
@@ -248,7 +248,7 @@ Printed printed_equations(const Model& model, const Simplified& simplified) {
 }
 
 // The derived equations in the order of Differences.
-struct Derived {
+struct DerivedEquations {
     std::vector<Expression> all;
     std::vector<std::string> names;
     void add(const std::string& name, const std::vector<Expression>& some) {
@@ -257,9 +257,9 @@ struct Derived {
     }
 };
 
-Derived derived_equations(const Model& model) {
+DerivedEquations derived_equations(const Model& model) {
     const Equations& e = model.equations();
-    Derived derived;
+    DerivedEquations derived;
     derived.add("M", e.M);
     derived.add("bias", e.bias);
     derived.add(has_forces(e) ? "Q" : "", e.Q);
@@ -274,9 +274,9 @@ Derived derived_equations(const Model& model) {
 }
 
 // Keeps the largest distance for each name, in order of first appearance.
-void note(std::vector<Disagreement::Quantity>& quantities, const std::string& name, double distance) {
+void note(std::vector<MaxDifference::CheckedQuantity>& quantities, const std::string& name, double distance) {
     if (name.empty()) return;  // a quantity that is not compared
-    for (Disagreement::Quantity& quantity : quantities)
+    for (MaxDifference::CheckedQuantity& quantity : quantities)
         if (quantity.name == name) {
             quantity.largest = std::max(quantity.largest, distance);
             return;
@@ -286,10 +286,10 @@ void note(std::vector<Disagreement::Quantity>& quantities, const std::string& na
 
 }  // namespace
 
-double Disagreement::largest() const {
+double MaxDifference::largest() const {
     double result = 0.0;
     for (const auto* list : {&derived, &simplified})
-        for (const Quantity& quantity : *list) result = std::max(result, quantity.largest);
+        for (const CheckedQuantity& quantity : *list) result = std::max(result, quantity.largest);
     return result;
 }
 
@@ -309,10 +309,11 @@ bool has_forces(const Equations& equations) {
     return std::any_of(equations.Q.begin(), equations.Q.end(), [](Expression force) { return !force.is_zero(); });
 }
 
-Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified, int states) {
+MaxDifference compare_with_differences(const Model& model, const Run& run, const SimplifiedEquations& simplified,
+                                       int states) {
     const Equations& e = model.equations();
     const auto n = static_cast<Eigen::Index>(model.dof());
-    const Derived equations = derived_equations(model);
+    const DerivedEquations equations = derived_equations(model);
     Functions derived(model, run, equations.all), pivots(model, run, e.pivots);
     std::vector<Expression> while_held;
     for (const HeldCondition& condition : simplified.while_held)
@@ -320,9 +321,9 @@ Disagreement compare_with_differences(const Model& model, const Run& run, const 
     std::optional<Functions> held;
     if (!while_held.empty()) held.emplace(model, run, while_held);
     Differences differences(model, run);
-    const Printed printed = printed_equations(model, simplified);
+    const PrintedEquations printed = printed_equations(model, simplified);
     Functions written(model, run, printed.written), originals(model, run, printed.derived);
-    std::deque<InContact> in_contact;
+    std::deque<ZenoConditionCheck> in_contact;
     std::vector<std::string> in_contact_names;
     for (std::size_t k = 0; k < model.contacts(); ++k) {
         if (!simplified.contacts[k].zeno) continue;
@@ -340,7 +341,7 @@ Disagreement compare_with_differences(const Model& model, const Run& run, const 
         in_contact_names.emplace_back("hddot in contact while others are held");
     }
 
-    Disagreement result;
+    MaxDifference result;
     Random random;
     for (int tried = 0; tried < 10 * states && result.states < states; ++tried) {
         Point at{Reals(n), Reals(n), run.options.start_time};

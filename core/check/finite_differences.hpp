@@ -10,7 +10,7 @@
 
 namespace achilles {
 
-class Simplified;
+class SimplifiedEquations;
 
 // True if the system has generalized forces other than those of the potential.
 bool has_forces(const Equations& equations);
@@ -21,13 +21,13 @@ std::vector<Expression> given_forces(const Model& model, Graph& graph);
 
 // The largest |derived - difference| / max(1, |difference|) of M, bias, Q, and of dh, hdot, hddot and lambda of every
 // contact, over all states.
-struct Disagreement {
-    struct Quantity {
+struct MaxDifference {
+    struct CheckedQuantity {
         std::string name;
         double largest = 0.0;
     };
-    std::vector<Quantity> derived;     // equations() compared with differences
-    std::vector<Quantity> simplified;  // printed equations compared with equations()
+    std::vector<CheckedQuantity> derived;     // equations() compared with differences
+    std::vector<CheckedQuantity> simplified;  // printed equations compared with equations()
     int states = 0;
     double largest() const;
 };
@@ -36,7 +36,7 @@ struct Disagreement {
 // the run, a fixed seed. States at which something is undefined or M is not positive definite are skipped; up to ten
 // states are tried for each. The simplified hddot on the contact surface is compared if Newton's method finds h = 0
 // from such a state.
-Disagreement compare_with_differences(const Model& model, const Run& run, const Simplified& simplified,
-                                      int states = 20);
+MaxDifference compare_with_differences(const Model& model, const Run& run, const SimplifiedEquations& simplified,
+                                       int states = 20);
 
 }  // namespace achilles

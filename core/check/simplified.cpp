@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 
@@ -64,7 +64,7 @@ class Search {
                 for (const bool expand_angles : {false, true}) consider(solution, expand_angles);
         if (best_) decide(*best_);
         return std::move(best_);
-    } catch (const TooLarge&) {
+    } catch (const ExpressionTooLarge&) {
         return std::nullopt;
     }
 
@@ -87,7 +87,7 @@ class Search {
             const Expression rest = substitute(f, std::span(&slot, 1), std::span(&zero, 1));
             return algebra.expression(algebra.divide(algebra.simplify(-rest), steepness));
         } catch (const std::domain_error&) {  // f is not defined at x = 0
-        } catch (const TooLong&) {
+        } catch (const SimplificationLimit&) {
         }
         return std::nullopt;
     }
@@ -193,9 +193,9 @@ class Search {
             solution_ = solution;
             for (const auto& [slot, value] : solution) best_->solved.emplace_back(graph_.symbol(slot), value);
         } catch (const std::domain_error&) {  // a step is undefined at this solution
-        } catch (const TooLong&) {
+        } catch (const SimplificationLimit&) {
             work_ -= before;
-        } catch (const TooLarge&) {
+        } catch (const ExpressionTooLarge&) {
             work_ = 0;
         }
     }
@@ -214,7 +214,7 @@ class Search {
         Expression minor = graph_.number(1);
         for (const Expression pivot : e_.pivots) {
             minor = minor * graph_.adopt(pivot);
-            const Factored factors = factor(algebra.simplify(on(minor, solution_)), algebra);
+            const FactoredForm factors = factor(algebra.simplify(on(minor, solution_)), algebra);
             bool found = false, others_positive = factors.number != 0;
             for (const auto& [other, exponent] : factors.factors) {
                 if (other == base && exponent % 2 != 0)
@@ -234,7 +234,7 @@ class Search {
         std::set<std::size_t> dropped_for, known_for;  // atoms whose signs were used: for dropped factors, for others
         bool unknown = false;
         try {
-            const Factored all = factor(zeno.hddot, algebra);
+            const FactoredForm all = factor(zeno.hddot, algebra);
             zeno.positive.number = all.number;
             if (all.number < 0) zeno.positive.number.backend().negate();
             zeno.decisive.number = all.number < 0 ? -1 : all.number == 0 ? 0 : 1;
@@ -259,9 +259,9 @@ class Search {
                     (drop ? dropped_for : known_for).insert(positivity.used().begin(), positivity.used().end());
                 zeno.definite = zeno.definite || definite;
             }
-        } catch (const TooLong&) {  // the condition stays unfactored
-            zeno.positive = Factored{};
-            zeno.decisive = Factored{1, {{zeno.hddot.numerator, 1}, {zeno.hddot.denominator, -1}}};
+        } catch (const SimplificationLimit&) {  // the condition stays unfactored
+            zeno.positive = FactoredForm{};
+            zeno.decisive = FactoredForm{1, {{zeno.hddot.numerator, 1}, {zeno.hddot.denominator, -1}}};
             unknown = true;
         }
         if (!unknown) dropped_for.merge(known_for);
@@ -287,7 +287,7 @@ class Search {
 
 }  // namespace
 
-Expression expression_of(const Factored& product, Algebra& algebra) {
+Expression expression_of(const FactoredForm& product, Algebra& algebra) {
     Expression result =
         algebra.expression(Fraction{Multinomial(numerator(product.number)), Multinomial(denominator(product.number))});
     for (const auto& [base, exponent] : product.factors)
@@ -298,7 +298,7 @@ Expression expression_of(const Factored& product, Algebra& algebra) {
 
 std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
                                             const std::vector<const ContactEquations*>& contacts, Graph& graph) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     return Search(model, run, contacts, graph).best();
 }
 
@@ -308,7 +308,9 @@ namespace {
 // triple pendulum exceeds it.
 constexpr long work_of_a_formula = 400000;
 
-bool holds_some(const Model& model) { return model.contacts() > 1 && model.contacts() <= Simplified::few_contacts; }
+bool holds_some(const Model& model) {
+    return model.contacts() > 1 && model.contacts() <= SimplifiedEquations::few_contacts;
+}
 
 // The motions that hold one contact; null if there are too many contacts or the equations are too large.
 std::unique_ptr<ContactModes> derived_motions(const Model& model) {
@@ -317,31 +319,31 @@ std::unique_ptr<ContactModes> derived_motions(const Model& model) {
         auto motions = std::make_unique<ContactModes>(model.equations(), model.layout());
         for (std::size_t j = 0; j < model.contacts(); ++j) motions->of(Mode::holding(ContactSet::of(j)));
         return motions;
-    } catch (const TooLarge&) {
+    } catch (const ExpressionTooLarge&) {
         return nullptr;
     }
 }
 
 }  // namespace
 
-std::optional<Fraction> Simplified::simplify(Expression expression) {
+std::optional<Fraction> SimplifiedEquations::simplify(Expression expression) {
     if (stop_.stop_requested()) return std::nullopt;
     algebra_->work() = Work{work_of_a_formula};
     try {
         return algebra_->simplify(graph_.adopt(expression));
-    } catch (const TooLong&) {
-    } catch (const TooLarge&) {
+    } catch (const SimplificationLimit&) {
+    } catch (const ExpressionTooLarge&) {
     }
     return std::nullopt;
 }
 
-std::optional<ZenoCondition> Simplified::condition(const Model& model, const Run& run,
-                                                   const std::vector<const ContactEquations*>& involved) {
+std::optional<ZenoCondition> SimplifiedEquations::condition(const Model& model, const Run& run,
+                                                            const std::vector<const ContactEquations*>& involved) {
     if (stop_.stop_requested()) return std::nullopt;
     return zeno_condition(model, run, involved, graph_);
 }
 
-SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::size_t contact) {
+SimplifiedContact SimplifiedEquations::simplify(const Model& model, const Run& run, std::size_t contact) {
     const ContactEquations& c = model.equations().free.contacts[contact];
     SimplifiedContact result;
     for (const Expression entry : c.g) result.dh.push_back(simplify(entry));
@@ -353,14 +355,14 @@ SimplifiedContact Simplified::simplify(const Model& model, const Run& run, std::
         algebra_->work() = Work{work_of_a_formula};
         try {
             result.lambda = algebra_->divide({-result.hddot->numerator, result.hddot->denominator}, *result.W);
-        } catch (const TooLong&) {
+        } catch (const SimplificationLimit&) {
         }
     }
     result.zeno = this->condition(model, run, {&c});
     return result;
 }
 
-Simplified::Simplified(const Model& model, const Run& run, std::stop_token stop)
+SimplifiedEquations::SimplifiedEquations(const Model& model, const Run& run, std::stop_token stop)
     : motions_(derived_motions(model)),
       graph_(motions_ ? motions_->graph() : model.equations().energy.graph()),
       algebra_(std::make_unique<Algebra>(graph_, Work{})),

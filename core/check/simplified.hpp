@@ -24,7 +24,7 @@ struct ZenoCondition {
     Fraction hddot;
     // hddot = positive * decisive. The factor `positive` is proved to be positive under the assumptions `assumed` and,
     // if `definite`, where M is positive definite.
-    Factored positive, decisive;
+    FactoredForm positive, decisive;
     std::vector<Expression> assumed;  // depend on parameters only; positive over their ranges,
     bool vanishing = false;           // or, if true, some only nonnegative: valid where they are not 0
     bool definite = false;
@@ -47,11 +47,11 @@ struct HeldCondition {
 };
 
 // The simplified equations of a model. Members are empty if simplification takes too much work.
-class Simplified {
+class SimplifiedEquations {
  public:
     // After a stop request nothing more is simplified, and the result is incomplete.
-    Simplified(const Model& model, const Run& run, std::stop_token stop = {});
-    Simplified(const Simplified&) = delete;
+    SimplifiedEquations(const Model& model, const Run& run, std::stop_token stop = {});
+    SimplifiedEquations(const SimplifiedEquations&) = delete;
 
     std::vector<std::optional<Fraction>> M, bias, Q;  // as in Equations
     std::vector<SimplifiedContact> contacts;
@@ -88,6 +88,6 @@ std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
                                             const std::vector<const ContactEquations*>& contacts, Graph& graph);
 
 // The product of all factors as one expression.
-Expression expression_of(const Factored& product, Algebra& algebra);
+Expression expression_of(const FactoredForm& product, Algebra& algebra);
 
 }  // namespace achilles

@@ -124,14 +124,14 @@ class Turns {
         result.first = first;
         for (ContactSet landing = with({}, first); !landing.empty(); landing = foremost()) {
             if (result.impacts == ImpactSequence::most_impacts) {
-                result.end = ImpactSequence::End::cut;
+                result.end = ImpactSequence::SequenceEnd::cut;
                 break;
             }
             if (!collide(landing)) return std::nullopt;
             ++result.impacts;
         }
-        if (result.end == ImpactSequence::End::finite && hdot_.minCoeff() < 0.0) {
-            result.end = ImpactSequence::End::limit;
+        if (result.end == ImpactSequence::SequenceEnd::finite && hdot_.minCoeff() < 0.0) {
+            result.end = ImpactSequence::SequenceEnd::limit;
             hdot_ = hdot_.cwiseMax(0.0);
         }
         result.hdot_after = hdot_;

@@ -33,7 +33,7 @@ std::optional<MoreauImpact> moreau_impact(const ContactMatrix<double>& W, const 
 
 // Successive impacts at the same position.
 struct ImpactSequence {
-    enum class End {
+    enum class SequenceEnd {
         finite,  // no contact closes any more
         limit,   // infinitely many, ever smaller; closing speeds below 2^-40 of the first count as 0
         cut      // stopped after most_impacts, while a contact still closes
@@ -43,7 +43,7 @@ struct ImpactSequence {
     ContactVector<double> hdot_after;  // >= 0 unless cut
     ContactVector<double> impulses;    // total
     int impacts = 0;
-    End end = End::finite;
+    SequenceEnd end = SequenceEnd::finite;
 };
 
 // The outcome from hdot- if contact `first`, which closes, impacts just before all others (theory-gaps.md 2.4).

@@ -33,13 +33,13 @@ struct Completion::Box {
     Interval t0, w;
     double duration = 0.0;
     Interval a_min, a_max, r, T;
-    Trend trend;
+    AccelerationTrend trend;
 };
 
 Completion::Completion(const Model& model, const Coordinates& coordinates, std::size_t contact, Mode mode,
                        ContactSet unpressed)
     : z_(coordinates), layout_(model.layout()), unpressed_(unpressed), u_(coordinates.u(contact)) {
-    const Bouncing& bouncing = model.bouncing(contact, mode);
+    const BouncingModel& bouncing = model.bouncing(contact, mode);
     hddot_ = {Range(with_parameters<Interval>(bouncing.hddot, layout_, z_.parameters),
                     with_parameters<Interval>(bouncing.shadow, layout_, z_.parameters), bouncing.variables),
               z_.dof};
@@ -110,9 +110,9 @@ bool Completion::contain(Box& box, const Interval& e) {
 }
 
 // The accumulation time as a function of the state at the collision: by the attained bounds A w, and to third order.
-void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, const Interval& e) {
+void Completion::bound_time(CompletionProof& proof, const Box& box, const Doubleton& set, const Interval& e) {
     const Interval one(1.0), two(2.0), c_w = -Interval(set.centre(u_));
-    const Wait per_speed = wait_for_zeno(e, box.a_min, box.a_max, one);
+    const AccumulationTime per_speed = wait_for_zeno(e, box.a_min, box.a_max, one);
     const Interval A(per_speed.earliest.lo(), per_speed.latest.hi()), middle(mid(A));
     Intervals row(z_.size());
     row[Coordinates::t()] = one;
@@ -131,7 +131,8 @@ void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, 
     start.insert(start.end(), box.s0.begin(), box.s0.end());
     start.emplace_back(0.0);
     if (!z_.autonomous) start.push_back(box.t0);
-    const Drift drift{-hddot_.over_part(start), -hddot_.slope(2 * z_.dof), -hddot_.P(), -hddot_.Phi(), -hddot_.Xi()};
+    const AccelerationBounds drift{-hddot_.over_part(start), -hddot_.slope(2 * z_.dof), -hddot_.P(), -hddot_.Phi(),
+                                   -hddot_.Xi()};
     const Interval off =
         third_order_error(box.trend, drift, e, box.a_min, box.a_max, Interval(box.w.hi()), Interval(box.T.hi()));
     const Interval C1 = two * e / (Interval(box.trend.a) * (one - e));
@@ -153,7 +154,7 @@ void Completion::bound_time(Proof& proof, const Box& box, const Doubleton& set, 
 }
 
 // (E_q, E_s): the two-sided bounds on the integrals of h and of hdot^2, times their coefficients.
-void Completion::bound_error(Proof& proof, const Box& box, const Interval& e) {
+void Completion::bound_error(CompletionProof& proof, const Box& box, const Interval& e) {
     const Interval one(1.0), two(2.0), e3 = e * square(e), root = sqrt(box.r), r3 = box.r * root;
     const auto integral = [&](const Interval& w, const Interval& a, const Interval& kept) {
         return two * e3 * w * square(w) / (Interval(3.0) * square(a) * (one - kept));
@@ -177,7 +178,7 @@ void Completion::bound_error(Proof& proof, const Box& box, const Interval& e) {
     for (Interval& entry : proof.error) entry = widened(entry, k.hi());
 }
 
-std::optional<Completion::Proof> Completion::prove(const Doubleton& set, const Interval& e) {
+std::optional<Completion::CompletionProof> Completion::prove(const Doubleton& set, const Interval& e) {
     const std::size_t n = z_.dof;
     Box box;
     for (std::size_t i = 0; i < n; ++i) {
@@ -214,7 +215,7 @@ std::optional<Completion::Proof> Completion::prove(const Doubleton& set, const I
         if (!contain(box, e)) continue;
         const Intervals all = variables(box);
         if (!others_stay(all)) return std::nullopt;
-        Proof proof;
+        CompletionProof proof;
         bound_time(proof, box, set, e);
         bound_error(proof, box, e);
         proof.window = longest.hi() * (1.0 + 0x1p-41);

@@ -19,7 +19,7 @@ class Completion {
                ContactSet unpressed = {});
 
     // Bounds on the bouncing of all members after a collision.
-    struct Proof {
+    struct CompletionProof {
         // The accumulation time (s) of every member: in at_centre + by_u (u - c_u), and in `wait`.
         Interval wait, at_centre, by_u;
         Interval time;      // tau_inf
@@ -33,7 +33,7 @@ class Completion {
     };
     // For a set whose v is the tangential velocity and whose u < 0 is the gap rate at the collision. Returns nullopt if
     // it is not proved that all members bounce to the end.
-    std::optional<Proof> prove(const Doubleton& set, const Interval& e);
+    std::optional<CompletionProof> prove(const Doubleton& set, const Interval& e);
     // For such a set: kappa of each held contact, by which it receives the impulses of an impact (theory-gaps.md 2.1).
     // It is pressed if kappa >= 0.
     std::map<std::size_t, Interval> passed_on(const Doubleton& set);
@@ -41,8 +41,8 @@ class Completion {
  private:
     struct Box;
     bool contain(Box& box, const Interval& e);
-    void bound_time(Proof& proof, const Box& box, const Doubleton& set, const Interval& e);
-    void bound_error(Proof& proof, const Box& box, const Interval& e);
+    void bound_time(CompletionProof& proof, const Box& box, const Doubleton& set, const Interval& e);
+    void bound_error(CompletionProof& proof, const Box& box, const Interval& e);
     Intervals variables(const Box& box) const;
 
     bool others_stay(const Intervals& box);
@@ -56,7 +56,7 @@ class Completion {
     TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> rates_;
     // Conditions on the other contacts, if the system has any.
-    const Neighbours* neighbours_ = nullptr;
+    const OtherContactTerms* neighbours_ = nullptr;
     Evaluator<Interval> neighbours_program_;
     std::vector<std::uint32_t> neighbours_variables_;
 };

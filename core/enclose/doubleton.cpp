@@ -54,7 +54,7 @@ IntervalMatrix IntervalMatrix::identity(std::size_t n) {
     return result;
 }
 
-NearlyOrthogonal::NearlyOrthogonal(const Matrix& matrix) : matrix_(matrix) {
+NearOrthogonalSolver::NearOrthogonalSolver(const Matrix& matrix) : matrix_(matrix) {
     Interval largest(0.0);
     for (Eigen::Index i = 0; i < matrix.cols(); ++i) {
         Interval row(0.0);
@@ -67,11 +67,11 @@ NearlyOrthogonal::NearlyOrthogonal(const Matrix& matrix) : matrix_(matrix) {
         largest = max(largest, row);
     }
     const Interval eps(largest.hi());
-    if (!(eps.hi() < 0.5)) throw Undecided{"no invertible basis of the set was found"};
+    if (!(eps.hi() < 0.5)) throw ProofStopped{"no invertible basis of the set was found"};
     delta_ = eps / (Interval(1.0) - eps);
 }
 
-Intervals NearlyOrthogonal::solve(const Intervals& x) const {
+Intervals NearOrthogonalSolver::solve(const Intervals& x) const {
     Intervals result(x.size());
     double largest = 0.0;
     for (std::size_t i = 0; i < x.size(); ++i) {
@@ -135,7 +135,7 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
     for (std::size_t i = 0; i < n; ++i) {
         bool bounded = std::isfinite(width(at_centre[i]));
         for (std::size_t j = 0; j < size(); ++j) bounded = bounded && std::isfinite(width(slope(i, j)));
-        if (!bounded) throw Undecided{"a term of the equations may be undefined or unbounded on the set"};
+        if (!bounded) throw ProofStopped{"a term of the equations may be undefined or unbounded on the set"};
     }
     const IntervalMatrix by_start = product(slope, start_, n), by_errors = product(slope, errors_, n);
     const Matrix start = middle(by_start, n);
@@ -147,7 +147,7 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
             rest[i] += times(by_start(i, j) - Interval(start(index(i), index(j))), of_start_[j]);
     }
     const Matrix basis = basis_along(middle(by_errors, n), of_errors_);
-    const NearlyOrthogonal inverse(basis);
+    const NearOrthogonalSolver inverse(basis);
     Intervals errors = inverse.solve(rest);
     for (std::size_t j = 0; j < n; ++j) {
         if (of_errors_[j].lo() == 0.0 && of_errors_[j].hi() == 0.0) continue;

@@ -30,7 +30,7 @@ class IntervalMatrix {
 };
 
 // Ends a proof: nothing is claimed beyond this point.
-struct Undecided {
+struct ProofStopped {
     std::string reason;
 };
 
@@ -64,10 +64,10 @@ class Doubleton {
 
 // B^-1 x over a box x for a nearly orthogonal B: it lies in B'x + delta |B'x| [-1, 1], with delta = eps/(1 - eps),
 // eps >= |B'B - 1|.
-class NearlyOrthogonal {
+class NearOrthogonalSolver {
  public:
     // Throws Undecided if eps is not below 1/2.
-    explicit NearlyOrthogonal(const Eigen::MatrixXd& matrix);
+    explicit NearOrthogonalSolver(const Eigen::MatrixXd& matrix);
     Intervals solve(const Intervals& x) const;
 
  private:
@@ -151,7 +151,7 @@ auto with_directions(std::size_t count, const Maker& maker) {
     if (count <= 12) return maker.template operator()<12>();
     if (count <= 18) return maker.template operator()<18>();
     if (count <= 26) return maker.template operator()<26>();
-    throw Undecided{"too many coordinates and interval parameters for a proof (maximum 26)"};
+    throw ProofStopped{"too many coordinates and interval parameters for a proof (maximum 26)"};
 }
 
 }  // namespace achilles

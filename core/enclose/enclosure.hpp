@@ -17,7 +17,7 @@ namespace achilles {
 
 // Input of prove(): boxes of initial states and parameters. Only the options of `run` are used; its initial state is
 // ignored.
-struct Claim {
+struct EnclosureProblem {
     Run run;
     Intervals q, v, parameters;  // parameters in the order of the description, without derived ones
     std::vector<double> times;   // at which the state is reported, in addition to the end; s
@@ -45,7 +45,7 @@ struct EnclosedState {
 };
 
 struct Enclosure {
-    struct Outcome {
+    struct ProofOutcome {
         enum class Kind { end_time, undecided, cancelled };
         Kind kind = Kind::undecided;
         std::string message;
@@ -57,8 +57,8 @@ struct Enclosure {
     bool events_differ = false;          // with parts: their lists start with these events and then differ
     std::vector<EnclosedState> samples;  // at the times of the claim before proved_until
     std::optional<EnclosedState> end;    // empty if the run is undecided
-    Outcome outcome;
-    struct Statistics {
+    ProofOutcome outcome;
+    struct ProofStatistics {
         long steps = 0, impacts = 0;
         double seconds = 0.0;
     } statistics;
@@ -66,32 +66,33 @@ struct Enclosure {
 };
 
 // Progress and cancellation of a proof, shared with another thread.
-struct ProofWatch {
+struct ProofMonitor {
     std::stop_token stop;           // ends the proof at its next step, as "cancelled"
     std::atomic<double> time{0.0};  // s, proved so far; with parts, set at the end
 };
 
 // Proves a claim. Throws InputError for a system or a claim that is not covered, with the reason.
-Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch = nullptr);
+Enclosure prove(const std::shared_ptr<const Model>& model, const EnclosureProblem& claim,
+                ProofMonitor* watch = nullptr);
 
 // Splits the box into `parts` intervals along each side that has a width, proves each part, on all cores, and joins the
 // results. Parts may truncate a bouncing after different numbers of impacts; the common first ones are kept, then the
 // Zeno point. Throws InputError for more than a million parts.
-Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Claim& claim, int parts,
-                         ProofWatch* watch = nullptr);
+Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const EnclosureProblem& claim, int parts,
+                         ProofMonitor* watch = nullptr);
 
 // The exact doubles of a run, as boxes of zero width.
-Claim claim_of(const Run& run);
+EnclosureProblem problem_of(const Run& run);
 // Intervals of the decimal numbers as typed: +-4 ulp around a double that is not exactly representable, which covers
 // 0.1 and pi/6.
-Claim claim_as_written(const Run& run);
-Interval as_written(double x);
+EnclosureProblem problem_from_decimals(const Run& run);
+Interval interval_of_decimal(double x);
 // Widens all initial coordinates and rates by +-half.
-void widen(Claim& claim, double half);
+void inflate(EnclosureProblem& claim, double half);
 // The enclosure of a contact's restitution over a claim. Throws InputError if it may lie outside of [0, 1].
-Interval restitution_over(const Model& model, const Claim& claim, std::size_t contact);
+Interval restitution_over(const Model& model, const EnclosureProblem& claim, std::size_t contact);
 // Throws InputErrors if part of a claim is proved to be impossible: a negative gap at a corner of the initial box, or a
 // restitution outside [0, 1].
-void check(const Model& model, const Claim& claim);
+void check(const Model& model, const EnclosureProblem& claim);
 
 }  // namespace achilles

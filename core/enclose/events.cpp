@@ -45,10 +45,10 @@ ContactSet Prover::opened_by(std::size_t contact) {
             if (certainly_negative(passed))
                 pulled = pulled.with(other);
             else if (!(passed.lo() >= 0.0))
-                throw Undecided{"cannot decide whether an impact opens a held contact"};
+                throw ProofStopped{"cannot decide whether an impact opens a held contact"};
         }
         if (pulled.empty()) break;
-        if (round > 0) throw Undecided{"cannot decide which held contacts an impact opens"};
+        if (round > 0) throw ProofStopped{"cannot decide which held contacts an impact opens"};
         opened = pulled;
         mode_ = mode_.without(opened);
     }
@@ -61,14 +61,14 @@ void Prover::check_opened(ContactSet opened) {
     result_.events.back().opened = opened;
     for (std::size_t i = 0; i < z_.contacts; ++i)
         if (opened.contains(i) && !certainly_positive(set_.hull(z_.u(i))))
-            throw Undecided{"cannot decide whether an impact opens a held contact"};
+            throw ProofStopped{"cannot decide whether an impact opens a held contact"};
 }
 
 // Impact of all members, which must be on the surface.
 void Prover::land(std::size_t contact, const Interval& time) {
     const std::size_t h = z_.h(contact), u = z_.u(contact);
     if (!certainly_negative(set_.hull(u)))
-        throw Undecided{"graze: the impact speed is not bounded away from zero over the set"};
+        throw ProofStopped{"graze: the impact speed is not bounded away from zero over the set"};
     project(contact);
     const Intervals v_before = velocities(set_.hull());
     const Interval& e = restitutions_[contact];
@@ -80,7 +80,7 @@ void Prover::land(std::size_t contact, const Interval& time) {
     }
     if (e.lo() == 0.0 && e.hi() == 0.0) return capture(contact, time, v_before, opened);
     if (++result_.statistics.impacts > claim_.run.options.max_impacts)
-        throw Undecided{fmt::format("more than {} impacts", claim_.run.options.max_impacts)};
+        throw ProofStopped{fmt::format("more than {} impacts", claim_.run.options.max_impacts)};
     ++bounces_[contact];
     const double radius = largest_radius();
     Doubleton before = set_;
@@ -94,7 +94,7 @@ void Prover::land(std::size_t contact, const Interval& time) {
     set_ = after;
     const double rise = set_.hull(u).hi(), a = mag(maps(contact).normal(set_.hull()).hddot);
     if (2.0 * rise < 0x1p-50 * mag(time) * a)
-        throw Undecided{"the flights are shorter than the resolution of time, and no completion is proved"};
+        throw ProofStopped{"the flights are shorter than the resolution of time, and no completion is proved"};
     openings_[contact].known = KnownRoot::landed;
     motion().forget();
 }
@@ -128,7 +128,7 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
         return check_opened(opened);
     }
     if (!certainly_positive(hddot))
-        throw Undecided{
+        throw ProofStopped{
             "cannot decide between contact and flight: the contact force is not bounded away from zero over the set"};
     ++result_.statistics.impacts;
     note_event(Event::Kind::impact, contact, time, v_before, velocities(set_.hull()));
@@ -140,7 +140,7 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
 // The states at the Zeno points if all members reach them in this step, each after its own accumulation time. The error
 // of the comparison motion is not included.
 Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval& tau,
-                           const Completion::Proof& proof) const {
+                           const Completion::CompletionProof& proof) const {
     const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
     Intervals box = step.box_over(set_, tau);
     const Intervals point = step.centre_at(Interval(middle)), rho = step.remainder_at(tau),
@@ -195,7 +195,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
         left = step.length() < left ? proof->window - mid(passed) : 0.0;
         if (left > 0x1p-43 * proof->window) retract(mode_);
     }
-    if (!zeno) throw Undecided{"no enclosure of the Zeno point was found"};
+    if (!zeno) throw ProofStopped{"no enclosure of the Zeno point was found"};
     Intervals centre = set_.centre();
     for (std::size_t i = 0; i < 2 * z_.dof; ++i) {
         (*zeno)[z_.q(i)] += proof->error[i];
@@ -217,7 +217,8 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
 void Prover::release(std::size_t contact, const Interval& time) {
     retract(mode_);
     if (!certainly_positive(maps(contact).normal(set_.hull()).jerk))
-        throw Undecided{"degenerate release: the rate of the contact force is not bounded away from zero over the set"};
+        throw ProofStopped{
+            "degenerate release: the rate of the contact force is not bounded away from zero over the set"};
     const Intervals v = velocities(set_.hull());
     enter(mode_.without(contact));
     note_event(Event::Kind::release, contact, time, v, v);

@@ -7,8 +7,8 @@
 
 namespace achilles {
 
-Prover::Prover(const Model& model, const Claim& claim, const Coordinates& coordinates, const Intervals& start,
-               ProofWatch* watch, const Ground&)
+Prover::Prover(const Model& model, const EnclosureProblem& claim, const Coordinates& coordinates,
+               const Intervals& start, ProofMonitor* watch, const FloatEnvironmentGuard&)
     : model_(&model),
       claim_(claim),
       z_(coordinates),
@@ -27,16 +27,16 @@ Enclosure Prover::run() {
         begin();
         while (!is_over()) {
             if (watch_ != nullptr && watch_->stop.stop_requested()) {
-                result_.outcome = {Enclosure::Outcome::Kind::cancelled, "stopped before its end"};
+                result_.outcome = {Enclosure::ProofOutcome::Kind::cancelled, "stopped before its end"};
                 break;
             }
             move();
         }
-        if (is_over()) result_.outcome = {Enclosure::Outcome::Kind::end_time, "proved to the end time"};
-    } catch (const Undecided& doubt) {
-        result_.outcome = {Enclosure::Outcome::Kind::undecided, doubt.reason};
+        if (is_over()) result_.outcome = {Enclosure::ProofOutcome::Kind::end_time, "proved to the end time"};
+    } catch (const ProofStopped& doubt) {
+        result_.outcome = {Enclosure::ProofOutcome::Kind::undecided, doubt.reason};
     }
-    const bool whole = result_.outcome.kind == Enclosure::Outcome::Kind::end_time;
+    const bool whole = result_.outcome.kind == Enclosure::ProofOutcome::Kind::end_time;
     result_.proved_until = whole ? claim_.run.options.end_time : proved_until_;
     for (std::size_t i = 0; i < asked_.size(); ++i) {
         if (!asked_[i].is_known) continue;
@@ -64,7 +64,7 @@ double Prover::largest_radius() const {
 // ---- requested times ----
 
 bool Prover::is_over() const {
-    return std::all_of(asked_.begin(), asked_.end(), [](const Asked& asked) { return asked.is_known; });
+    return std::all_of(asked_.begin(), asked_.end(), [](const SampleRequest& asked) { return asked.is_known; });
 }
 
 // The remaining time (s), a little beyond the end for every member.
@@ -77,14 +77,14 @@ double Prover::longest() const {
 // time before any reaches the end of the step, the set is mapped to that time. Otherwise the hull there is extended.
 void Prover::cover(const Step& step, const Interval& elapsed) {
     const Interval now = set_.hull(Coordinates::t());
-    for (Asked& asked : asked_) {
+    for (SampleRequest& asked : asked_) {
         if (asked.is_known) continue;
         const Interval tau = Interval(asked.time) - now;
         if (!(tau.hi() >= 0.0) || !(tau.lo() <= elapsed.hi())) continue;
         if (tau.lo() >= 0.0 && tau.hi() < elapsed.lo() && !asked.state) {
             Doubleton there = set_;
             Interval when = tau;
-            cross(there, step, Section::of_time(z_, asked.time), when);
+            cross(there, step, CrossingSurface::of_time(z_, asked.time), when);
             const Intervals box = there.hull();
             asked.state = EnclosedState{asked.time, positions(box), velocities(box)};
             asked.is_known = true;
@@ -99,7 +99,7 @@ void Prover::cover(const Step& step, const Interval& elapsed) {
 
 // Extends the hulls of the requested times in `times` by a box that contains the members at those times.
 void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v) {
-    for (Asked& asked : asked_) {
+    for (SampleRequest& asked : asked_) {
         if (asked.is_known || !times.contains(asked.time)) continue;
         if (!asked.state) {
             asked.state = EnclosedState{asked.time, q, v};
@@ -116,7 +116,7 @@ void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v
 void Prover::settle() {
     proved_until_ = std::max(proved_until_, now());
     if (watch_ != nullptr) watch_->time.store(proved_until_, std::memory_order_relaxed);
-    for (Asked& asked : asked_)
+    for (SampleRequest& asked : asked_)
         if (!asked.is_known && asked.state && proved_until_ > asked.time) asked.is_known = true;
 }
 
@@ -124,16 +124,16 @@ void Prover::settle() {
 
 void Prover::count_step() {
     if (++result_.statistics.steps > claim_.run.options.max_steps)
-        throw Undecided{fmt::format("more than {} steps", claim_.run.options.max_steps)};
+        throw ProofStopped{fmt::format("more than {} steps", claim_.run.options.max_steps)};
 }
 
-Stepper& Prover::motion() {
+EnclosureStepper& Prover::motion() {
     auto& known = motions_[mode_];
-    if (!known) known = std::make_unique<Stepper>(*model_, z_, mode_);
+    if (!known) known = std::make_unique<EnclosureStepper>(*model_, z_, mode_);
     return *known;
 }
 
-Maps& Prover::maps(std::size_t contact) {
+EventMaps& Prover::maps(std::size_t contact) {
     const Mode others = mode_.without(contact);
     auto& known = maps_[{others, contact}];
     if (!known) known = make_maps(*model_, z_, contact, others);
@@ -182,9 +182,9 @@ const char* doubt_of(Transition transition) {
 }  // namespace
 
 // The event that precedes all others in every member, if there is one.
-Prover::Next Prover::next_in(const Step& step) const {
+Prover::NextEvent Prover::next_in(const Step& step) const {
     std::vector<FirstRoot> roots;
-    Next next{{}, {}, step.length(), {}};
+    NextEvent next{{}, {}, step.length(), {}};
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         const FirstRoot& root = roots.emplace_back(unpressed_.contains(i) ? FirstRoot{FirstRoot::Kind::none, {}}
                                                                           : first_root(step.watched(i), step.length()));
@@ -195,7 +195,7 @@ Prover::Next Prover::next_in(const Step& step) const {
             next.contact = i;
             next.elapsed = root.at;
         }
-        if (root.kind == FirstRoot::Kind::doubt) next.doubt = doubt_of(law_of(mode_.state(i)).transition);
+        if (root.kind == FirstRoot::Kind::undecided) next.doubt = doubt_of(law_of(mode_.state(i)).transition);
     }
     for (std::size_t i = 0; i < z_.contacts && next.contact; ++i) {
         if (i == *next.contact || roots[i].kind == FirstRoot::Kind::none || roots[i].at.lo() > next.elapsed.hi())
@@ -216,7 +216,7 @@ void Prover::pass(const Step& step, const Interval& elapsed) {
 }
 
 // The surface where the watched function of a contact vanishes.
-Section Prover::section_of(std::size_t contact, WatchedFunction watched) {
+CrossingSurface Prover::section_of(std::size_t contact, WatchedFunction watched) {
     switch (watched) {
         case WatchedFunction::gap:
             break;
@@ -226,7 +226,7 @@ Section Prover::section_of(std::size_t contact, WatchedFunction watched) {
                     {},
                     true};
     }
-    return Section::of_gap(z_, contact);
+    return CrossingSurface::of_gap(z_, contact);
 }
 
 void Prover::happen(Transition transition, std::size_t contact, const Interval& time) {
@@ -241,7 +241,7 @@ void Prover::happen(Transition transition, std::size_t contact, const Interval& 
 void Prover::move() {
     const Step step = motion().make(set_, longest_step(), openings_);
     count_step();
-    const Next next = next_in(step);
+    const NextEvent next = next_in(step);
     if (next.contact) {
         const std::size_t contact = *next.contact;
         Doubleton there = set_;
@@ -263,7 +263,7 @@ void Prover::move() {
     double length = step.length();
     if (!next.doubt.empty()) {
         length = 0.9 * next.clear;
-        if (!(length > 0.0) || ++doubts_ > 12) throw Undecided{next.doubt};
+        if (!(length > 0.0) || ++doubts_ > 12) throw ProofStopped{next.doubt};
     } else {
         doubts_ = 0;
     }
@@ -285,7 +285,7 @@ void Prover::begin() {
     std::optional<std::size_t> on_surface;
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (certainly_positive(openings_[i].gap)) continue;
-        if (on_surface) throw Undecided{"the initial box may touch more than one contact surface"};
+        if (on_surface) throw ProofStopped{"the initial box may touch more than one contact surface"};
         on_surface = i;
     }
     if (on_surface) begin_on_surface(start, *on_surface);
@@ -302,10 +302,10 @@ void Prover::measure_others(ContactSet but) {
 // A start on the contact surface within rounding: the theorem holds for the members with h = 0 and, if hdot is 0 within
 // rounding, hdot = 0. A sign change of h along n proves that such members exist.
 void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
-    Maps& maps = this->maps(contact);
+    EventMaps& maps = this->maps(contact);
     const std::size_t h = z_.h(contact), u_place = z_.u(contact);
-    const Maps::Surface surface = maps.surface(start);
-    const Undecided doubt{
+    const EventMaps::GapValues surface = maps.surface(start);
+    const ProofStopped doubt{
         "cannot decide between contact and flight at the start: the gap is not bounded away from zero over the set"};
     // The effect of rounding of the coordinates on the gap. Because g n = 1, a displacement along n changes the gap by
     // its own length.
@@ -341,7 +341,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     double fast = 0.0;
     for (std::size_t i = 0; i < z_.dof; ++i) fast = std::max(fast, mag(box[z_.v(i)]));
     if (certainly_negative(u) || rad(u) > 0x1p-40 * std::max(fast, 1.0))
-        throw Undecided{"at the start the gap is zero, and a contact closes or may close; start a little earlier"};
+        throw ProofStopped{"at the start the gap is zero, and a contact closes or may close; start a little earlier"};
     for (std::size_t i = 0; i < z_.dof; ++i) box[z_.v(i)] += Interval(-1.0, 1.0) * Interval(mag(surface.n[i]) * mag(u));
     box[u_place] = Interval(0.0);
     set_ = Doubleton(box, z_.varied.size());
@@ -355,7 +355,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     } else if (certainly_positive(hddot)) {
         openings_[contact].known = KnownRoot::at_rest;
     } else {
-        throw Undecided{
+        throw ProofStopped{
             "cannot decide between contact and flight at the start: the contact force is not bounded away from zero "
             "over the set"};
     }
@@ -373,9 +373,9 @@ InputError refusal(const Model& model, const std::string& why) {
 
 }  // namespace
 
-Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, ProofWatch* watch) {
+Enclosure prove(const std::shared_ptr<const Model>& model, const EnclosureProblem& claim, ProofMonitor* watch) {
     const auto clock = std::chrono::steady_clock::now();
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     Coordinates z;
     z.dof = static_cast<std::size_t>(model->dof());
     z.autonomous = model->equations().autonomous;
@@ -393,7 +393,7 @@ Enclosure prove(const std::shared_ptr<const Model>& model, const Claim& claim, P
     Enclosure result;
     try {
         result = Prover(*model, claim, z, start, watch, ground).run();
-    } catch (const Undecided& doubt) {
+    } catch (const ProofStopped& doubt) {
         throw refusal(*model, doubt.reason);
     }
     result.assumptions = fmt::format(

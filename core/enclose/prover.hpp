@@ -6,29 +6,29 @@
 #include <optional>
 
 #include "enclose/completion.hpp"
+#include "enclose/crossing_surface.hpp"
 #include "enclose/enclosure.hpp"
-#include "enclose/maps.hpp"
-#include "enclose/section.hpp"
+#include "enclose/event_maps.hpp"
 #include "enclose/step.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 
 class Prover {
  public:
-    Prover(const Model& model, const Claim& claim, const Coordinates& coordinates, const Intervals& start,
-           ProofWatch* watch, const Ground& ground);
+    Prover(const Model& model, const EnclosureProblem& claim, const Coordinates& coordinates, const Intervals& start,
+           ProofMonitor* watch, const FloatEnvironmentGuard& ground);
     Enclosure run();
 
  private:
     // The state at a requested time: a hull, which is complete once all members have passed that time.
-    struct Asked {
+    struct SampleRequest {
         double time;
         std::optional<EnclosedState> state;
         bool is_known = false;
     };
     // The next event, and the elapsed time until which there is none.
-    struct Next {
+    struct NextEvent {
         std::optional<std::size_t> contact;
         Interval elapsed;
         double clear;
@@ -40,27 +40,27 @@ class Prover {
     void count_step();
     void move();
     double longest_step();
-    Next next_in(const Step& step) const;
+    NextEvent next_in(const Step& step) const;
     void pass(const Step& step, const Interval& elapsed);
     void project(std::size_t contact);
     void retract(Mode onto);
     ContactSet opened_by(std::size_t contact);
     void check_opened(ContactSet opened);
-    Section section_of(std::size_t contact, WatchedFunction watched);
+    CrossingSurface section_of(std::size_t contact, WatchedFunction watched);
     void happen(Transition transition, std::size_t contact, const Interval& time);
     void land(std::size_t contact, const Interval& time);
     void capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened);
     bool complete(std::size_t contact, const Interval& time, const Interval& e, double radius);
     Intervals zeno_box(std::size_t contact, const Step& step, const Interval& tau,
-                       const Completion::Proof& proof) const;
+                       const Completion::CompletionProof& proof) const;
     void release(std::size_t contact, const Interval& time);
     void enter(Mode mode);
     void note_event(Event::Kind kind, std::size_t contact, const Interval& t, const Intervals& v_before,
                     const Intervals& v_after);
 
     // The programs of the current mode, and those of a contact in the mode in which it is open.
-    Stepper& motion();
-    Maps& maps(std::size_t contact);
+    EnclosureStepper& motion();
+    EventMaps& maps(std::size_t contact);
     Completion& completion(std::size_t contact);
 
     void cover(const Step& step, const Interval& elapsed);
@@ -75,21 +75,21 @@ class Prover {
     double largest_radius() const;
 
     const Model* model_;
-    Claim claim_;
+    EnclosureProblem claim_;
     Coordinates z_;
-    ProofWatch* watch_;
+    ProofMonitor* watch_;
     Intervals restitutions_;  // of each contact, over the claim
-    std::map<Mode, std::unique_ptr<Stepper>> motions_;
-    std::map<ContactInMode, std::unique_ptr<Maps>> maps_;
+    std::map<Mode, std::unique_ptr<EnclosureStepper>> motions_;
+    std::map<ContactInMode, std::unique_ptr<EventMaps>> maps_;
     std::map<std::pair<ContactSet, ContactInMode>, std::unique_ptr<Completion>> completions_;  // and by unpressed_
     Doubleton set_;
     Mode mode_;
-    ContactSet unpressed_;           // held contacts that need no force (theory-gaps.md 2.7)
-    std::vector<Opening> openings_;  // by contact
-    std::size_t last_ = 0;           // contact of the last event
-    int doubts_ = 0;                 // consecutive steps shortened to before an undecided event
-    std::vector<int> bounces_;       // of each contact since its flight began
-    std::vector<Asked> asked_;
+    ContactSet unpressed_;                // held contacts that need no force (theory-gaps.md 2.7)
+    std::vector<OpenGapBound> openings_;  // by contact
+    std::size_t last_ = 0;                // contact of the last event
+    int doubts_ = 0;                      // consecutive steps shortened to before an undecided event
+    std::vector<int> bounces_;            // of each contact since its flight began
+    std::vector<SampleRequest> asked_;
     double proved_until_;  // s; all members have reached this time
     Enclosure result_;
 };

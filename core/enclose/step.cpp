@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "number/fine.hpp"
+#include "number/double_double.hpp"
 #include "number/jet.hpp"
 #include "series/series_over.hpp"
 
@@ -11,12 +11,12 @@ namespace achilles {
 
 namespace {
 
-constexpr int K = Stepper::order;
+constexpr int K = EnclosureStepper::order;
 
 Interval power(const Interval& x, int n) { return integer_power(x, n); }
 
 // The intersection; the first interval if rounding has made the intersection empty.
-Interval both(const Interval& a, const Interval& b) {
+Interval intersection(const Interval& a, const Interval& b) {
     const double lo = std::max(a.lo(), b.lo()), hi = std::min(a.hi(), b.hi());
     return lo <= hi ? Interval(lo, hi) : a;
 }
@@ -67,7 +67,7 @@ Intervals Step::box_over(const Doubleton& set, const Interval& tau) const {
     const IntervalMatrix slope = slope_at(tau);
     for (std::size_t i = 0; i < size_; ++i) {
         sharp[i] = sharp[i] + times(rate[i], tau - middle) + set.along(slope.row(i));
-        plain[i] = both(sharp[i], plain[i]) + remainder[i];
+        plain[i] = intersection(sharp[i], plain[i]) + remainder[i];
     }
     return plain;
 }
@@ -80,17 +80,17 @@ void Step::advance(Doubleton& set, double tau) const {
     set.map(centre, slope_at(at));
 }
 
-Stepper::Stepper(const Model& model, const Coordinates& coordinates, Mode mode)
+EnclosureStepper::EnclosureStepper(const Model& model, const Coordinates& coordinates, Mode mode)
     : coordinates_(coordinates),
       mode_(mode),
       variables_(coordinates.of_motion()),
-      at_centre_(make_expansion(model.hddot_series(mode), coordinates, Expanded::at_a_point)),
-      over_hull_(make_expansion(model.hddot_series(mode), coordinates, Expanded::with_derivatives)),
-      over_box_(make_expansion(model.hddot_series(mode), coordinates, Expanded::over_a_box)) {}
+      at_centre_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::point)),
+      over_hull_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::box_with_derivatives)),
+      over_box_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::box)) {}
 
 // The scale of each coordinate along a step, for error tolerances. For h and u it is the scale of the flight, because
 // after an impact their relative accuracy is kept.
-std::vector<double> Stepper::scales(const Intervals& hull, double length) const {
+std::vector<double> EnclosureStepper::scales(const Intervals& hull, double length) const {
     const std::size_t n = coordinates_.dof;
     std::vector<double> result(coordinates_.size(), 0.0);
     double position = 0.0, velocity = 0.0;
@@ -112,7 +112,7 @@ std::vector<double> Stepper::scales(const Intervals& hull, double length) const 
 }
 
 // The length at which the last two terms at the center are small compared with the present uncertainty.
-double Stepper::first_length(const Doubleton&, const Intervals& hull, double longest) const {
+double EnclosureStepper::first_length(const Doubleton&, const Intervals& hull, double longest) const {
     const std::size_t n = coordinates_.dof;
     double length = longest;
     const auto limit = [&](double coefficient, double tolerance, int k) {
@@ -136,7 +136,7 @@ double Stepper::first_length(const Doubleton&, const Intervals& hull, double lon
 
 // Finds the a-priori box: the polynomial over [0, length] plus +-eps. It is accepted if the remainder over it is
 // strictly less than eps.
-bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
+bool EnclosureStepper::enclose(Step& step, const Intervals& hull, double length) {
     const std::size_t n = coordinates_.dof;
     const Interval span(0.0, length), middle(0.5 * length), whole = power(Interval(length), K + 1);
     Intervals box = hull;
@@ -152,7 +152,7 @@ bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
             at = times(at, middle) + c;
             if (k > 0) rate = times(rate, span) + times(Interval(k), c);
         }
-        base[i] = both(plain, at + times(rate, span - middle));
+        base[i] = intersection(plain, at + times(rate, span - middle));
         eps[i] = 4.0 * mag(times(over_hull_->value(K + 1, i), whole)) + 0x1p-200 * scale[coordinates_.q(i)];
         if (!std::isfinite(eps[i])) return false;
     }
@@ -182,7 +182,7 @@ bool Stepper::enclose(Step& step, const Intervals& hull, double length) {
 }
 
 // The Taylor coefficients of all coordinates: h'' = hddot for an open contact; h and u of a held contact are constant.
-void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings) {
+void EnclosureStepper::tabulate(Step& step, const Doubleton& set, const std::vector<OpenGapBound>& openings) {
     const Coordinates& z = coordinates_;
     const std::size_t size = z.size(), n = z.dof;
     step.size_ = size;
@@ -217,7 +217,8 @@ void Stepper::tabulate(Step& step, const Doubleton& set, const std::vector<Openi
     }
 }
 
-Intervals Stepper::watch(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const {
+Intervals EnclosureStepper::watch(const Step& step, const Doubleton& set, std::size_t contact,
+                                  const OpenGapBound& opening) const {
     switch (law_of(mode_.state(contact)).watched) {
         case WatchedFunction::gap:
             return watch_gap(step, set, contact, opening);
@@ -227,33 +228,33 @@ Intervals Stepper::watch(const Step& step, const Doubleton& set, std::size_t con
     return {};
 }
 
-Intervals Stepper::watch_force(const Doubleton& set, std::size_t contact) const {
+Intervals EnclosureStepper::watch_force(const Doubleton& set, std::size_t contact) const {
     Intervals result, row(coordinates_.size());
     for (int k = 0; k < K; ++k) {
         for (std::size_t j = 0; j < variables_.size(); ++j)
             row[variables_[j]] = over_hull_->slope(k, event(contact), j);
-        result.push_back(
-            -both(at_centre_->value(k, event(contact)) + set.along(row.data()), over_hull_->value(k, event(contact))));
+        result.push_back(-intersection(at_centre_->value(k, event(contact)) + set.along(row.data()),
+                                       over_hull_->value(k, event(contact))));
     }
     result.push_back(-over_box_->value(K, event(contact)));
     return result;
 }
 
-Intervals Stepper::watch_gap(const Step& step, const Doubleton& set, std::size_t contact,
-                             const Opening& opening) const {
+Intervals EnclosureStepper::watch_gap(const Step& step, const Doubleton& set, std::size_t contact,
+                                      const OpenGapBound& opening) const {
     const std::size_t size = coordinates_.size(), h = coordinates_.h(contact);
     Intervals result;
     for (int k = static_cast<int>(opening.known); k <= K; ++k) {
         const std::size_t at = static_cast<std::size_t>(k) * size + h;
         const Interval sharp = step.centre_[at] + set.along(step.slopes_[static_cast<std::size_t>(k)].row(h));
-        result.push_back(both(sharp, step.hull_[at]));
+        result.push_back(intersection(sharp, step.hull_[at]));
     }
     result.push_back(step.remainder_[h]);
-    if (opening.known == KnownRoot::none) result.front() = both(result.front(), opening.gap);
+    if (opening.known == KnownRoot::none) result.front() = intersection(result.front(), opening.gap);
     return result;
 }
 
-Step Stepper::make(const Doubleton& set, double longest, const std::vector<Opening>& openings) {
+Step EnclosureStepper::make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings) {
     const Intervals hull = set.hull();
     at_centre_->expand(set.centre(), K);
     over_hull_->expand(hull, K);
@@ -283,27 +284,28 @@ Step Stepper::make(const Doubleton& set, double longest, const std::vector<Openi
         }
         length *= std::clamp(std::pow(excess, -0.7 / (K + 1)), 0.5, 0.95);
     }
-    throw Undecided{"no enclosure found even for a very short step"};
+    throw ProofStopped{"no enclosure found even for a very short step"};
 }
 
 template <>
-inline Fine scalar_from<Fine>(const Constant& constant) {
+inline DoubleDoubleBall scalar_from<DoubleDoubleBall>(const Constant& constant) {
     const auto whole = [](const std::string& digits) {
-        Fine result;
+        DoubleDoubleBall result;
         for (const char digit : digits)
-            if (digit != '-') result = result * Fine(10.0) + Fine(static_cast<double>(digit - '0'));
+            if (digit != '-')
+                result = result * DoubleDoubleBall(10.0) + DoubleDoubleBall(static_cast<double>(digit - '0'));
         return digits.starts_with('-') ? -result : result;
     };
     return whole(constant.numerator) / whole(constant.denominator);
 }
 template <>
-inline Fine scalar_pi<Fine>() {
-    return Fine::half_pi() * Fine(2.0);
+inline DoubleDoubleBall scalar_pi<DoubleDoubleBall>() {
+    return DoubleDoubleBall::half_pi() * DoubleDoubleBall(2.0);
 }
 
 namespace {
 
-Interval range_of(const Fine& x) { return x.range(); }
+Interval range_of(const DoubleDoubleBall& x) { return x.range(); }
 template <std::size_t N>
 Interval range_of(const Jet<Interval, N>& x) {
     return x.value;
@@ -360,9 +362,10 @@ class ExpansionOver : public Expansion {
 
 }  // namespace
 
-std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates, Expanded what) {
-    if (what == Expanded::at_a_point) return std::make_unique<ExpansionOver<Fine>>(series, coordinates);
-    if (what == Expanded::over_a_box) return std::make_unique<ExpansionOver<Jet<Interval, 0>>>(series, coordinates);
+std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates,
+                                          ExpansionMode what) {
+    if (what == ExpansionMode::point) return std::make_unique<ExpansionOver<DoubleDoubleBall>>(series, coordinates);
+    if (what == ExpansionMode::box) return std::make_unique<ExpansionOver<Jet<Interval, 0>>>(series, coordinates);
     return with_directions(coordinates.of_motion().size(), [&]<std::size_t N>() -> std::unique_ptr<Expansion> {
         return std::make_unique<ExpansionOver<Jet<Interval, N>>>(series, coordinates);
     });

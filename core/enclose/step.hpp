@@ -26,9 +26,10 @@ class Expansion {
 };
 
 // At a point, the numbers are Fine: a step then loses only the rounding of its end there.
-enum class Expanded { at_a_point, over_a_box, with_derivatives };
+enum class ExpansionMode { point, box, box_with_derivatives };
 // `series` is that of Model::hddot_series() and must outlive the result.
-std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates, Expanded what);
+std::unique_ptr<Expansion> make_expansion(const SeriesProgram& series, const Coordinates& coordinates,
+                                          ExpansionMode what);
 
 // Number of leading coefficients of h that are exactly 0 in every member: h after an impact; h and hdot after contact
 // with hddot > 0; h, hdot and hddot after a release.
@@ -36,7 +37,7 @@ enum class KnownRoot { none = 0, landed = 1, at_rest = 2, released = 3 };
 
 // Information about an open contact's gap at the start of a step, in addition to the set: its known root, or a bound
 // that may be narrower than the set's.
-struct Opening {
+struct OpenGapBound {
     KnownRoot known = KnownRoot::none;
     Interval gap = Interval::everything();
 };
@@ -59,7 +60,7 @@ class Step {
     const Intervals& watched(std::size_t contact) const { return watched_[contact]; }
 
  private:
-    friend class Stepper;
+    friend class EnclosureStepper;
     const Interval* coefficients(const Intervals& table, int k) const {
         return table.data() + static_cast<std::size_t>(k) * size_;
     }
@@ -74,23 +75,23 @@ class Step {
     std::vector<Intervals> watched_;  // by contact
 };
 
-class Stepper {
+class EnclosureStepper {
  public:
     static constexpr int order = 20;  // K
 
     // Of the motion in this mode.
-    Stepper(const Model& model, const Coordinates& coordinates, Mode mode);
+    EnclosureStepper(const Model& model, const Coordinates& coordinates, Mode mode);
 
     // Makes a step of at most `longest` (s); `openings` has an entry for each contact. Throws Undecided if no a-priori
     // box is found.
-    Step make(const Doubleton& set, double longest, const std::vector<Opening>& openings);
+    Step make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings);
     // Removes the limit that the last step sets to the length of the next.
     void forget() { last_ = 0.0; }
 
  private:
-    void tabulate(Step& step, const Doubleton& set, const std::vector<Opening>& openings);
-    Intervals watch(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const;
-    Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const Opening& opening) const;
+    void tabulate(Step& step, const Doubleton& set, const std::vector<OpenGapBound>& openings);
+    Intervals watch(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
+    Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
     Intervals watch_force(const Doubleton& set, std::size_t contact) const;
     bool keeps_gap(std::size_t contact) const { return law_of(mode_.state(contact)).kept == Constraint::gap; }
     std::size_t event(std::size_t contact) const { return 2 * coordinates_.dof + contact; }  // the row of its hddot

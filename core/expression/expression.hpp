@@ -66,7 +66,7 @@ class Expression {
 
 // Thrown by every function that creates nodes if a graph would hold too many nodes, or too many digits of exact
 // numbers. what() is "it takes more than ...".
-struct TooLarge : std::runtime_error {
+struct ExpressionTooLarge : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 

@@ -49,7 +49,7 @@ struct Graph::Table {
     IdSet node_ids, number_ids;               // ids of nodes, indices into numbers
     std::size_t bits_in_all = 0;              // of all numbers requested so far: arithmetic costs in proportion
 
-    // The node with this content, created if it does not exist. Throws TooLarge.
+    // The node with this content, created if it does not exist. Throws ExpressionTooLarge.
     std::uint32_t intern(const Node& node);
     std::uint32_t intern(const Rational& value);
 };

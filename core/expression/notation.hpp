@@ -14,25 +14,25 @@ enum class Notation { text, latex };
 
 // A formatted term and its binding strength: sums and signs 1, products 2, factors that cannot be a base 3, powers 4,
 // atoms 5.
-struct Written {
+struct FormattedTerm {
     std::string text;
     int binding = 5;
     std::string head;  // LaTeX functions: the part before the exponent; text = head + the rest
 };
 
-std::string inside(const Written& part, int least, Notation notation);  // in parentheses if it binds less tightly
+std::string inside(const FormattedTerm& part, int least, Notation notation);  // in parentheses if it binds less tightly
 
-Written write_number(const boost::multiprecision::cpp_rational& value, Notation notation);
-Written write_name(std::string_view name, Notation notation);  // a symbol's name, including primes
-Written write_sum(const Written& a, bool minus, const Written& b, Notation notation);
-Written write_negated(const Written& a, Notation notation);
-Written write_product(const Written& a, const Written& b, Notation notation);
-Written write_quotient(const Written& a, const Written& b, Notation notation);
-Written write_power(const Written& base, int exponent, Notation notation);
-Written write_real_power(const Written& base, const Written& exponent, Notation notation);
-Written write_function(Operation function, const Written& argument, Notation notation);
+FormattedTerm write_number(const boost::multiprecision::cpp_rational& value, Notation notation);
+FormattedTerm write_name(std::string_view name, Notation notation);  // a symbol's name, including primes
+FormattedTerm write_sum(const FormattedTerm& a, bool minus, const FormattedTerm& b, Notation notation);
+FormattedTerm write_negated(const FormattedTerm& a, Notation notation);
+FormattedTerm write_product(const FormattedTerm& a, const FormattedTerm& b, Notation notation);
+FormattedTerm write_quotient(const FormattedTerm& a, const FormattedTerm& b, Notation notation);
+FormattedTerm write_power(const FormattedTerm& base, int exponent, Notation notation);
+FormattedTerm write_real_power(const FormattedTerm& base, const FormattedTerm& exponent, Notation notation);
+FormattedTerm write_function(Operation function, const FormattedTerm& argument, Notation notation);
 
 // Formats an expression without simplifying it; symbols are names[slot].
-Written write(Expression expression, std::span<const std::string> names, Notation notation);
+FormattedTerm write(Expression expression, std::span<const std::string> names, Notation notation);
 
 }  // namespace achilles

@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "expression/expression.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/repair.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 
@@ -392,7 +392,7 @@ std::string suggestion(std::string_view text, const Scope& scope, Graph& graph) 
         Parser(right, scope, graph, nullptr).whole();
     } catch (const ParseError&) {
         return "";
-    } catch (const TooLarge&) {
+    } catch (const ExpressionTooLarge&) {
         return "";
     }
     return "write " + right;
@@ -411,7 +411,7 @@ Expression parse(std::string_view text, const Scope& scope, Graph& graph, TextPa
         const std::string message = error.what();
         const std::size_t end = std::min(message.find("; did you mean"), message.find(functions_are));
         throw ParseError(error.offset, message.substr(0, end), error.name, right);
-    } catch (const TooLarge& problem) {
+    } catch (const ExpressionTooLarge& problem) {
         throw ParseError(parser.at(), std::string("this expression is too large: ") + problem.what());
     }
 }
@@ -504,12 +504,12 @@ bool has_names(std::string_view text) {
     });
 }
 
-GivenNumber read_number(std::string_view whole, std::string_view unit) {
-    const Ground ground;
+ParsedNumber read_number(std::string_view whole, std::string_view unit) {
+    const FloatEnvironmentGuard ground;
     const std::string_view text = trimmed(whole);
     const auto begin = text.empty() ? 0 : static_cast<std::size_t>(text.data() - whole.data());
     if (text.empty()) throw ParseError(0, "a number is missing");
-    GivenNumber given;
+    ParsedNumber given;
     if (const auto plain = plain_number(text)) {
         if (!std::isfinite(*plain)) fail(text, begin, "");
         given.value = *plain;

@@ -57,7 +57,7 @@ bool is_name(std::string_view text);
 
 // A number as entered in a file, on the command line, in a journal or in a field: a constant expression such as 0.3,
 // pi/6, 1/3 or 30 deg.
-struct GivenNumber {
+struct ParsedNumber {
     double value = 0.0;     // finite
     bool has_unit = false;  // written with a unit of angle: 30 deg, 30°, 0.5 rad
     bool has_pi = false;
@@ -71,6 +71,6 @@ bool has_names(std::string_view text);
 // Parses the whole text as a number. `unit` is the unit of the quantity. If it is rad, deg, ° (both pi/180) and rad (1)
 // may follow a value; if it is rad/s, also deg/s, °/s and rad/s. Throws ParseError, whose message begins with the text:
 // "'0,4' is not a finite number: ...".
-GivenNumber read_number(std::string_view text, std::string_view unit = {});
+ParsedNumber read_number(std::string_view text, std::string_view unit = {});
 
 }  // namespace achilles

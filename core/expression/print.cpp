@@ -63,13 +63,13 @@ bool starts_with_digit(const std::string& text) { return !text.empty() && is_dig
 
 }  // namespace
 
-std::string inside(const Written& part, int least, Notation notation) {
+std::string inside(const FormattedTerm& part, int least, Notation notation) {
     if (part.binding >= least) return part.text;
     const bool tall = notation == Notation::latex && part.text.find("\\frac") != std::string::npos;
     return tall ? fmt::format("\\left({}\\right)", part.text) : fmt::format("({})", part.text);
 }
 
-Written write_number(const boost::multiprecision::cpp_rational& value, Notation notation) {
+FormattedTerm write_number(const boost::multiprecision::cpp_rational& value, Notation notation) {
     const auto top = numerator(value), bottom = denominator(value);
     if (notation == Notation::text || bottom == 1) return {value.str(), value < 0 ? 1 : bottom != 1 ? 2 : 5, {}};
     return {fmt::format("{}\\tfrac{{{}}}{{{}}}", value < 0 ? "-" : "", boost::multiprecision::cpp_int(abs(top)).str(),
@@ -78,20 +78,20 @@ Written write_number(const boost::multiprecision::cpp_rational& value, Notation 
             {}};
 }
 
-Written write_name(std::string_view name, Notation notation) {
+FormattedTerm write_name(std::string_view name, Notation notation) {
     return {notation == Notation::text ? std::string(name) : latex_name(name), 5, {}};
 }
 
-Written write_sum(const Written& a, bool minus, const Written& b, Notation notation) {
+FormattedTerm write_sum(const FormattedTerm& a, bool minus, const FormattedTerm& b, Notation notation) {
     const bool bare = !minus && !b.text.starts_with('-');  // a + (b + c)
     return {fmt::format("{} {} {}", a.text, minus ? '-' : '+', bare ? b.text : inside(b, 2, notation)), 1, {}};
 }
 
-Written write_negated(const Written& a, Notation notation) {
+FormattedTerm write_negated(const FormattedTerm& a, Notation notation) {
     return {fmt::format("-{}", inside(a, notation == Notation::text ? 3 : 2, notation)), 1, {}};
 }
 
-Written write_product(const Written& a, const Written& b, Notation notation) {
+FormattedTerm write_product(const FormattedTerm& a, const FormattedTerm& b, Notation notation) {
     const std::string left = inside(a, 2, notation);
     // Text keeps the order of evaluation: a*(b*c) is read back unchanged.
     if (notation == Notation::text) return {fmt::format("{}*{}", left, inside(b, 3, notation)), 2, {}};
@@ -99,12 +99,12 @@ Written write_product(const Written& a, const Written& b, Notation notation) {
     return {fmt::format("{}{}{}", left, starts_with_digit(right) ? " \\cdot " : " ", right), 2, {}};
 }
 
-Written write_quotient(const Written& a, const Written& b, Notation notation) {
+FormattedTerm write_quotient(const FormattedTerm& a, const FormattedTerm& b, Notation notation) {
     if (notation == Notation::latex) return {fmt::format("\\frac{{{}}}{{{}}}", a.text, b.text), 3, {}};
     return {fmt::format("{}/{}", inside(a, 2, notation), inside(b, 4, notation)), 2, {}};
 }
 
-Written write_power(const Written& base, int exponent, Notation notation) {
+FormattedTerm write_power(const FormattedTerm& base, int exponent, Notation notation) {
     if (notation == Notation::text)
         return {
             fmt::format(fmt::runtime(exponent < 0 ? "{}^({})" : "{}^{}"), inside(base, 5, notation), exponent), 4, {}};
@@ -115,14 +115,14 @@ Written write_power(const Written& base, int exponent, Notation notation) {
     return {fmt::format("{}^{{{}}}{}", base.head, exponent, base.text.substr(base.head.size())), 4, {}};
 }
 
-Written write_real_power(const Written& base, const Written& exponent, Notation notation) {
+FormattedTerm write_real_power(const FormattedTerm& base, const FormattedTerm& exponent, Notation notation) {
     if (notation == Notation::text)
         return {fmt::format("{}^{}", inside(base, 5, notation), inside(exponent, 5, notation)), 4, {}};
     const std::string text = base.head.empty() ? inside(base, 5, notation) : fmt::format("({})", base.text);
     return {fmt::format("{}^{{{}}}", text, exponent.text), 4, {}};
 }
 
-Written write_function(Operation function, const Written& argument, Notation notation) {
+FormattedTerm write_function(Operation function, const FormattedTerm& argument, Notation notation) {
     for (const auto& [name, operation, value] : functions) {
         if (operation != function) continue;
         if (notation == Notation::text) return {fmt::format("{}({})", name, argument.text), 5, {}};
@@ -141,7 +141,7 @@ namespace {
 
 // A product whose first factor may be an exact number. Text writes x/2 for (1/2)*x, if it is read back unchanged. LaTeX
 // puts a minus sign in front of the product.
-Written multiplied(Expression first, const Written& a, const Written& b, Notation notation) {
+FormattedTerm multiplied(Expression first, const FormattedTerm& a, const FormattedTerm& b, Notation notation) {
     if (!first.is_number()) return write_product(a, b, notation);
     const boost::multiprecision::cpp_rational& value = Builder::value(first);
     if (value < 0)
@@ -149,22 +149,22 @@ Written multiplied(Expression first, const Written& a, const Written& b, Notatio
                    ? write_product(a, b, notation)
                    : write_negated(write_product(write_number(-value, notation), b, notation), notation);
     if (notation == Notation::latex || denominator(value) == 1) return write_product(a, b, notation);
-    const Written top =
+    const FormattedTerm top =
         numerator(value) == 1 ? b : write_product(write_number(numerator(value), notation), b, notation);
     return write_quotient(top, write_number(denominator(value), notation), notation);
 }
 
 }  // namespace
 
-Written write(Expression expression, std::span<const std::string> names, Notation notation) {
+FormattedTerm write(Expression expression, std::span<const std::string> names, Notation notation) {
     const Graph& graph = expression.graph();
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
-    std::vector<Written> written(needed.size());
+    std::vector<FormattedTerm> written(needed.size());
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
         if (!needed[id]) continue;
         const Graph::Node& node = graph.node(id);
         const bool leaf = is_leaf(node.operation);
-        const Written &a = written[leaf ? 0 : node.a], &b = written[is_binary(node.operation) ? node.b : 0];
+        const FormattedTerm &a = written[leaf ? 0 : node.a], &b = written[is_binary(node.operation) ? node.b : 0];
         switch (node.operation) {
             case Op::number:
                 written[id] = write_number(Builder::value({&expression.graph(), id}), notation);
@@ -173,7 +173,7 @@ Written write(Expression expression, std::span<const std::string> names, Notatio
                 written[id] = write_name("pi", notation);
                 break;
             case Op::symbol:
-                written[id] = node.a < names.size() ? write_name(names[node.a], notation) : Written{"?", 5, {}};
+                written[id] = node.a < names.size() ? write_name(names[node.a], notation) : FormattedTerm{"?", 5, {}};
                 break;
             case Op::add:
             case Op::subtract:

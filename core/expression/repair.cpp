@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "expression/expression.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 
 namespace achilles {
 

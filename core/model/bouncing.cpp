@@ -7,7 +7,7 @@
 
 namespace achilles {
 
-Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout) {
+BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout) {
     Graph graph(contact.gap.graph());
     const std::size_t count = layout.dof;
     std::vector<std::uint32_t> q, v;
@@ -54,17 +54,17 @@ Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equat
     return {variables,
             Program(Row{hddot}, slots),
             Program(slope_of_hddot, slots),
-            ProgramOf<BouncingRates>::of(slots, velocity, rate),
-            ProgramOf<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
+            TypedProgram<BouncingRates>::of(slots, velocity, rate),
+            TypedProgram<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
             Program(joined({slope_of_hddot, shadow}), slots)};
 }
 
-Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, Mode mode, const Expressions& velocity,
-                             ContactModes& motions, const Layout& layout) {
+OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
+                                        const Expressions& velocity, ContactModes& motions, const Layout& layout) {
     const std::vector<ContactEquations>& contacts = motions.of(mode).contacts;
     std::vector<std::uint32_t> v;
     for (std::size_t i = 0; i < layout.dof; ++i) v.push_back(layout.v(i));
-    Neighbours result;
+    OtherContactTerms result;
     result.bouncing = bouncing;
     Row outputs, gaps;
     for (const std::size_t k : bouncing) outputs.push_back(contacts[k].W);
@@ -83,12 +83,12 @@ Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, Mode mode
     return result;
 }
 
-Neighbours derive_neighbours(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout) {
+OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout) {
     const Row& n = motions.of(mode).contacts.at(contact).direction;
     Row velocity;
     for (std::size_t i = 0; i < layout.dof; ++i)
         velocity.push_back(motions.graph().symbol(layout.v(i)) + n[i] * motions.graph().symbol(layout.sigma()));
-    return derive_neighbours({contact}, mode, velocity, motions, layout);
+    return derive_other_contacts({contact}, mode, velocity, motions, layout);
 }
 
 PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
@@ -140,10 +140,10 @@ PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, Conta
     const Row delassus{open.contacts[first].W, open.contacts[first].delassus[second], open.contacts[second].W};
     PairPrograms result;
     result.terms =
-        ProgramOf<PairTerms>::of(layout.slots(), Row{hddot(0), hddot(1)}, delassus, A, joined({N[0], N[1]}),
-                                 joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
-                                 joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
-    result.others = derive_neighbours({first, second}, mode, velocity, motions, layout);
+        TypedProgram<PairTerms>::of(layout.slots(), Row{hddot(0), hddot(1)}, delassus, A, joined({N[0], N[1]}),
+                                    joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
+                                    joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
+    result.others = derive_other_contacts({first, second}, mode, velocity, motions, layout);
     return result;
 }
 

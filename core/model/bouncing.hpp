@@ -80,13 +80,13 @@ class ShadowTerms : public Terms<Base> {
     decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(k * this->dof_ + i); }
 };
 
-struct Bouncing {
+struct BouncingModel {
     // The variables of the programs: q, s, sigma, and t if the system depends on time.
     std::vector<std::uint32_t> variables;
-    Program hddot;                   // hddot(q, s + n sigma)
-    Program gradient;                // its derivatives with respect to the variables
-    ProgramOf<BouncingRates> rates;  // of q and s
-    ProgramOf<TrendTerms> trend;
+    Program hddot;                      // hddot(q, s + n sigma)
+    Program gradient;                   // its derivatives with respect to the variables
+    TypedProgram<BouncingRates> rates;  // of q and s
+    TypedProgram<TrendTerms> trend;
     Program shadow;  // the gradient again (it shares most of its work with the rest), then ShadowTerms
 };
 
@@ -96,16 +96,16 @@ struct Bouncing {
 //   for every held contact, in the mode that holds the other held ones: hddot (negative if pressed), W, and for each
 //       bouncing contact kappa, the factor by which it transmits an impulse;
 //   for every open contact: its gap.
-struct Neighbours {
+struct OtherContactTerms {
     std::vector<std::size_t> bouncing, held, open;
     Program program;
 };
-Neighbours derive_neighbours(const std::vector<std::size_t>& bouncing, Mode mode, const Expressions& velocity,
-                             ContactModes& motions, const Layout& layout);
-Neighbours derive_neighbours(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
+OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
+                                        const Expressions& velocity, ContactModes& motions, const Layout& layout);
+OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
 
 // Derives and compiles the programs of a contact, in a copy of its graph.
-Bouncing derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);
+BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);
 
 // Two contacts that bounce together, in coordinates that their impacts do not change (theory-gaps.md 3). N has a column
 // for each contact, N = M^-1 G_C' W_CC^-1 while others are held, and
@@ -140,8 +140,8 @@ class PairTerms : public Terms<Base> {
 };
 
 struct PairPrograms {
-    ProgramOf<PairTerms> terms;
-    Neighbours others;
+    TypedProgram<PairTerms> terms;
+    OtherContactTerms others;
 };
 
 // The programs of two contacts while others are held. Throws std::domain_error if the two cannot be held together with

@@ -285,7 +285,7 @@ SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& eq
     return series_of(motion, hddot, pivots_of(equations, motion.f.front().graph()), layout);
 }
 
-Motion make_motion(const ModeEquations& motion, const Equations& e, const Layout& layout) {
+ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const Layout& layout) {
     const Slots slots = layout.slots();
     Graph& graph = motion.f.front().graph();
     const Expressions pivots = pivots_of(e, graph);
@@ -298,7 +298,7 @@ Motion make_motion(const ModeEquations& motion, const Equations& e, const Layout
         if (watched == WatchedFunction::normal_force) jerks.push_back(jerk_of(c, layout));
     }
     SeriesProgram series = series_of(motion, event_functions, pivots, layout);
-    return {motion.mode, ProgramOf<MotionTerms>::of(slots, motion.f, pivots, joined({hddot, jerks})),
+    return {motion.mode, TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({hddot, jerks})),
             std::move(series)};
 }
 

@@ -76,7 +76,7 @@ struct Equations {
 //     g = dh,   hdot = g v + h_t,   W = g M^-1 g',   n = M^-1 g'/W,   s = v - n hdot
 //     hddot = v'Hv + 2 g_t v + h_tt + g f,   lambda = -hddot/W,   f_c = f - n hddot
 // M^-1 is applied through an L D L' factorization unrolled in the graph. Throws std::domain_error if a pivot or W is
-// identically 0 (M is not positive definite, or dh = 0), and TooLarge if the graph would be too large.
+// identically 0 (M is not positive definite, or dh = 0), and ExpressionTooLarge if the graph would be too large.
 void derive(Equations& equations, const Layout& layout, Graph& graph);
 
 // Equations of all modes, each derived at first use from the mode with one contact fewer. For a further contact k that
@@ -104,15 +104,15 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 // In a mode, every contact has an event function, the function that its law watches (contacts/contact_law.hpp). It is
 // the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W).
-struct Motion {
+struct ModeDynamics {
     Mode mode;
-    ProgramOf<MotionTerms> program;
+    TypedProgram<MotionTerms> program;
     SeriesProgram series;  // MotionSeries
 };
 
 // Compiles a mode. `equations` belongs to the graph of `motion`, or to the graph that it was copied from. Throws
-// TooLarge.
-Motion make_motion(const ModeEquations& motion, const Equations& equations, const Layout& layout);
+// ExpressionTooLarge.
+ModeDynamics make_motion(const ModeEquations& motion, const Equations& equations, const Layout& layout);
 // The series of a mode with hddot of every contact, open or held, as event functions. Proofs use it, because the gap is
 // a coordinate of its own there (theory-enclosure.md 1).
 SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& equations, const Layout& layout);

@@ -7,7 +7,7 @@
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
 #include "model/unpressed.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "number/jet.hpp"
 #include "system/input_error.hpp"
 
@@ -19,15 +19,15 @@ Model::Model(SystemDescription description) : description_(std::move(description
                          "a system needs at least one coordinate and one constraint");
     layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
-    const Ground ground;  // constants are evaluated as intervals, too
-    Mistakes mistakes;
+    const FloatEnvironmentGuard ground;  // constants are evaluated as intervals, too
+    ErrorCollector mistakes;
     Names names;
     read_equations(description_, layout_, *graph_, names, equations_, mistakes);
     mistakes.raise(description_);
     try {
         derive(equations_, layout_, *graph_);
         compile();
-    } catch (const TooLarge& problem) {
+    } catch (const ExpressionTooLarge& problem) {
         throw description_.error(description_.kinetic.at,
                                  fmt::format("the equations of motion are too large: {}", problem.what()));
     } catch (const std::domain_error& problem) {
@@ -62,12 +62,12 @@ Interval enclosed(const Program& restitution, const Layout& layout, std::span<co
 }  // namespace
 
 Interval Model::restitution(std::span<const Interval> parameters, std::size_t contact) const {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     return enclosed(restitutions_[contact], layout_, parameters);
 }
 
 std::vector<Restitution> Model::restitutions(std::span<const double> parameters) const {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     std::vector<Restitution> result(contacts());
     for (std::size_t i = 0; i < contacts(); ++i)
         result[i] = {restitution(parameters, i), enclosed(restitutions_[i], layout_, parameters)};
@@ -81,11 +81,11 @@ void Model::compile() {
     for (const Expression e_of : e.restitutions) restitutions_.push_back(program(e_of));
     for (std::size_t i = 0; i < contacts(); ++i)
         free_.push_back(&programs_.emplace(ContactInMode({}, i), compile_contact(e.free, i)).first->second);
-    energy_ = ProgramOf<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
-    start_ = ProgramOf<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
+    energy_ = TypedProgram<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
+    start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
-    for (const Edge& edge : edges_) distances.push_back(edge.event_function);
+    for (const DomainBoundary& edge : edges_) distances.push_back(edge.event_function);
     if (!edges_.empty()) edge_series_ = SeriesProgram(Program(distances, slots), 0, distances.size());
 }
 
@@ -96,9 +96,9 @@ Model::ContactPrograms Model::compile_contact(const ModeEquations& motion, std::
     return {program(c.gap),
             program(c.hddot),
             program(c.lambda),
-            ProgramOf<ContactTerms>::of(slots, c.gap, c.hdot, c.direction, c.g, c.W, c.gap_t),
-            ProgramOf<ReleaseTerms>::of(slots, c.hddot, jerk_of(c, layout_)),
-            ProgramOf<Definition7Terms>::of(slots, c.hddot, c.direction, motion.f)};
+            TypedProgram<ContactTerms>::of(slots, c.gap, c.hdot, c.direction, c.g, c.W, c.gap_t),
+            TypedProgram<ReleaseTerms>::of(slots, c.hddot, jerk_of(c, layout_)),
+            TypedProgram<Definition7Terms>::of(slots, c.hddot, c.direction, motion.f)};
 }
 
 ContactModes& Model::contact_modes() const {
@@ -112,17 +112,17 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
     const std::scoped_lock lock(modes_mutex_);
     const auto known = map.find(key);
     if (known != map.end()) return known->second;
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     try {
         return map.emplace(key, make()).first->second;
-    } catch (const TooLarge& problem) {
+    } catch (const ExpressionTooLarge& problem) {
         throw description_.error(
             description_.kinetic.at,
             fmt::format("the equations for held contacts or for certificates are too large: {}", problem.what()));
     }
 }
 
-const Motion& Model::motion(Mode mode) const {
+const ModeDynamics& Model::motion(Mode mode) const {
     return derived(motions_, mode, [&] { return make_motion(contact_modes().of(mode), equations_, layout_); });
 }
 
@@ -150,14 +150,14 @@ bool Model::is_carried(std::size_t contact, Mode mode) const {
     return derived(carried_, {mode, contact}, [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });
 }
 
-const Bouncing& Model::bouncing(std::size_t contact, Mode mode) const {
+const BouncingModel& Model::bouncing(std::size_t contact, Mode mode) const {
     return derived(bouncings_, {mode, contact},
                    [&] { return derive_bouncing(contact_modes().of(mode).contacts.at(contact), equations_, layout_); });
 }
 
-const Neighbours& Model::neighbours(std::size_t contact, Mode mode) const {
+const OtherContactTerms& Model::neighbours(std::size_t contact, Mode mode) const {
     return derived(neighbours_, {mode, contact},
-                   [&] { return derive_neighbours(contact, mode, contact_modes(), layout_); });
+                   [&] { return derive_other_contacts(contact, mode, contact_modes(), layout_); });
 }
 
 const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode mode) const {

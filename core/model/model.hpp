@@ -19,7 +19,7 @@
 #include "expression/parse.hpp"
 #include "model/bouncing.hpp"
 #include "model/derive.hpp"
-#include "model/edges.hpp"
+#include "model/domain_boundaries.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"
 #include "program/program.hpp"
@@ -44,7 +44,7 @@ class Model {
     std::span<const std::string> slot_names() const { return slot_names_; }
 
     // The equations of motion in a mode, compiled at first use. The reference stays valid as long as the model.
-    const Motion& motion(Mode mode) const;
+    const ModeDynamics& motion(Mode mode) const;
     LanePrograms lane_programs() const;
     // The same mode with hddot of every contact as event functions, for proofs (make_hddot_series).
     const SeriesProgram& hddot_series(Mode mode) const;
@@ -54,9 +54,9 @@ class Model {
         Program gap;                  // h
         Program normal_acceleration;  // hddot
         Program force;                // lambda
-        ProgramOf<ContactTerms> contact_terms;
-        ProgramOf<ReleaseTerms> release_terms;
-        ProgramOf<Definition7Terms> definition7_terms;
+        TypedProgram<ContactTerms> contact_terms;
+        TypedProgram<ReleaseTerms> release_terms;
+        TypedProgram<Definition7Terms> definition7_terms;
     };
     const ContactPrograms& programs_of(std::size_t contact, Mode mode = {}) const;
     // Whether hddot of a contact in a mode is proved to be 0 wherever h = hdot = 0 for this contact and the held ones,
@@ -76,21 +76,21 @@ class Model {
     Interval restitution(std::span<const Interval> parameters, std::size_t contact) const;
     // Value and enclosure for every contact, evaluated once per run.
     std::vector<Restitution> restitutions(std::span<const double> parameters) const;
-    const ProgramOf<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
-    const ProgramOf<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
-    const ProgramOf<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
-    const ProgramOf<EnergyTerms>& energy() const { return energy_; }
+    const TypedProgram<ContactTerms>& contact_terms() const { return programs_of(0).contact_terms; }
+    const TypedProgram<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
+    const TypedProgram<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
+    const TypedProgram<EnergyTerms>& energy() const { return energy_; }
     // dE/dt in a mode: v'Q + dV/dt - sum lambda dh/dt over the held contacts (W).
     const Program& power(Mode mode) const;
 
     // Functions whose edge the motion may reach, and the series of their distances from the edge.
-    const std::vector<Edge>& edges() const { return edges_; }
+    const std::vector<DomainBoundary>& edges() const { return edges_; }
     const SeriesProgram& edge_series() const { return edge_series_; }
 
     // The programs of the truncation conditions of a contact in a mode in which it is open, derived at first use.
     // Throws InputError if they are too large.
-    const Bouncing& bouncing(std::size_t contact = 0, Mode mode = {}) const;
-    const Neighbours& neighbours(std::size_t contact, Mode mode) const;
+    const BouncingModel& bouncing(std::size_t contact = 0, Mode mode = {}) const;
+    const OtherContactTerms& neighbours(std::size_t contact, Mode mode) const;
     // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
@@ -103,14 +103,15 @@ class Model {
         return result;
     }
     template <class Scalar = double, template <class> class TermsOf>
-    TermsOf<Evaluator<Scalar>> evaluator(const ProgramOf<TermsOf>& program, std::span<const double> parameters) const {
+    TermsOf<Evaluator<Scalar>> evaluator(const TypedProgram<TermsOf>& program,
+                                         std::span<const double> parameters) const {
         return {evaluator<Scalar>(static_cast<const Program&>(program), parameters), layout_.dof};
     }
 
     // The same, created at first use: a run needs only a few of the evaluators that it may need.
     template <class Scalar, template <class> class TermsOf>
     TermsOf<Evaluator<Scalar>>& lazily(std::optional<TermsOf<Evaluator<Scalar>>>& evaluator,
-                                       const ProgramOf<TermsOf>& program, std::span<const double> parameters) const {
+                                       const TypedProgram<TermsOf>& program, std::span<const double> parameters) const {
         if (!evaluator) evaluator = this->evaluator<Scalar>(program, parameters);
         return *evaluator;
     }
@@ -166,20 +167,20 @@ class Model {
     std::vector<std::string> slot_names_;
     mutable std::mutex modes_mutex_;  // protects everything that is derived at first use
     mutable std::unique_ptr<ContactModes> modes_;
-    mutable std::map<Mode, Motion> motions_;
+    mutable std::map<Mode, ModeDynamics> motions_;
     mutable std::map<Mode, SeriesProgram> hddot_series_;
     mutable std::map<Mode, Program> powers_;
     mutable std::map<ContactInMode, ContactPrograms> programs_;
-    mutable std::map<ContactInMode, Bouncing> bouncings_;
-    mutable std::map<ContactInMode, Neighbours> neighbours_;
+    mutable std::map<ContactInMode, BouncingModel> bouncings_;
+    mutable std::map<ContactInMode, OtherContactTerms> neighbours_;
     mutable std::map<ContactInMode, bool> carried_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;
     SeriesProgram edge_series_;
-    std::vector<Edge> edges_;
-    ProgramOf<EnergyTerms> energy_;
-    ProgramOf<StartTerms> start_;
+    std::vector<DomainBoundary> edges_;
+    TypedProgram<EnergyTerms> energy_;
+    TypedProgram<StartTerms> start_;
 };
 
 // ---- derived parameters ----

@@ -22,7 +22,7 @@ std::string without_primes(const std::string& name) { return name.substr(0, name
 // Reads the texts of one file and collects their mistakes.
 class Reader {
  public:
-    Reader(Graph& graph, Names& names, Mistakes& mistakes) : graph_(graph), names_(names), mistakes_(mistakes) {}
+    Reader(Graph& graph, Names& names, ErrorCollector& mistakes) : graph_(graph), names_(names), mistakes_(mistakes) {}
 
     // Returns nullopt if the text is missing or has a mistake, which is added.
     std::optional<Expression> read(const Text& text, Scope& scope, TextParts* parts = nullptr) {
@@ -61,7 +61,7 @@ class Reader {
 
     Graph& graph_;
     Names& names_;
-    Mistakes& mistakes_;
+    ErrorCollector& mistakes_;
     int guesses_ = 0;
 };
 
@@ -166,11 +166,11 @@ void check_gap(const Text& text, Expression gap, const Layout& layout) {
 
 // Calls a function that creates nodes; if the graph becomes too large, adds a mistake located at this text.
 template <class Make>
-void attempt_within_limits(Mistakes& mistakes, const Text& text, const Make& make) {
+void attempt_within_limits(ErrorCollector& mistakes, const Text& text, const Make& make) {
     mistakes.attempt([&] {
         try {
             make();
-        } catch (const TooLarge& problem) {
+        } catch (const ExpressionTooLarge& problem) {
             throw Mistake{text.at, fmt::format("the equations of motion are too large: {}", problem.what()), {}};
         }
     });
@@ -189,7 +189,7 @@ void read_definitions(const SystemDescription& system, const Layout& layout, Rea
 
 // Q_i = force_i - dR/dv_i.
 void read_forces(const SystemDescription& system, const Layout& layout, Reader& reader, Equations& equations,
-                 Mistakes& mistakes) {
+                 ErrorCollector& mistakes) {
     Graph& graph = equations.kinetic.graph();
     Scope scope = force_scope(system, layout, graph);
     equations.Q.clear();
@@ -206,7 +206,7 @@ void read_forces(const SystemDescription& system, const Layout& layout, Reader& 
 }  // namespace
 
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
-                    Equations& equations, Mistakes& mistakes) {
+                    Equations& equations, ErrorCollector& mistakes) {
     Reader reader(graph, names, mistakes);
     TextParts parts;
     const auto read = [&](const Text& text, Scope scope, TextParts* places = nullptr) {
@@ -265,7 +265,7 @@ void read_pictures(const SystemDescription& system, const Layout& layout, Graph&
 
 }  // namespace
 
-bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes) {
+bool check_expressions(const SystemDescription& system, Names names, ErrorCollector& mistakes) {
     const Layout layout = layout_of(system);
     Graph graph;
     Equations equations;

@@ -22,11 +22,11 @@ namespace achilles {
 // rates after expansion. Missing texts are skipped. An unknown name is reported once per file, at its first place;
 // expressions that depend on it are not checked.
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
-                    Equations& equations, Mistakes& mistakes);
+                    Equations& equations, ErrorCollector& mistakes);
 
 // Adds the mistakes in all expressions of the file: those above, drawings and views. Returns whether those above have
 // none.
-bool check_expressions(const SystemDescription& system, Names names, Mistakes& mistakes);
+bool check_expressions(const SystemDescription& system, Names names, ErrorCollector& mistakes);
 
 // ---- polynomials in the rates: they show that T is quadratic, and give the mass matrix ----
 

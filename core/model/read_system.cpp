@@ -4,7 +4,7 @@
 
 #include "model/model.hpp"
 #include "model/read_expressions.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "system/read_tables.hpp"
 
 namespace achilles {
@@ -17,7 +17,7 @@ namespace {
 
 // Checks the start of a system whose only mistakes are in drawings and views, so that all mistakes are reported at
 // once.
-void check_start(SystemDescription system, Mistakes& mistakes) {
+void check_start(SystemDescription system, ErrorCollector& mistakes) {
     system.drawings.clear();
     system.views.clear();
     for (ConstraintDescription& constraint : system.constraints) constraint.drawings.clear();
@@ -33,8 +33,8 @@ void check_start(SystemDescription system, Mistakes& mistakes) {
 }  // namespace
 
 SystemDescription parse_system(std::string text, std::string name) {
-    const Ground ground;  // constants are evaluated as intervals, too
-    FileReading read = read_tables(std::move(text), std::move(name));
+    const FloatEnvironmentGuard ground;  // constants are evaluated as intervals, too
+    ParsedFile read = read_tables(std::move(text), std::move(name));
     const bool has_equations = check_expressions(read.system, std::move(read.names), read.mistakes);
     if (read.mistakes.count() > 0 && read.has_system && has_equations) check_start(read.system, read.mistakes);
     read.mistakes.raise(read.system);

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <array>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 
 namespace achilles {

@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-#include "model/flat.hpp"
+#include "model/degenerate_gap.hpp"
 #include "model/model.hpp"
-#include "model/undefined.hpp"
-#include "number/ground.hpp"
+#include "model/undefined_term.hpp"
+#include "number/float_environment.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -21,12 +21,12 @@ void Model::check(const Run& run) const {
                 "it has {} coordinates, {} rates and {} parameters; the system has {} coordinates and {} parameters",
                 run.q.size(), run.v.size(), run.parameters.size(), n, p),
             "start from default_run() of this system");
-    const Ground ground;
-    Mistakes mistakes;
+    const FloatEnvironmentGuard ground;
+    ErrorCollector mistakes;
     const auto refuse = [&](Location at, const std::string& message, const std::string& hint = {}) {
         mistakes.add({at, message, hint});
     };
-    for (const std::string& fault : faults(run.options)) refuse({}, fault);
+    for (const std::string& fault : validation_errors(run.options)) refuse({}, fault);
     const std::size_t before = mistakes.count();
     for (std::size_t i = 0; i < run.parameters.size(); ++i) {
         const auto& parameter = description_.parameters[i];

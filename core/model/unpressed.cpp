@@ -79,7 +79,7 @@ bool needs_no_force(std::size_t contact, Mode mode, ContactModes& motions, const
     try {
         return ClosedStates(mode.held().with(contact), motions, layout, known)
             .vanishes(motions.of(mode).contacts.at(contact).hddot);
-    } catch (const TooLarge&) {
+    } catch (const ExpressionTooLarge&) {
     } catch (const std::domain_error&) {  // linearly dependent contacts, or a division by 0 at these states
     }
     return false;
@@ -150,9 +150,9 @@ bool UnpressedContacts::needs_no_force_from(const State& state, std::size_t cont
         const auto last = from_state_.find(key);
         if (last != from_state_.end() && last->second.at_rest == rest) return last->second.proved;
         const bool proved = achilles::needs_no_force(contact, mode, motions(), model_->layout(), rest);
-        from_state_.insert_or_assign(key, FromState{rest, proved});
+        from_state_.insert_or_assign(key, StateProof{rest, proved});
         return proved;
-    } catch (const TooLarge&) {
+    } catch (const ExpressionTooLarge&) {
     } catch (const std::domain_error&) {
     }
     return false;

@@ -45,11 +45,11 @@ class UnpressedContacts {
     std::vector<double> parameters_;
     std::unique_ptr<ContactModes> motions_;  // created at first use
     std::map<ContactInMode, bool> at_all_states_;
-    struct FromState {
+    struct StateProof {
         KnownValues at_rest;
         bool proved;
     };
-    std::map<ContactInMode, FromState> from_state_;  // the last result of each
+    std::map<ContactInMode, StateProof> from_state_;  // the last result of each
 };
 
 }  // namespace achilles

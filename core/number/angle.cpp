@@ -9,13 +9,13 @@ namespace achilles {
 
 namespace {
 
-struct Known {
+struct CachedAngle {
     double angle = 0.0;
     SineCosine value;
 };
 
 // Not inlined, so that a cache hit needs no saved registers.
-[[gnu::noinline]] SineCosine get_to_know(double angle, Known& known) {
+[[gnu::noinline]] SineCosine get_to_know(double angle, CachedAngle& known) {
     known = {angle, {std::sin(angle), std::cos(angle)}};
     return known.value;
 }
@@ -23,9 +23,9 @@ struct Known {
 }  // namespace
 
 SineCosine sine_and_cosine(double angle) {
-    static thread_local constinit std::array<Known, 8> memory{};
+    static thread_local constinit std::array<CachedAngle, 8> memory{};
     const auto bits = std::bit_cast<std::uint64_t>(angle);
-    Known& known = memory[bits * 0x9E3779B97F4A7C15u >> 61];
+    CachedAngle& known = memory[bits * 0x9E3779B97F4A7C15u >> 61];
     if (std::bit_cast<std::uint64_t>(known.angle) != bits) return get_to_know(angle, known);
     return known.value;
 }

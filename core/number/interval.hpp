@@ -276,7 +276,7 @@ inline Interval tanh(const Interval& a) {
 namespace rounding {
 
 // Multiples (k + shift) pi that may lie in an interval, k = first .. last; empty if first > last.
-struct Multiples {
+struct PiMultiples {
     double first, last;
     bool none() const { return first > last; }
     bool even() const { return last > first || (last == first && std::fmod(first, 2.0) == 0.0); }
@@ -287,14 +287,14 @@ struct Multiples {
 inline constexpr double largest_angle = 0x1p40;
 
 // Finds every multiple inside the interval. May also include one that is outside by a rounding error.
-inline Multiples multiples_of_pi(const Interval& a, double shift) {
+inline PiMultiples multiples_of_pi(const Interval& a, double shift) {
     const Interval turns = a / Interval::pi() - shift;
     return {std::ceil(turns.lo()), std::floor(turns.hi())};
 }
 
 // The range of sin (shift 1/2) or cos (shift 0): maxima at even multiples, minima at odd ones.
 inline Interval wave(const Interval& a, double at_lo, double at_hi, double shift) {
-    const Multiples extrema = multiples_of_pi(a, shift);
+    const PiMultiples extrema = multiples_of_pi(a, shift);
     const double low = extrema.odd() ? -1.0 : std::max(-1.0, down(std::min(at_lo, at_hi), libm));
     const double high = extrema.even() ? 1.0 : std::min(1.0, up(std::max(at_lo, at_hi), libm));
     return Interval::trusted(low, high);

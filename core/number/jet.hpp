@@ -209,53 +209,47 @@ J pow(const J& a, const J& b) {
 // A double with its derivatives in eight directions, stored in vectors of `Bytes` bytes. Like Lanes, its arithmetic is
 // compiled for the vector size of the processor.
 template <std::size_t Bytes>
-struct Directed {
+struct Jet8 {
     using Component = double;
-    static constexpr std::size_t directions = Eight::count;
+    static constexpr std::size_t directions = Double8::count;
     Lanes<Bytes> slope;
     double value;
 
-    Directed() = default;
-    IN_LANES Directed(double x) : slope(0.0), value(x) {}  // NOLINT: a constant
-    IN_LANES Directed(double x, const Lanes<Bytes>& by) : slope(by), value(x) {}
+    Jet8() = default;
+    IN_LANES Jet8(double x) : slope(0.0), value(x) {}  // NOLINT: a constant
+    IN_LANES Jet8(double x, const Lanes<Bytes>& by) : slope(by), value(x) {}
     // The independent variable of direction i.
-    static Directed variable(double x, std::size_t i) {
-        Directed result(x);
+    static Jet8 variable(double x, std::size_t i) {
+        Jet8 result(x);
         result.slope.set(i, 1.0);
         return result;
     }
 
     // f(x) by the chain rule: f is f(x) and by_x is f'(x).
-    IN_LANES friend Directed chain(const Directed& x, double f, double by_x) { return {f, by_x * x.slope}; }
+    IN_LANES friend Jet8 chain(const Jet8& x, double f, double by_x) { return {f, by_x * x.slope}; }
     // x with a b' added to its derivatives.
-    IN_LANES friend Directed and_slope(const Directed& x, double a, const Directed& b) {
-        return {x.value, x.slope + a * b.slope};
-    }
-    IN_LANES friend Directed operator-(const Directed& a) { return {-a.value, -a.slope}; }
-    IN_LANES friend Directed operator+(const Directed& a, const Directed& b) {
-        return {a.value + b.value, a.slope + b.slope};
-    }
-    IN_LANES friend Directed operator-(const Directed& a, const Directed& b) {
-        return {a.value - b.value, a.slope - b.slope};
-    }
-    IN_LANES friend Directed operator*(const Directed& a, const Directed& b) {
-        Directed result;  // scalar factors: converting them to Lanes first would cost an addition
+    IN_LANES friend Jet8 and_slope(const Jet8& x, double a, const Jet8& b) { return {x.value, x.slope + a * b.slope}; }
+    IN_LANES friend Jet8 operator-(const Jet8& a) { return {-a.value, -a.slope}; }
+    IN_LANES friend Jet8 operator+(const Jet8& a, const Jet8& b) { return {a.value + b.value, a.slope + b.slope}; }
+    IN_LANES friend Jet8 operator-(const Jet8& a, const Jet8& b) { return {a.value - b.value, a.slope - b.slope}; }
+    IN_LANES friend Jet8 operator*(const Jet8& a, const Jet8& b) {
+        Jet8 result;  // scalar factors: converting them to Lanes first would cost an addition
         result.value = a.value * b.value;
         for (std::size_t p = 0; p < parts; ++p)
             result.slope.part[p] = a.slope.part[p] * b.value + a.value * b.slope.part[p];
         return result;
     }
-    IN_LANES friend Directed operator*(const Directed& a, double b) { return {a.value * b, a.slope * b}; }
-    IN_LANES friend Directed operator*(double a, const Directed& b) { return b * a; }
+    IN_LANES friend Jet8 operator*(const Jet8& a, double b) { return {a.value * b, a.slope * b}; }
+    IN_LANES friend Jet8 operator*(double a, const Jet8& b) { return b * a; }
     // (a/b)' = (a' - (a/b) b')/b
-    IN_LANES friend Directed operator/(const Directed& a, const Directed& b) {
+    IN_LANES friend Jet8 operator/(const Jet8& a, const Jet8& b) {
         const double ratio = a.value / b.value;
         return {ratio, (a.slope - ratio * b.slope) / b.value};
     }
-    IN_LANES friend Directed& operator+=(Directed& a, const Directed& b) { return a = a + b; }
+    IN_LANES friend Jet8& operator+=(Jet8& a, const Jet8& b) { return a = a + b; }
 
  private:
-    static constexpr std::size_t parts = sizeof(Eight) / Bytes;
+    static constexpr std::size_t parts = sizeof(Double8) / Bytes;
 };
 
 }  // namespace achilles

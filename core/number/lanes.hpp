@@ -11,10 +11,10 @@
 #include <cstring>
 #include <numbers>
 
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 
 #define IN_LANES [[gnu::always_inline]] inline
-#define EACH_PART _Pragma("GCC unroll 4") for (std::size_t p = 0; p < sizeof(Eight) / Bytes; ++p)
+#define EACH_PART _Pragma("GCC unroll 4") for (std::size_t p = 0; p < sizeof(Double8) / Bytes; ++p)
 #define OF_TWO(Result, name, Operand, expression)                     \
     IN_LANES friend Result name(const Operand& x, const Operand& y) { \
         Result result;                                                \
@@ -29,10 +29,10 @@ namespace achilles {
 
 // A condition for each lane: all bits of the lane are set, or none.
 template <std::size_t Bytes>
-struct alignas(Eight) Mask {
+struct alignas(Double8) Mask {
     using Vector [[gnu::vector_size(Bytes)]] = std::int64_t;
     static constexpr std::size_t per_part = Bytes / sizeof(double);
-    Vector part[sizeof(Eight) / Bytes];
+    Vector part[sizeof(Double8) / Bytes];
 
     Mask() = default;
     IN_LANES explicit Mask(bool all) { EACH_PART part[p] = Vector{} - static_cast<std::int64_t>(all); }
@@ -55,17 +55,17 @@ struct alignas(Eight) Mask {
 };
 
 template <std::size_t Bytes>
-struct alignas(Eight) Lanes {
+struct alignas(Double8) Lanes {
     using Vector [[gnu::vector_size(Bytes)]] = double;
     using Mask = achilles::Mask<Bytes>;
     static constexpr std::size_t per_part = Mask::per_part;
-    Vector part[sizeof(Eight) / Bytes];
+    Vector part[sizeof(Double8) / Bytes];
 
     Lanes() = default;
     IN_LANES Lanes(double x) { EACH_PART part[p] = Vector{} + x; }
-    IN_LANES Lanes(const Eight& x) { std::memcpy(part, x.lane, sizeof part); }
-    IN_LANES operator Eight() const {
-        Eight x;
+    IN_LANES Lanes(const Double8& x) { std::memcpy(part, x.lane, sizeof part); }
+    IN_LANES operator Double8() const {
+        Double8 x;
         std::memcpy(x.lane, part, sizeof part);
         return x;
     }
@@ -141,7 +141,7 @@ struct ConditionOf<Lanes<Bytes>> {
 template <class Function, std::size_t Bytes>
 IN_LANES Lanes<Bytes> each_lane(const Function& function, const Lanes<Bytes>& a) {
     Lanes<Bytes> result;
-    for (std::size_t i = 0; i < Eight::count; ++i) result.set(i, function(a[i]));
+    for (std::size_t i = 0; i < Double8::count; ++i) result.set(i, function(a[i]));
     return result;
 }
 #define LANE_BY_LANE(name)                                          \
@@ -162,7 +162,7 @@ LANE_BY_LANE(log)
 template <std::size_t Bytes>
 IN_LANES Lanes<Bytes> pow(const Lanes<Bytes>& a, const Lanes<Bytes>& b) {
     Lanes<Bytes> result;
-    for (std::size_t i = 0; i < Eight::count; ++i) result.set(i, std::pow(a[i], b[i]));
+    for (std::size_t i = 0; i < Double8::count; ++i) result.set(i, std::pow(a[i], b[i]));
     return result;
 }
 

@@ -19,8 +19,8 @@ double Polynomial::slope(double theta) const {
     return value;
 }
 
-Polynomial::End Polynomial::at_end() const {
-    End end;
+Polynomial::EndValue Polynomial::at_end() const {
+    EndValue end;
     for (int i = degree; i >= 1; --i) {
         const double term = c[static_cast<std::size_t>(i)];
         end.value += term;
@@ -119,12 +119,12 @@ class Search {
  public:
     Search(const Terms& p, double remainder) : p_(p), remainder_(remainder) {}
 
-    Descent run() {
+    FirstCrossing run() {
         const Coefficients b = to_bernstein(p_);
         inside_ = starts_inside_ = !(b[0] > remainder_);
         if (visit(b, 0.0, 1.0, 45)) return found_;
-        if (inside_) return {Descent::Kind::open, since_};
-        if (rose_at_ > 0.0) return {Descent::Kind::rose, rose_at_};
+        if (inside_) return {FirstCrossing::Kind::open, since_};
+        if (rose_at_ > 0.0) return {FirstCrossing::Kind::increasing, rose_at_};
         return {};
     }
 
@@ -139,7 +139,7 @@ class Search {
         return low;
     }
 
-    bool find(Descent::Kind kind, double theta) {
+    bool find(FirstCrossing::Kind kind, double theta) {
         found_ = {kind, theta};
         return true;
     }
@@ -159,7 +159,7 @@ class Search {
         }
         if (!inside_ && rises_and_falls == 0 && starts_above) return false;
         if (!inside_ && rises_and_falls == 1 && starts_above) {
-            if (crossings_below == 1) return find(Descent::Kind::root, polish(p_, low, high));
+            if (crossings_below == 1) return find(FirstCrossing::Kind::root, polish(p_, low, high));
             if (crossings_below == 0) {
                 inside_ = true;
                 since_ = entry(low, high);
@@ -167,17 +167,17 @@ class Search {
             }
         }
         if (inside_ && !starts_above) {
-            if (rises_and_falls == 0 && crossings_below == 0) return below && find(Descent::Kind::root, low);
+            if (rises_and_falls == 0 && crossings_below == 0) return below && find(FirstCrossing::Kind::root, low);
             if (rises_and_falls == 0 && crossings_below == 1 && below)
-                return find(Descent::Kind::root, polish(p_, since_, high));
+                return find(FirstCrossing::Kind::root, polish(p_, since_, high));
             if (rises_and_falls == 1 && crossings_below == 0) {
-                if (!starts_inside_) return find(Descent::Kind::undecided, since_);
+                if (!starts_inside_) return find(FirstCrossing::Kind::undecided, since_);
                 inside_ = starts_inside_ = false;
                 rose_at_ = high;
                 return false;
             }
         }
-        if (depth == 0) return find(Descent::Kind::undecided, low);
+        if (depth == 0) return find(FirstCrossing::Kind::undecided, low);
         Coefficients left{}, right{};
         halve(b, p_.degree, left, right);
         const double middle = 0.5 * (low + high);
@@ -188,12 +188,12 @@ class Search {
     const double remainder_;
     bool inside_ = false, starts_inside_ = false;
     double since_ = 0.0, rose_at_ = 0.0;
-    Descent found_;
+    FirstCrossing found_;
 };
 
 }  // namespace
 
-Descent first_descent(const Polynomial& polynomial, int known, double remainder) {
+FirstCrossing first_descent(const Polynomial& polynomial, int known, double remainder) {
     const Terms p{polynomial.c.data() + known, polynomial.degree - known};
     // On [0, 1] the powers of theta decrease, so the polynomial is a convex combination of the partial sums of its
     // coefficients (Abel summation) and lies between their minimum and maximum. The same holds for the derivative.
@@ -215,7 +215,7 @@ Descent first_descent(const Polynomial& polynomial, int known, double remainder)
         const bool steady = least_slope > 3.0 * largest_slope;  // the derivative changes by a factor of at most three
         const double curvature = p.degree > 1 ? p.c[2] : 0.0;
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * curvature));
-        return {Descent::Kind::root,
+        return {FirstCrossing::Kind::root,
                 newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
     }
     return Search(p, remainder).run();

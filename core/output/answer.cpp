@@ -7,11 +7,11 @@
 #include <cmath>
 
 #include "model/model.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/contacts.hpp"
+#include "output/event_descriptions.hpp"
 #include "output/page.hpp"
 #include "output/precision.hpp"
-#include "output/sentences.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -49,9 +49,9 @@ std::string decimal_text(double value, double error, double scale) {
 std::string given_text(double value) { return fmt::format("{:.9g}", value + 0.0); }
 
 // The table of events: one row per change of the contact state.
-class Changes {
+class ContactChanges {
  public:
-    Changes(const Trajectory& trajectory, const ErrorEstimate& estimate)
+    ContactChanges(const Trajectory& trajectory, const ErrorEstimate& estimate)
         : trajectory_(trajectory),
           model_(*trajectory.model),
           precision_(trajectory, &estimate),
@@ -133,7 +133,7 @@ class Changes {
     const Trajectory& trajectory_;
     const Model& model_;
     Precision precision_;
-    Sentences sentences_;
+    EventDescriptions sentences_;
     State scale_;
 };
 
@@ -178,7 +178,7 @@ std::string end_line(const ErrorEstimate& estimate, const std::string& prove_com
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
 
-std::string first_line(const Trajectory& trajectory, const Sentences& sentences) {
+std::string first_line(const Trajectory& trajectory, const EventDescriptions& sentences) {
     const std::string& title = trajectory.model->description().title;
     if (trajectory.outcome.kind != Outcome::Kind::end_time)
         return fmt::format("{}: stopped at t = {:.9g} s of {:.9g} s: {}\n  {}. {}\n", title, trajectory.end_time,
@@ -219,16 +219,16 @@ std::string advice(const Outcome& outcome) {
 }
 
 std::string answer(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
-    const Ground ground;
-    const Sentences sentences(trajectory, &estimate);
+    const FloatEnvironmentGuard ground;
+    const EventDescriptions sentences(trajectory, &estimate);
     std::string text = first_line(trajectory, sentences);
-    for (const Remark& remark : remarks(trajectory, estimate)) text += "  warning: " + remark.sentence + "\n";
-    if (trajectory.by_convention > 0)
+    for (const RunWarning& remark : remarks(trajectory, estimate)) text += "  warning: " + remark.sentence + "\n";
+    if (trajectory.ambiguous_impacts > 0)
         text += fmt::format(
             "  warning: {} simultaneous {} an order-dependent outcome; resolved together by Moreau's law. Orders: "
             "--json. Stop instead: --simultaneous stop\n",
-            trajectory.by_convention, trajectory.by_convention == 1 ? "impact has" : "impacts have");
-    text += "\n" + Changes(trajectory, estimate).text() + "\n";
+            trajectory.ambiguous_impacts, trajectory.ambiguous_impacts == 1 ? "impact has" : "impacts have");
+    text += "\n" + ContactChanges(trajectory, estimate).text() + "\n";
     text += times_line(trajectory, estimate) + end_line(estimate, prove_command);
     const Statistics& s = trajectory.statistics;
     return text + fmt::format("{} impact{}, {} steps. For impacts, bounds and assumptions: --verbose\n", s.impacts,

@@ -34,7 +34,7 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     // Solves G (v+ - v-) = W p for the held and the impacting contacts.
     const ContactSet all = mode_before(trajectory_, event).held().with(impact.contacts);
     if (all.count() > most_contacts) return {};
-    const Closed closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
+    const ClosedContacts closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
     const auto block = HeldBlock<double>::of(closed.W, closed.places_of(all));
     if (!block) return {};
     ContactVector<double> jump(closed.W.rows());
@@ -47,10 +47,10 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     return impulses;
 }
 
-std::string others_told(const Model& model, const Certificate::Others& others) {
+std::string others_told(const Model& model, const Certificate::OtherContactBounds& others) {
     constexpr int digits = 3;
     std::vector<std::string> parts;
-    for (const Certificate::Others::Held& held : others.held)
+    for (const Certificate::OtherContactBounds::HeldContactBound& held : others.held)
         parts.push_back(fmt::format(
             "{} stays held: its force is at least {}, and the fraction {} of every impulse is transmitted to it",
             model.description().constraints[held.contact].name, rounded_down(held.least_force, digits),
@@ -81,9 +81,9 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     return ends;
 }
 
-std::vector<Chatter> chatters_of(const Trajectory& trajectory) {
+std::vector<ChatterPhases> chatters_of(const Trajectory& trajectory) {
     constexpr std::size_t few = 8;  // shorter sequences are printed phase by phase
-    std::vector<Chatter> found;
+    std::vector<ChatterPhases> found;
     if (trajectory.model->contacts() < 2) return found;
     const std::vector<std::size_t> ends = ends_of_phases(trajectory);
     // How a phase ends: 1 at a Zeno point, -1 at an impact that opens a held contact, else 0.
@@ -121,10 +121,10 @@ bool meet(ContactSet a, ContactSet b) { return a.without(b) != a; }
 
 }  // namespace
 
-Pile pile_of(const Trajectory& trajectory, std::size_t zeno_event) {
+BounceSequence bounce_sequence_of(const Trajectory& trajectory, std::size_t zeno_event) {
     const auto& events = trajectory.events;
     const ContactSet contacts = events[zeno_event].contacts;
-    Pile pile{zeno_event, 0, energy_lost(trajectory, zeno_event)};
+    BounceSequence pile{zeno_event, 0, energy_lost(trajectory, zeno_event)};
     for (std::size_t i = zeno_event; i-- > 0;) {
         const Event& event = events[i];
         if (meet(event.opened, contacts)) break;

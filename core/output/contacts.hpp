@@ -8,8 +8,8 @@
 
 #include "model/model.hpp"
 #include "run/trajectory.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/sampler.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -30,11 +30,11 @@ class Impulses {
 
  private:
     const Trajectory& trajectory_;
-    Surfaces surfaces_;
+    ContactCache surfaces_;
 };
 
 // The bounds on the other contacts, as parts of a sentence.
-std::string others_told(const Model& model, const Certificate::Others& others);
+std::string others_told(const Model& model, const Certificate::OtherContactBounds& others);
 
 // "Moreau's law at event k", for the first event before this one whose order matters but is unknown. Later proofs
 // depend on this choice (theory-gaps.md 2.4). Empty if there is no such event.
@@ -45,15 +45,15 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory);
 
 // More than a few phases [first, last) that end alternately at a Zeno point and at an impact that opens held contacts.
 // There may be hundreds (theory-gaps.md 2.6), so they are printed as one.
-struct Chatter {
+struct ChatterPhases {
     std::size_t first = 0, last = 0;
     std::size_t first_event = 0, last_event = 0;  // the events of these phases, [first_event, last_event)
 };
-std::vector<Chatter> chatters_of(const Trajectory& trajectory);
+std::vector<ChatterPhases> chatters_of(const Trajectory& trajectory);
 
 // The energies at an instant, in the unit of the system's energy: kinetic, potential, work of forces since the start,
 // and dissipation at impacts since the start, with E(t) - E(start) = work - loss (theory-gaps.md 1). The work may be
-// NaN for a run stored with Keep::end.
+// NaN for a run stored with Recording::final_state.
 struct Energies {
     double kinetic = 0.0, potential = 0.0, work = 0.0, loss = 0.0;
     double total() const { return kinetic + potential; }
@@ -74,11 +74,11 @@ double energy_lost(const Trajectory& trajectory, std::size_t event);
 
 // The impact sequence that ends at a Zeno point: all impacts of its contacts since they were last held, and the energy
 // dissipated by them and the restart. A plastic impact (e = 0) is a sequence of one.
-struct Pile {
+struct BounceSequence {
     std::size_t first = 0;  // index of the first of these impacts; that of the Zeno point if there is none
     int impacts = 0;
     double loss = 0.0;
 };
-Pile pile_of(const Trajectory& trajectory, std::size_t zeno_event);
+BounceSequence bounce_sequence_of(const Trajectory& trajectory, std::size_t zeno_event);
 
 }  // namespace achilles

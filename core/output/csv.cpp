@@ -7,7 +7,7 @@
 
 #include "expression/parse.hpp"
 #include "model/model.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "simulate/contact_forces.hpp"
@@ -101,7 +101,7 @@ std::string kinds_of(const Trajectory& trajectory, int first, int last) {
 }  // namespace
 
 std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     const Model& model = *trajectory.model;
     std::string text = heading(model, style);
     std::vector<ContactTerms<Evaluator<double>>> contacts;

@@ -1,13 +1,13 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "depend/error_estimate.hpp"
-#include "depend/quantities.hpp"
 #include "model/model.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/contacts.hpp"
 #include "output/json_parts.hpp"
 #include "output/output.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "sensitivity/quantities.hpp"
 #include "simulate/sampler.hpp"
 #include "system/input_error.hpp"
 
@@ -41,7 +41,7 @@ Json table(const Eigen::MatrixXd& x) {
 // Derivatives along the event; null for events beyond the last one with derivatives.
 Json derivatives_at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event) {
     if (event >= derivatives.events.size()) return nullptr;
-    const Derivatives::AtEvent& at = derivatives.events[event];
+    const Derivatives::EventSensitivity& at = derivatives.events[event];
     Json result = {{"t", list(at.t)}, {"q", table(at.q)}};
     if (trajectory.events[event].is_impact()) {
         result["v_before"] = table(at.v_before);
@@ -115,7 +115,7 @@ Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) 
 
 Json options_of(const Options& options) {
     Json result = Json::object();
-    for (const Option* option : told_options({"method", "tolerance"})) {
+    for (const Option* option : options_in_report_order({"method", "tolerance"})) {
         const OptionValue value = option->get(options);
         const auto* x = std::get_if<double>(&value);
         result[std::string(option->key)] =
@@ -127,10 +127,10 @@ Json options_of(const Options& options) {
 // The outcome, and the tolerances of the second run if the requested ones left it undecided.
 Json outcome_of(const Trajectory& trajectory) {
     Json again = nullptr;
-    if (trajectory.made_again_by)
+    if (trajectory.rerun_options)
         for (const Option& option : all_options())
             if (option.is_tolerance)
-                again[std::string(option.key)] = number_json(std::get<double>(option.get(*trajectory.made_again_by)));
+                again[std::string(option.key)] = number_json(std::get<double>(option.get(*trajectory.rerun_options)));
     return {
         {"kind", to_text(trajectory.outcome.kind)}, {"message", trajectory.outcome.message}, {"made_again_by", again}};
 }
@@ -153,12 +153,12 @@ Json by_contact(const Trajectory& trajectory, const std::vector<std::pair<std::s
 }
 
 // The bounds on the other contacts of a certificate.
-void add_others(Json& result, const Trajectory& trajectory, const Certificate::Others& others) {
-    using Held = Certificate::Others::Held;
-    result["transmission"] = by_contact(trajectory, others.held, [](const Held& held) {
+void add_others(Json& result, const Trajectory& trajectory, const Certificate::OtherContactBounds& others) {
+    using HeldContactBound = Certificate::OtherContactBounds::HeldContactBound;
+    result["transmission"] = by_contact(trajectory, others.held, [](const HeldContactBound& held) {
         return std::pair(held.contact, Json{number_json(held.transmission_low), number_json(held.transmission_high)});
     });
-    result["least_force"] = by_contact(trajectory, others.held, [](const Held& held) {
+    result["least_force"] = by_contact(trajectory, others.held, [](const HeldContactBound& held) {
         return std::pair(held.contact, number_json(held.least_force));
     });
     result["least_other_gap"] = number_json(others.least_gap);
@@ -169,7 +169,7 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
     Json result = {{"certified", c.certified},
                    {"conditions", to_text(c.conditions)},
                    {"reinitialization", to_text(c.reinitialization)},
-                   {"below_rounding", c.below_rounding},
+                   {"below_rounding", c.cut_at_resolution},
                    {"zeno_time", {number_json(c.zeno_low), number_json(c.zeno_high)}},
                    {"position_bound", number_json(c.position_bound)},
                    {"velocity_bound", number_json(c.velocity_bound)},
@@ -178,7 +178,7 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
                    {"uniform_position", number_json(c.uniform_position)},
                    {"a_min", number_json(c.a_min)},
                    {"a_max", number_json(c.a_max)},
-                   {"decisive", c.decisive}};
+                   {"decisive", c.tightest_bound}};
     if (c.paper) {
         const Certificate::Paper& p = *c.paper;
         result.update({{"e1", number_json(p.e1)},
@@ -212,13 +212,13 @@ ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
 }
 
 // Data that only impacts of several contacts have.
-void add_joint(Json& result, const Trajectory& trajectory, const Joint& joint) {
+void add_joint(Json& result, const Trajectory& trajectory, const MultiContactInfo& joint) {
     result["order_matters"] = joint.order_matters;
-    result["not_unique"] = joint.not_unique;
+    result["not_unique"] = joint.is_nonunique;
     if (joint.rounded_zero) result["rounded_zero"] = true;
     if (!joint.order_matters) return;
     Json& alternatives = result["alternatives"] = Json::array();
-    for (const Joint::Alternative& other : joint.alternatives) {
+    for (const MultiContactInfo::ImpactOrderOutcome& other : joint.alternatives) {
         Json first = nullptr;
         if (other.first) first = trajectory.model->description().constraints[*other.first].name;
         alternatives.push_back({{"first", first}, {"rates_after", by_contact(trajectory, other.rates_after)}});
@@ -292,7 +292,7 @@ std::string version() { return ACHILLES_VERSION; }
 
 std::string to_json(const Trajectory& trajectory, const Instants& instants, const Dependence* dependence,
                     const ErrorEstimate* known) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     const ErrorEstimate estimate = known != nullptr ? *known : estimate_error(trajectory);
     Json phases = Json::array();
     for (const Phase& phase : trajectory.phases) {
@@ -301,10 +301,10 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                           {"start", number_json(phase.start)},
                           {"end", number_json(phase.end)},
                           {"impacts", phase.impacts}});
-        if (phase.not_unique()) phases.back()["not_unique"] = true;
+        if (phase.is_nonunique()) phases.back()["not_unique"] = true;
     }
     Json warnings = Json::array();
-    for (const Remark& remark : remarks(trajectory, estimate)) warnings.push_back(remark.sentence);
+    for (const RunWarning& remark : remarks(trajectory, estimate)) warnings.push_back(remark.sentence);
     const Statistics& s = trajectory.statistics;
     Json result = {{"achilles", version()},
                    {"system", system_of(trajectory)},
@@ -319,7 +319,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"held", names(trajectory, trajectory.end_mode.held())},
                      {"work", number_json(trajectory.work)},
                      {"loss", number_json(trajectory.loss)},
-                     {"by_convention", trajectory.by_convention}}},
+                     {"by_convention", trajectory.ambiguous_impacts}}},
                    {"outcome", outcome_of(trajectory)},
                    {"trusted_until", number_json(estimate.trusted_until)},
                    {"warnings", warnings},

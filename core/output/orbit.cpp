@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "analysis/orbit.hpp"
 #include "model/model.hpp"
 #include "output/json_parts.hpp"
-#include "study/orbit.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -52,8 +52,8 @@ Json branch_of(const Branch& branch, const SystemDescription& description) {
             {"points", points(branch.points)},
             {"folds", points(branch.folds)},
             {"flips", points(branch.flips)},
-            {"circles", points(branch.circles)},
-            {"lost", points(branch.lost)},
+            {"circles", points(branch.neimark_sacker)},
+            {"lost", points(branch.zeno_lost)},
             {"changes", points(branch.changes)},
             {"ends", branch.ends}};
 }
@@ -73,7 +73,7 @@ std::string to_json(const Orbit& orbit, const Branch* branch) {
     Json by = Json::object();
     const Eigen::Index n = orbit.state.q.size();
     for (std::size_t k = 0; k < orbit.parameters.size(); ++k) {
-        const Eigen::VectorXd column = orbit.by_parameters.col(static_cast<Eigen::Index>(k));
+        const Eigen::VectorXd column = orbit.parameter_derivatives.col(static_cast<Eigen::Index>(k));
         by[description.parameters[k].name] = {
             {"period", number_json(column[2 * n])}, {"q", list(column.head(n))}, {"v", list(column.segment(n, n))}};
     }
@@ -173,8 +173,8 @@ std::string branch_text(const Branch& branch, const SystemDescription& descripti
     };
     tell("fold", branch.folds);
     tell("period doubling (mu = -1)", branch.flips);
-    tell("|mu| = 1, complex", branch.circles);
-    tell("Zeno point lost", branch.lost);
+    tell("|mu| = 1, complex", branch.neimark_sacker);
+    tell("Zeno point lost", branch.zeno_lost);
     tell("event sequence changes", branch.changes);
     return text + fmt::format("  it ends at the first point: {}\n           at the last point: {}\n", branch.ends[0],
                               branch.ends[1]);
@@ -186,8 +186,9 @@ std::string orbit_text(const Orbit& orbit, const Branch* branch) {
     const SystemDescription& description = orbit.run.model->description();
     const Options& o = orbit.run.run.options;
     std::string text = fmt::format("{}\n  {}", description.title, to_text(o.method));
-    for (const Option* option : told_options())
-        if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
+    for (const Option* option : options_in_report_order())
+        if (option->key == "tolerance" || option->table == "truncation")
+            text += ", " + summary_text(*option, o, "{:g}");
     text += fmt::format("\n  {} steps of Newton's method, the last {:.1e} relative to the state\n\n", orbit.iterations,
                         orbit.error);
     text += fmt::format("period {:.14g} s, from {} t = {:.10g} s\n  {}\n  {}\n", orbit.period,
@@ -235,8 +236,8 @@ std::string branch_answer(const Branch& branch, const SystemDescription& descrip
     };
     add("fold", branch.folds);
     add("period doubling (multiplier -1)", branch.flips);
-    add("Neimark-Sacker (complex multipliers of size 1)", branch.circles);
-    add("Zeno point lost", branch.lost);
+    add("Neimark-Sacker (complex multipliers of size 1)", branch.neimark_sacker);
+    add("Zeno point lost", branch.zeno_lost);
     add("event sequence changes", branch.changes);
     return text + fmt::format("  first point: {}\n  last point: {}\n", branch.ends[0], branch.ends[1]);
 }

@@ -61,15 +61,15 @@ std::string summary(const Trajectory& trajectory, const Dependence& dependence);
 // Phases, events and end with 9 significant digits, for golden tests.
 std::string to_text(const Trajectory& trajectory);
 // Something unexpected about how a run was computed: a label of a word or two, and a sentence.
-struct Remark {
+struct RunWarning {
     std::string label, sentence;
 };
-std::vector<Remark> remarks(const Trajectory& trajectory);
+std::vector<RunWarning> remarks(const Trajectory& trajectory);
 // The remark that the run is unreliable from a time before its end on (error_estimate.hpp); nullopt if it is reliable
 // to the end, or if there is no estimate.
-std::optional<Remark> horizon_remark(const Trajectory& trajectory, const ErrorEstimate& estimate);
+std::optional<RunWarning> horizon_remark(const Trajectory& trajectory, const ErrorEstimate& estimate);
 // All remarks, that of the horizon first.
-std::vector<Remark> remarks(const Trajectory& trajectory, const ErrorEstimate& estimate);
+std::vector<RunWarning> remarks(const Trajectory& trajectory, const ErrorEstimate& estimate);
 // Units of the Euclidean norms over all coordinates and over all rates: " m", " (m, rad)"; empty if no unit is given.
 struct NormUnits {
     std::string position, velocity;

@@ -27,9 +27,9 @@ std::vector<std::size_t> column_widths(const std::vector<std::vector<std::string
 std::string padded(const std::string& text, std::size_t width) { return text + std::string(width - shown(text), ' '); }
 
 // Writes a page as text, block by block.
-class Writing {
+class PageWriter {
  public:
-    explicit Writing(const Page& page) : notation_(page.notation()), width_(page.width()) {}
+    explicit PageWriter(const Page& page) : notation_(page.notation()), width_(page.width()) {}
 
     void write(const Block& block) {
         switch (block.kind) {
@@ -71,7 +71,7 @@ class Writing {
                                                 : fmt::format("\n\\subsection*{{{}}}\n", Page::escaped(words));
     }
 
-    void sentence(const Both& words) {
+    void sentence(const TextAndLatex& words) {
         content_ += notation_ == Notation::text ? fmt::format("  {}\n", words.text) : words.latex + "\n";
     }
 
@@ -90,7 +90,7 @@ class Writing {
         if (notation_ == Notation::latex && !rows.empty()) content_ += "\\end{tabular}\n";
     }
 
-    void formula(const Both& left, const std::string& right, int indent) {
+    void formula(const TextAndLatex& left, const std::string& right, int indent) {
         if (notation_ == Notation::text) {
             const std::string margin(static_cast<std::size_t>(2 + indent), ' ');
             const std::string start = margin + left.text + (left.text.empty() ? "" : " = ");
@@ -112,7 +112,7 @@ class Writing {
         content_ += "\\end{align*}\n";
     }
 
-    void matrix(const Both& left, const std::vector<std::vector<std::string>>& rows) {
+    void matrix(const TextAndLatex& left, const std::vector<std::vector<std::string>>& rows) {
         if (notation_ == Notation::latex) {
             content_ += fmt::format("\\[\n  {} = \\begin{{pmatrix}}\n", left.latex);
             for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -161,26 +161,26 @@ void Page::title(const std::string& title, const std::string& source) {
     blocks_.push_back({Block::Kind::title, {title, source}, {}});
 }
 
-void Page::heading(const Both& words) { blocks_.push_back({Block::Kind::heading, words, {}}); }
+void Page::heading(const TextAndLatex& words) { blocks_.push_back({Block::Kind::heading, words, {}}); }
 
 void Page::caption(const std::string& words) { blocks_.push_back({Block::Kind::caption, {words, escaped(words)}, {}}); }
 
-void Page::sentence(const Both& words) { blocks_.push_back({Block::Kind::sentence, words, {}}); }
+void Page::sentence(const TextAndLatex& words) { blocks_.push_back({Block::Kind::sentence, words, {}}); }
 
 void Page::lines(const std::vector<std::vector<std::string>>& rows) {
     blocks_.push_back({Block::Kind::lines, {}, {}, rows});
 }
 
-void Page::formula(const Both& left, const std::string& right, int indent) {
+void Page::formula(const TextAndLatex& left, const std::string& right, int indent) {
     blocks_.push_back({Block::Kind::formula, left, right, {}, indent});
 }
 
-void Page::matrix(const Both& left, const std::vector<std::vector<std::string>>& rows) {
+void Page::matrix(const TextAndLatex& left, const std::vector<std::vector<std::string>>& rows) {
     blocks_.push_back({Block::Kind::matrix, left, {}, rows});
 }
 
 std::string Page::finish() const {
-    Writing writing(*this);
+    PageWriter writing(*this);
     for (const Block& block : blocks_) writing.write(block);
     return writing.finish();
 }

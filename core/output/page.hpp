@@ -10,15 +10,15 @@
 namespace achilles {
 
 // Text in both notations.
-struct Both {
+struct TextAndLatex {
     std::string text, latex;
 };
 
 // One element of a page, which can also be laid out by other code.
 struct Block {
     enum class Kind { title, heading, caption, sentence, lines, formula, matrix } kind = Kind::sentence;
-    Both words;         // title: its two lines; formula or matrix: the left-hand side
-    std::string right;  // formula: the right-hand side
+    TextAndLatex words;  // title: its two lines; formula or matrix: the left-hand side
+    std::string right;   // formula: the right-hand side
     std::vector<std::vector<std::string>> rows{};
     int indent = 0;
 };
@@ -33,13 +33,13 @@ class Page {
     std::size_t width() const { return width_; }
 
     void title(const std::string& title, const std::string& source);
-    void heading(const Both& words);
-    void heading(const std::string& words) { heading(Both{words, words}); }
+    void heading(const TextAndLatex& words);
+    void heading(const std::string& words) { heading(TextAndLatex{words, words}); }
     void caption(const std::string& words);                         // describes the next formula
-    void sentence(const Both& words);                               // the LaTeX version is not escaped
+    void sentence(const TextAndLatex& words);                       // the LaTeX version is not escaped
     void lines(const std::vector<std::vector<std::string>>& rows);  // a table of plain text
-    void formula(const Both& left, const std::string& right, int indent = 0);
-    void matrix(const Both& left, const std::vector<std::vector<std::string>>& rows);
+    void formula(const TextAndLatex& left, const std::string& right, int indent = 0);
+    void matrix(const TextAndLatex& left, const std::vector<std::vector<std::string>>& rows);
 
     const std::vector<Block>& blocks() const { return blocks_; }
     // The whole page as one text.
@@ -76,11 +76,11 @@ class TextTable {
     std::string text() const;
 
  private:
-    struct Column {
+    struct TextColumn {
         std::string heading;
         Align align = Align::left;
     };
-    std::vector<Column> columns_;
+    std::vector<TextColumn> columns_;
     std::vector<std::vector<std::string>> rows_;
     std::vector<std::size_t> lines_;  // indices of rows that are lines
 };

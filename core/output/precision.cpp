@@ -14,7 +14,7 @@
 #include "enclose/enclosure.hpp"
 #include "model/model.hpp"
 #include "output/contacts.hpp"
-#include "simulate/surfaces.hpp"
+#include "simulate/contact_cache.hpp"
 
 namespace achilles {
 
@@ -140,11 +140,11 @@ Centered centered(const Interval& x, int least_unit, int most_unit) {
 
 bool is_finite(const Interval& x) { return std::isfinite(x.lo()) && std::isfinite(x.hi()); }
 
-// The double that as_written() turned into this interval, if there is one.
+// The double that interval_of_decimal() turned into this interval, if there is one.
 std::optional<double> written(const Interval& x) {
     const double middle = mid(x);
     for (const double near : {middle, std::nextafter(middle, -HUGE_VAL), std::nextafter(middle, HUGE_VAL)}) {
-        const Interval made = as_written(near);
+        const Interval made = interval_of_decimal(near);
         if (made.lo() == x.lo() && made.hi() == x.hi()) return near;
     }
     return std::nullopt;
@@ -203,7 +203,7 @@ std::string outer_text(const Interval& x) {
 
 std::string inner_text(const Interval& x) {
     if (!is_finite(x)) return fmt::format("in [{}, {}]", x.lo(), x.hi());
-    constexpr double rounded = 0x1p-47;  // bound on the relative widening by as_written()
+    constexpr double rounded = 0x1p-47;  // bound on the relative widening by interval_of_decimal()
     const double slack = rounded * mag(x);
     if (width(x) <= slack) {
         const std::optional<double> typed = written(x);
@@ -311,7 +311,7 @@ double Precision::of_time(double t) const {
 double Precision::of_gap_speed(std::size_t impact) const {
     const Event& event = trajectory_->events[impact];
     if (event.contacts.empty()) return 0.0;
-    if (surfaces_ == nullptr) surfaces_ = std::make_unique<Surfaces>(*trajectory_->model, trajectory_->run);
+    if (surfaces_ == nullptr) surfaces_ = std::make_unique<ContactCache>(*trajectory_->model, trajectory_->run);
     std::size_t contact = 0;
     while (!event.contacts.contains(contact)) ++contact;
     Sample before;

@@ -8,8 +8,8 @@
 #include <memory>
 #include <string>
 
-#include "depend/error_estimate.hpp"
 #include "number/interval.hpp"
+#include "sensitivity/error_estimate.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -34,7 +34,7 @@ std::string short_text(const Interval& x);
 // number.
 std::string outer_text(const Interval& x);
 // A hypothesis: "= 0.1" or "in [0.059, 0.061]". The printed numbers lie in the interval: the number as typed, or
-// decimals within the widening by as_written() at both ends.
+// decimals within the widening by interval_of_decimal() at both ends.
 std::string inner_text(const Interval& x);
 
 // The meaningful digits of a run's numbers: those that neither the estimated error nor rounding changes. All numbers of
@@ -52,7 +52,7 @@ int count_of_known_digits(double value, double error, int digits);
 int known_decimals(double error, int decimals);
 
 class EnergyBalance;
-class Surfaces;
+class ContactCache;
 
 // Errors of the quantities of a run, for the choice of digits.
 class Precision {
@@ -86,7 +86,7 @@ class Precision {
     State rounding_, range_;
     std::vector<double> events_;  // errors of event times (s); nondecreasing beyond the horizon
     mutable std::unique_ptr<EnergyBalance> energy_;
-    mutable std::unique_ptr<Surfaces> surfaces_;
+    mutable std::unique_ptr<ContactCache> surfaces_;
 };
 
 // A coordinate with infinite error is varied over its range. The result is infinite unless the value does not change.

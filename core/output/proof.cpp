@@ -47,12 +47,12 @@ const EventNames& names_of(const EnclosedEvent& event) {
 }
 
 // True if a time, as typed, is not exactly a double.
-bool is_rounded(double time) { return width(as_written(time)) > 0.0; }
+bool is_rounded(double time) { return width(interval_of_decimal(time)) > 0.0; }
 
 // A proof as text: hypotheses, time reached, conclusions.
 class ProofText {
  public:
-    ProofText(const Model& model, const Claim& claim, const Enclosure& proof)
+    ProofText(const Model& model, const EnclosureProblem& claim, const Enclosure& proof)
         : description_(model.description()), claim_(claim), proof_(proof) {
         for (const auto& coordinate : description_.coordinates) {
             names_.push_back(coordinate.name);
@@ -126,26 +126,26 @@ class ProofText {
 
     static constexpr int digits_of_reach = 10;
     const SystemDescription& description_;
-    const Claim& claim_;
+    const EnclosureProblem& claim_;
     const Enclosure& proof_;
     std::vector<std::string> names_, rates_;
 };
 
 }  // namespace
 
-std::string_view to_text(Enclosure::Outcome::Kind kind) {
+std::string_view to_text(Enclosure::ProofOutcome::Kind kind) {
     switch (kind) {
-        case Enclosure::Outcome::Kind::end_time:
+        case Enclosure::ProofOutcome::Kind::end_time:
             return "end time";
-        case Enclosure::Outcome::Kind::undecided:
+        case Enclosure::ProofOutcome::Kind::undecided:
             return "undecided";
-        case Enclosure::Outcome::Kind::cancelled:
+        case Enclosure::ProofOutcome::Kind::cancelled:
             return "cancelled";
     }
     return "";
 }
 
-std::string to_json(const Model& model, const Claim& claim, const Enclosure& proof) {
+std::string to_json(const Model& model, const EnclosureProblem& claim, const Enclosure& proof) {
     const SystemDescription& description = model.description();
     Json coordinates = Json::array(), parameters = Json::object(), events = Json::array(), samples = Json::array();
     for (const auto& coordinate : description.coordinates) coordinates.push_back(coordinate.name);
@@ -197,11 +197,11 @@ std::string to_json(const Model& model, const Claim& claim, const Enclosure& pro
 }
 
 std::string reach_text(const Enclosure& proof, int digits) {
-    const bool is_whole = proof.outcome.kind == Enclosure::Outcome::Kind::end_time;  // end time as typed
+    const bool is_whole = proof.outcome.kind == Enclosure::ProofOutcome::Kind::end_time;  // end time as typed
     return is_whole ? fmt::format("{}", proof.proved_until + 0.0) : rounded_down(proof.proved_until, digits);
 }
 
-std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof) {
+std::string proof_text(const Model& model, const EnclosureProblem& claim, const Enclosure& proof) {
     return ProofText(model, claim, proof).text();
 }
 
@@ -240,7 +240,7 @@ std::string cell(const Interval& x) {
 
 class ProofAnswer {
  public:
-    ProofAnswer(const Model& model, const Claim& claim, const Enclosure& proof)
+    ProofAnswer(const Model& model, const EnclosureProblem& claim, const Enclosure& proof)
         : description_(model.description()), claim_(claim), proof_(proof) {}
 
     std::string text() const {
@@ -323,13 +323,13 @@ class ProofAnswer {
     }
 
     const SystemDescription& description_;
-    const Claim& claim_;
+    const EnclosureProblem& claim_;
     const Enclosure& proof_;
 };
 
 }  // namespace
 
-std::string proof_answer(const Model& model, const Claim& claim, const Enclosure& proof) {
+std::string proof_answer(const Model& model, const EnclosureProblem& claim, const Enclosure& proof) {
     return ProofAnswer(model, claim, proof).text();
 }
 

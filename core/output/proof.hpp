@@ -9,15 +9,15 @@
 
 namespace achilles {
 
-std::string_view to_text(Enclosure::Outcome::Kind kind);
+std::string_view to_text(Enclosure::ProofOutcome::Kind kind);
 // Every interval is [lo, hi], both in the shortest form that is read back as the same double. No wall-clock times.
-std::string to_json(const Model& model, const Claim& claim, const Enclosure& proof);
+std::string to_json(const Model& model, const EnclosureProblem& claim, const Enclosure& proof);
 // The same claims as text: hypotheses as typed or rounded inward, conclusions as numbers with error bounds, rounded
 // outward.
-std::string proof_text(const Model& model, const Claim& claim, const Enclosure& proof);
+std::string proof_text(const Model& model, const EnclosureProblem& claim, const Enclosure& proof);
 // The default output: the time reached, a row per change of the contact state, the hypotheses. The same rounding
 // applies.
-std::string proof_answer(const Model& model, const Claim& claim, const Enclosure& proof);
+std::string proof_answer(const Model& model, const EnclosureProblem& claim, const Enclosure& proof);
 
 // The time (s) until which everything is proved: the end time, or another time rounded down to this number of digits.
 std::string reach_text(const Enclosure& proof, int digits = 6);

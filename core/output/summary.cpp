@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
-#include "depend/error_estimate.hpp"
-#include "depend/quantities.hpp"
 #include "model/model.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/contacts.hpp"
+#include "output/event_descriptions.hpp"
 #include "output/output.hpp"
 #include "output/precision.hpp"
-#include "output/sentences.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "sensitivity/quantities.hpp"
 #include "simulate/sampler.hpp"
 #include "system/units.hpp"
 
@@ -53,9 +53,9 @@ std::string contact_state(const Trajectory& trajectory, Mode mode) {
 }
 
 // Prints the run phase by phase and event by event.
-class Course {
+class RunTimeline {
  public:
-    Course(const Trajectory& trajectory, const ErrorEstimate& estimate)
+    RunTimeline(const Trajectory& trajectory, const ErrorEstimate& estimate)
         : trajectory_(trajectory),
           estimate_(estimate),
           model_(*trajectory.model),
@@ -65,7 +65,7 @@ class Course {
 
     std::string told() const {
         std::string text;
-        const std::vector<Chatter> chatters = chatters_of(trajectory_);
+        const std::vector<ChatterPhases> chatters = chatters_of(trajectory_);
         auto chatter = chatters.begin();
         for (std::size_t phase = 0; phase < ends_.size(); ++phase) {
             if (chatter != chatters.end() && chatter->first == phase) {
@@ -85,10 +85,10 @@ class Course {
 
     std::string phase_line(const Phase& phase) const {
         return fmt::format("{}, t = {} to {} s{}\n", contact_state(trajectory_, phase.mode), time(phase.start),
-                           time(phase.end), phase.not_unique() ? ", forces not unique" : "");
+                           time(phase.end), phase.is_nonunique() ? ", forces not unique" : "");
     }
 
-    std::string chatter_line(const Chatter& chatter) const {
+    std::string chatter_line(const ChatterPhases& chatter) const {
         int impacts = 0;
         ContactSet held;
         for (std::size_t i = chatter.first; i < chatter.last; ++i) {
@@ -136,7 +136,7 @@ class Course {
         std::string text = " of " + names(impact.contacts);
         if (!impact.opened.empty()) text += ", opens " + names(impact.opened);
         if (impact.joint && impact.joint->order_matters) text += ", order-dependent outcome";
-        if (impact.joint && impact.joint->not_unique) text += ", impulses not unique";
+        if (impact.joint && impact.joint->is_nonunique) text += ", impulses not unique";
         return text;
     }
 
@@ -170,7 +170,7 @@ class Course {
     const Trajectory& trajectory_;
     const ErrorEstimate& estimate_;
     const Model& model_;
-    Sentences sentences_;
+    EventDescriptions sentences_;
     const Precision& precision_;
     std::vector<std::size_t> ends_;
 };
@@ -211,7 +211,7 @@ std::string drift_text(double drift) {
 }
 
 std::string least_gap_text(double gap, double scale) {
-    if (gap < 0.0 && without_noise(gap, scale) == 0.0) return "0 to rounding";
+    if (gap < 0.0 && flush_noise_to_zero(gap, scale) == 0.0) return "0 to rounding";
     return fmt::format("{:.2g}", gap + 0.0);
 }
 
@@ -238,7 +238,7 @@ std::string sentence(const Trajectory& trajectory, const ErrorEstimate& estimate
 
 std::string sentence(const Certificate& c, const SystemDescription& description) {
     if (!c.certified) return "not certified";
-    if (c.position_bound == 0.0 && c.velocity_bound == 0.0) return std::string(c.decisive);
+    if (c.position_bound == 0.0 && c.velocity_bound == 0.0) return std::string(c.tightest_bound);
     const NormUnits unit = norm_units(description);
     const auto position = [&](double bound) { return bound_text(bound) + unit.position; };
     const auto velocity = [&](double bound) { return bound_text(bound) + unit.velocity; };
@@ -253,30 +253,31 @@ std::string sentence(const Certificate& c, const SystemDescription& description)
             "higher): uniform position; at tau_inf the computed position and velocity are within {} and {} of the "
             "exact ones: shadowing position and velocity",
             position(*c.uniform_position), position(*c.shadowing_position), velocity(*c.shadowing_velocity));
-    if (c.below_rounding) text += "; cut there because shorter flights cannot be resolved in double precision";
+    if (c.cut_at_resolution) text += "; cut there because shorter flights cannot be resolved in double precision";
     const Inequality* closest = c.decision ? &c.decision->closest() : nullptr;
     if (closest != nullptr && !(closest->left <= closest->right))
         return text + fmt::format("; the truncation criterion is not met: {}, {:.2g} < {:.2g}, does not hold",
                                   closest->name, closest->left, closest->right);
-    return text + fmt::format("; tightest of the {}: {}", c.paper ? "conditions" : "bounds", c.decisive);
+    return text + fmt::format("; tightest of the {}: {}", c.paper ? "conditions" : "bounds", c.tightest_bound);
 }
 
 std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     const ErrorEstimate estimate = known != nullptr ? *known : estimate_error(trajectory);
     const Model& model = *trajectory.model;
     const Options& o = trajectory.run.options;
     std::string text = fmt::format("{}\n", model.description().title);
     if (const auto remark = horizon_remark(trajectory, estimate)) text += "  " + remark->sentence + "\n";
     text += fmt::format("  {}", to_text(o.method));
-    for (const Option* option : told_options())
-        if (option->key == "tolerance" || option->table == "truncation") text += ", " + phrase(*option, o, "{:g}");
+    for (const Option* option : options_in_report_order())
+        if (option->key == "tolerance" || option->table == "truncation")
+            text += ", " + summary_text(*option, o, "{:g}");
     text += "\n";
-    for (const Remark& remark : remarks(trajectory)) text += "  " + remark.sentence + "\n";
+    for (const RunWarning& remark : remarks(trajectory)) text += "  " + remark.sentence + "\n";
     text += "\n";
     const Precision precision(trajectory, &estimate);
     const State errors = precision.of_state(trajectory.end_time);
-    text += Course(trajectory, estimate).told();
+    text += RunTimeline(trajectory, estimate).told();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
     text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,
@@ -285,12 +286,12 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text +=
-        fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n", Sentences(trajectory).impacts(),
-                    s.steps, s.evaluations, has_power ? " (work subtracted)" : "", drift_text(s.energy_drift),
-                    least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
+    text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n",
+                        EventDescriptions(trajectory).impacts(), s.steps, s.evaluations,
+                        has_power ? " (work subtracted)" : "", drift_text(s.energy_drift),
+                        least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
     if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
-    if (trajectory.by_convention > 0) text += conventions(trajectory.by_convention);
+    if (trajectory.ambiguous_impacts > 0) text += conventions(trajectory.ambiguous_impacts);
     if (s.impacts > 0) text += "Gap speed is |hdot|, the rate at which the gap closes, not the speed of a body.\n";
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
         return event.certificate && event.certificate->others && !event.certificate->others->held.empty();

@@ -12,11 +12,11 @@
 #include <mutex>
 #include <stdexcept>
 
-#include "expression/nearest.hpp"
+#include "analysis/chunks.hpp"
+#include "expression/name_suggestions.hpp"
 #include "model/model.hpp"
 #include "output/contacts.hpp"
 #include "output/sweep_files.hpp"
-#include "study/chunks.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -32,7 +32,7 @@ void append(const SweepTable& table, const Rows& rows, std::size_t row, std::vec
     const auto names = [&](ContactSet set) {
         columns[next++].words.push_back(set.empty() ? std::string() : joined_names(table.model(), set, "+"));
     };
-    const Sweep& sweep = table.sweep();
+    const SweepSpec& sweep = table.sweep();
     for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) number(sweep.value(axis, rows.points[row]));
     if (table.is_section()) {
         number(rows.times[row]);
@@ -57,7 +57,7 @@ const SweepColumn& SweepColumns::operator[](std::string_view name) const {
     throw InputError({}, {}, fmt::format("the sweep has no column '{}'{}", name, did_you_mean(name, names)));
 }
 
-SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const Sweep& sweep, int threads,
+SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const SweepSpec& sweep, int threads,
                            const std::function<bool(std::uint64_t done)>& go_on) {
     const SweepTable table(model, sweep);
     SweepColumns result;
@@ -133,7 +133,7 @@ std::string sweep_csv(const SweepTable& table, const Rows& rows) {
     std::string text;
     text.reserve(rows.count() * (table.sweep().axes.size() + table.measures().columns().size() + 1) * 20);
     std::size_t next = 0;  // index of the next number
-    const Sweep& sweep = table.sweep();
+    const SweepSpec& sweep = table.sweep();
     for (std::size_t row = 0; row < rows.count(); ++row) {
         for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
             if (axis > 0) text += ',';

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-#include "../study/sweep.hpp"
+#include "../analysis/sweep.hpp"
 
 namespace achilles {
 
@@ -33,7 +33,7 @@ struct SweepColumns {
 // Computes the runs of a sweep on `threads` threads (0: one per core); the result does not depend on this number.
 // `go_on`, if given, is called from time to time with the number of points done. If it returns false, the sweep stops
 // and the columns have only the points up to there. Throws InputError for an invalid expression.
-SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const Sweep& sweep, int threads = 0,
+SweepColumns sweep_columns(const std::shared_ptr<const Model>& model, const SweepSpec& sweep, int threads = 0,
                            const std::function<bool(std::uint64_t done)>& go_on = {});
 
 }  // namespace achilles

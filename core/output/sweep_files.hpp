@@ -6,8 +6,8 @@
 #include <string>
 #include <string_view>
 
-#include "study/chunks.hpp"
-#include "study/table.hpp"
+#include "analysis/chunks.hpp"
+#include "analysis/table.hpp"
 
 namespace achilles {
 
@@ -35,16 +35,17 @@ struct SweepOrigin {
 };
 
 // The reason why this build or machine cannot write HDF5; "" if it can.
-std::string why_no_hdf5();
+std::string hdf5_unavailable_reason();
 // The reason why the prints of a table cannot be names in a file: the path of one leads through another. Else "".
-std::string fault_of_hdf5(const SweepTable& table);
+std::string hdf5_name_error(const SweepTable& table);
 // Calls take(rows) for each chunk, from the first one on. May be called repeatedly.
-using EachRows = std::function<void(const std::function<void(const Rows&)>& take)>;
+using RowReader = std::function<void(const std::function<void(const Rows&)>& take)>;
 // Writes /axes/NAME, the values along each axis of a grid, or of every row without a grid. Writes /values/TEXT, in the
 // shape of the grid or by rows, with the outcome and, for a section, t and contact, and /signature in the same shape.
 // Units are attributes of these arrays, origin and options attributes of the file. The bytes do not depend on when and
 // how the rows were computed. Throws std::runtime_error.
-void write_hdf5(const std::string& path, const SweepTable& table, const SweepOrigin& origin, const EachRows& each_rows);
+void write_hdf5(const std::string& path, const SweepTable& table, const SweepOrigin& origin,
+                const RowReader& each_rows);
 
 // The text at the start of a log: the properties that must be equal for a sweep to be resumed.
 struct SweepKey {

@@ -16,7 +16,7 @@
 namespace achilles {
 
 // A print with '/' is a path: /values/y/2 is read as typed, and /values/y cannot be an array then.
-std::string fault_of_hdf5(const SweepTable& table) {
+std::string hdf5_name_error(const SweepTable& table) {
     std::vector<std::string> names;  // of /values
     if (table.is_section()) names = {"t", "contact"};
     for (const auto& column : table.measures().columns())
@@ -34,10 +34,10 @@ std::string fault_of_hdf5(const SweepTable& table) {
 
 #ifndef ACHILLES_HDF5_LIBRARY
 
-std::string why_no_hdf5() { return "this build of Achilles has no HDF5 support: libhdf5-dev was missing"; }
+std::string hdf5_unavailable_reason() { return "this build of Achilles has no HDF5 support: libhdf5-dev was missing"; }
 
-void write_hdf5(const std::string&, const SweepTable&, const SweepOrigin&, const EachRows&) {
-    throw std::runtime_error(why_no_hdf5());
+void write_hdf5(const std::string&, const SweepTable&, const SweepOrigin&, const RowReader&) {
+    throw std::runtime_error(hdf5_unavailable_reason());
 }
 
 #else
@@ -268,7 +268,7 @@ struct Extent {
     std::size_t held = 0, contacts = 0, ends = 0;
 };
 
-Extent extent_of(const SweepTable& table, const EachRows& each_rows) {
+Extent extent_of(const SweepTable& table, const RowReader& each_rows) {
     Extent extent;
     each_rows([&](const Rows& rows) {
         extent.rows += rows.count();
@@ -297,7 +297,7 @@ class Writer {
         if (!is_grid_) shape_ = {extent.rows};
     }
 
-    void write(const EachRows& each_rows) {
+    void write(const RowReader& each_rows) {
         const Library& h5 = Library::get();
         for (const char* group : {"/axes", "/values"})
             Handle(h5.H5Gcreate2(file_, group, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT), h5.H5Gclose).close();
@@ -371,10 +371,10 @@ class Writer {
 
 }  // namespace
 
-std::string why_no_hdf5() { return Library::get().fault(); }
+std::string hdf5_unavailable_reason() { return Library::get().fault(); }
 
 void write_hdf5(const std::string& path, const SweepTable& table, const SweepOrigin& origin,
-                const EachRows& each_rows) {
+                const RowReader& each_rows) {
     const Library& h5 = Library::get();
     if (!h5.fault().empty()) throw std::runtime_error(h5.fault());
     Handle file(h5.H5Fcreate(path.c_str(), overwrite, H5P_DEFAULT, H5P_DEFAULT), h5.H5Fclose);

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "number/angle.hpp"
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 #include "program/assembler.hpp"
 #include "program/machine.hpp"
 #include "program/program.hpp"
@@ -58,29 +58,29 @@ Function function_of(Operation operation) {
 
 // ---- functions over lanes: operands and results are in memory ----
 
-using OfLanes = void(const Eight* a, Eight* result);
+using LaneFunction = void(const Double8* a, Double8* result);
 
 template <Operation operation>
-void each(const Eight* a, Eight* result) {
-    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = function_of(operation)((*a)[i]);
+void each(const Double8* a, Double8* result) {
+    for (std::size_t i = 0; i < Double8::count; ++i) (*result)[i] = function_of(operation)((*a)[i]);
 }
-void each_whole_power(const Eight* a, Eight* result, int n) {
-    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = integer_power((*a)[i], n);
+void each_whole_power(const Double8* a, Double8* result, int n) {
+    for (std::size_t i = 0; i < Double8::count; ++i) (*result)[i] = integer_power((*a)[i], n);
 }
-void each_real_power(const Eight* a, Eight* result, const Eight* b) {
-    for (std::size_t i = 0; i < Eight::count; ++i) (*result)[i] = std::pow((*a)[i], (*b)[i]);
+void each_real_power(const Double8* a, Double8* result, const Double8* b) {
+    for (std::size_t i = 0; i < Double8::count; ++i) (*result)[i] = std::pow((*a)[i], (*b)[i]);
 }
 
-OfLanes* function_of_lanes(Operation operation) {
+LaneFunction* function_of_lanes(Operation operation) {
     switch (operation) {
         case Operation::sin:
-            return [](const Eight* a, Eight* result) {
-                Eight cosine_too;
+            return [](const Double8* a, Double8* result) {
+                Double8 cosine_too;
                 sine_and_cosine_of_lanes(a, result, &cosine_too);
             };
         case Operation::cos:
-            return [](const Eight* a, Eight* result) {
-                Eight sine_too;
+            return [](const Double8* a, Double8* result) {
+                Double8 sine_too;
                 sine_and_cosine_of_lanes(a, &sine_too, result);
             };
         case Operation::tan:
@@ -167,7 +167,7 @@ bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t resul
         call_on_lanes(code, reinterpret_cast<const void*>(&each_real_power), in.a, result);
         return true;
     }
-    OfLanes* const function = function_of_lanes(in.operation);
+    LaneFunction* const function = function_of_lanes(in.operation);
     if (function == nullptr) return false;
     call_on_lanes(code, reinterpret_cast<const void*>(function), in.a, result);
     return true;

@@ -38,17 +38,17 @@ struct NoOutputs {};
 
 // A program whose outputs have the names of TermsOf.
 template <template <class> class TermsOf>
-class ProgramOf : public Program {
+class TypedProgram : public Program {
  public:
-    ProgramOf() = default;
+    TypedProgram() = default;
     // Compiles the expressions; the arguments are those of list().
     template <class... Parts>
-    static ProgramOf of(Slots slots, const Parts&... parts) {
-        return ProgramOf(TermsOf<NoOutputs>::list(parts...), slots);
+    static TypedProgram of(Slots slots, const Parts&... parts) {
+        return TypedProgram(TermsOf<NoOutputs>::list(parts...), slots);
     }
 
  private:
-    ProgramOf(const Expressions& outputs, Slots slots) : Program(outputs, slots) {}
+    TypedProgram(const Expressions& outputs, Slots slots) : Program(outputs, slots) {}
 };
 
 // The gap h at (q, v, t): its rate, n = M^-1 g'/W, g = dh, W = g M^-1 g', and dh/dt (theory.md 1).

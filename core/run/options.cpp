@@ -94,119 +94,119 @@ constexpr std::array rows{
                               .flag = "--start-time",
                               .command = "start-time",
                               .usage = "write: start-time NUMBER",
-                              .wrong = "the start time must be finite, not {}",
+                              .error_text = "the start time must be finite, not {}",
                               .unit = "s",
-                              .about = "start time of the run",
-                              .phrase = "start time {}",
-                              .quiet = true,
+                              .help = "start time of the run",
+                              .summary_text = "start time {}",
+                              .omit_if_default = true,
                               .any_sign = true}),
     at<&Options::end_time>({.key = "end_time",
                             .table = "run",
                             .flag = "--end",
                             .command = "end",
                             .usage = "write: end NUMBER",
-                            .wrong = "the end time must be finite, not {}",
+                            .error_text = "the end time must be finite, not {}",
                             .unit = "s",
-                            .about = "end time of the run",
-                            .phrase = "end time {}",
+                            .help = "end time of the run",
+                            .summary_text = "end time {}",
                             .any_sign = true}),
     at<&Options::tolerance>({.key = "tolerance",
                              .table = "run",
                              .flag = "--tolerance",
                              .command = "tolerance",
                              .usage = "write: tolerance NUMBER",
-                             .wrong = "the tolerance must be positive and finite, not {}",
-                             .about = "local error per step, absolute and relative",
-                             .phrase = "tolerance {}",
+                             .error_text = "the tolerance must be positive and finite, not {}",
+                             .help = "local error per step, absolute and relative",
+                             .summary_text = "tolerance {}",
                              .is_tolerance = true}),
     at<&Options::method>({.key = "method",
                           .table = "run",
                           .flag = "--method",
                           .command = "method",
                           .usage = "write: method taylor, or: method dopri5",
-                          .wrong = "unknown method '{}'",
-                          .about = "integration method",
-                          .phrase = "method {}"}),
+                          .error_text = "unknown method '{}'",
+                          .help = "integration method",
+                          .summary_text = "method {}"}),
     at<&Options::max_impacts>({.key = "max_impacts",
                                .table = "run",
                                .flag = "--max-impacts",
                                .command = "max-impacts",
                                .usage = "write: max-impacts NUMBER",
-                               .wrong = "at least one impact must be allowed",
-                               .about = "maximum number of impacts in the run",
-                               .phrase = "at most {} impacts"}),
+                               .error_text = "at least one impact must be allowed",
+                               .help = "maximum number of impacts in the run",
+                               .summary_text = "at most {} impacts"}),
     at<&Options::max_steps>({.key = "max_steps",
                              .table = "run",
                              .flag = "--max-steps",
                              .command = "max-steps",
                              .usage = "write: max-steps NUMBER",
-                             .wrong = "at least one step must be allowed",
-                             .about = "maximum number of integration steps in the run",
-                             .phrase = "at most {} steps",
-                             .quiet = true}),
+                             .error_text = "at least one step must be allowed",
+                             .help = "maximum number of integration steps in the run",
+                             .summary_text = "at most {} steps",
+                             .omit_if_default = true}),
     at<&Options::memory>({.key = "memory",
                           .table = "run",
                           .flag = "--memory",
                           .command = "memory",
                           .usage = "write: memory BYTES",
-                          .wrong = "the memory must be positive and finite, not {}",
+                          .error_text = "the memory must be positive and finite, not {}",
                           .unit = "bytes",
-                          .about = "maximum memory for the stored run",
-                          .phrase = "at most {} bytes",
-                          .quiet = true}),
+                          .help = "maximum memory for the stored run",
+                          .summary_text = "at most {} bytes",
+                          .omit_if_default = true}),
     at<&Options::simultaneous>({.key = "simultaneous",
                                 .table = "run",
                                 .flag = "--simultaneous",
                                 .command = "simultaneous",
                                 .usage = "write: simultaneous moreau, or: simultaneous stop",
-                                .wrong = "unknown value '{}' for simultaneous: use moreau or stop",
-                                .about = "how simultaneous impacts with an order-dependent outcome are resolved",
-                                .phrase = "simultaneous impacts: {}",
-                                .quiet = true}),
+                                .error_text = "unknown value '{}' for simultaneous: use moreau or stop",
+                                .help = "how simultaneous impacts with an order-dependent outcome are resolved",
+                                .summary_text = "simultaneous impacts: {}",
+                                .omit_if_default = true}),
     at<cut, &Truncation::eps_q>({.key = "eps_q",
                                  .table = "truncation",
                                  .flag = "--eps-q",
                                  .command = "eps",
                                  .usage = usage_of_eps,
-                                 .wrong = wrong_eps,
-                                 .about = "maximum position error between the cut and the Zeno time, Euclidean norm",
-                                 .phrase = "eps_q {}",
+                                 .error_text = wrong_eps,
+                                 .help = "maximum position error between the cut and the Zeno time, Euclidean norm",
+                                 .summary_text = "eps_q {}",
                                  .is_tolerance = true}),
     at<cut, &Truncation::eps_v>({.key = "eps_v",
                                  .table = "truncation",
                                  .flag = "--eps-v",
                                  .command = "eps",
                                  .usage = usage_of_eps,
-                                 .wrong = wrong_eps,
-                                 .about = "maximum velocity error at the Zeno time, Euclidean norm",
-                                 .phrase = "eps_v {}",
+                                 .error_text = wrong_eps,
+                                 .help = "maximum velocity error at the Zeno time, Euclidean norm",
+                                 .summary_text = "eps_v {}",
                                  .is_tolerance = true}),
     at<cut, &Truncation::eps_t>({.key = "eps_t",
                                  .table = "truncation",
                                  .flag = "--eps-t",
                                  .command = "eps",
                                  .usage = usage_of_eps,
-                                 .wrong = wrong_eps,
+                                 .error_text = wrong_eps,
                                  .unit = "s",
-                                 .about = "maximum half-width of the interval that contains the Zeno time",
-                                 .phrase = "eps_t {}",
+                                 .help = "maximum half-width of the interval that contains the Zeno time",
+                                 .summary_text = "eps_t {}",
                                  .is_tolerance = true}),
     at<cut, &Truncation::conditions>({.key = "conditions",
                                       .table = "truncation",
                                       .flag = "--conditions",
                                       .command = "conditions",
                                       .usage = "write: conditions paper, or: conditions sharp",
-                                      .wrong = "unknown conditions '{}'",
-                                      .about = "criterion for truncating the impact sequence: paper (Def. 7) or sharp",
-                                      .phrase = "{} conditions"}),
+                                      .error_text = "unknown conditions '{}'",
+                                      .help = "criterion for truncating the impact sequence: paper (Def. 7) or sharp",
+                                      .summary_text = "{} conditions"}),
     at<cut, &Truncation::reinitialization>({.key = "reinitialization",
                                             .table = "truncation",
                                             .flag = "--reinitialization",
                                             .command = "reinitialization",
                                             .usage = "write: reinitialization kinetic, or: reinitialization euclidean",
-                                            .wrong = "unknown reinitialization '{}'",
-                                            .about = "velocity at the start of contact",
-                                            .phrase = "{} reinitialization"}),
+                                            .error_text = "unknown reinitialization '{}'",
+                                            .help = "velocity at the start of contact",
+                                            .summary_text = "{} reinitialization"}),
 };
 
 }  // namespace
@@ -241,7 +241,7 @@ std::vector<std::span<const Option>> options_by_command(const Options& from, con
     return groups;
 }
 
-std::vector<const Option*> told_options(std::initializer_list<std::string_view> first) {
+std::vector<const Option*> options_in_report_order(std::initializer_list<std::string_view> first) {
     std::vector<const Option*> told;
     for (const Option& o : rows) told.push_back(&o);
     const auto rank = [&](const Option* o) {
@@ -253,7 +253,7 @@ std::vector<const Option*> told_options(std::initializer_list<std::string_view> 
     return told;
 }
 
-bool allows(const Option& option, const OptionValue& value) {
+bool is_valid_value(const Option& option, const OptionValue& value) {
     if (const auto* number = std::get_if<double>(&value))
         return std::isfinite(*number) && (option.any_sign || *number > 0.0);
     if (const auto* whole = std::get_if<int>(&value)) return *whole >= 1;
@@ -261,43 +261,43 @@ bool allows(const Option& option, const OptionValue& value) {
     return std::find(words.begin(), words.end(), std::get<std::string_view>(value)) != words.end();
 }
 
-std::string phrase(const Option& option, const Options& options, std::string_view number) {
+std::string summary_text(const Option& option, const Options& options, std::string_view number) {
     const OptionValue value = option.get(options);
     const auto* x = std::get_if<double>(&value);
-    return fmt::format(fmt::runtime(option.phrase), x ? fmt::format(fmt::runtime(number), *x) : to_text(value));
+    return fmt::format(fmt::runtime(option.summary_text), x ? fmt::format(fmt::runtime(number), *x) : to_text(value));
 }
 
 std::vector<std::string> warnings(const Options& options) {
     std::vector<std::string> told;
     for (const Option& o : all_options())
-        if (o.is_tolerance && std::get<double>(o.get(options)) < least_tolerance)
+        if (o.is_tolerance && std::get<double>(o.get(options)) < min_tolerance)
             told.push_back(fmt::format("{} = {} is below what double precision supports; using {}", o.key,
-                                       to_text(o.get(options)), least_tolerance));
+                                       to_text(o.get(options)), min_tolerance));
     return told;
 }
 
-void raise_to_least(Options& options) {
+void clamp_tolerances(Options& options) {
     for (const Option& o : all_options())
-        if (o.is_tolerance) o.set(options, std::max(std::get<double>(o.get(options)), least_tolerance));
+        if (o.is_tolerance) o.set(options, std::max(std::get<double>(o.get(options)), min_tolerance));
 }
 
-std::optional<std::string> fault_of_times(const Options& options) {
+std::optional<std::string> end_time_error(const Options& options) {
     if (!(options.end_time <= options.start_time)) return std::nullopt;
     return fmt::format("the end time {} is not after the start time {}", options.end_time, options.start_time);
 }
 
-std::vector<std::string> faults(const Options& options) {
+std::vector<std::string> validation_errors(const Options& options) {
     std::vector<std::string> told;
     for (const Option& o : all_options()) {
         if (!o.words.empty()) continue;  // Options cannot hold an invalid word
         const OptionValue value = o.get(options);
-        if (allows(o, value)) continue;
+        if (is_valid_value(o, value)) continue;
         told.push_back(std::holds_alternative<double>(value)
                            ? fmt::format("{} must be a {} number, but it is {}", o.key,
                                          o.any_sign ? "finite" : "positive", to_text(value))
                            : fmt::format("{} must be at least 1", o.key));
     }
-    if (const auto fault = fault_of_times(options)) told.push_back(*fault);
+    if (const auto fault = end_time_error(options)) told.push_back(*fault);
     return told;
 }
 

@@ -60,17 +60,17 @@ std::string to_text(const OptionValue& value);
 
 // One row of the table: the names of an option in each interface, and access to its value.
 struct Option {
-    std::string_view key;         // in system files, JSON and messages
-    std::string_view table;       // of the system file: "run" or "truncation"
-    std::string_view flag;        // on the command line
-    std::string_view command;     // of the explorer; options that share one are set together, in table order
-    std::string_view usage = {};  // how to write that command, for messages
-    std::string_view wrong = {};  // explorer's message for an invalid value, which replaces {}
+    std::string_view key;              // in system files, JSON and messages
+    std::string_view table;            // of the system file: "run" or "truncation"
+    std::string_view flag;             // on the command line
+    std::string_view command;          // of the explorer; options that share one are set together, in table order
+    std::string_view usage = {};       // how to write that command, for messages
+    std::string_view error_text = {};  // explorer's message for an invalid value, which replaces {}
     std::string_view unit = {};
-    std::string_view about = {};                   // help text
-    std::string_view phrase = {};                  // in a line about a run, with {} for the value
-    bool quiet = false;                            // such lines omit it if it has the default value
-    bool is_tolerance = false;                     // values below least_tolerance cause a warning and are raised to it
+    std::string_view help = {};                    // help text
+    std::string_view summary_text = {};            // in a line about a run, with {} for the value
+    bool omit_if_default = false;                  // such lines omit it if it has the default value
+    bool is_tolerance = false;                     // values below min_tolerance cause a warning and are raised to it
     bool any_sign = false;                         // numbers only: negative values and 0 are allowed
     std::span<const std::string_view> words = {};  // allowed words; empty for numbers
     OptionValue (*get)(const Options&) = nullptr;
@@ -89,24 +89,24 @@ std::vector<std::span<const Option>> options_by_command();
 std::vector<std::span<const Option>> options_by_command(const Options& from, const Options& to);
 // All options in the order of a report: those of `first`, the other options of [run], the criteria of [truncation], its
 // tolerances.
-std::vector<const Option*> told_options(std::initializer_list<std::string_view> first = {});
+std::vector<const Option*> options_in_report_order(std::initializer_list<std::string_view> first = {});
 
 // True if the option may have this value: a number must be finite and, unless it takes any sign, positive; an integer
 // at least 1; a word one of the option's words.
-bool allows(const Option& option, const OptionValue& value);
+bool is_valid_value(const Option& option, const OptionValue& value);
 // The option in a line about a run; `number` is the format of its number.
-std::string phrase(const Option& option, const Options& options, std::string_view number = "{}");
+std::string summary_text(const Option& option, const Options& options, std::string_view number = "{}");
 
 // Minimum of tolerance and eps that double precision supports. Smaller values are raised to it.
-inline constexpr double least_tolerance = 1e-15;
+inline constexpr double min_tolerance = 1e-15;
 // Warnings about allowed but questionable values: one sentence for each tolerance below the minimum.
 std::vector<std::string> warnings(const Options& options);
 // Raises tolerances below the minimum to it.
-void raise_to_least(Options& options);
+void clamp_tolerances(Options& options);
 // The error message if the end time is not after the start time.
-std::optional<std::string> fault_of_times(const Options& options);
+std::optional<std::string> end_time_error(const Options& options);
 // Error messages for values that are not allowed, including end_time.
-std::vector<std::string> faults(const Options& options);
+std::vector<std::string> validation_errors(const Options& options);
 
 // One run: options, parameter values (in the order of the description), and initial state.
 struct Run {

@@ -11,7 +11,7 @@ bool is_plastic_landing(const Event& event) {
            event.certificate->zeno_low == event.certificate->zeno_high;
 }
 
-State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::Index dof, double t) {
+State state_in(const DenseSegment& piece, std::span<const double> coefficients, Eigen::Index dof, double t) {
     const double theta =
         piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
     State state{Vector::Zero(dof), Vector::Zero(dof), t};
@@ -33,8 +33,8 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
     if (first == nullptr || !(first->impact_speed > 0.0)) return 0.0;
     const auto& pieces = trajectory.pieces;
     const auto after = std::lower_bound(pieces.begin(), pieces.end(), first->t,
-                                        [](const Piece& piece, double t) { return piece.start < t; });
-    const Options& used = trajectory.made_again_by ? *trajectory.made_again_by : trajectory.run.options;
+                                        [](const DenseSegment& piece, double t) { return piece.start < t; });
+    const Options& used = trajectory.rerun_options ? *trajectory.rerun_options : trajectory.run.options;
     constexpr double generous = 30.0;
     double state = generous * integration_error(used, std::max(1.0, static_cast<double>(after - pieces.begin())));
     for (std::size_t i = 0; i < zeno_event; ++i)
@@ -47,8 +47,9 @@ double bytes_of(const Trajectory& trajectory) {
     const auto n = static_cast<std::size_t>(trajectory.run.q.size());
     const std::size_t event = sizeof(Event) + 3 * (n * sizeof(double) + 2 * sizeof(void*));
     return static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
-                               trajectory.pieces.size() * sizeof(Piece) + trajectory.events.size() * event +
-                               trajectory.phases.size() * sizeof(Phase) + trajectory.passages.size() * sizeof(Passage));
+                               trajectory.pieces.size() * sizeof(DenseSegment) + trajectory.events.size() * event +
+                               trajectory.phases.size() * sizeof(Phase) +
+                               trajectory.passages.size() * sizeof(EventRecord));
 }
 
 State scale_of(const Trajectory& trajectory) {
@@ -65,22 +66,22 @@ State scale_of(const Trajectory& trajectory) {
     return scale;
 }
 
-std::vector<Passage> sequence_of(const Trajectory& trajectory) {
+std::vector<EventRecord> sequence_of(const Trajectory& trajectory) {
     if (trajectory.events.empty()) return trajectory.passages;
-    std::vector<Passage> sequence;
+    std::vector<EventRecord> sequence;
     sequence.reserve(trajectory.events.size());
     for (const Event& event : trajectory.events)
         sequence.push_back({{event.kind}, event.contacts, event.t, event.impact_speed});
     return sequence;
 }
 
-double without_noise(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }
+double flush_noise_to_zero(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }
 
 std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 
 const Inequality& Certificate::Decision::closest() const {
-    const Inequality& earlier = position.share() > time.share() ? position : time;
-    return velocity.share() > earlier.share() ? velocity : earlier;
+    const Inequality& earlier = position.ratio() > time.ratio() ? position : time;
+    return velocity.ratio() > earlier.ratio() ? velocity : earlier;
 }
 
 std::vector<Inequality> Certificate::inequalities() const {

@@ -27,7 +27,7 @@ class Model;
 struct Sample;
 
 // Dense output of one step: q and v are polynomials in theta = (t - start)/(end - start), 0 <= theta <= 1.
-struct Piece {
+struct DenseSegment {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
@@ -38,7 +38,7 @@ struct Piece {
 };
 
 // The state by the polynomials of a piece at time t (s), clamped to the piece.
-State state_in(const Piece& piece, std::span<const double> coefficients, Eigen::Index dof, double t);
+State state_in(const DenseSegment& piece, std::span<const double> coefficients, Eigen::Index dof, double t);
 
 struct Phase {
     enum class Kind { hybrid, constrained };
@@ -49,7 +49,7 @@ struct Phase {
     // (theory-gaps.md 2.5).
     ContactSet carriers;
     Mode motion() const { return mode.only(carriers); }
-    bool not_unique() const { return carriers != mode.held(); }
+    bool is_nonunique() const { return carriers != mode.held(); }
     double start = 0.0, end = 0.0;
     int impacts = 0;
     std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory
@@ -59,7 +59,7 @@ struct Phase {
 struct Inequality {
     std::string_view name;  // "c1: time", ...: a string literal
     double left = 0.0, right = 0.0;
-    double share() const { return left / right; }  // used fraction of the limit, if both are positive
+    double ratio() const { return left / right; }  // used fraction of the limit, if both are positive
 };
 
 // What is proved about a truncated impact sequence. Bounds are proved by interval evaluation. They do not include
@@ -68,7 +68,7 @@ struct Certificate {
     bool certified = false;
     Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
-    bool below_rounding = false;                                   // completed: further flights cannot be resolved
+    bool cut_at_resolution = false;                                // completed: further flights cannot be resolved
     double zeno_low = 0.0, zeno_high = 0.0;                        // enclosure of tau_inf
     double zeno_time = 0.0;                                        // best estimate of tau_inf, inside the enclosure
     double position_bound = 0.0;                                   // bound on |q_inf - q*|
@@ -76,7 +76,7 @@ struct Certificate {
     std::optional<double> shadowing_position, shadowing_velocity;  // theory.md 5.2, at tau_inf
     std::optional<double> uniform_position;                        // bound on |q - q~| from tau_k to tau_inf
     double a_min = 0.0, a_max = 0.0;                               // range of -hddot over the neighborhood
-    std::string_view decisive;  // name of the tightest inequality of the decision, or the reason for no decision
+    std::string_view tightest_bound;  // name of the tightest inequality of the decision, or the reason for no decision
     struct Paper {
         double e1 = 0.0, e2 = 0.0;  // e' = e r, e'' = e sqrt(r)
         double beta = 0.0, eta = 0.0, zeta = 0.0, c1 = 0.0, c2 = 0.0, c3 = 0.0;
@@ -84,20 +84,20 @@ struct Certificate {
     std::optional<Paper> paper;
     // Bounds on the other contacts until tau_inf, if there are any. For each held contact: the range of its
     // transmission of impulses and its minimum force. For the open ones: their minimum gap.
-    struct Others {
-        struct Held {
+    struct OtherContactBounds {
+        struct HeldContactBound {
             std::size_t contact;
             double transmission_low, transmission_high, least_force;
         };
-        std::vector<Held> held;
+        std::vector<HeldContactBound> held;
         std::optional<double> least_gap;
         bool rounded_zero = false;  // a transmission is 0 only within rounding (theory-gaps.md 8)
     };
-    std::optional<Others> others;
+    std::optional<OtherContactBounds> others;
     // The inequalities that decide whether to truncate. nullopt if no condition is needed.
     struct Decision {
         Inequality time, position, velocity;
-        // The tightest inequality: the one with the largest share().
+        // The tightest inequality: the one with the largest ratio().
         const Inequality& closest() const;
     };
     std::optional<Decision> decision;
@@ -107,18 +107,18 @@ struct Certificate {
 };
 
 // Additional data of an event of several contacts.
-struct Joint {
+struct MultiContactInfo {
     std::vector<std::pair<std::size_t, double>> impulses;  // of an impact, by contact
-    bool not_unique = false;                               // the impulses or forces could also be distributed otherwise
+    bool is_nonunique = false;                             // the impulses or forces could also be distributed otherwise
     // True for impacts whose times cannot be separated and whose order changes the outcome. They were resolved together
     // by Moreau's law. `alternatives` lists the gap rates after each order, and after the joint impact.
     bool order_matters = false;
     bool rounded_zero = false;  // for the order, a quantity that is 0 only within rounding was taken as 0
-    struct Alternative {
+    struct ImpactOrderOutcome {
         std::optional<std::size_t> first;                         // nullopt: all at once
         std::vector<std::pair<std::size_t, double>> rates_after;  // by contact
     };
-    std::vector<Alternative> alternatives;
+    std::vector<ImpactOrderOutcome> alternatives;
 };
 
 // Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
@@ -133,20 +133,20 @@ struct EventBase {
 
 struct Event : EventBase {
     double t = 0.0;
-    Vector q, v_before, v_after;         // velocities are equal unless they jump (at impacts)
-    double impact_speed = 0.0;           // impact: |hdot| before the impact
-    ContactSet contacts;                 // those that impact, become held at a Zeno point, or release
-    Mode mode;                           // after the event
-    ContactSet opened;                   // impact: contacts held before and opened by it
-    std::shared_ptr<const Joint> joint;  // may be null
-    double work = 0.0, loss = 0.0;       // from the start of the run, including this event
-    int impacts = 0;                     // zeno: impacts of the phase it ends, including the one at the cut
-    struct Truncation {                  // zeno: the impact at the cut, and the restart
+    Vector q, v_before, v_after;                    // velocities are equal unless they jump (at impacts)
+    double impact_speed = 0.0;                      // impact: |hdot| before the impact
+    ContactSet contacts;                            // those that impact, become held at a Zeno point, or release
+    Mode mode;                                      // after the event
+    ContactSet opened;                              // impact: contacts held before and opened by it
+    std::shared_ptr<const MultiContactInfo> joint;  // may be null
+    double work = 0.0, loss = 0.0;                  // from the start of the run, including this event
+    int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
+    struct TruncationRecord {                       // zeno: the impact at the cut, and the restart
         double t = 0.0;
         Vector q, v_before, v;  // v: after reinitialization
         double impact_speed = 0.0;
     };
-    std::optional<Truncation> truncation;
+    std::optional<TruncationRecord> truncation;
     std::optional<Certificate> certificate;  // zeno
 
     // True if the set of held contacts changes: any event but an impact that opens no held contact.
@@ -190,12 +190,12 @@ consteval bool has_all_event_kinds(const Table& table) {
 }
 static_assert(has_all_event_kinds(event_names));
 
-// Record of an event in a run stored with Keep::end: no states, no certificate.
-struct Passage : EventBase {
+// Record of an event in a run stored with Recording::final_state: no states, no certificate.
+struct EventRecord : EventBase {
     ContactSet contacts;
     double t = 0.0;
     double impact_speed = 0.0;  // impact: |hdot| before the impact
-    friend bool operator==(const Passage&, const Passage&) = default;
+    friend bool operator==(const EventRecord&, const EventRecord&) = default;
 };
 
 struct Outcome {
@@ -230,24 +230,24 @@ struct Trajectory {
     Run run;
     std::vector<Phase> phases;
     std::vector<Event> events;  // ordered by time
-    // Event records of a run stored with Keep::end; otherwise empty. Use sequence_of() for either kind.
-    std::vector<Passage> passages;
-    std::vector<Piece> pieces;  // ordered by time
+    // Event records of a run stored with Recording::final_state; otherwise empty. Use sequence_of() for either kind.
+    std::vector<EventRecord> passages;
+    std::vector<DenseSegment> pieces;  // ordered by time
     std::vector<double> coefficients;
     double end_time = 0.0;
     State end;
     Phase::Kind end_phase = Phase::Kind::hybrid;
     Mode end_mode;
-    int by_convention = 0;  // number of impacts whose order matters but is unknown
+    int ambiguous_impacts = 0;  // number of impacts whose order matters but is unknown
     // E(end) - E(start) = work - loss. The work is that of forces, of a time-dependent potential and of moving
-    // surfaces; the loss is the energy dissipated at impacts. For a run stored with Keep::end the work is NaN, unless
-    // none can be done.
+    // surfaces; the loss is the energy dissipated at impacts. For a run stored with Recording::final_state the work is
+    // NaN, unless none can be done.
     double work = 0.0, loss = 0.0;
     Outcome outcome;
     Statistics statistics;
     // The tighter options of a second run, if a run with the options of `run` was undecided.
-    std::optional<Options> made_again_by;
-    std::string undecided;  // reason for the second run; else empty
+    std::optional<Options> rerun_options;
+    std::string rerun_reason;  // reason for the second run; else empty
 
     // State at time t (s), clamped to the run; at an event, the state after it. For many queries use a Sampler
     // (simulate/sampler.hpp).
@@ -264,14 +264,14 @@ double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_
 // Memory used by the stored trajectory, bytes.
 double bytes_of(const Trajectory& trajectory);
 // The records of all events of a run, whatever was stored.
-std::vector<Passage> sequence_of(const Trajectory& trajectory);
+std::vector<EventRecord> sequence_of(const Trajectory& trajectory);
 
 // The largest |q| and |v| of each coordinate at the start, the events and the end, as a reference for noise.
 State scale_of(const Trajectory& trajectory);
 // Values below this fraction of a scale are rounding noise.
 inline constexpr double noise = 1e-14;
 // For printing: 0 if the value is noise relative to the scale, else the value.
-double without_noise(double value, double scale);
+double flush_noise_to_zero(double value, double scale);
 
 std::string_view to_text(Phase::Kind);
 std::string_view to_text(Outcome::Kind);

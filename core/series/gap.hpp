@@ -1,7 +1,7 @@
 // The gap along a flight, its rate, and error bounds of both.
 #pragma once
 
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 
 namespace achilles {
 

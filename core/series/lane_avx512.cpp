@@ -15,7 +15,7 @@
 
 #include "contacts/contact_law.hpp"
 #include "number/angle.hpp"
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 #include "number/polynomial.hpp"
 #include "program/machine.hpp"
 #include "program/program.hpp"

@@ -12,7 +12,7 @@
 #include <memory>
 #include <optional>
 
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 #include "program/machine.hpp"
 #include "series/lane_stepper.hpp"
 
@@ -26,7 +26,7 @@ template <std::size_t Bytes>
 struct LaneKind {
     static std::unique_ptr<LaneStepper> make_stepper(const LanePrograms& programs, double tolerance,
                                                      std::optional<Width> machine_code);
-    static void sine_and_cosine(const Eight* angle, Eight* sine, Eight* cosine);
+    static void sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine);
 };
 using PortableLanes = LaneKind<16>;
 using Avx512Lanes = LaneKind<64>;

@@ -22,7 +22,7 @@ constexpr Xbyak::Reg64 now = Xbyak::util::rdi, factors = Xbyak::util::rsi, row =
 constexpr unsigned scratch = 3;  // registers for temporary use
 constexpr Index by_order = 0, by_inverse_of_next = 1, by_inverse = 2, weights_per_order = 3;
 
-Index lane(std::size_t number) { return static_cast<Index>(number * Eight::count); }
+Index lane(std::size_t number) { return static_cast<Index>(number * Double8::count); }
 
 }  // namespace
 
@@ -224,8 +224,8 @@ std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, c
     orders->code_ = MachineCode::of(writer.bytes());
     if (!orders->code_) return nullptr;
     orders->function_ = orders->code_->as<Function>();
-    orders->first_row_ = (plan.numbers() + lanes.kept.size()) * Eight::count;
-    orders->states_ = plan.states() * Eight::count;
+    orders->first_row_ = (plan.numbers() + lanes.kept.size()) * Double8::count;
+    orders->states_ = plan.states() * Double8::count;
     for (int k = 1; k <= OrderCode::highest_order; ++k) {
         const double order = k;
         orders->weights_.push_back({order, 1.0 / (order + 1.0), 1.0 / order});

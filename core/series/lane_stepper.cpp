@@ -41,13 +41,13 @@ std::vector<Vectors> possible_vectors() {
 
 #ifdef ACHILLES_HAS_AVX512
 
-void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
+void sine_and_cosine_of_lanes(const Double8* angle, Double8* sine, Double8* cosine) {
     (has_avx512 ? Avx512Lanes::sine_and_cosine : PortableLanes::sine_and_cosine)(angle, sine, cosine);
 }
 
 #else
 
-void sine_and_cosine_of_lanes(const Eight* angle, Eight* sine, Eight* cosine) {
+void sine_and_cosine_of_lanes(const Double8* angle, Double8* sine, Double8* cosine) {
     PortableLanes::sine_and_cosine(angle, sine, cosine);
 }
 

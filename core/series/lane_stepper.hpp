@@ -10,7 +10,7 @@
 #include <memory>
 #include <vector>
 
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 #include "program/terms.hpp"
 #include "series/series.hpp"
 
@@ -20,7 +20,7 @@ namespace achilles {
 struct LanePrograms {
     std::size_t coordinates;
     const SeriesProgram &flight, &contact;
-    const ProgramOf<ContactTerms>& contact_terms;
+    const TypedProgram<ContactTerms>& contact_terms;
 };
 
 // For eight runs: the input of a step, and its result.
@@ -28,31 +28,31 @@ struct LaneStep {
     explicit LaneStep(std::size_t coordinates)
         : q_and_v(2 * coordinates), impulse_direction(coordinates), g(coordinates) {}
 
-    Eight t, until;     // s: current time, and latest end of the motion
-    Eight state_error;  // as in Gap
+    Double8 t, until;     // s: current time, and latest end of the motion
+    Double8 state_error;  // as in Gap
     // In flight: the gap, as in Gap; `known` is 1 if it starts from zero, else 0. After a step without an event, the
     // gap at the end of the step, from its series.
-    Eight h, hdot, error, rate_error, known;
-    Eight duration;  // of the last step, s
-    Eight brief;     // in flight: the length of a brief step from here, s
+    Double8 h, hdot, error, rate_error, known;
+    Double8 duration;  // of the last step, s
+    Double8 brief;     // in flight: the length of a brief step from here, s
     // The contact quantities at the end of the step, and the effect on h of rounding q.
-    Eight end_h, end_hdot, end_W, end_gap_t, rounding;
+    Double8 end_h, end_hdot, end_W, end_gap_t, rounding;
     // In contact: the minimum gap at the ends of steps, and the number of steps, of which only the last may not be
     // plain.
-    Eight least_gap;
+    Double8 least_gap;
     long steps = 0;
-    std::vector<Eight> q_and_v, impulse_direction, g;  // the state; M^-1 g'/W and dh at the end of the step
+    std::vector<Double8> q_and_v, impulse_direction, g;  // the state; M^-1 g'/W and dh at the end of the step
     // The outcome of the step. After a step that is not plain, t is unchanged; in contact q_and_v and `duration` are
     // those before it. All other members are then undefined.
-    enum class End : char { not_plain, no_event, impact };
-    std::array<End, Eight::count> end{};
+    enum class LaneOutcome : char { needs_scalar_step, no_event, impact };
+    std::array<LaneOutcome, Double8::count> end{};
 };
 
 class LaneStepper {
  public:
     virtual ~LaneStepper() = default;
     // The parameters of the runs, in the order of the description.
-    virtual void fix(const std::vector<Eight>& parameters) = 0;
+    virtual void fix(const std::vector<Double8>& parameters) = 0;
     // One step in flight. A brief step has the lower order; the flight should end within LaneStep::brief, or needs more
     // steps.
     virtual void fly(LaneStep& step, bool brief = false) = 0;

@@ -44,8 +44,8 @@ class LaneStepperOver final : public LaneStepper {
           step_(dof_, 1, tolerance),
           before_(2 * dof_) {}
 
-    void fix(const std::vector<Eight>& parameters) override {
-        const std::span<const Eight> all(parameters);
+    void fix(const std::vector<Double8>& parameters) override {
+        const std::span<const Double8> all(parameters);
         flight_.series.fix(all);
         contact_.series.fix(all);
         contact_terms_.fix(all);
@@ -101,7 +101,7 @@ class LaneStepperOver final : public LaneStepper {
 
  private:
     // The series of one motion and their order.
-    struct Expansion {
+    struct LaneExpansion {
         SeriesEvaluator<Number> series;
         FixedOrder<Number> order;
     };
@@ -205,14 +205,14 @@ class LaneStepperOver final : public LaneStepper {
 
     // first_descent() for each lane in which the partial sums are inconclusive.
     void look_closer(const Mask& plain, const Number& remainder, Mask& none, Mask& falls, Number& theta) const {
-        for (std::size_t i = 0; i < Eight::count; ++i) {
+        for (std::size_t i = 0; i < Double8::count; ++i) {
             if (!plain[i] || none[i] || falls[i]) continue;
             Polynomial p;
             p.degree = step_.order();
             for (std::size_t k = 0; k <= order(); ++k) p.c[k] = terms_[k][i];
             const auto found = first_descent(p, 0, remainder[i]);
-            if (found.kind == Descent::Kind::none) none.set(i);
-            if (found.kind != Descent::Kind::root || found.theta == 0.0) continue;
+            if (found.kind == FirstCrossing::Kind::none) none.set(i);
+            if (found.kind != FirstCrossing::Kind::root || found.theta == 0.0) continue;
             falls.set(i);
             theta.set(i, found.theta);
         }
@@ -268,16 +268,16 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     static void say(LaneStep& step, const Mask& none, const Mask& falls) {
-        for (std::size_t i = 0; i < Eight::count; ++i)
-            step.end[i] = falls[i]  ? LaneStep::End::impact
-                          : none[i] ? LaneStep::End::no_event
-                                    : LaneStep::End::not_plain;
+        for (std::size_t i = 0; i < Double8::count; ++i)
+            step.end[i] = falls[i]  ? LaneStep::LaneOutcome::impact
+                          : none[i] ? LaneStep::LaneOutcome::no_event
+                                    : LaneStep::LaneOutcome::needs_scalar_step;
     }
 
     std::size_t dof_;
-    Expansion flight_;
+    LaneExpansion flight_;
     FixedOrder<Number> brief_;  // for brief flights
-    Expansion contact_;
+    LaneExpansion contact_;
     ContactTerms<ProgramOver<Number>> contact_terms_;
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step
@@ -294,7 +294,7 @@ std::unique_ptr<LaneStepper> LaneKind<Bytes>::make_stepper(const LanePrograms& p
 }
 
 template <std::size_t Bytes>
-void LaneKind<Bytes>::sine_and_cosine(const Eight* angle, Eight* sine, Eight* cosine) {
+void LaneKind<Bytes>::sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine) {
     Lanes<Bytes> s, c;
     achilles::sine_and_cosine(Lanes<Bytes>(*angle), s, c);
     *sine = s;

@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 
 namespace achilles {
 
@@ -123,14 +123,14 @@ class OrderCode {
 
 // What is stored of each order for the inner sums of later orders, and which stored numbers each sum multiplies.
 struct LanePlan {
-    struct Kept {
+    struct StoredSums {
         std::uint32_t series;
         bool weighted;  // multiplied by the order
     };
     struct Sum {
         std::uint32_t left, right;  // indices into `kept`
     };
-    std::vector<Kept> kept;
+    std::vector<StoredSums> kept;
     std::vector<Sum> sums;  // in the order of the plan: the first plan.weighted are weighted
 
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);

@@ -157,7 +157,7 @@ struct InnerSums {
     InnerSums(const SeriesPlan& series, std::size_t inner_sums) : plan(series, inner_sums) {}
     std::size_t count() const { return plan.sums.size(); }
     std::size_t row() const { return plan.kept.size(); }
-    LanePlan::Kept kept(std::size_t i) const { return plan.kept[i]; }
+    LanePlan::StoredSums kept(std::size_t i) const { return plan.kept[i]; }
     std::size_t left(std::size_t i) const { return plan.sums[i].left; }
     std::size_t right(std::size_t i) const { return plan.sums[i].right; }
 
@@ -182,7 +182,7 @@ struct InnerSums<double> {
     explicit InnerSums(const SeriesPlan& series, std::size_t = 0) : plan(series) {}
     std::size_t count() const { return plan.lanes; }
     std::size_t row() const { return plan.row(); }
-    LanePlan::Kept kept(std::size_t i) const {
+    LanePlan::StoredSums kept(std::size_t i) const {
         if (i < plan.lanes) return {plan.left[i], i < plan.weighted};
         return {plan.right[i - plan.lanes], false};
     }
@@ -220,7 +220,7 @@ template <class Number>
 template <class Number>
 void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const SeriesTablesOver<Number>& tables,
                 std::size_t k) {
-    using Some = Pack<Number, 4>;
+    using Pack4 = Pack<Number, 4>;
     Number* const now = tables.now;
     for (std::size_t i = 0; i < plan.rules.size(); ++i)
         now[plan.rules[i].result] = value_of(plan.rules[i], tables.factors[i], now);
@@ -232,12 +232,12 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
         if (weighted) place = place * static_cast<double>(k);
     }
     Number* const totals = now + plan.series;
-    for (std::size_t i = 0; i < sums.count(); i += Some::count) {
+    for (std::size_t i = 0; i < sums.count(); i += Pack4::count) {
         const Number* const x = tables.rows + sums.left(i);
         const Number* const y = tables.rows + sums.right(i);
         const auto product = [&](std::size_t j) ->
-            typename Some::Value { return Some::load(x + j * width) * Some::load(y + (k + 1 - j) * width); };
-        Some::store(sums.template add_up<typename Some::Value>(k, product), totals + i);
+            typename Pack4::Value { return Pack4::load(x + j * width) * Pack4::load(y + (k + 1 - j) * width); };
+        Pack4::store(sums.template add_up<typename Pack4::Value>(k, product), totals + i);
     }
     const Number inverse = Number(1.0) / Number(static_cast<double>(k + 1));
     for (std::size_t i = 0; i < plan.weighted; ++i) totals[i] = totals[i] * inverse;

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "contacts/contact_law.hpp"
-#include "number/eight.hpp"
+#include "number/double8.hpp"
 #include "number/inner_loops.hpp"
 #include "series/evaluator.hpp"
 #include "series/gap.hpp"
@@ -122,14 +122,14 @@ class TaylorStep {
 
     // Error bounds of an event function: the remainder of this step, the error at its end from earlier steps, and the
     // rate at which the error of the state changes it.
-    struct Doubt {
+    struct EventUncertainty {
         Number own, earlier, drifting;
         Number remainder() const { return own + earlier; }
     };
-    Doubt doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const;
+    EventUncertainty doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const;
     // Adds the error of this step to the gap at its end, for later steps.
-    void add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes, const Doubt& doubt,
-                   GapOver<Number>& end) const;
+    void add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes,
+                   const EventUncertainty& doubt, GapOver<Number>& end) const;
     // True if partial sums (Abel) prove that an event function is below minus its remainder throughout the step, as
     // first_descent() would. term(k) is called in ascending order of k.
     template <class Term>
@@ -218,10 +218,10 @@ Number TaylorStep<Number>::size(int k) const {
 template <class Number>
 template <class Place>
 void TaylorStep<Number>::evaluate(const Number& span, Place* q_and_v) const {
-    using Some = Pack<Number, 2>;
-    for (std::size_t i = 0; i < 2 * dof_; i += Some::count)
-        Some::store(sum_of_powers<typename Some::Value>(order_, span, [&](int k) { return Some::load(row(k) + i); }),
-                    q_and_v + i);
+    using Pack2 = Pack<Number, 2>;
+    for (std::size_t i = 0; i < 2 * dof_; i += Pack2::count)
+        Pack2::store(sum_of_powers<typename Pack2::Value>(order_, span, [&](int k) { return Pack2::load(row(k) + i); }),
+                     q_and_v + i);
 }
 
 template <class Number>
@@ -239,7 +239,8 @@ void TaylorStep<Number>::event_terms(std::size_t contact, const Number& span, Nu
 // the flight, are included too. A dip smaller than this and the errors of earlier steps can be neither confirmed nor
 // excluded.
 template <class Number>
-auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const -> Doubt {
+auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const
+    -> EventUncertainty {
     using std::abs;
     const GapOver<Number>& gap = gaps_[contact];
     const bool open = watches_gap(contact);
@@ -255,7 +256,7 @@ auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const Te
 // tolerance of 1e-14 right except for 2 of 3300.
 template <class Number>
 void TaylorStep<Number>::add_error(std::size_t contact, const Number& span, const TermSizes<Number>& sizes,
-                                   const Doubt& doubt, GapOver<Number>& end) const {
+                                   const EventUncertainty& doubt, GapOver<Number>& end) const {
     const Number left_out = 0.16 * max(sizes.last - 1024.0 * unit_roundoff * sizes.all, 0.0);
     end.error = doubt.earlier + 0.125 * doubt.own + left_out;
     end.rate_error = doubt.drifting * span + static_cast<double>(order_ + 1) * left_out / span;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "model/flat.hpp"
+#include "model/degenerate_gap.hpp"
 #include "simulate/execution.hpp"
 
 namespace achilles {
@@ -18,7 +18,7 @@ double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<do
 
 // ---- impact ----
 
-void Execution::land(std::size_t which, const Contact& contact) {
+void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
     which_ = which;
     if (!(contact.hdot < 0.0)) {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(next_.state));
@@ -51,11 +51,11 @@ void Execution::land(std::size_t which, const Contact& contact) {
 }
 
 // An impact of one contact that leaves all held contacts held.
-void Execution::land_alone(const Contact& contact) {
+void ExecutionAutomaton::land_alone(const Contact& contact) {
     const double e = restitution(which_);
     conditions_ = nullptr;
     const ContactSet unpressed = always_unpressed(next_.mode);
-    for (const OfContact& known : all_conditions_)
+    for (const ContactConditions& known : all_conditions_)
         if (known.contact == which_ && known.mode == next_.mode && known.unpressed == unpressed)
             conditions_ = known.conditions.get();
     // For most impacts this check is enough. Flights near rounding level need the full treatment below, because the
@@ -92,7 +92,7 @@ void Execution::land_alone(const Contact& contact) {
 
 // Creates the truncation conditions at first use. The fast check itself is not timed: it takes less time than reading
 // the clock.
-bool Execution::could_truncate(const Collision& collision) {
+bool ExecutionAutomaton::could_truncate(const Collision& collision) {
     if (conditions_ == nullptr) {
         const ContactSet unpressed = always_unpressed(next_.mode);
         const Interval& e = surfaces_->restitution(which_).enclosure;
@@ -105,13 +105,13 @@ bool Execution::could_truncate(const Collision& collision) {
 }
 
 // Calls a proof of the conditions; could_truncate() must have been called.
-std::optional<Certificate> Execution::prove(
+std::optional<Certificate> ExecutionAutomaton::prove(
     std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
     return timed([&] { return ((*conditions_).*question)(collision); });
 }
 
 // Applies Newton's impact law and starts the next flight.
-void Execution::bounce(const Contact& contact, double e) {
+void ExecutionAutomaton::bounce(const Contact& contact, double e) {
     const Vector v_after = impact(contact, next_.state.v, e);
     record_.impact(next_.state, v_after, -contact.hdot, exchange_of(contact, e), ContactSet::of(which_));
     const double hdot = newton::rate_after(e, contact.hdot);
@@ -126,7 +126,7 @@ void Execution::bounce(const Contact& contact, double e) {
 }
 
 // Fast sufficient check: the last flight was so long and so high that too_short_to_resolve() is false.
-bool Execution::is_well_resolved(double speed) const {
+bool ExecutionAutomaton::is_well_resolved(double speed) const {
     const double q = next_.state.q.cwiseAbs().maxCoeff();
     return last_step_ > 1e-6 * (1.0 + next_.state.t) && last_step_ * speed > 1e-8 * (1.0 + q);
 }
@@ -134,7 +134,7 @@ bool Execution::is_well_resolved(double speed) const {
 // theory.md 6.3: the next flight, to leading order, is lower than four roundings of h or shorter than four of t. The
 // first check uses the last flight; with a very small e it may accept one flight that is too short, and the next impact
 // then ends here.
-bool Execution::too_short_to_resolve(const Collision& collision, double e) {
+bool ExecutionAutomaton::too_short_to_resolve(const Collision& collision, double e) {
     if (is_well_resolved(collision.speed)) return false;
     const double u = newton::rate_after(e, -collision.speed);
     const double a = -kinematics().normal_acceleration(collision.with(collision.tangential));
@@ -145,7 +145,7 @@ bool Execution::too_short_to_resolve(const Collision& collision, double e) {
 
 // Plastic impact, e = 0: the motion continues on the contact surface with velocity s. If hddot < 0, or if the contact
 // stays closed without a force, no bounce follows and no impact sequence is truncated.
-void Execution::capture(const Contact& contact, const Collision& before) {
+void ExecutionAutomaton::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
     Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
@@ -162,7 +162,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
         certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
-        certificate.decisive = "restitution 0: no impact sequence is truncated";
+        certificate.tightest_bound = "restitution 0: no impact sequence is truncated";
         certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(contact, collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
@@ -177,7 +177,7 @@ void Execution::capture(const Contact& contact, const Collision& before) {
 
 // Truncation at this collision, the last simulated impact: the constrained motion replaces the bouncing after it. The
 // phase changes at the estimated Zeno time.
-void Execution::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
+void ExecutionAutomaton::complete(const Contact& contact, const Collision& collision, Certificate certificate) {
     // A plastic impact leads to s. No impact leads to the v* of Def. 7, so the loss follows from the energies.
     Exchange plastic = exchange_of(contact, 0.0);
     if (collision.restart != collision.tangential)
@@ -193,8 +193,8 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
     Event& event = completion_.emplace();
     event.kind = Event::Kind::zeno;
     event.t = certificate.zeno_time;
-    event.truncation = Event::Truncation{collision.before.t, collision.before.q, collision.before.v, collision.restart,
-                                         collision.speed};
+    event.truncation = Event::TruncationRecord{collision.before.t, collision.before.q, collision.before.v,
+                                               collision.restart, collision.speed};
     event.certificate = std::move(certificate);
     event.contacts = ContactSet::of(which_);
     event.mode = mode;
@@ -202,7 +202,7 @@ void Execution::complete(const Contact& contact, const Collision& collision, Cer
 }
 
 // Records the Zeno event and continues in the constrained phase.
-void Execution::pass_zeno_point() {
+void ExecutionAutomaton::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
     next_.state.t = event.t;
@@ -214,13 +214,13 @@ void Execution::pass_zeno_point() {
 }
 
 // Starts a new phase after a change of the mode.
-void Execution::enter_phase() {
+void ExecutionAutomaton::enter_phase() {
     record_.close(next_.state.t);
     record_.open(next_.resting(), next_.held(), next_.state.t);
 }
 
 // Starts a new phase if the mode has changed; otherwise only the carriers may have.
-void Execution::enter_or_stay() {
+void ExecutionAutomaton::enter_or_stay() {
     if (next_.resting() != record_.mode()) return enter_phase();
     record_.carry_on(next_.held());
 }
@@ -228,7 +228,7 @@ void Execution::enter_or_stay() {
 // ---- release ----
 
 // Called if lambda = 0. It is a release if h''' > 0 is proved; otherwise contact and flight cannot be distinguished.
-void Execution::release(std::size_t which) {
+void ExecutionAutomaton::release(std::size_t which) {
     which_ = which;
     if (completing())
         return stop(Outcome::Kind::undecided,
@@ -256,14 +256,14 @@ void Execution::release(std::size_t which) {
 }
 
 // Records the release of these contacts.
-void Execution::leave(ContactSet contacts) {
+void ExecutionAutomaton::leave(ContactSet contacts) {
     Event event;
     event.kind = Event::Kind::release;
     event.contacts = contacts;
     event.mode = next_.resting();
     if (not_unique_) {
-        auto joint = std::make_shared<Joint>();
-        joint->not_unique = true;
+        auto joint = std::make_shared<MultiContactInfo>();
+        joint->is_nonunique = true;
         event.joint = std::move(joint);
     }
     event.t = next_.state.t;

@@ -41,7 +41,7 @@ void ContactForces::share() {
         run.parameters = parameters_;
         all_.emplace(*model_, run);
     }
-    const Closed closed = all_->at(state_, mode_.held());
+    const ClosedContacts closed = all_->at(state_, mode_.held());
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         hddot[static_cast<Eigen::Index>(i)] = all_->of(closed.which[i]).normal_acceleration(state_);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "model/model.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/sampler.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -50,7 +50,7 @@ class ContactForces {
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until needed
     std::map<ContactInMode, Evaluator<double>> forces_;
     std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
-    std::optional<Surfaces> all_;  // used if forces are not unique
+    std::optional<ContactCache> all_;  // used if forces are not unique
 };
 
 }  // namespace achilles

@@ -16,7 +16,7 @@
 #include <limits>
 
 #include "contacts/contact_law.hpp"
-#include "simulate/surfaces.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {

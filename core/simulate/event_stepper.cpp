@@ -4,7 +4,7 @@
 
 namespace achilles {
 
-EventStepper::EventStepper(const Model& model, const Run& run, Surfaces& surfaces)
+EventStepper::EventStepper(const Model& model, const Run& run, ContactCache& surfaces)
     : model_(&model),
       run_(run),
       surfaces_(&surfaces),
@@ -41,7 +41,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
 
 // Finds the first event in the last step. A candidate that proves to be no event may have shortened the step, which is
 // then checked again for the other contacts.
-StepResult::End EventStepper::find_event() {
+StepResult::StepOutcome EventStepper::find_event() {
     ContactSet met;
     while (const auto incident = first_incident(met)) {
         if (const auto end = meet(*incident)) return *end;
@@ -50,20 +50,20 @@ StepResult::End EventStepper::find_event() {
     return end_without_event();
 }
 
-std::optional<EventStepper::Incident> EventStepper::first_incident(ContactSet but) {
-    std::optional<Incident> first;
+std::optional<EventStepper::EventCandidate> EventStepper::first_incident(ContactSet but) {
+    std::optional<EventCandidate> first;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i) || !is_watched(i)) continue;
         contact_ = i;
-        const Descent descent = this->descent();
-        if (descent.kind == Descent::Kind::none) continue;
-        if (!first || descent.theta < first->descent.theta) first = Incident{i, descent};
+        const FirstCrossing descent = this->descent();
+        if (descent.kind == FirstCrossing::Kind::none) continue;
+        if (!first || descent.theta < first->descent.theta) first = EventCandidate{i, descent};
     }
     return first;
 }
 
 // First zero crossing of the contact's event function in the last step.
-Descent EventStepper::descent() {
+FirstCrossing EventStepper::descent() {
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
             return gap_descent();
@@ -73,7 +73,7 @@ Descent EventStepper::descent() {
     return {};
 }
 
-std::optional<StepResult::End> EventStepper::meet(const Incident& incident) {
+std::optional<StepResult::StepOutcome> EventStepper::meet(const EventCandidate& incident) {
     contact_ = incident.contact;
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
@@ -84,15 +84,15 @@ std::optional<StepResult::End> EventStepper::meet(const Incident& incident) {
     return std::nullopt;
 }
 
-StepResult::End EventStepper::end_without_event() {
+StepResult::StepOutcome EventStepper::end_without_event() {
     double least = std::numeric_limits<double>::infinity();
     if (!request_->mode.is_free()) {
-        if (!end_on_surface()) return End::off_surface;
+        if (!end_on_surface()) return StepOutcome::off_surface;
         least = result_.gap;
     }
     if (!settle_gaps({}, least)) return land_under();
     end_step(least);
-    return End::no_event;
+    return StepOutcome::no_event;
 }
 
 // Whether the segment's start is as accurate as possible, because the run uses exact_tolerance or less.
@@ -119,9 +119,9 @@ void EventStepper::end_step(double gap) {
     result_.gap = gap;
 }
 
-StepResult::End EventStepper::fail(StepFailure failure) {
+StepResult::StepOutcome EventStepper::fail(StepFailure failure) {
     result_.failure = failure;
-    return End::no_step;
+    return StepOutcome::step_failed;
 }
 
 }  // namespace achilles

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "contacts/contact_law.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/flow.hpp"
 #include "simulate/impact.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -50,15 +50,15 @@ struct StepRequest {
 
 // Result of a request: the state reached, with no event before it, and how the step ended there.
 struct StepResult {
-    enum class End : char {
+    enum class StepOutcome : char {
         no_event,        // continue from `state` with `starts`
         impact,          // the gap of `which` closes; `state` is on the contact surface, before the impact
         force_vanishes,  // of the held contact `which`
-        doubt,           // no event so far, but cannot decide whether one follows just after
+        ambiguous,       // no event so far, but cannot decide whether one follows just after
         off_surface,     // `state` cannot be projected onto the contact surfaces where it belongs
-        no_step          // no step was possible, see `failure`; `state` is that of the request
+        step_failed      // no step was possible, see `failure`; `state` is that of the request
     };
-    End end = End::no_event;
+    StepOutcome end = StepOutcome::no_event;
     // Number of steps made. If 0, the time is that of the request: its event lies where the step before ended, within
     // the remainder of that step. `state` may still be moved onto the contact surface.
     long steps = 0;
@@ -78,7 +78,7 @@ class EventStepper {
  public:
     // `surfaces` must belong to the same model and run; both must outlive this object. One object can serve consecutive
     // runs with the same parameters, tolerance and method.
-    EventStepper(const Model& model, const Run& run, Surfaces& surfaces);
+    EventStepper(const Model& model, const Run& run, ContactCache& surfaces);
 
     // Makes one step by the method of the run. Sets `flow`; the result is valid until the next step. A request with
     // begins = false continues the last step, which must have ended without an event; after any other end, the next
@@ -86,41 +86,41 @@ class EventStepper {
     const StepResult& step(const StepRequest& request);
 
  private:
-    using End = StepResult::End;
+    using StepOutcome = StepResult::StepOutcome;
     // A possible event of a contact in the last step.
-    struct Incident {
+    struct EventCandidate {
         std::size_t contact = 0;
-        Descent descent;
+        FirstCrossing descent;
     };
-    End find_event();
-    std::optional<Incident> first_incident(ContactSet but);
-    Descent descent();
-    std::optional<End> meet(const Incident& incident);
-    End end_without_event();
+    StepOutcome find_event();
+    std::optional<EventCandidate> first_incident(ContactSet but);
+    FirstCrossing descent();
+    std::optional<StepOutcome> meet(const EventCandidate& incident);
+    StepOutcome end_without_event();
 
     // Gaps of open contacts (flight.cpp).
-    Descent gap_descent();
-    std::optional<End> meet_gap(Descent descent);
+    FirstCrossing gap_descent();
+    std::optional<StepOutcome> meet_gap(FirstCrossing descent);
     const Polynomial& gap_along(std::size_t contact);
     void make_gap(std::size_t contact, Polynomial& h);
-    End doubt_gap(double theta);
+    StepOutcome doubt_gap(double theta);
     bool surely_closes_at_start();
-    End land_here();
-    End land_under();
-    std::optional<End> locate_impact(double theta);
-    End end_flight();
+    StepOutcome land_here();
+    StepOutcome land_under();
+    std::optional<StepOutcome> locate_impact(double theta);
+    StepOutcome end_flight();
     bool settle_gaps(ContactSet but, double& least);
     // Forces of held contacts (flight.cpp).
-    Descent force_descent();
-    std::optional<End> meet_force(Descent descent);
-    End doubt_force(double theta);
-    std::optional<End> locate_release(double theta);
+    FirstCrossing force_descent();
+    std::optional<StepOutcome> meet_force(FirstCrossing descent);
+    StepOutcome doubt_force(double theta);
+    std::optional<StepOutcome> locate_release(double theta);
     bool end_on_surface();
     // Events of either kind.
     bool end_step_at(double theta);
     bool end_step_after(double duration);
     void end_step(double gap);
-    End fail(StepFailure failure);
+    StepOutcome fail(StepFailure failure);
     bool knows_its_start() const;
     bool is_last() const;
     ContactSet held() const { return request_->held(); }
@@ -132,7 +132,7 @@ class EventStepper {
 
     const Model* model_;
     Run run_;
-    Surfaces* surfaces_;
+    ContactCache* surfaces_;
     Flow usual_;                   // at the tolerance of the run
     std::unique_ptr<Flow> exact_;  // at exact_tolerance; created at first use
     // The last step.

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "model/flat.hpp"
-#include "simulate/edge_watch.hpp"
+#include "model/degenerate_gap.hpp"
+#include "simulate/domain_monitor.hpp"
 
 namespace achilles {
 
@@ -24,9 +24,9 @@ constexpr int most_stalled = 100;
 
 }  // namespace
 
-Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
-                     InDoubt in_doubt)
-    : in_doubt_(in_doubt),
+ExecutionAutomaton::ExecutionAutomaton(std::shared_ptr<const Model> model, const Run& run, ContactCache& surfaces,
+                                       RunMonitor* watch, Recording keep, AmbiguityPolicy ambiguity_policy)
+    : ambiguity_policy_(ambiguity_policy),
       watch_(watch),
       run_(run),
       model_(std::move(model)),
@@ -35,7 +35,7 @@ Execution::Execution(std::shared_ptr<const Model> model, const Run& run, Surface
     begin();
 }
 
-bool Execution::restart(const Run& run) {
+bool ExecutionAutomaton::restart(const Run& run) {
     const Options &now = run_.options, &next = run.options;
     if (next.tolerance != now.tolerance || next.method != now.method || next.truncation != now.truncation) return false;
     if (run.parameters != run_.parameters) {
@@ -43,7 +43,8 @@ bool Execution::restart(const Run& run) {
         surfaces_->bounce_as(run);
     }
     run_ = run;
-    for (OfContact& known : all_conditions_) known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
+    for (ContactConditions& known : all_conditions_)
+        known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = changes_of_carriers_ = 0;
@@ -57,7 +58,7 @@ bool Execution::restart(const Run& run) {
 // ---- start ----
 
 // Starts in free flight, in contact, or with an impact, which takes precedence.
-void Execution::begin() {
+void ExecutionAutomaton::begin() {
     forget_held();
     next_.state = run_.start();
     scale_ = {Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
@@ -89,7 +90,7 @@ void Execution::begin() {
 }
 
 // Contacts that start with h = 0 and hdot = 0.
-void Execution::start_at_rest(ContactSet resting) {
+void ExecutionAutomaton::start_at_rest(ContactSet resting) {
     if (resting.empty()) return;
     if (resting.count() > 1) {
         if (!surfaces_->project(next_.state, resting, resting)) return fail_projection();
@@ -104,7 +105,7 @@ void Execution::start_at_rest(ContactSet resting) {
 
 // ---- next step ----
 
-const StepRequest* Execution::next() {
+const StepRequest* ExecutionAutomaton::next() {
     if (outcome_ || (watch_ != nullptr && is_cancelled())) return nullptr;
     if (!is_time_left() && completing() && completion_->t < run_.options.end_time) pass_zeno_point();
     if (!next_.unwatched.empty() && !is_time_left() && next_.until < run_.options.end_time) end_sharing();
@@ -137,20 +138,20 @@ const StepRequest* Execution::next() {
 }
 
 // Saves the start of the segment.
-void Execution::note_beginning() {
+void ExecutionAutomaton::note_beginning() {
     record_.stretch(next_.state);
-    if (!may_ask_exactly()) return;
+    if (!can_retry_tight()) return;
     beginning_.next = next_;
     beginning_.recorded = record_.mark();
     beginning_.last_step = last_step_;
     beginning_.stalled = stalled_;
 }
 
-bool Execution::is_time_left() const { return next_.until - next_.state.t > 1e-15 * std::abs(next_.state.t); }
+bool ExecutionAutomaton::is_time_left() const { return next_.until - next_.state.t > 1e-15 * std::abs(next_.state.t); }
 
 // Reports progress, and checks for cancellation. Called once per step; every impact and every release lies between two
 // steps.
-bool Execution::is_cancelled() {
+bool ExecutionAutomaton::is_cancelled() {
     watch_->time.store(next_.state.t, std::memory_order_relaxed);
     watch_->impacts.store(record_.impacts(), std::memory_order_relaxed);
     if (!watch_->stop.stop_requested()) return false;
@@ -160,39 +161,39 @@ bool Execution::is_cancelled() {
 
 // Estimated error of the state relative to its size: a tenth of the tolerance for each step so far, as measured, and
 // the certified errors of the truncations.
-double Execution::state_error() const {
+double ExecutionAutomaton::state_error() const {
     return integration_error(run_.options, static_cast<double>(record_.steps())) + cut_error_;
 }
 
 // ---- result of a step ----
 
-void Execution::accept(const StepResult& result) {
-    using End = StepResult::End;
+void ExecutionAutomaton::accept(const StepResult& result) {
+    using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
-    const bool shared = result.end == End::doubt && carry_on_without(result.which, *result.state);
-    if (result.end == End::doubt && !shared && may_ask_exactly()) return ask_exactly();
+    const bool shared = result.end == StepOutcome::ambiguous && carry_on_without(result.which, *result.state);
+    if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
     note_scale();
     switch (result.end) {
-        case End::no_event:
+        case StepOutcome::no_event:
             next_.begins = false;
             return check_touching();
-        case End::impact:
+        case StepOutcome::impact:
             return land(result.which, result.contact);
-        case End::force_vanishes:
+        case StepOutcome::force_vanishes:
             return release(result.which);
-        case End::doubt:
-            return shared ? carry_on() : stop(Outcome::Kind::undecided, doubt(result));
-        case End::off_surface:
+        case StepOutcome::ambiguous:
+            return shared ? carry_on() : stop(Outcome::Kind::undecided, ambiguity_text(result));
+        case StepOutcome::off_surface:
             return fail_projection();
-        case End::no_step:
+        case StepOutcome::step_failed:
             return stop_at(result.failure);
     }
 }
 
 // Records the steps made, and moves to their end.
-void Execution::advance(const StepResult& result) {
+void ExecutionAutomaton::advance(const StepResult& result) {
     if (result.flow != nullptr) {
         record_.step(*result.flow, result.gap, next_.resting());
     } else {
@@ -203,7 +204,7 @@ void Execution::advance(const StepResult& result) {
     for (std::size_t i = 0; i < next_.starts.size(); ++i) next_.starts[i] = result.starts[i];
 }
 
-void Execution::note_scale() {
+void ExecutionAutomaton::note_scale() {
     const State& state = next_.state;
     scale_.q = scale_.q.cwiseMax(state.q.cwiseAbs());
     scale_.v = scale_.v.cwiseMax(state.v.cwiseAbs());
@@ -211,7 +212,7 @@ void Execution::note_scale() {
 }
 
 // Begins a segment in this mode that ends at `until` (s) at the latest.
-void Execution::begin_stretch(Mode mode, double until) {
+void ExecutionAutomaton::begin_stretch(Mode mode, double until) {
     next_.mode = mode;
     next_.first_step = 0.0;
     next_.until = until;
@@ -220,19 +221,20 @@ void Execution::begin_stretch(Mode mode, double until) {
 }
 
 // Updates the gap rates of open contacts after a velocity jump, except those in `but`.
-void Execution::change_other_rates(const Vector& v_before, ContactSet but) {
+void ExecutionAutomaton::change_other_rates(const Vector& v_before, ContactSet but) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (!next_.mode.is_held(i) && !but.contains(i) && !next_.touching.contains(i))
             next_.starts[i].gap.hdot += surfaces_->of(i).at(next_.state).g.dot(next_.state.v - v_before);
 }
 
 // False if the segment already uses exact_tolerance, or the run does.
-bool Execution::may_ask_exactly() const {
-    return in_doubt_ == InDoubt::ask_exactly && !next_.exactly && run_.options.tolerance > exact_tolerance;
+bool ExecutionAutomaton::can_retry_tight() const {
+    return ambiguity_policy_ == AmbiguityPolicy::retry_tight && !next_.exactly &&
+           run_.options.tolerance > exact_tolerance;
 }
 
 // Returns to the start of the segment, to redo it at exact_tolerance.
-void Execution::ask_exactly() {
+void ExecutionAutomaton::retry_tight() {
     next_ = beginning_.next;
     record_.go_back(beginning_.recorded);
     last_step_ = beginning_.last_step;
@@ -242,7 +244,7 @@ void Execution::ask_exactly() {
 
 // ---- end of the run ----
 
-std::string Execution::doubt(const StepResult& result) const {
+std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
     const std::string place = where(next_.state);
     if (next_.mode.is_held(result.which))
         return "cannot decide whether the contact is released: the contact force is within integration error of zero "
@@ -255,7 +257,7 @@ std::string Execution::doubt(const StepResult& result) const {
     return fmt::format("{}: cannot decide whether an impact occurs just after {}", known, place);
 }
 
-void Execution::stop_at(StepFailure failure) {
+void ExecutionAutomaton::stop_at(StepFailure failure) {
     if (failure == StepFailure::step_too_small && is_chatter()) return end_chatter({});
     const std::string place = where(next_.state);
     if (failure == StepFailure::not_a_number)
@@ -268,22 +270,22 @@ void Execution::stop_at(StepFailure failure) {
     stop(Outcome::Kind::step_too_small, "no step is small enough for the tolerance after " + place);
 }
 
-void Execution::fail_projection() {
+void ExecutionAutomaton::fail_projection() {
     const std::string edge = edge_of_contact(*model_, run_, next_.state), place = where(next_.state);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, at {}", edge, place));
     stop(Outcome::Kind::left_the_domain,
          fmt::format("dh = 0 at the contact: the normal is not defined, at {}; {}", place, flat_hint));
 }
 
-void Execution::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
+void ExecutionAutomaton::stop(Outcome::Kind kind, std::string message) { outcome_ = Outcome{kind, std::move(message)}; }
 
-void Execution::run_out_of_memory() {
+void ExecutionAutomaton::run_out_of_memory() {
     stop(Outcome::Kind::out_of_memory,
          fmt::format("{} steps by t = {:.9g}, and no more memory is available on this machine", record_.steps(),
                      next_.state.t));
 }
 
-Trajectory Execution::finish() {
+Trajectory ExecutionAutomaton::finish() {
     Trajectory trajectory = record_.finish(next_.state, std::move(*outcome_), evaluations_);
     trajectory.statistics.certificate_seconds = proving_;
     return trajectory;

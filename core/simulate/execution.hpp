@@ -13,29 +13,29 @@
 #include <memory>
 #include <optional>
 
-#include "certify/pair.hpp"
 #include "certify/truncation.hpp"
+#include "certify/two_contacts.hpp"
 #include "contacts/complementarity.hpp"
+#include "simulate/contact_cache.hpp"
+#include "simulate/event_stepper.hpp"
 #include "simulate/recorder.hpp"
 #include "simulate/simulate.hpp"
-#include "simulate/event_stepper.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
 // Text of a state, for messages.
 std::string where(const State& state);
 
-class Execution {
+class ExecutionAutomaton {
  public:
     // What to do if a step cannot decide whether an event occurs: redo the segment from its start, once, at
     // exact_tolerance; or end the run with outcome `undecided`.
-    enum class InDoubt { ask_exactly, end };
+    enum class AmbiguityPolicy { retry_tight, stop };
 
     // Starts the run, in free flight, in contact or with an impact. Model::check() must accept it. `surfaces` must
     // belong to the same model and run. They and `watch`, which may be null, must outlive this object.
-    Execution(std::shared_ptr<const Model> model, const Run& run, Surfaces& surfaces, Watch* watch, Keep keep,
-              InDoubt in_doubt);
+    ExecutionAutomaton(std::shared_ptr<const Model> model, const Run& run, ContactCache& surfaces, RunMonitor* watch,
+                       Recording keep, AmbiguityPolicy ambiguity_policy);
 
     // Prepares this object for another run, reusing its buffers. The run must have the same tolerance, method and
     // truncation, and parameters that differ only where restitution depends on them. Returns false and changes nothing
@@ -50,8 +50,8 @@ class Execution {
     //     no_event        the next step
     //     impact          Newton's impact law, or contact until the Zeno point if the truncation is certified
     //     force_vanishes  release of the contact if h''' > 0 is proved
-    //     doubt           the segment is redone at exact_tolerance if that is allowed; otherwise the run ends
-    //     off_surface, no_step    the run ends
+    //     ambiguous       the segment is redone at exact_tolerance if that is allowed; otherwise the run ends
+    //     off_surface, step_failed    the run ends
     // It also ends if an event cannot be decided. Then the run has an outcome and next() returns null.
     void accept(const StepResult& result);
 
@@ -66,9 +66,9 @@ class Execution {
 
  private:
     // Data to restore the start of the current segment.
-    struct Beginning {
+    struct SegmentStart {
         StepRequest next;
-        Recorder::Mark recorded;
+        Recorder::Checkpoint recorded;
         double last_step;
         int stalled;
     };
@@ -86,9 +86,9 @@ class Execution {
     }
     void change_other_rates(const Vector& v_before, ContactSet but);
     void note_scale();
-    bool may_ask_exactly() const;
-    void ask_exactly();
-    std::string doubt(const StepResult& result) const;
+    bool can_retry_tight() const;
+    void retry_tight();
+    std::string ambiguity_text(const StepResult& result) const;
     void stop_at(StepFailure failure);
     void fail_projection();
     void stop(Outcome::Kind kind, std::string message);
@@ -105,8 +105,8 @@ class Execution {
     double restitution(std::size_t contact) const { return surfaces_->restitution(contact).value; }
     ContactKinematics& kinematics() { return surfaces_->of(which_, next_.mode); }
     // Calls `work` and adds its duration to the time of proofs.
-    template <class Work>
-    auto timed(const Work& work) {
+    template <class WorkIntegrator>
+    auto timed(const WorkIntegrator& work) {
         const auto clock = std::chrono::steady_clock::now();
         auto result = work();
         proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
@@ -125,20 +125,20 @@ class Execution {
     void leave(ContactSet contacts);
     void enter_phase();
     void enter_or_stay();
-    // ---- several closed contacts (several.cpp, holding.cpp) ----
+    // ---- several closed contacts (multi_contact.cpp, contact_mode.cpp) ----
     std::optional<ContactSet> landing_with(std::size_t which, const Contact& contact);
     bool is_order_independent(ContactSet landing);
     double rounding_so_far(const Contact& contact) const;
     bool stays_held(std::size_t which, const Contact& contact);
-    bool is_pressed(const Closed& closed, ContactSet held, const State& state);
+    bool is_pressed(const ClosedContacts& closed, ContactSet held, const State& state);
     double plastic_work(const State& before, ContactSet contacts);
     void collide(ContactSet landing);
-    bool complete_pair(ContactSet landing, const Vector& v_after, bool below_rounding);
+    bool complete_pair(ContactSet landing, const Vector& v_after, bool cut_at_resolution);
     bool complete_pair(std::size_t first, std::size_t second, Mode others, ContactSet landing, const Vector& v_after,
-                       bool below_rounding);
+                       bool cut_at_resolution);
     bool too_short_to_resolve(std::size_t which, double hdot);
     void decide(ContactSet closed, ContactSet vanishing = {});
-    ContactVector<double> accelerations(const Closed& closed);
+    ContactVector<double> accelerations(const ClosedContacts& closed);
     bool judge(ContactSet closed, ContactSet active, ContactSet vanishing);
     bool judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed);
     ContactSet vanishing_with(std::size_t which);
@@ -156,24 +156,24 @@ class Execution {
     bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
-    // ---- linearly dependent gradients (carriers.cpp) ----
-    ContactVector<double> rounding_of(const Closed& closed);
-    struct Carriers {
+    // ---- linearly dependent gradients (load_sharing.cpp) ----
+    ContactVector<double> rounding_of(const ClosedContacts& closed);
+    struct LoadSharing {
         ContactSet places, opening;  // places in a Closed; other contacts that leave at once
         double least = 0.0;          // smallest force, as a fraction of the largest
         double most = 0.0;           // largest force
     };
-    std::vector<Carriers> carriers_of(const Closed& closed, const ContactVector<double>& hddot);
-    bool hold_dependent(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces,
+    std::vector<LoadSharing> carriers_of(const ClosedContacts& closed, const ContactVector<double>& hddot);
+    bool hold_dependent(const ClosedContacts& closed, const ContactVector<double>& hddot, const Complementarity& forces,
                         ContactSet doubted = {});
-    bool share(const Closed& closed, const ContactVector<double>& hddot, const Complementarity& forces);
+    bool share(const ClosedContacts& closed, const ContactVector<double>& hddot, const Complementarity& forces);
     void end_sharing();
     double end_of_sharing() const;
-    bool carry(const Closed& closed, const Carriers& carriers);
+    bool carry(const ClosedContacts& closed, const LoadSharing& carriers);
     void hold(Mode mode, ContactSet touching);
-    void note_carried(const Closed& closed, ContactSet pressed);
-    bool is_stuck(const Closed& closed, ContactSet pressed);
-    ContactSet enough_of(const Closed& closed, const ContactVector<double>& hddot, ContactSet pressed);
+    void note_carried(const ClosedContacts& closed, ContactSet pressed);
+    bool is_stuck(const ClosedContacts& closed, ContactSet pressed);
+    ContactSet enough_of(const ClosedContacts& closed, const ContactVector<double>& hddot, ContactSet pressed);
     bool carry_on_without(std::size_t which, const State& state);
     void forget_held() {
         next_.mode = {};
@@ -186,30 +186,30 @@ class Execution {
     State scale_;             // the largest |q|, |v|, |t| so far
     long evaluations_ = 0;
     int stalled_ = 0;  // consecutive steps as short as the resolution of t
-    InDoubt in_doubt_;
-    Watch* watch_;
+    AmbiguityPolicy ambiguity_policy_;
+    RunMonitor* watch_;
     Run run_;
     std::optional<Outcome> outcome_;
     std::shared_ptr<const Model> model_;
     Recorder record_;
-    Surfaces* surfaces_;
-    Beginning beginning_;              // of the current segment, if it may be redone
+    ContactCache* surfaces_;
+    SegmentStart beginning_;           // of the current segment, if it may be redone
     std::optional<Event> completion_;  // the Zeno event ahead, after a truncation
     // Truncation conditions for a contact and the held contacts, created when first needed.
-    struct OfContact {
+    struct ContactConditions {
         std::size_t contact;
         Mode mode;
         ContactSet unpressed;
         std::unique_ptr<TruncationConditions> conditions;
     };
-    std::vector<OfContact> all_conditions_;
-    struct PairOf {
+    std::vector<ContactConditions> all_conditions_;
+    struct PairConditionsCache {
         std::size_t first, second;
         Mode mode;  // of the other contacts
         ContactSet unpressed;
         std::unique_ptr<PairConditions> conditions;
     };
-    std::vector<PairOf> all_pairs_;               // the same for pairs
+    std::vector<PairConditionsCache> all_pairs_;  // the same for pairs
     TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique

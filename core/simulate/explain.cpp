@@ -3,10 +3,10 @@
 #include <cmath>
 
 #include "certify/truncation.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/sampler.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles {
 
@@ -22,7 +22,7 @@ std::size_t first_of(ContactSet contacts, const Model& model) {
 ContactSet unpressed_at(const Trajectory& trajectory, Mode mode, const State& state) {
     ContactSet found;
     if (mode.is_free()) return found;
-    Surfaces surfaces(*trajectory.model, trajectory.run);
+    ContactCache surfaces(*trajectory.model, trajectory.run);
     const State scale = scale_of(trajectory);
     for (const std::size_t i : mode.held())
         if (surfaces.is_nearly_free(i, mode.without(i), state, scale) && surfaces.never_needs_force(i, mode.without(i)))

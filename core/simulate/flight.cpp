@@ -25,7 +25,7 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     if (flow_->is_expansion()) return;
     ContactKinematics& surface = surfaces_->of(contact);
     const Contact end = surface.at(flow_->end());
-    const Polynomial::End reached = h.at_end();
+    const Polynomial::EndValue reached = h.at_end();
     const double value = end.h - reached.value, slope = end.hdot * flow_->duration() - reached.slope;
     if (!surface.within_gap_error(value, 4.0, end, flow_->end())) {
         // Adds theta^m (value - b + b theta), which has this value and slope at theta = 1 and no lower powers.
@@ -36,26 +36,26 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     }
 }
 
-Descent EventStepper::gap_descent() {
+FirstCrossing EventStepper::gap_descent() {
     const Polynomial& h = gap_along(contact_);
     return first_descent(h, start_of(contact_).multiplicity, flow_->remainder(contact_, h));
 }
 
 // Returns nullopt if the gap stays open along the step, which may have been shortened.
-std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
+std::optional<StepResult::StepOutcome> EventStepper::meet_gap(FirstCrossing descent) {
     const bool asked_before = start_of(contact_).asked_again;
-    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta))  // its remainder is smaller
+    if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta))  // its remainder is smaller
         descent = gap_descent();
     switch (descent.kind) {
-        case Descent::Kind::none:
+        case FirstCrossing::Kind::none:
             break;
-        case Descent::Kind::root:
+        case FirstCrossing::Kind::root:
             if (descent.theta == 0.0) return land_here();
             return locate_impact(descent.theta);  // nullopt: no impact, or the step was shortened
-        case Descent::Kind::rose:
+        case FirstCrossing::Kind::increasing:
             if (!knows_its_start() || asked_before) return doubt_gap(0.0);
             break;
-        case Descent::Kind::open:
+        case FirstCrossing::Kind::open:
             // Try again from where the gap enters its remainder: an event near the end of this step is then inside the
             // next one.
             if (!asked_before && end_step_at(descent.theta)) {
@@ -66,7 +66,7 @@ std::optional<StepResult::End> EventStepper::meet_gap(Descent descent) {
                 return doubt_gap(descent.theta);
             }
             break;
-        case Descent::Kind::undecided:
+        case FirstCrossing::Kind::undecided:
             return doubt_gap(descent.theta);
     }
     return std::nullopt;
@@ -88,7 +88,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         const Polynomial& h = gap_along(i);
         ContactKinematics& surface = surfaces_->of(i);
         const Contact end = surface.at(flow_->end());
-        const Polynomial::End reached = h.at_end();
+        const Polynomial::EndValue reached = h.at_end();
         Gap gap{reached.value, reached.slope / flow_->duration()};
         if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
             if (end.h < 0.0) {
@@ -106,13 +106,13 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
 }
 
 // It is ambiguous from theta on whether the gap closes: ends the step there.
-StepResult::End EventStepper::doubt_gap(double theta) {
+StepResult::StepOutcome EventStepper::doubt_gap(double theta) {
     Polynomial h;
     flow_->event_function(contact_, h);
     result_.remainder = flow_->remainder(contact_, h);
     if (end_step_at(theta) && (held().empty() || end_on_surface()))
         end_step(surfaces_->of(contact_).at(flow_->end()).h);
-    return End::doubt;
+    return StepOutcome::ambiguous;
 }
 
 // Whether the gap starts within its remainder and closes so fast that it must pass through zero before it could turn
@@ -130,17 +130,17 @@ bool EventStepper::surely_closes_at_start() {
 }
 
 // Impact at the start of the step: the gap reached zero within the remainder of the step before.
-StepResult::End EventStepper::land_here() {
+StepResult::StepOutcome EventStepper::land_here() {
     landed_ = request_->state;
     result_.state = &landed_;
-    if (!surfaces_->land(landed_, contact_, request_->mode, result_.contact)) return End::off_surface;
+    if (!surfaces_->land(landed_, contact_, request_->mode, result_.contact)) return StepOutcome::off_surface;
     if (!(result_.contact.hdot < 0.0)) return doubt_gap(0.0);
-    return End::impact;
+    return StepOutcome::impact;
 }
 
 // The step ends below the contact surface by h(q), although the gap polynomial, accurate to the tolerance, stays
 // positive. Finds the zero of h(q) by bisection, repeating the step to each midpoint, and impacts there.
-StepResult::End EventStepper::land_under() {
+StepResult::StepOutcome EventStepper::land_under() {
     const double duration = flow_->duration();
     double above = 0.0, under = 1.0;
     while (under - above > 0x1p-50) {
@@ -154,7 +154,7 @@ StepResult::End EventStepper::land_under() {
 
 // Integrates to the root and corrects it by Newton's method until the rest is within a Taylor step. Returns nullopt if
 // the step contains no impact (only the dense output crossed zero).
-std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
+std::optional<StepResult::StepOutcome> EventStepper::locate_impact(double theta) {
     double duration = theta * flow_->duration();
     for (int round = 0; round < 8; ++round) {
         known_ = {};
@@ -176,7 +176,7 @@ std::optional<StepResult::End> EventStepper::locate_impact(double theta) {
 }
 
 // Ends the last step on the contact surface, with an impact.
-StepResult::End EventStepper::end_flight() {
+StepResult::StepOutcome EventStepper::end_flight() {
     const std::size_t contact = contact_;
     const bool landed = surfaces_->land(flow_->edit_end(), contact, request_->mode, result_.contact);
     double least = landed ? result_.contact.h : surfaces_->of(contact).at(flow_->end()).h;
@@ -186,25 +186,25 @@ StepResult::End EventStepper::end_flight() {
         contact_ = contact;
     }
     end_step(least);
-    return landed ? End::impact : End::off_surface;
+    return landed ? StepOutcome::impact : StepOutcome::off_surface;
 }
 
 // ---- forces of held contacts ----
 
 // Returns nullopt if the force stays positive along the step, which may have been shortened.
-std::optional<StepResult::End> EventStepper::meet_force(Descent descent) {
+std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing descent) {
     const bool asked_before = start_of(contact_).asked_again;
-    if (descent.kind == Descent::Kind::rose && end_step_at(descent.theta)) descent = force_descent();
+    if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta)) descent = force_descent();
     switch (descent.kind) {
-        case Descent::Kind::none:
+        case FirstCrossing::Kind::none:
             break;
-        case Descent::Kind::root:
-            if (descent.theta == 0.0) return End::force_vanishes;
+        case FirstCrossing::Kind::root:
+            if (descent.theta == 0.0) return StepOutcome::force_vanishes;
             return locate_release(descent.theta);  // nullopt: the step was shortened
-        case Descent::Kind::rose:
+        case FirstCrossing::Kind::increasing:
             if (!knows_its_start() || asked_before) return doubt_force(0.0);
             break;
-        case Descent::Kind::open:
+        case FirstCrossing::Kind::open:
             // As for gaps: an event near the end of this step is then inside the next one.
             if (!asked_before && end_step_at(descent.theta)) {
                 asked_again_ = asked_again_.with(contact_);
@@ -212,7 +212,7 @@ std::optional<StepResult::End> EventStepper::meet_force(Descent descent) {
                 return doubt_force(descent.theta);
             }
             break;
-        case Descent::Kind::undecided:
+        case FirstCrossing::Kind::undecided:
             return doubt_force(descent.theta);
     }
     return std::nullopt;
@@ -226,18 +226,18 @@ bool EventStepper::end_on_surface() {
 }
 
 // It is ambiguous from theta on whether the force vanishes: ends the step there.
-StepResult::End EventStepper::doubt_force(double theta) {
-    if (!end_step_at(theta)) return End::doubt;
-    if (!end_on_surface()) return End::off_surface;
+StepResult::StepOutcome EventStepper::doubt_force(double theta) {
+    if (!end_step_at(theta)) return StepOutcome::ambiguous;
+    if (!end_on_surface()) return StepOutcome::off_surface;
     const std::size_t contact = contact_;
     settle_gaps({}, result_.gap);
     contact_ = contact;
-    return End::doubt;
+    return StepOutcome::ambiguous;
 }
 
 // First zero of the contact force -hddot = W lambda in the last step; theta = 0 if it is zero at the start within
 // rounding.
-Descent EventStepper::force_descent() {
+FirstCrossing EventStepper::force_descent() {
     if (flow_->stays_negative(contact_)) return {};
     const int multiplicity = start_of(contact_).multiplicity;
     Polynomial force;
@@ -251,13 +251,13 @@ Descent EventStepper::force_descent() {
     if (multiplicity > 0) {
         force.c[0] = 0.0;
     } else if (!(force.c[0] > 0.0)) {
-        return {Descent::Kind::root, 0.0};
+        return {FirstCrossing::Kind::root, 0.0};
     }
     return first_descent(force, multiplicity, flow_->remainder(contact_, force));
 }
 
 // Like locate_impact, for hddot = 0 along the constrained motion.
-std::optional<StepResult::End> EventStepper::locate_release(double theta) {
+std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta) {
     ContactKinematics& leaving = surfaces_->of(contact_, request_->mode.without(contact_));
     const double longest = flow_->duration();  // limits Newton's method, which diverges if the force only touches zero
     double duration = theta * longest;
@@ -283,7 +283,7 @@ std::optional<StepResult::End> EventStepper::locate_release(double theta) {
     settle_gaps({}, least);
     contact_ = contact;
     end_step(least);
-    return End::force_vanishes;
+    return StepOutcome::force_vanishes;
 }
 
 }  // namespace achilles

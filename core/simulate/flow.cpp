@@ -8,7 +8,7 @@ namespace achilles {
 
 Flow::Flow(const Model& model, const Run& run)
     : stepper_(run.options.method == Method::taylor ? make_taylor(model, run) : make_dopri5(model, run)),
-      edges_(model.edges().empty() ? nullptr : std::make_unique<EdgeWatch>(model, run)),
+      edges_(model.edges().empty() ? nullptr : std::make_unique<DomainMonitor>(model, run)),
       model_(&model),
       parameters_(run.parameters) {}
 
@@ -82,8 +82,8 @@ void Flow::shift_end(double dt) {
     moved_ = true;
 }
 
-Piece Flow::piece(std::vector<double>& coefficients) const {
-    Piece piece;
+DenseSegment Flow::piece(std::vector<double>& coefficients) const {
+    DenseSegment piece;
     piece.start = t_;
     piece.end = end_;
     piece.mode = mode_;
@@ -103,10 +103,10 @@ Piece Flow::piece(std::vector<double>& coefficients) const {
     return piece;
 }
 
-Work::Work(const Model& model, const Run& run)
+WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
     : any_(model.equations().has_power()), dof_(model.dof()), model_(&model), parameters_(run.parameters) {}
 
-double Work::along(const Piece& piece, std::span<const double> coefficients, double from, double to) {
+double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double from, double to) {
     if (!any_ || !(to > from)) return 0.0;
     const Mode motion = piece.motion();
     auto known = powers_.find(motion);

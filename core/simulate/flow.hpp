@@ -9,7 +9,7 @@
 #include "model/model.hpp"
 #include "number/polynomial.hpp"
 #include "run/trajectory.hpp"
-#include "simulate/edge_watch.hpp"
+#include "simulate/domain_monitor.hpp"
 #include "simulate/stepper.hpp"
 
 namespace achilles {
@@ -22,8 +22,8 @@ class Flow {
     // it to the stepper. `gaps` has one entry for each contact; of a held contact, only state_error is used.
     void start(Mode mode, const State& state, std::span<const Gap> gaps, double first_step);
     // Makes one accepted step, at most to the time `until`, which is met exactly. If a function leaves its domain or
-    // reaches an edge (model/edges.hpp) inside the step, the step is shortened. If it becomes too short, that is the
-    // failure.
+    // reaches an edge (model/domain_boundaries.hpp) inside the step, the step is shortened. If it becomes too short,
+    // that is the failure.
     StepFailure step(double until);
     // Repeats the last step with this shorter duration, so that its end is as accurate as that of a normal step.
     StepFailure redo_step(double duration);
@@ -54,7 +54,7 @@ class Flow {
     double remainder(std::size_t contact, const Polynomial& p) const { return stepper_->remainder(contact, p); }
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const { stepper_->add_error(contact, p, end); }
     // The last step as dense output; coefficients are appended. Its ends are exactly those of the step.
-    Piece piece(std::vector<double>& coefficients) const;
+    DenseSegment piece(std::vector<double>& coefficients) const;
 
     long evaluations() const { return stepper_->evaluations(); }
 
@@ -62,7 +62,7 @@ class Flow {
     double least() const;
 
     std::unique_ptr<Stepper> stepper_;
-    std::unique_ptr<EdgeWatch> edges_;  // null if the system has no edges
+    std::unique_ptr<DomainMonitor> edges_;  // null if the system has no edges
     const Model* model_;
     std::vector<double> parameters_;
     Model::MotionEvaluators motions_;          // by mode, created at first use
@@ -78,15 +78,15 @@ class Flow {
 // ---- the work along a run: E(t) - E(0) = work - loss (theory-gaps.md 1) ----
 
 // Integrates the power along steps: v'Q + dV/dt - lambda dh/dt of held contacts.
-class Work {
+class WorkIntegrator {
  public:
-    Work(const Model& model, const Run& run);
+    WorkIntegrator(const Model& model, const Run& run);
 
     // Whether there is any work. False if all forces have a potential and neither it nor the gaps depend on time.
     bool any() const { return any_; }
     // The work over [from, to] in a step, in units of energy. Gauss quadrature has as many points as the polynomials
     // have powers, so that a product of two such polynomials is integrated exactly.
-    double along(const Piece& piece, std::span<const double> coefficients, double from, double to);
+    double along(const DenseSegment& piece, std::span<const double> coefficients, double from, double to);
 
  private:
     bool any_;

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 
@@ -120,7 +120,7 @@ bool ContactKinematics::project(State& state, bool keep_velocity, Contact& conta
 
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     constexpr double few_ulps = 0x1p-50;
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
     for (std::size_t i = 0; i < dof_; ++i) {
         enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
@@ -132,7 +132,7 @@ ContactKinematics::Normal ContactKinematics::normal(const State& state) {
 }
 
 Interval ContactKinematics::hddot_within(const State& distances, const State& state) {
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
     const auto around = [](double x, double distance) { return Interval(x) + Interval(-distance, distance); };
     for (std::size_t i = 0; i < dof_; ++i) {

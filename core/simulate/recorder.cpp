@@ -7,8 +7,9 @@
 
 namespace achilles {
 
-Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep) : keep_(keep), work_(*model, run) {
-    if (keep_ == Keep::everything) energy_ = model->evaluator(model->energy(), run.parameters);
+Recorder::Recorder(std::shared_ptr<const Model> model, const Run& run, Recording keep)
+    : keep_(keep), work_(*model, run) {
+    if (keep_ == Recording::full) energy_ = model->evaluator(model->energy(), run.parameters);
     restart(std::move(model), run);
 }
 
@@ -18,7 +19,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.run = run;
     any_gap_ = false;
     largest_ = largest_change_ = 0.0;
-    if (keep_ == Keep::end) {
+    if (keep_ == Recording::final_state) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
         trajectory_.passages.reserve(32);
         return;
@@ -53,7 +54,7 @@ void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes
 
 double Recorder::bytes() const { return bytes_of(trajectory_); }
 
-void Recorder::go_back(const Mark& mark) {
+void Recorder::go_back(const Checkpoint& mark) {
     trajectory_.pieces.resize(mark.pieces);
     trajectory_.coefficients.resize(mark.coefficients);
     trajectory_.statistics = mark.statistics;
@@ -84,7 +85,7 @@ void Recorder::close(double t) {
 }
 
 void Recorder::stretch(const State& state) {
-    if (keep_ == Keep::end) return;
+    if (keep_ == Recording::final_state) return;
     set_state(energy_, state);
     energy_.run();
     reference_ = energy_.total() - trajectory_.work;
@@ -100,14 +101,14 @@ void Recorder::steps(long count, double least_gap) {
 
 void Recorder::step(const Flow& flow, double gap, Mode mode) {
     steps(1, gap);
-    if (keep_ == Keep::end) return;
+    if (keep_ == Recording::final_state) return;
     Statistics& statistics = trajectory_.statistics;
     // An upper bound on the coefficients of one step.
     const std::size_t most_coefficients = 128 * static_cast<std::size_t>(trajectory_.run.q.size());
     const double memory = trajectory_.run.options.memory;
     make_room(trajectory_.coefficients, most_coefficients, memory);
     make_room(trajectory_.pieces, 1, memory);
-    Piece& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
+    DenseSegment& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
     piece.mode = mode;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
@@ -129,7 +130,7 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
 }
 
 Exchange Recorder::exchange_of_jump(const State& before, const State& after, double work) {
-    if (keep_ == Keep::end) return {work, 0.0};
+    if (keep_ == Recording::final_state) return {work, 0.0};
     const auto energy_at = [&](const State& state) {
         set_state(energy_, state);
         energy_.run();
@@ -139,12 +140,12 @@ Exchange Recorder::exchange_of_jump(const State& before, const State& after, dou
 }
 
 void Recorder::impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange,
-                      ContactSet contacts, std::shared_ptr<const Joint> joint) {
+                      ContactSet contacts, std::shared_ptr<const MultiContactInfo> joint) {
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
-    if (keep_ == Keep::end) {
+    if (keep_ == Recording::final_state) {
         trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed});
         return;
     }
@@ -158,20 +159,20 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.impact_speed = speed;
     event.contacts = contacts;
     event.mode = trajectory_.phases.back().mode;
-    if (joint && joint->order_matters) ++trajectory_.by_convention;
+    if (joint && joint->order_matters) ++trajectory_.ambiguous_impacts;
     event.joint = std::move(joint);
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
 }
 
 void Recorder::after_impact(ContactSet opened, Mode mode) {
-    if (keep_ == Keep::end) return;
+    if (keep_ == Recording::final_state) return;
     trajectory_.events.back().opened = opened;
     trajectory_.events.back().mode = mode;
 }
 
 void Recorder::event(Event event) {
-    if (keep_ == Keep::end) {
+    if (keep_ == Recording::final_state) {
         trajectory_.passages.push_back({event.kind, event.contacts, event.t, 0.0});
         return;
     }

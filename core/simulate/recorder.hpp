@@ -11,19 +11,19 @@ namespace achilles {
 
 class Recorder {
  public:
-    Recorder(std::shared_ptr<const Model> model, const Run& run, Keep keep);
+    Recorder(std::shared_ptr<const Model> model, const Run& run, Recording keep);
 
     // Starts over, for another run with the same parameters.
     void restart(std::shared_ptr<const Model> model, const Run& run);
 
     // The position in the record; go_back() returns to it. No event may lie between.
-    struct Mark {
+    struct Checkpoint {
         std::size_t pieces, coefficients;
         Statistics statistics;
         double scale, largest_change, work;
         bool any_gap;
     };
-    Mark mark() const {
+    Checkpoint mark() const {
         return {trajectory_.pieces.size(),
                 trajectory_.coefficients.size(),
                 trajectory_.statistics,
@@ -32,7 +32,7 @@ class Recorder {
                 trajectory_.work,
                 any_gap_};
     }
-    void go_back(const Mark& mark);
+    void go_back(const Checkpoint& mark);
 
     // Begins a phase. If not all held contacts are carriers, its forces are not unique.
     void open(Mode mode, ContactSet carriers, double t);
@@ -50,7 +50,7 @@ class Recorder {
     void steps(long count, double least_gap);
     // Records an impact: the state before it, and its work and loss.
     void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
-                std::shared_ptr<const Joint> joint = nullptr);
+                std::shared_ptr<const MultiContactInfo> joint = nullptr);
     // Adds to the last impact the contacts that it opened and the mode after it.
     void after_impact(ContactSet opened, Mode mode);
     // Work and loss of a jump that is not an impact: the loss follows from the energies before and after.
@@ -66,10 +66,10 @@ class Recorder {
     Trajectory finish(const State& state, Outcome outcome, long evaluations);
 
  private:
-    Keep keep_;
+    Recording keep_;
     Trajectory trajectory_;
     EnergyTerms<Evaluator<double>> energy_;
-    Work work_;
+    WorkIntegrator work_;
     double reference_ = 0.0;       // energy minus work at the start of the segment
     double scale_ = 0.0;           // largest |T| + |V| in the segment so far
     double largest_ = 0.0;         // the same over the whole run

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "model/model.hpp"
-#include "simulate/surfaces.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/flow.hpp"
 
 namespace achilles {
@@ -27,8 +27,8 @@ ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t) {
 struct Sampler::Projection {
     explicit Projection(const Trajectory& trajectory)
         : surfaces(*trajectory.model, trajectory.run), work(*trajectory.model, trajectory.run) {}
-    Surfaces surfaces;
-    Work work;
+    ContactCache surfaces;
+    WorkIntegrator work;
 };
 
 Sampler::Sampler(const Trajectory& trajectory)
@@ -37,7 +37,7 @@ Sampler::~Sampler() = default;
 
 Sample Trajectory::operator()(double t) const { return Sampler(*this).at(t); }
 
-State Sampler::state(const Piece& piece, double t) const {
+State Sampler::state(const DenseSegment& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
     if (!piece.mode.is_free()) {
         State projected = state;
@@ -46,7 +46,7 @@ State Sampler::state(const Piece& piece, double t) const {
     return state;
 }
 
-double Sampler::work(const Piece& piece, double t) const {
+double Sampler::work(const DenseSegment& piece, double t) const {
     return piece.work + projection_->work.along(piece, trajectory_.coefficients, piece.start, t);
 }
 
@@ -92,7 +92,7 @@ Sample Sampler::at(double t) {
     return sample;
 }
 
-Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
+Sample Sampler::in(const DenseSegment& piece, double t, bool with_work) const {
     Sample sample;
     sample.t = t;
     sample.phase = piece.mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained;
@@ -108,7 +108,7 @@ Sample Sampler::in(const Piece& piece, double t, bool with_work) const {
 // Collects the visited samples, and `between` instants inside each step.
 std::vector<Sample> Sampler::listed(const Selection& selection, int between) const {
     std::vector<Sample> samples;
-    visit(selection, [&](const Sample& sample, const Piece* piece) {
+    visit(selection, [&](const Sample& sample, const DenseSegment* piece) {
         for (int k = 1; k <= between && piece != nullptr; ++k) {
             const double t = piece->start + (piece->end - piece->start) * k / (between + 1);
             Sample inside = in(*piece, t);
@@ -148,7 +148,7 @@ Sampler::Selection Sampler::whole_run() const {
 
 // The blocks of `stride` steps that contain an event, or have one at an end.
 std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
-    const std::vector<Piece>& pieces = trajectory_.pieces;
+    const std::vector<DenseSegment>& pieces = trajectory_.pieces;
     std::vector<bool> result((pieces.size() + stride - 1) / stride);
     std::size_t block = 0;
     const auto next_starts = [&] { return pieces[(block + 1) * stride].start; };
@@ -165,7 +165,7 @@ std::vector<bool> Sampler::blocks_with_events(std::size_t stride) const {
 void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     const std::size_t stride = selection.stride, count = trajectory_.pieces.size();
     const std::vector<Event>& events = trajectory_.events;
-    const std::vector<Piece>& pieces = trajectory_.pieces;
+    const std::vector<DenseSegment>& pieces = trajectory_.pieces;
     const auto before = [](const Event& event, double t) { return event.t < t; };
     auto j = static_cast<std::size_t>(std::lower_bound(events.begin(), events.end(), selection.from, before) -
                                       events.begin());
@@ -175,11 +175,11 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
         return after == trajectory_.phases.begin() ? after->kind : std::prev(after)->kind;
     };
     std::optional<std::pair<double, std::size_t>> last;  // t and j of the last sample
-    const auto take = [&](const Sample& sample, const Piece* piece) {
+    const auto take = [&](const Sample& sample, const DenseSegment* piece) {
         visitor(sample, piece);
         last = {sample.t, j};
     };
-    const auto sample_in = [&](const Piece& piece, double t, Phase::Kind phase) {
+    const auto sample_in = [&](const DenseSegment& piece, double t, Phase::Kind phase) {
         Sample sample = in(piece, t, selection.with_work);
         sample.j = static_cast<int>(j);
         sample.phase = phase;
@@ -205,7 +205,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
         return any;
     };
     Mode mode;
-    const auto take_step = [&](const Piece& piece) {
+    const auto take_step = [&](const DenseSegment& piece) {
         const double start = std::max(piece.start, selection.from), end = std::min(piece.end, selection.to);
         const bool fresh = pass_events(start) || !last || piece.mode != mode || (stride > 1 && last->first != start);
         mode = piece.mode;
@@ -213,7 +213,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
         if (fresh) take(sample_in(piece, start, phase), nullptr);
         take(sample_in(piece, end, phase), &piece);
     };
-    const auto is_before = [](double t, const Piece& piece) { return t < piece.start; };
+    const auto is_before = [](double t, const DenseSegment& piece) { return t < piece.start; };
     const auto first_step = std::upper_bound(pieces.begin(), pieces.end(), selection.from, is_before);
     const auto begin = static_cast<std::size_t>(first_step - pieces.begin());
     for (std::size_t block = (begin > 0 ? begin - 1 : 0) / stride; block * stride < count; ++block) {
@@ -254,7 +254,7 @@ class GapAlong {
 
     // The smallest gap inside the piece if it is below `least`; otherwise `least`. Steps of both methods are so short
     // that the gap has at most one minimum in each of a few parts.
-    double below(double least, const Piece& piece) {
+    double below(double least, const DenseSegment& piece) {
         constexpr int parts = 8;
         Height before = at(piece, piece.start);
         for (int i = 1; i <= parts; ++i) {
@@ -268,7 +268,7 @@ class GapAlong {
     }
 
  private:
-    Height at(const Piece& piece, double t) {
+    Height at(const DenseSegment& piece, double t) {
         return at(state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t));
     }
 
@@ -279,7 +279,7 @@ class GapAlong {
     }
 
     // The minimum between a falling and a rising point, by bisection.
-    double minimum(const Piece& piece, Height falling, Height rising) {
+    double minimum(const DenseSegment& piece, Height falling, Height rising) {
         for (int i = 0; i < 60; ++i) {
             const double t = 0.5 * (falling.t + rising.t);
             if (t <= falling.t || t >= rising.t) break;
@@ -301,7 +301,7 @@ double least_gap(const Trajectory& trajectory) {
     for (std::size_t contact = 0; contact < trajectory.model->contacts(); ++contact) {
         GapAlong gap(trajectory, contact);
         least = std::min(least, gap.at(trajectory.run.start()).h);
-        for (const Piece& piece : trajectory.pieces)
+        for (const DenseSegment& piece : trajectory.pieces)
             if (!piece.mode.is_held(contact)) least = gap.below(least, piece);
     }
     return least;

@@ -34,7 +34,7 @@ class Sampler {
     ~Sampler();
     Sample at(double t);
     // The state in one step of the trajectory at time t (s). j is not set; work is 0 unless with_work.
-    Sample in(const Piece& piece, double t, bool with_work = true) const;
+    Sample in(const DenseSegment& piece, double t, bool with_work = true) const;
     // All step ends and events (an impact as two samples, before and after), and `between` instants inside each step.
     std::vector<Sample> all(int between = 0);
     // The same for at most `most_steps` steps spread over the run, with the events next to them. If events are few, up
@@ -43,7 +43,7 @@ class Sampler {
     // Calls `take` for each step end and event of [from, to] in order of time, and for the states at both ends. `piece`
     // is the step from the sample before to this one; null if no step leads to it: at the start, and before and after
     // an event.
-    using Visitor = std::function<void(const Sample& sample, const Piece* piece)>;
+    using Visitor = std::function<void(const Sample& sample, const DenseSegment* piece)>;
     void walk(double from, double to, bool with_work, const Visitor& take) const;
 
  private:
@@ -58,8 +58,8 @@ class Sampler {
     void visit(const Selection& selection, const Visitor& visitor) const;
     std::vector<Sample> listed(const Selection& selection, int between) const;
     struct Projection;
-    State state(const Piece& piece, double t) const;
-    double work(const Piece& piece, double t) const;
+    State state(const DenseSegment& piece, double t) const;
+    double work(const DenseSegment& piece, double t) const;
     std::vector<bool> blocks_with_events(std::size_t stride) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;
@@ -68,8 +68,8 @@ class Sampler {
 // ---- closest approach ----
 
 // The smallest gap of all contacts over the run, in the unit of the gap. It is searched at the start, at step ends, and
-// at minima inside steps of contacts that the step does not hold. A trajectory recorded with Keep::end has no steps to
-// examine.
+// at minima inside steps of contacts that the step does not hold. A trajectory recorded with Recording::final_state has
+// no steps to examine.
 double least_gap(const Trajectory& trajectory);
 
 }  // namespace achilles

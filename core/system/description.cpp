@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "number/angle.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "system/input_error.hpp"
 #include "system/units.hpp"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
@@ -30,7 +30,7 @@ bool is_array_of_tables(const std::string& key) {
 
 }  // namespace
 
-void Fields::allow(const std::vector<std::string>& keys, Mistakes& mistakes) {
+void Fields::allow(const std::vector<std::string>& keys, ErrorCollector& mistakes) {
     for (const TomlEntry& entry : table_.entries) {
         if (std::find(keys.begin(), keys.end(), entry.key) != keys.end()) continue;
         const std::string other = other_key(entry.key, keys), meant = other.empty() ? nearest(entry.key, keys) : other;
@@ -62,7 +62,7 @@ const TomlValue& Fields::need(std::string_view key) const {
 
 void Fields::need(std::string_view key, const Mistake& otherwise) const {
     if (find(key)) return;
-    if (std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end()) throw AlreadyTold{};
+    if (std::find(misspelt_.begin(), misspelt_.end(), key) != misspelt_.end()) throw ErrorAlreadyReported{};
     throw otherwise;
 }
 
@@ -160,7 +160,7 @@ std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 
 }
 
 Mistake Fields::has_unit(std::string_view key, const TomlValue& value, std::string_view unit,
-                         const Measured& typed) const {
+                         const ValueWithUnit& typed) const {
     const bool is_in_list = &value != find(key), is_inline = value.at.line == table_.at.line;
     const std::string right = is_in_list ? typed.number : fmt::format("{} = {}", key, typed.number);
     std::string hint = without_unit(typed, key, unit, right);
@@ -191,7 +191,7 @@ void read_unit(const Fields& fields, std::string& unit) {
     }
 }
 
-std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes) {
+std::vector<Fields> tables(const TomlValue& root, const std::string& key, ErrorCollector& mistakes) {
     std::vector<Fields> list;
     const std::string where = fmt::format("[[{}]]", key);
     for (const TomlEntry& entry : root.entries) {

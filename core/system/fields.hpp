@@ -19,10 +19,10 @@ class Fields {
     Fields(const TomlValue& table, std::string where);
 
     // Adds a mistake for every key that is not in `keys`, with the nearest of them.
-    void allow(const std::vector<std::string>& keys, Mistakes& mistakes);
+    void allow(const std::vector<std::string>& keys, ErrorCollector& mistakes);
 
     const TomlValue* find(std::string_view key) const;  // null if absent
-    // Throws if absent: AlreadyTold if allow() found a misspelling of this key, else Mistake.
+    // Throws if absent: ErrorAlreadyReported if allow() found a misspelling of this key, else Mistake.
     const TomlValue& need(std::string_view key) const;
     void need(std::string_view key, const Mistake& otherwise) const;  // the same with its own message
 
@@ -46,7 +46,8 @@ class Fields {
     double number(std::string_view key, const TomlValue& value, std::string_view unit) const;
 
     Mistake wrong_type(std::string_view key, const TomlValue& value, std::string_view expected) const;
-    Mistake has_unit(std::string_view key, const TomlValue& value, std::string_view unit, const Measured& typed) const;
+    Mistake has_unit(std::string_view key, const TomlValue& value, std::string_view unit,
+                     const ValueWithUnit& typed) const;
 
     const TomlValue& table() const { return table_; }
     const std::string& where() const { return where_; }
@@ -63,15 +64,15 @@ void read_unit(const Fields& fields, std::string& unit);
 
 // The tables of an array of tables, at most 1000; empty if the key is absent. Anything else is a mistake and is left
 // out.
-std::vector<Fields> tables(const TomlValue& root, const std::string& key, Mistakes& mistakes);
+std::vector<Fields> tables(const TomlValue& root, const std::string& key, ErrorCollector& mistakes);
 
 // The names as a list for messages: "a, b, c".
 std::string listed(const std::vector<std::string>& names);
 
 // [[drawing]] and [[view]], and the views of a system without any. Parts with a mistake are left empty. The first two
 // throw Mistake if the rest cannot be read.
-DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes);
-ViewDescription read_view(Fields& fields, Mistakes& mistakes);
+DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, ErrorCollector& mistakes);
+ViewDescription read_view(Fields& fields, ErrorCollector& mistakes);
 std::vector<ViewDescription> default_views(const SystemDescription& system);
 
 }  // namespace achilles

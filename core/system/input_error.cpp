@@ -202,12 +202,12 @@ constexpr std::size_t most_told = 10;
 
 }  // namespace
 
-void Mistakes::add(Mistake mistake) {
+void ErrorCollector::add(Mistake mistake) {
     ++count_;
     if (kept_.size() < most_kept) kept_.push_back(std::move(mistake));
 }
 
-void Mistakes::raise(const SystemDescription& system) const {
+void ErrorCollector::raise(const SystemDescription& system) const {
     if (count_ == 0) return;
     std::vector<Mistake> sorted = kept_;
     const auto place = [](const Mistake& mistake) { return std::tuple(mistake.at.line, mistake.at.column); };

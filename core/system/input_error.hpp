@@ -54,7 +54,7 @@ Location place_in(const Text& text, std::size_t offset);
 // Collects the mistakes of one system file while it is read. Parts independent of a mistake are still read; parts that
 // depend on it are skipped. All mistakes are reported at the end, ordered by position.
 
-// One mistake, thrown while a file is read and caught by Mistakes::attempt. It does not store its line, because a
+// One mistake, thrown while a file is read and caught by ErrorCollector::attempt. It does not store its line, because a
 // hostile file has very many mistakes and only ten are shown.
 struct Mistake {
     Location at;
@@ -63,9 +63,9 @@ struct Mistake {
 };
 
 // Thrown to stop reading because of a mistake that was already added.
-struct AlreadyTold {};
+struct ErrorAlreadyReported {};
 
-class Mistakes {
+class ErrorCollector {
  public:
     void add(Mistake mistake);
     // Calls read() and adds the Mistake that it throws. Returns true if it throws none.
@@ -76,7 +76,7 @@ class Mistakes {
             return true;
         } catch (Mistake& mistake) {
             add(std::move(mistake));
-        } catch (const AlreadyTold&) {
+        } catch (const ErrorAlreadyReported&) {
         }
         return false;
     }

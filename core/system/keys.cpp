@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 
 namespace achilles {
 
@@ -100,11 +100,11 @@ std::span<const FileTable> file_tables() {
 }
 
 std::string other_key(std::string_view word, const std::vector<std::string>& keys) {
-    struct Other {
+    struct KeyAlias {
         std::string_view key,
             words;  // names in other programs; the first entry with a key from `keys` counts
     };
-    static constexpr Other others[] = {
+    static constexpr KeyAlias others[] = {
         {"gap", "h distance g phi condition expression height clearance"},
         {"restitution", "e cor bounce epsilon coefficient eps"},
         {"kinetic", "T kinetic_energy T_kin ke KE Ekin"},
@@ -137,7 +137,7 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
         {"view", "plot figure"},
         {"drawing", "graphics geometry visual"},
         {"lagrangian", "energy dynamics lagrange"}};
-    for (const Other& other : others) {
+    for (const KeyAlias& other : others) {
         const bool is_here = std::find(keys.begin(), keys.end(), other.key) != keys.end();
         if (is_here && has_word(other.words, word)) return std::string(other.key);
     }
@@ -145,16 +145,16 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
 }
 
 std::string_view instead_of_key(std::string_view word) {
-    struct Other {
+    struct KeyAlias {
         std::string_view words, instead;
     };
-    static constexpr Other others[] = {
+    static constexpr KeyAlias others[] = {
         {"friction mu mu_s mu_k friction_coefficient", "contacts have no friction here: leave it out"},
         {"gravity g", "gravity is a part of the potential, as m*g*y, with a [[parameter]] g"},
         {"stiffness k c contact_stiffness", "contacts are rigid: a spring belongs to the potential, as k/2*x^2"},
         {"mass m inertia", "a mass is a part of the kinetic energy, as m/2*x'^2, with a [[parameter]] m"},
         {"dt step step_size timestep h max_step", "the step follows from the tolerance in [run]"}};
-    for (const Other& other : others)
+    for (const KeyAlias& other : others)
         if (has_word(other.words, word)) return other.instead;
     return "";
 }

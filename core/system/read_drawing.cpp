@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
@@ -34,7 +34,7 @@ bool is_between_two(Shape shape) {
 }
 
 // The shape. A misspelled one adds a mistake, and the nearest shape is used. Throws Mistake if there is none near.
-const NamedShape& shape_of(const Fields& fields, Mistakes& mistakes) {
+const NamedShape& shape_of(const Fields& fields, ErrorCollector& mistakes) {
     const Text name = fields.string("shape");
     std::vector<std::string> names;
     for (const NamedShape& shape : shapes()) names.push_back(shape.name);
@@ -71,7 +71,7 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
     drawing.over_limits = {fields.expression("over", over.items[1]), fields.expression("over", over.items[2])};
 }
 
-void read_points(const Fields& fields, DrawingDescription& drawing, Mistakes& mistakes) {
+void read_points(const Fields& fields, DrawingDescription& drawing, ErrorCollector& mistakes) {
     const TomlValue& points = fields.need("points");
     if (points.kind != TomlValue::Kind::array) throw fields.wrong_type("points", points, "an array of points");
     if (points.items.size() < 2) throw Mistake{points.at, "a polyline needs at least two points", {}};
@@ -80,7 +80,7 @@ void read_points(const Fields& fields, DrawingDescription& drawing, Mistakes& mi
 }
 
 // The sizes of a shape besides its points. 0 means as large as fits: a shape with a default size need not give it.
-void read_sizes(const Fields& fields, DrawingDescription& drawing, Mistakes& mistakes) {
+void read_sizes(const Fields& fields, DrawingDescription& drawing, ErrorCollector& mistakes) {
     const auto size = [&](const char* key) {
         mistakes.attempt([&] { drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}}); });
     };
@@ -104,7 +104,7 @@ std::string read_color(const Fields& fields) {
 
 }  // namespace
 
-DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, Mistakes& mistakes) {
+DrawingDescription read_drawing(const SystemDescription& system, const Fields& fields, ErrorCollector& mistakes) {
     const NamedShape& shape = shape_of(fields, mistakes);
     std::vector<std::string> keys = keys_of("[[drawing]]"), own = keys_of(shape.name);
     keys.insert(keys.end(), own.begin(), own.end());
@@ -142,7 +142,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
     return drawing;
 }
 
-ViewDescription read_view(Fields& fields, Mistakes& mistakes) {
+ViewDescription read_view(Fields& fields, ErrorCollector& mistakes) {
     fields.allow(keys_of("[[view]]"), mistakes);
     ViewDescription view;
     mistakes.attempt([&] { view.x = fields.expression("x"); });

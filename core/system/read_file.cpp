@@ -12,7 +12,7 @@
 #include <system_error>
 #include <vector>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "system/description.hpp"
 #include "system/input_error.hpp"
 #include "system/read_tables.hpp"

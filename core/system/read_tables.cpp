@@ -6,9 +6,9 @@
 #include <climits>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "run/contact_set.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
@@ -42,10 +42,10 @@ std::array<double, 2> range_around(double value) {
 }
 
 // A file while it is read.
-struct Reading {
+struct FileReader {
     SystemDescription& system;
     const TomlValue& root;
-    Mistakes& mistakes;
+    ErrorCollector& mistakes;
     Names& names;                          // of coordinates and parameters, including invalid ones
     std::vector<Fields> constraints = {};  // the tables of system.constraints
 };
@@ -85,18 +85,18 @@ Text read_name(Names& names, const Fields& fields) {
 }
 
 // The tables of coordinates or parameters. If they contain a mistake, their names are incomplete.
-std::vector<Fields> named_tables(Reading& reading, const std::string& key) {
+std::vector<Fields> named_tables(FileReader& reading, const std::string& key) {
     const std::size_t before = reading.mistakes.count();
     std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
     if (reading.mistakes.count() > before) reading.names.complete = false;
     return list;
 }
 
-void read_coordinates(Reading& reading, const Fields& root) {
+void read_coordinates(FileReader& reading, const Fields& root) {
     root.need("coordinate", missing_part("[[coordinate]]: a system needs at least one"));
     const std::size_t before = reading.mistakes.count();
     for (Fields& fields : named_tables(reading, "coordinate")) {
-        Mistakes& mistakes = reading.mistakes;
+        ErrorCollector& mistakes = reading.mistakes;
         fields.allow(keys_of("[[coordinate]]"), mistakes);
         CoordinateDescription coordinate;
         const bool is_named = mistakes.attempt([&] {
@@ -131,7 +131,7 @@ void read_coordinates(Reading& reading, const Fields& root) {
 }
 
 // A parameter defined by an expression in other parameters.
-void read_derived(Reading& reading, const Fields& fields, DerivedDescription derived) {
+void read_derived(FileReader& reading, const Fields& fields, DerivedDescription derived) {
     reading.mistakes.attempt([&] { derived.definition = fields.expression("value"); });
     reading.system.derived.push_back(std::move(derived));
     if (const TomlValue* range = fields.find("range"))
@@ -153,9 +153,9 @@ bool has_parameters_alone(const std::string& expression, const TomlValue& root) 
     return std::all_of(names.begin(), names.end(), [&](const std::string& name) { return contains(known, name); });
 }
 
-void read_parameters(Reading& reading) {
+void read_parameters(FileReader& reading) {
     for (Fields& fields : named_tables(reading, "parameter")) {
-        Mistakes& mistakes = reading.mistakes;
+        ErrorCollector& mistakes = reading.mistakes;
         fields.allow(keys_of("[[parameter]]"), mistakes);
         ParameterDescription parameter;
         const bool is_named = mistakes.attempt([&] { parameter.name = read_name(reading.names, fields).text; });
@@ -182,7 +182,7 @@ void read_parameters(Reading& reading) {
     }
 }
 
-void read_lagrangian(Reading& reading, const Fields& root) {
+void read_lagrangian(FileReader& reading, const Fields& root) {
     root.need("lagrangian", missing_part("[lagrangian]"));
     Fields fields(*root.find("lagrangian"), "[lagrangian]");
     fields.allow(keys_of("[lagrangian]"), reading.mistakes);
@@ -207,8 +207,8 @@ void read_constraint_name(const Fields& fields, bool is_only, std::map<std::stri
     name = text.text;
 }
 
-void read_constraints(Reading& reading, const Fields& root) {
-    Mistakes& mistakes = reading.mistakes;
+void read_constraints(FileReader& reading, const Fields& root) {
+    ErrorCollector& mistakes = reading.mistakes;
     root.need("constraint", missing_part("[[constraint]]"));
     const std::size_t before = mistakes.count();
     std::vector<Fields>& list = reading.constraints = tables(reading.root, "constraint", mistakes);
@@ -256,7 +256,7 @@ OptionValue read_option(const Option& option, const Fields& fields) {
 }
 
 // [run] or [truncation]: every key has a default.
-void read_options(const TomlValue& table, const std::string& name, Options& options, Mistakes& mistakes) {
+void read_options(const TomlValue& table, const std::string& name, Options& options, ErrorCollector& mistakes) {
     Fields fields(table, "[" + name + "]");
     std::vector<std::string> keys;
     for (const Option& option : all_options())
@@ -268,13 +268,13 @@ void read_options(const TomlValue& table, const std::string& name, Options& opti
             mistakes.attempt([&] { option.set(options, read_option(option, fields)); });
     const TomlValue* end = fields.find("end_time");
     if (end == nullptr) end = fields.find("start_time");
-    const auto fault = fault_of_times(options);
+    const auto fault = end_time_error(options);
     if (fault && end != nullptr && mistakes.count() == before) mistakes.add({end->at, *fault, {}});
 }
 
 // Reads one item per coordinate.
 template <class Read>
-void read_by_coordinate(const Reading& reading, const Fields& fields, std::string_view key, const Read& read) {
+void read_by_coordinate(const FileReader& reading, const Fields& fields, std::string_view key, const Read& read) {
     const TomlValue& value = fields.need(key);
     const std::size_t n = reading.system.coordinates.size();
     if (value.kind != TomlValue::Kind::array || value.items.size() != n)
@@ -285,8 +285,8 @@ void read_by_coordinate(const Reading& reading, const Fields& fields, std::strin
     for (std::size_t i = 0; i < n; ++i) read(i, value.items[i]);
 }
 
-void read_orbit(Reading& reading, const TomlValue& table) {
-    Mistakes& mistakes = reading.mistakes;
+void read_orbit(FileReader& reading, const TomlValue& table) {
+    ErrorCollector& mistakes = reading.mistakes;
     Fields fields(table, "[orbit]");
     fields.allow(keys_of("[orbit]"), mistakes);
     OrbitDescription orbit;
@@ -315,9 +315,9 @@ void read_orbit(Reading& reading, const TomlValue& table) {
     reading.system.orbit = std::move(orbit);
 }
 
-void read_pictures(Reading& reading) {
+void read_pictures(FileReader& reading) {
     SystemDescription& system = reading.system;
-    Mistakes& mistakes = reading.mistakes;
+    ErrorCollector& mistakes = reading.mistakes;
     const auto read_drawings = [&](const TomlValue& table, std::vector<DrawingDescription>& drawings) {
         for (const Fields& fields : tables(table, "drawing", mistakes))
             mistakes.attempt([&] { drawings.push_back(read_drawing(system, fields, mistakes)); });
@@ -344,18 +344,18 @@ void read_pictures(Reading& reading) {
 
 }  // namespace
 
-FileReading read_tables(std::string text, std::string name) {
-    const Ground ground;  // decimals are rounded to nearest
+ParsedFile read_tables(std::string text, std::string name) {
+    const FloatEnvironmentGuard ground;  // decimals are rounded to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("the file is larger than {} MB", largest_file >> 20));
     refuse_other_files(text, name);
-    FileReading read;
+    ParsedFile read;
     SystemDescription& system = read.system;
     system.file = std::move(name);
     system.source_text = std::move(text);
     const TomlValue root = read_toml(system.source_text, system.file);
-    Mistakes& mistakes = read.mistakes;
-    Reading reading{system, root, mistakes, read.names};
+    ErrorCollector& mistakes = read.mistakes;
+    FileReader reading{system, root, mistakes, read.names};
     Fields fields(root, "a system file");
     const std::vector<std::string> keys = keys_of("");
     fields.allow(keys, mistakes);

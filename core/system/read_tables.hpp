@@ -21,16 +21,16 @@ struct Names {
 };
 
 // The contents of a file and its mistakes so far.
-struct FileReading {
+struct ParsedFile {
     SystemDescription system;
     Names names;
-    Mistakes mistakes;
+    ErrorCollector mistakes;
     bool has_system = false;  // any mistakes so far are in drawings and views only
 };
 
 // Reads the tables of a system file from its text; `name` is the file's name in messages. Throws InputError if nothing
 // can be read (the text is not TOML, or too large).
-FileReading read_tables(std::string text, std::string name);
+ParsedFile read_tables(std::string text, std::string name);
 
 // Throws InputError, with the file's `name`, if the first bytes show that the text is not TOML: a picture, an archive,
 // JSON, a table, UTF-16, another programming language, or nothing.

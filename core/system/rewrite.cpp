@@ -15,7 +15,7 @@ namespace {
 // Depth-first search along the definitions.
 class Walk {
  public:
-    Walk(std::vector<DerivedDescription>& derived, Names& names, Mistakes& mistakes)
+    Walk(std::vector<DerivedDescription>& derived, Names& names, ErrorCollector& mistakes)
         : derived_(derived), names_(names), mistakes_(mistakes), states_(derived.size(), State::unseen) {
         for (std::size_t i = 0; i < derived.size(); ++i) places_.emplace(derived[i].name, i);
         for (std::size_t i = 0; i < derived.size(); ++i) visit(i);
@@ -57,7 +57,7 @@ class Walk {
 
     std::vector<DerivedDescription>& derived_;
     Names& names_;
-    Mistakes& mistakes_;
+    ErrorCollector& mistakes_;
     std::vector<State> states_;
     std::map<std::string, std::size_t> places_;
     std::vector<std::size_t> way_;
@@ -65,18 +65,18 @@ class Walk {
 
 // Sorts derived parameters so that each follows those in its definition. Adds a mistake for every circular definition
 // and removes its parameters.
-void order_derived(FileReading& reading) {
+void order_derived(ParsedFile& reading) {
     std::vector<DerivedDescription>& derived = reading.system.derived;
     derived = std::move(Walk(derived, reading.names, reading.mistakes).ordered);
 }
 
-using Rewriting = void (*)(FileReading& reading);
-constexpr Rewriting rewritings[] = {order_derived};
+using RewriteRule = void (*)(ParsedFile& reading);
+constexpr RewriteRule rewritings[] = {order_derived};
 
 }  // namespace
 
-void rewrite(FileReading& reading) {
-    for (const Rewriting apply : rewritings) apply(reading);
+void rewrite(ParsedFile& reading) {
+    for (const RewriteRule apply : rewritings) apply(reading);
 }
 
 }  // namespace achilles

@@ -9,6 +9,6 @@ namespace achilles {
 // Applies the rewritings of rewrite.cpp in turn, each to the result of the previous one. A text created by a rewriting
 // has the location of the value or table it is made from, and is_written = false, so that messages about it point there
 // (place_in). Adds a mistake if a description cannot be rewritten.
-void rewrite(FileReading& reading);
+void rewrite(ParsedFile& reading);
 
 }  // namespace achilles

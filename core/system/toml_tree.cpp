@@ -320,7 +320,7 @@ std::string right_value(const std::string& line) {
         return fmt::format("write {} = {}", key, std::strtod(percent.c_str(), nullptr) / 100.0);
     const std::size_t end = std::min(value.find(' '), value.size());
     const std::string number = value.substr(0, end), unit = trimmed(value.substr(end));
-    std::optional<Measured> apart = measured(value);
+    std::optional<ValueWithUnit> apart = measured(value);
     if (!unit.empty() && number_meant(number) == number && !unit.starts_with("deg") &&
         std::isalpha(static_cast<unsigned char>(unit[0])) != 0)
         apart = {number, unit};

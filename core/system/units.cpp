@@ -144,7 +144,7 @@ class SymbolUnits {
             return unit_of(parse(text, scope_, graph_));
         } catch (const ParseError&) {
             return std::nullopt;
-        } catch (const TooLarge&) {
+        } catch (const ExpressionTooLarge&) {
             return std::nullopt;
         }
     }
@@ -228,11 +228,11 @@ std::string with_plain_powers(std::string unit) {
 
 }  // namespace
 
-std::optional<Measured> measured(std::string_view text) {
+std::optional<ValueWithUnit> measured(std::string_view text) {
     constexpr std::array<std::string_view, 36> words{
         "kg", "g", "mg", "t",  "m", "mm", "cm", "dm",  "km", "um",  "s",   "ms",  "us",   "min", "h",  "N",  "kN", "mN",
         "Nm", "J", "kJ", "mJ", "W", "kW", "Hz", "kHz", "Pa", "kPa", "MPa", "rad", "mrad", "rpm", "in", "ft", "K",  "A"};
-    Measured result;
+    ValueWithUnit result;
     std::string plain(text);
     std::replace(plain.begin(), plain.end(), ',', '.');
     const std::size_t at = plain.find_first_not_of(" \t");
@@ -257,7 +257,7 @@ std::optional<Measured> measured(std::string_view text) {
     return result;
 }
 
-std::string without_unit(const Measured& typed, std::string_view name, std::string_view unit,
+std::string without_unit(const ValueWithUnit& typed, std::string_view name, std::string_view unit,
                          const std::string& right) {
     if (unit.empty()) return fmt::format("{} has no unit here: write the number alone", name);
     const std::string own = with_plain_powers(std::string(unit));

@@ -22,13 +22,14 @@ std::string unit_of_quotient(std::string_view above, std::string_view below);
 
 // A number with a unit: "9.81 m/s²" is {"9.81", "m/s^2"}. nullopt for any other text, and for angles in degrees, which
 // read_number() accepts.
-struct Measured {
+struct ValueWithUnit {
     std::string number, unit;
 };
-std::optional<Measured> measured(std::string_view text);
+std::optional<ValueWithUnit> measured(std::string_view text);
 
 // Advice for a number with a unit: `right`, the number alone, if the typed unit is that of the quantity, `unit`.
 // Otherwise the number must be converted first: 200 g is not 200 kg.
-std::string without_unit(const Measured& typed, std::string_view name, std::string_view unit, const std::string& right);
+std::string without_unit(const ValueWithUnit& typed, std::string_view name, std::string_view unit,
+                         const std::string& right);
 
 }  // namespace achilles

@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
-#include "depend/error_estimate.hpp"
 #include "figure/label.hpp"
 #include "figure/plane.hpp"
 #include "figure/publication.hpp"
+#include "sensitivity/error_estimate.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -50,7 +50,7 @@ Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription
         panel.beyond.markers.clear();
         for (Curve& curve : panel.beyond.curves) curve.stroke.color.a = pale_alpha / 2;
         for (TimeBar& one : panel.time_bars)
-            for (TimeBar::Mark& mark : one.marks) mark.color.a = pale_alpha;
+            for (TimeBar::TimeMark& mark : one.marks) mark.color.a = pale_alpha;
     }
     return figure;
 }
@@ -169,13 +169,13 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     const std::vector<double> values = values_at(trajectory_, now, view);
     if (view.quantities()[0].is_time) {
         Markers cursor;
-        cursor.shape = Markers::Shape::bar;
+        cursor.shape = Markers::MarkerShape::bar;
         cursor.fill = theme.surface;
         cursor.points = {{values[0], 0.0}};
         panel.markers.push_back(cursor);
     }
     Markers dot;
-    dot.shape = Markers::Shape::circle;
+    dot.shape = Markers::MarkerShape::circle;
     dot.fill = theme.body;
     dot.edge = theme.background;
     dot.size = 10.0;
@@ -184,11 +184,11 @@ void Animation::add_present(Panel& panel, const PreparedView& view, const Sample
     panel.markers.push_back(dot);
 }
 
-Still Animation::at(double t) {
+AnimationFrame Animation::at(double t) {
     const Sample now = sampler_.at(t);
     const Theme theme = size_.dark ? dark_theme() : light_theme();
     const SystemDescription& description = trajectory_.model->description();
-    Still still;
+    AnimationFrame still;
     still.areas = areas_;
     const double scale = still.scale = still_scale(size_);
     const double room = std::round(still_margin * scale);
@@ -220,7 +220,7 @@ Still Animation::at(double t) {
     return still;
 }
 
-std::string to_text(const Still& still) {
+std::string to_text(const AnimationFrame& still) {
     std::string text;
     for (const auto& item : still.heading)
         if (const auto* words = std::get_if<TextRun>(&item)) text += words->label + "\n";

@@ -5,7 +5,7 @@
 #include "figure/compose.hpp"
 #include "figure/figure.hpp"
 #include "figure/layout.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -33,7 +33,7 @@ constexpr double still_margin = 16.0;      // pixels at scale 1, on all sides of
 double still_scale(const StillSize& size);
 
 // One frame of an animation.
-struct Still {
+struct AnimationFrame {
     Sheet heading;  // and the background
     Drawing world;
     Figure plane;  // the plane of two coordinates with the boundary, if the system has no drawing; else empty
@@ -45,7 +45,7 @@ struct Still {
 };
 
 // The frame as text for tests. Moving parts have 9 significant digits.
-std::string to_text(const Still& still);
+std::string to_text(const AnimationFrame& still);
 
 class Animation {
  public:
@@ -54,7 +54,7 @@ class Animation {
     Animation(const Trajectory& trajectory, std::span<const ViewDescription> views, const StillSize& size, double step,
               CameraMode camera = CameraMode::fit);
     // The frame at time t (s), which must lie within the run.
-    Still at(double t);
+    AnimationFrame at(double t);
 
  private:
     void add_present(Panel& panel, const PreparedView& view, const Sample& now) const;
@@ -67,7 +67,7 @@ class Animation {
     std::vector<Sample> samples_;
     std::vector<PreparedView> views_;
     Mechanism mechanism_;
-    Stage stage_;
+    MechanismScene stage_;
     CameraMode camera_;
     Figure figure_;  // plots of the whole run, pale
     std::optional<PreparedView> plane_view_;

@@ -181,7 +181,7 @@ bool has_tick_labels(const Axis& axis) {
 constexpr float closest_ticks = 0.38F;
 
 // A tick with its position on the screen, pixels.
-struct Placed {
+struct PlacedTick {
     const Tick* tick;
     float at;       // the first pixel of its line
     bool labelled;  // false also if its label would touch another one
@@ -189,9 +189,9 @@ struct Placed {
 
 // Drops labels so that only every second, third, ... tick keeps its label, if labels of this length need it. Zero keeps
 // its label, unless it would be the only one: a scale needs two.
-void drop_labels(std::vector<Placed>& ticks, float length) {
-    std::vector<Placed*> labelled;
-    for (Placed& p : ticks)
+void drop_labels(std::vector<PlacedTick>& ticks, float length) {
+    std::vector<PlacedTick*> labelled;
+    for (PlacedTick& p : ticks)
         if (p.labelled) labelled.push_back(&p);
     float nearest = std::numeric_limits<float>::infinity();
     std::size_t zero = 0;
@@ -207,19 +207,19 @@ void drop_labels(std::vector<Placed>& ticks, float length) {
 }
 
 // Drops ticks without labels if they are too dense.
-void drop_minor(std::vector<Placed>& ticks, float closest) {
+void drop_minor(std::vector<PlacedTick>& ticks, float closest) {
     bool crowded = false;
     for (std::size_t i = 1; i < ticks.size(); ++i)
         crowded = crowded || (ticks[i].at - ticks[i - 1].at < closest && ticks[i - 1].at - ticks[i].at < closest);
     if (!crowded) return;
-    std::erase_if(ticks, [](const Placed& p) { return p.tick->label.empty(); });
+    std::erase_if(ticks, [](const PlacedTick& p) { return p.tick->label.empty(); });
 }
 
 // The ticks within the side of the plot from `from` to `to`, pixels. `length`: of labels along the axis. `closest`:
 // minimum distance between ticks. No label lies beyond `last`.
-std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
-                           float closest, float last = std::numeric_limits<float>::infinity()) {
-    std::vector<Placed> result;
+std::vector<PlacedTick> placed(const Axis& axis, const AxisMap& map, float from, float to, float line, float length,
+                               float closest, float last = std::numeric_limits<float>::infinity()) {
+    std::vector<PlacedTick> result;
     for (const Tick& tick : axis.ticks) {
         const double at = map(tick.value);
         if (!(at >= from - 0.5 && at <= to + 0.5)) continue;
@@ -233,13 +233,13 @@ std::vector<Placed> placed(const Axis& axis, const AxisMap& map, float from, flo
     return result;
 }
 
-std::vector<Placed> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
+std::vector<PlacedTick> ticks_x(const Panel& panel, Rectangle plot, const Metrics& m) {
     return placed(panel.x, PanelMap(panel, plot).x, plot.x, plot.x + plot.width, m.line,
                   widest_label(panel.x, m) + m.text * 0.7F, m.text * closest_ticks);
 }
 
 // Above time bars, the lowest labels must not touch the first name.
-std::vector<Placed> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
+std::vector<PlacedTick> ticks_y(const Panel& panel, Rectangle plot, const Metrics& m) {
     const float bottom = plot.y + plot.height;
     return placed(panel.y, PanelMap(panel, plot).y, plot.y, bottom, m.line, m.text * 1.2F, m.text * closest_ticks,
                   panel.time_bars.empty() ? bottom + m.text : bottom - 0.35F * m.text);
@@ -265,14 +265,14 @@ float bar_width(const Metrics& m) { return std::round(1.1F * m.text); }
 float bar_distance(const Metrics& m) { return std::round(1.1F * m.text); }
 
 // A label shortened or shrunk to a given length.
-struct Fitted {
+struct FittedLabel {
     std::string label;
     float size;
 };
 
 // Fits a label into `room` pixels. First it shrinks to the size of subscripts, which the font has; only below that to
 // other sizes, for which glyphs are scaled. At the minimum size it is shortened.
-Fitted fitting(const std::string& label, const Metrics& m, float room) {
+FittedLabel fitting(const std::string& label, const Metrics& m, float room) {
     const float width = m.width(label, m.text), small = std::round(m.text * script_size);
     if (width <= room) return {label, m.text};
     if (small >= m.smallest_text && m.width(label, small) <= room) return {label, small};
@@ -284,7 +284,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
            const Metrics& m) {
     const float bottom = plot.y + plot.height + strip + m.line;
     const float below = bottom + m.tick + m.gap;
-    for (const Placed& p : ticks_x(panel, plot, m)) {
+    for (const PlacedTick& p : ticks_x(panel, plot, m)) {
         bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
         if (p.labelled && panel.x.labelled)
             sheet.emplace_back(TextRun{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
@@ -302,7 +302,7 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
 void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Margins& room, float strip,
            const Metrics& m) {
     const float left = plot.x - m.line;
-    for (const Placed& p : ticks_y(panel, plot, m)) {
+    for (const PlacedTick& p : ticks_y(panel, plot, m)) {
         const float length = p.labelled ? m.tick : m.minor_tick;
         bar(sheet, left - length, p.at, length, m.line, style.ink);
         // Digits have no descenders, so that their center is slightly above the center of the line.
@@ -379,10 +379,10 @@ PanelMap::PanelMap(const Panel& panel, Rectangle plot)
 void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
     if (style.grid.a == 0) return;
     // No grid line beside the box, which has lines of its own.
-    for (const Placed& p : ticks_x(panel, plot, m))
+    for (const PlacedTick& p : ticks_x(panel, plot, m))
         if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
             bar(sheet, p.at, plot.y, m.line, plot.height, style.grid);
-    for (const Placed& p : ticks_y(panel, plot, m))
+    for (const PlacedTick& p : ticks_y(panel, plot, m))
         if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
             bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
 }
@@ -399,7 +399,7 @@ void lay_color_bar(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
     Panel beside;
     beside.y = colors.axis;
     const float right = area.x + area.width + m.line;
-    for (const Placed& p : ticks_y(beside, area, m)) {
+    for (const PlacedTick& p : ticks_y(beside, area, m)) {
         bar(sheet, right, p.at, p.labelled ? m.tick : m.minor_tick, m.line, style.ink);
         if (p.labelled)
             sheet.emplace_back(TextRun{right + m.tick + m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 0.0F,
@@ -437,7 +437,7 @@ void lay_time_bars(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
     if (style.background.a > 0) bar(sheet, left, y - m.line, plot.width, strip - m.line, style.background);
     for (const TimeBar& one : panel.time_bars) {
         const float top = std::round(y + 0.5F * (row - thick));
-        for (const TimeBar::Mark& mark : one.marks) {
+        for (const TimeBar::TimeMark& mark : one.marks) {
             if (mark.high < panel.x.low || mark.low > panel.x.high) continue;
             const float from = place(mark.low), to = place(mark.high);
             if (mark.high > mark.low)

@@ -34,8 +34,8 @@ Eigen::Matrix2d gram(const Vector& jx, const Vector& jy) {
 
 }  // namespace
 
-std::optional<Body> Body::of(Grip& grip, double t, const State& state) {
-    const Grip::Hold here = grip.at(t, state);
+std::optional<Body> Body::of(AnchorPoint& grip, double t, const State& state) {
+    const AnchorPoint::Hold here = grip.at(t, state);
     if (!std::isfinite(here.at.x) || !std::isfinite(here.at.y)) return std::nullopt;
     Body body;
     body.at_ = here.at;
@@ -74,7 +74,7 @@ std::optional<Vector> Body::rates(const Vector& v, const Point& velocity) const 
     return result;
 }
 
-std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& place) {
+std::optional<Vector> held_at(AnchorPoint& grip, double t, State state, const Point& place) {
     constexpr int rounds = 30;
     double distance = std::numeric_limits<double>::infinity();
     for (int round = 0; round < rounds; ++round) {
@@ -120,7 +120,7 @@ std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double t
     });
     std::vector<WayPoint> way;
     for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
-        const Course& course = traced.courses[kind == Phase::Kind::hybrid ? 0 : 1];
+        const PhaseCurve& course = traced.courses[kind == Phase::Kind::hybrid ? 0 : 1];
         if (!way.empty() && !course.points.empty()) way.push_back({to, kind, break_of_curve});
         for (std::size_t i = 0; i < course.points.size(); ++i) way.push_back({course.times[i], kind, course.points[i]});
     }
@@ -166,7 +166,7 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
     return trail;
 }
 
-void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
+void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
     constexpr std::uint8_t passed = 150, to_come = 60;
     std::vector<Shape> lines;
     const WayPoint* before = nullptr;  // null after a break

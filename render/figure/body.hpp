@@ -15,7 +15,7 @@ class Body {
  public:
     // The body at a time and state: position p = p(q) in the world and Jacobian J = dp/dq by central differences.
     // nullopt if these are not finite.
-    static std::optional<Body> of(Grip& grip, double t, const State& state);
+    static std::optional<Body> of(AnchorPoint& grip, double t, const State& state);
 
     const Point& at() const { return at_; }
     double radius() const { return radius_; }  // of its disc, in world units; 0 without a disc
@@ -38,7 +38,7 @@ class Body {
 
 // Coordinates that move the body to `place` at time t, starting from those of `state` (Gauss-Newton). A body that moves
 // on a line gets as close as it can. nullopt if a position or a step is not finite.
-std::optional<Vector> held_at(Grip& grip, double t, State state, const Point& place);
+std::optional<Vector> held_at(AnchorPoint& grip, double t, State state, const Point& place);
 
 // A point of the trail. A point that is not finite breaks the trail.
 struct WayPoint {
@@ -72,7 +72,7 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
 void add_present(std::vector<WayPoint>& way, const WayPoint& now);
 // Inserts the trail into the shapes of a mechanism, each phase in its color, the part after t faint. The trail lies
 // over the static shapes, whose lines would hide motion in contact, and under the moving ones.
-void add_way(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
+void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
 
 // Contact force of a sample as a generalized force: sum of lambda_i times the gap gradient over the held contacts; zero
 // in free flight.

@@ -65,7 +65,7 @@ Drawing widened(const Drawing& limits, double width, double height) {
     return seen;
 }
 
-Camera::Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory& trajectory,
+Camera::Camera(const Mechanism& mechanism, const ContactGeometry& touch, const Trajectory& trajectory,
                std::span<const Sample> samples, const Trail& trail, const Drawing& limits)
     : touch_(touch),
       trajectory_(trajectory),
@@ -90,7 +90,7 @@ Camera::Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory&
 // ---- the bouncing sequence before a Zeno point ----
 
 Camera::Bounce Camera::bounce(std::size_t grip, std::size_t contact, const Sample& sample) const {
-    Grip asked = grips_[grip];
+    AnchorPoint asked = grips_[grip];
     const auto body = Body::of(asked, sample.t, sample.state);
     if (!body) return {};
     const Model& model = *trajectory_.model;
@@ -143,7 +143,7 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
     const auto known = std::find_if(approaches_.begin(), approaches_.end(),
                                     [&](const Approach& other) { return other.contact == approach.contact; });
     approach.grip = known != approaches_.end() ? known->grip : grip_for(approach.contact, first);
-    Grip grip = grips_[approach.grip];
+    AnchorPoint grip = grips_[approach.grip];
     approach.on_ground = touch_.ground_below(grip, approach.contact, first.t, first.state).has_value();
     const Point way = bounce(approach.grip, approach.contact, first).rise;
     const double carried = std::hypot(way.x, way.y);
@@ -169,9 +169,10 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
 // under constant acceleration.
 double Camera::Approach::height(double t) const {
     const double left = std::max(0.0, zeno - t);
-    const auto next = std::find_if(flights.begin(), flights.end(), [&](const Flight& f) { return f.left <= left; });
+    const auto next =
+        std::find_if(flights.begin(), flights.end(), [&](const FlightHeight& f) { return f.left <= left; });
     if (next == flights.begin()) return flights.front().height;
-    const Flight& before = *std::prev(next);
+    const FlightHeight& before = *std::prev(next);
     if (next == flights.end()) return before.height * (left / before.left) * (left / before.left);
     const double s = std::log(before.left / left) / std::log(before.left / next->left);
     return before.height * std::pow(next->height / before.height, s);
@@ -234,8 +235,8 @@ Point Camera::mean_place(double t, double reach) const {
 
 Drawing Camera::follow(const Sample& now, const CameraPicture& picture) const {
     if (grips_.empty()) return fit(picture);
-    Grip grip = grips_.front();
-    const Grip::Hold body = grip.at(now.t, now.state);
+    AnchorPoint grip = grips_.front();
+    const AnchorPoint::Hold body = grip.at(now.t, now.state);
     const Drawing all = fit(picture);
     const double largest = std::max(all.x_high - all.x_low, all.y_high - all.y_low);
     constexpr double share = 0.4, radii = 20.0, window = 0.04;
@@ -272,13 +273,13 @@ double Camera::size_at(std::size_t which, double t, double full) const {
 
 // Center of the zoomed view: the contact point on the ground, in the lower part of the picture.
 Point Camera::focus(const Approach& approach, const Sample& now, double size) const {
-    Grip grip = grips_[approach.grip];
+    AnchorPoint grip = grips_[approach.grip];
     if (const auto touched = touch_.ground_below(grip, approach.contact, now.t, now.state)) {
         constexpr double above = 0.2;
         return {touched->foot.x + above * size * touched->away.x, touched->foot.y + above * size * touched->away.y};
     }
     // The drawing does not show the contact point, for example at the stop of a joint. The body is near it.
-    Grip body = grips_.front();
+    AnchorPoint body = grips_.front();
     return body.at(now.t, now.state).at;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "figure/body.hpp"
-#include "figure/touch.hpp"
+#include "figure/contact_geometry.hpp"
 
 namespace achilles {
 
@@ -35,7 +35,7 @@ struct CameraPicture {
 class Camera {
  public:
     // Keeps references to its arguments.
-    Camera(const Mechanism& mechanism, const Touch& touch, const Trajectory& trajectory,
+    Camera(const Mechanism& mechanism, const ContactGeometry& touch, const Trajectory& trajectory,
            std::span<const Sample> samples, const Trail& trail, const Drawing& limits);
 
     // The visible part of the world, as limits of a drawing without shapes. Mode `fixed` is treated as `fit`.
@@ -53,10 +53,10 @@ class Camera {
         bool on_ground = false;  // the ground is drawn, so that the picture may zoom in without limit
         // For every flight of the sequence, in order: time from its start to the Zeno point (s), and height. Heights do
         // not increase.
-        struct Flight {
+        struct FlightHeight {
             double left, height;
         };
-        std::vector<Flight> flights;
+        std::vector<FlightHeight> flights;
         double height(double t) const;
     };
     std::optional<Approach> approach_to(std::size_t event) const;
@@ -74,13 +74,13 @@ class Camera {
     double smallest(const Approach& approach) const { return (approach.on_ground ? 1e-10 : 0.4) * limits_.size; }
     Point mean_place(double t, double reach) const;
 
-    const Touch& touch_;
+    const ContactGeometry& touch_;
     const Trajectory& trajectory_;
     std::span<const Sample> samples_;
     const Trail& trail_;
     const Drawing& limits_;
-    std::vector<Grip> grips_;      // of the mechanism; copied before use, because evaluation changes them
-    std::vector<Point> integral_;  // time integral of the body position, sample by sample
+    std::vector<AnchorPoint> grips_;  // of the mechanism; copied before use, because evaluation changes them
+    std::vector<Point> integral_;     // time integral of the body position, sample by sample
     std::vector<Approach> approaches_;
 };
 

@@ -230,7 +230,7 @@ void split_curves(Panel& panel, Panel& pale, const std::vector<std::vector<doubl
 }
 
 // Converts the curves and markers of a panel to the pale part after the horizon.
-Beyond beyond_of(Panel panel, double horizon) {
+HorizonTail beyond_of(Panel panel, double horizon) {
     const auto fade = [](Color& color) { color.a = std::min(color.a, pale_beyond); };
     for (Curve& curve : panel.curves) curve.label.clear(), fade(curve.stroke.color);
     for (Markers& markers : panel.markers) markers.label.clear(), fade(markers.fill), fade(markers.edge);
@@ -240,8 +240,8 @@ Beyond beyond_of(Panel panel, double horizon) {
 // Makes the marks after the horizon pale.
 void fade(std::vector<TimeBar>& bars, double horizon) {
     for (TimeBar& bar : bars) {
-        std::vector<TimeBar::Mark> marks;
-        for (TimeBar::Mark mark : bar.marks) {
+        std::vector<TimeBar::TimeMark> marks;
+        for (TimeBar::TimeMark mark : bar.marks) {
             if (mark.low <= horizon && mark.high > horizon) {
                 marks.push_back({mark.low, horizon, mark.color});
                 mark.low = horizon;
@@ -261,7 +261,7 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
 }
 
 // Treats a quantity that varies by its noise only as constant.
-Range without_noise(Range range, double noise) {
+Range flush_noise_to_zero(Range range, double noise) {
     if (range.high - range.low > noise) return range;
     const double middle = 0.5 * (range.low + range.high);
     range.low = range.high = std::abs(middle) <= noise ? 0.0 : middle;
@@ -270,8 +270,8 @@ Range without_noise(Range range, double noise) {
 
 void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& view, const Framing& framing,
               Range x_range, Range y_range, const Noise& noise) {
-    x_range = without_noise(x_range, noise.x);
-    y_range = without_noise(y_range, noise.y);
+    x_range = flush_noise_to_zero(x_range, noise.x);
+    y_range = flush_noise_to_zero(y_range, noise.y);
     const bool whole_run = view.quantities()[0].is_time && !framing.log_x;
     if (whole_run) x_range.low = trajectory.run.options.start_time, x_range.high = trajectory.end_time;
     set_limits(panel.x, framing.x, x_range, whole_run ? 0.0 : 0.05);
@@ -539,15 +539,15 @@ PreparedView::PreparedView(const Model& model, const ViewDescription& view)
 }
 
 std::string PreparedView::unit() const {
-    const auto other = [&](const Quantity& quantity) { return quantity.unit != quantities_[1].unit; };
+    const auto other = [&](const ViewQuantity& quantity) { return quantity.unit != quantities_[1].unit; };
     return std::any_of(quantities_.begin() + 1, quantities_.end(), other) ? "" : quantities_[1].unit;
 }
 
-PreparedView::Quantity PreparedView::quantity(const SystemDescription& description, const std::string& written,
-                                              const std::string& unit) {
+PreparedView::ViewQuantity PreparedView::quantity(const SystemDescription& description, const std::string& written,
+                                                  const std::string& unit) {
     const std::size_t begin = std::min(written.find_first_not_of(' '), written.size());
     const std::string text = written.substr(begin, written.find_last_not_of(' ') + 1 - begin);
-    Quantity result{typeset(text), unit, 1.0, text == "t"};
+    ViewQuantity result{typeset(text), unit, 1.0, text == "t"};
     result.text = text;
     for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
         const CoordinateDescription& c = description.coordinates[i];
@@ -570,7 +570,7 @@ std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, cons
     std::vector<TimeBar> bars(constraints.size());
     for (std::size_t contact = 0; contact < bars.size(); ++contact) {
         bars[contact].label = typeset_name(constraints[contact].name);
-        std::vector<TimeBar::Mark>& marks = bars[contact].marks;
+        std::vector<TimeBar::TimeMark>& marks = bars[contact].marks;
         const auto is_seen = [&](double low, double high) {
             return high >= time.low && low <= time.high && low <= end;
         };

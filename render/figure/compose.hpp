@@ -25,7 +25,7 @@ class PreparedView {
     PreparedView(const Model& model, const ViewDescription& view);
 
     // Label, unit and conversion factor of one expression (180/pi for an angle shown in degrees).
-    struct Quantity {
+    struct ViewQuantity {
         std::string label, unit;
         double factor = 1.0;
         bool is_time = false;
@@ -34,18 +34,19 @@ class PreparedView {
     };
     const std::string& title() const { return title_; }
     const Program& program() const { return program_; }
-    const std::vector<Quantity>& quantities() const { return quantities_; }  // x, then every y
+    const std::vector<ViewQuantity>& quantities() const { return quantities_; }  // x, then every y
     // Label of the y axis: the one in the file, else the name of the only curve, or the names of two or three.
     const std::string& label() const { return label_; }
     // Displayed unit of all curves; "" if they differ.
     std::string unit() const;
 
  private:
-    static Quantity quantity(const SystemDescription& description, const std::string& written, const std::string& unit);
+    static ViewQuantity quantity(const SystemDescription& description, const std::string& written,
+                                 const std::string& unit);
 
     std::string title_, label_;
     Program program_;  // x, then every y
-    std::vector<Quantity> quantities_;
+    std::vector<ViewQuantity> quantities_;
 };
 
 // Default name of a view without one: "y, z over x", as typed.
@@ -117,7 +118,7 @@ class Values {
  private:
     Evaluator<double> evaluator_;
     std::vector<bool> reads_;  // for each input slot: whether the program reads it
-    std::span<const PreparedView::Quantity> quantities_;
+    std::span<const PreparedView::ViewQuantity> quantities_;
     ContactForces forces_;
 };
 

@@ -34,9 +34,9 @@ std::vector<double> instants(const Trajectory& a, const Trajectory& b, double fr
 }
 
 // Quantities of a run at any time.
-class Along {
+class ViewSampler {
  public:
-    Along(const Trajectory& run, const PreparedView& view) : sampler_(run), values_(view, run) {}
+    ViewSampler(const Trajectory& run, const PreparedView& view) : sampler_(run), values_(view, run) {}
     void go_to(double t) { values_.set(sampler_.at(t)); }
     double operator[](std::size_t i) const { return values_[i]; }
 
@@ -71,7 +71,7 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
     Panel panel;
     panel.title = "difference: " + view.title();
     panel.y.logarithmic = true;
-    Along now(present, view);
+    ViewSampler now(present, view);
     double largest = 0.0, high = 0.0, start = present.run.options.start_time, end = start;
     for (const ComparedRun& other : others) {
         const double begin = std::max(present.run.options.start_time, other.run->run.options.start_time),
@@ -80,7 +80,7 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
         end = std::max(end, until);
         const double from = framing.x ? std::clamp((*framing.x)[0], begin, until) : begin,
                      to = framing.x ? std::clamp((*framing.x)[1], from, until) : until;
-        Along then(*other.run, view);
+        ViewSampler then(*other.run, view);
         const std::size_t first = panel.curves.size();
         const double known = std::min(horizon.value_or(until), other.horizon.value_or(until));
         if (known < until) panel.beyond.label = beyond_text(known);

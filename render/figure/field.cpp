@@ -26,7 +26,7 @@ bool crosses(const Corner& a, const Corner& b) {
 
 }  // namespace
 
-Field::Field(const Drawing& limits, const PlaneFunction& value, int columns, int rows)
+ScalarField::ScalarField(const Drawing& limits, const PlaneFunction& value, int columns, int rows)
     : value_(value), limits_(limits), columns_(columns), rows_(rows) {
     limits_.shapes.clear();
     values_.resize(static_cast<std::size_t>((columns_ + 1) * (rows_ + 1)));
@@ -35,19 +35,19 @@ Field::Field(const Drawing& limits, const PlaneFunction& value, int columns, int
             values_[static_cast<std::size_t>(j * (columns_ + 1) + i)] = value(corner(i, j).at);
 }
 
-Field::Corner Field::corner(int column, int row) const {
+ScalarField::Corner ScalarField::corner(int column, int row) const {
     return {{limits_.x_low + (limits_.x_high - limits_.x_low) * column / columns_,
              limits_.y_low + (limits_.y_high - limits_.y_low) * row / rows_},
             values_[static_cast<std::size_t>(row * (columns_ + 1) + column)]};
 }
 
-Field Field::least(std::span<const Field> fields) {
-    Field result = fields[0];
-    for (const Field& field : fields)
+ScalarField ScalarField::least(std::span<const ScalarField> fields) {
+    ScalarField result = fields[0];
+    for (const ScalarField& field : fields)
         for (std::size_t i = 0; i < field.values_.size(); ++i)
             result.values_[i] = std::min(result.values_[i], field.values_[i]);
     std::vector<PlaneFunction> all;
-    for (const Field& field : fields) all.push_back(field.value_);
+    for (const ScalarField& field : fields) all.push_back(field.value_);
     result.value_ = [all](const Point& p) {
         double least = all[0](p);
         for (std::size_t i = 1; i < all.size(); ++i) least = std::min(least, all[i](p));
@@ -56,13 +56,13 @@ Field Field::least(std::span<const Field> fields) {
     return result;
 }
 
-Field::Square Field::cell(int column, int row) const {
+ScalarField::Square ScalarField::cell(int column, int row) const {
     return {corner(column, row), corner(column + 1, row), corner(column + 1, row + 1), corner(column, row + 1)};
 }
 
 // Whether the zero line may cross a cell. Either the values at its corners change sign, or they are so close to zero
 // compared with their curvature over a cell that a crest may reach into the cell.
-bool Field::may_be_crossed(int column, int row) const {
+bool ScalarField::may_be_crossed(int column, int row) const {
     const auto at = [&](int i, int j) { return values_[static_cast<std::size_t>(j * (columns_ + 1) + i)]; };
     double low = std::numeric_limits<double>::infinity(), high = -low, bend = 0.0;
     for (int j = row; j <= row + 1; ++j)
@@ -78,7 +78,7 @@ bool Field::may_be_crossed(int column, int row) const {
     return low <= share * bend && high >= -share * bend;
 }
 
-std::vector<Field::Square> Field::parts_of(const Square& cell) const {
+std::vector<ScalarField::Square> ScalarField::parts_of(const Square& cell) const {
     constexpr int n = 4;
     std::array<std::array<Corner, n + 1>, n + 1> grid;
     const Point &from = cell[0].at, &to = cell[2].at;
@@ -101,7 +101,7 @@ std::vector<Field::Square> Field::parts_of(const Square& cell) const {
 
 // Zero on the edge between two corners with different signs, by regula falsi (Illinois). The direction is independent
 // of the cell.
-Point Field::zero_between(const Corner& a, const Corner& b) const {
+Point ScalarField::zero_between(const Corner& a, const Corner& b) const {
     constexpr int rounds = 6;
     const bool turned = a.at.x > b.at.x || (a.at.x == b.at.x && a.at.y > b.at.y);
     Corner low = turned ? b : a, high = turned ? a : b;
@@ -118,7 +118,7 @@ Point Field::zero_between(const Corner& a, const Corner& b) const {
     return at;
 }
 
-std::vector<Point> Field::zero_line() const {
+std::vector<Point> ScalarField::zero_line() const {
     std::vector<Point> line;
     for (int j = 0; j < rows_; ++j)
         for (int i = 0; i < columns_; ++i) {
@@ -135,7 +135,7 @@ std::vector<Point> Field::zero_line() const {
     return line;
 }
 
-std::vector<Point> Field::level_line(double level) const {
+std::vector<Point> ScalarField::level_line(double level) const {
     std::vector<Point> line;
     for (int j = 0; j < rows_; ++j) {
         const double* const low = values_.data() + static_cast<std::ptrdiff_t>(j) * (columns_ + 1);
@@ -157,7 +157,7 @@ std::vector<Point> Field::level_line(double level) const {
     return line;
 }
 
-std::vector<std::vector<Point>> Field::not_negative() const {
+std::vector<std::vector<Point>> ScalarField::not_negative() const {
     std::vector<std::vector<Point>> parts;
     // Adjacent squares that are entirely inside are merged into one rectangle.
     std::optional<std::pair<Square, Square>> run;  // the first and the last square of a row
@@ -203,14 +203,14 @@ std::vector<std::vector<Point>> Field::not_negative() const {
     return parts;
 }
 
-double Field::largest() const {
+double ScalarField::largest() const {
     double size = 0.0;
     for (const double value : values_)
         if (std::isfinite(value)) size = std::max(size, std::abs(value));
     return size;
 }
 
-std::array<double, 2> Field::range() const {
+std::array<double, 2> ScalarField::range() const {
     std::vector<double> values;
     for (const double value : values_)
         if (std::isfinite(value)) values.push_back(value);
@@ -227,11 +227,11 @@ std::array<double, 2> Field::range() const {
     return all[1] - all[0] > far * (most[1] - most[0]) && most[1] > most[0] ? most : all;
 }
 
-std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> values) {
+std::vector<std::vector<Point>> borders(std::span<const ScalarField> fields, std::span<const PlaneFunction> values) {
     constexpr double rounding = 1e-3;  // chord error relative to the largest value: where zero lines touch or coincide,
                                        // both are kept
     std::vector<double> below;
-    for (const Field& field : fields) below.push_back(-rounding * field.largest());
+    for (const ScalarField& field : fields) below.push_back(-rounding * field.largest());
     std::vector<std::vector<Point>> all(fields.size());
     for (std::size_t i = 0; i < fields.size(); ++i) {
         const std::vector<Point> line = fields[i].zero_line();
@@ -296,7 +296,7 @@ class Chains {
 std::vector<Point> joined(const std::vector<Point>& segments) { return Chains(segments).lines(); }
 
 std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> values, int columns, int rows) {
-    std::vector<Field> fields;
+    std::vector<ScalarField> fields;
     for (const PlaneFunction& function : values) fields.emplace_back(limits, function, columns, rows);
     std::vector<Point> all;
     for (const std::vector<Point>& line : borders(fields, values)) all.insert(all.end(), line.begin(), line.end());

@@ -13,13 +13,13 @@ namespace achilles {
 
 using PlaneFunction = std::function<double(const Point&)>;
 
-class Field {
+class ScalarField {
  public:
     // Samples the function at the corners of columns x rows cells over the limits.
-    Field(const Drawing& limits, const PlaneFunction& value, int columns = 160, int rows = 120);
+    ScalarField(const Drawing& limits, const PlaneFunction& value, int columns = 160, int rows = 120);
 
     // Pointwise minimum of one or more fields over the same rectangle and grid.
-    static Field least(std::span<const Field> fields);
+    static ScalarField least(std::span<const ScalarField> fields);
 
     // Level line by marching squares: segments, separated by NaN points.
     std::vector<Point> level_line(double level) const;
@@ -53,7 +53,7 @@ class Field {
 
 // Border of the region where all functions are nonnegative: the zero line of each function, without the parts where
 // another is negative. Lines, separated by NaN points.
-std::vector<std::vector<Point>> borders(std::span<const Field> fields, std::span<const PlaneFunction> functions);
+std::vector<std::vector<Point>> borders(std::span<const ScalarField> fields, std::span<const PlaneFunction> functions);
 std::vector<Point> border(const Drawing& limits, std::span<const PlaneFunction> functions, int columns = 160,
                           int rows = 120);
 // Joins segments that share an end into lines. Both formats are separated by NaN points.

@@ -38,9 +38,15 @@ struct Curve {
 };
 
 struct Markers {
-    enum class Shape { square, circle, triangle, diamond, bar };  // bar: a vertical line over the height of the panel
+    enum class MarkerShape {
+        square,
+        circle,
+        triangle,
+        diamond,
+        bar
+    };  // bar: a vertical line over the height of the panel
     std::string label;
-    Shape shape = Shape::square;
+    MarkerShape shape = MarkerShape::square;
     Color fill, edge;
     double size = 6.0;  // width
     std::vector<Point> points;
@@ -50,12 +56,12 @@ struct Markers {
 
 // Intervals and instants along the x axis, drawn as a thin bar below the plot area.
 struct TimeBar {
-    struct Mark {
+    struct TimeMark {
         double low = 0.0, high = 0.0;  // equal: an instant, drawn as a tick
         Color color;
     };
     std::string label;
-    std::vector<Mark> marks;  // in painting order
+    std::vector<TimeMark> marks;  // in painting order
 };
 
 // An interval of the x axis, shaded over the full height behind everything. It may extend beyond the limits.
@@ -120,8 +126,9 @@ struct Tube {
     std::vector<Slice> slices;
 };
 
-// The part of a run after its horizon, which is not reliable (depend/error_estimate.hpp). Drawn pale, below the rest.
-struct Beyond {
+// The part of a run after its horizon, which is not reliable (sensitivity/error_estimate.hpp). Drawn pale, below the
+// rest.
+struct HorizonTail {
     std::string label;  // "": no such part
     std::vector<Curve> curves;
     std::vector<Markers> markers;
@@ -146,7 +153,7 @@ struct Panel {
     ColorBar color_bar;
     std::vector<Tube> tubes;
     Curve boundary;  // drawn behind the curves: the boundary h = 0
-    Beyond beyond;
+    HorizonTail beyond;
     std::vector<Curve> curves;
     std::vector<Markers> markers;
     std::vector<TimeBar> time_bars;  // top to bottom

@@ -81,17 +81,17 @@ std::string tube_text(const Tube& tube) {
     return text + "\n";
 }
 
-const char* shape_text(Markers::Shape shape) {
+const char* shape_text(Markers::MarkerShape shape) {
     switch (shape) {
-        case Markers::Shape::square:
+        case Markers::MarkerShape::square:
             return "square";
-        case Markers::Shape::circle:
+        case Markers::MarkerShape::circle:
             return "circle";
-        case Markers::Shape::triangle:
+        case Markers::MarkerShape::triangle:
             return "triangle";
-        case Markers::Shape::diamond:
+        case Markers::MarkerShape::diamond:
             return "diamond";
-        case Markers::Shape::bar:
+        case Markers::MarkerShape::bar:
             return "bar";
     }
     return "";
@@ -138,7 +138,7 @@ std::string to_text(const Figure& figure) {
             constexpr std::size_t most = 40;
             text += fmt::format("  bar \"{}\" of {}:", one.label, one.marks.size());
             for (std::size_t i = 0; i < std::min(most, one.marks.size()); ++i) {
-                const TimeBar::Mark& mark = one.marks[i];
+                const TimeBar::TimeMark& mark = one.marks[i];
                 text += mark.high > mark.low ? fmt::format(" {:.9g} to {:.9g}", mark.low, mark.high)
                                              : fmt::format(" {:.9g}", mark.low);
             }

@@ -85,7 +85,7 @@ FormulaBox bracket(const FormulaPiece& piece, const FormulaBox& inside, float si
     box.width = 0.36F * size;
     box.ascent = high + 0.04F * size;
     box.descent = low + 0.04F * size;
-    FormulaBox::Stroke bow{{}, std::max(1.0F, rule_thickness * 1.2F * size)};
+    FormulaBox::FormulaStroke bow{{}, std::max(1.0F, rule_thickness * 1.2F * size)};
     constexpr int steps = 12;
     const float near = 0.30F * size, far = 0.09F * size;
     for (int i = 0; i <= steps; ++i) {
@@ -230,8 +230,8 @@ void FormulaBox::put(const FormulaBox& other, float x, float y) {
         one.y += y;
         letters.push_back(std::move(one));
     }
-    for (Rule one : other.rules) rules.push_back({one.x + x, one.y + y, one.width, one.height});
-    for (Stroke one : other.strokes) {
+    for (FormulaRule one : other.rules) rules.push_back({one.x + x, one.y + y, one.width, one.height});
+    for (FormulaStroke one : other.strokes) {
         for (Point& point : one.points) point = {point.x + double{x}, point.y + double{y}};
         strokes.push_back(std::move(one));
     }

@@ -69,17 +69,17 @@ struct FormulaBox {
         std::string label;
         int name = -1;
     };
-    struct Rule {
+    struct FormulaRule {
         float x = 0.0F, y = 0.0F, width = 0.0F, height = 0.0F;
     };
-    struct Stroke {
+    struct FormulaStroke {
         std::vector<Point> points;
         float width = 1.0F;
     };
     float width = 0.0F, ascent = 0.0F, descent = 0.0F;
     std::vector<Letters> letters;
-    std::vector<Rule> rules;
-    std::vector<Stroke> strokes;
+    std::vector<FormulaRule> rules;
+    std::vector<FormulaStroke> strokes;
 
     float height() const { return ascent + descent; }
     // Adds another box at (x, y), and extends this one.

@@ -5,7 +5,7 @@
 #include <cctype>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "number/angle.hpp"
 #include "system/units.hpp"
 
@@ -188,12 +188,12 @@ std::string beginning(const std::string& label, std::size_t size) {
 
 }  // namespace
 
-std::string shortened(const std::string& label, const std::function<bool(const std::string&)>& fits, Cut cut) {
+std::string shortened(const std::string& label, const std::function<bool(const std::string&)>& fits, EllipsisMode cut) {
     if (fits(label)) return label;
     const std::size_t open = label.ends_with(')') ? label.rfind(" (") : std::string::npos;
     const std::string words = label.substr(0, open), unit = open == std::string::npos ? "" : label.substr(open);
     std::string shorter;
-    for (std::size_t end = words.rfind(' '); cut == Cut::words && end != std::string::npos && end > 0;
+    for (std::size_t end = words.rfind(' '); cut == EllipsisMode::words && end != std::string::npos && end > 0;
          end = words.rfind(' ', end - 1))
         if (shorter = beginning(words, end) + unit; fits(shorter)) return shorter;
     for (std::size_t end = words.size(); end > 0;) {

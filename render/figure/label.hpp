@@ -39,9 +39,9 @@ ShownUnit shown_unit_of_setting(const SystemDescription& description, std::strin
 
 // Shortens a label until it fits, with an ellipsis at its end: by whole words while any are left, then by letters, or
 // by letters at once. A unit in parentheses at the end is kept.
-enum class Cut { words, letters };
+enum class EllipsisMode { words, letters };
 std::string shortened(const std::string& label, const std::function<bool(const std::string&)>& fits,
-                      Cut cut = Cut::words);
+                      EllipsisMode cut = EllipsisMode::words);
 
 // One character of a label, for renderers.
 struct Letter {

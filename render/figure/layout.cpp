@@ -110,7 +110,7 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     lay_dots(panel.dots, sheet, plot, map, m);
     for (const Tube& tube : panel.tubes) lay_tube(tube, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
-        if (markers.shape == Markers::Shape::bar) lay_bars(markers, sheet, plot, map, m);
+        if (markers.shape == Markers::MarkerShape::bar) lay_bars(markers, sheet, plot, map, m);
     const auto lay = [&](const Curve& curve, double least_width = 0.0) {
         Path path{{}, scaled(curve.stroke, m.scale), plot};
         path.stroke.width = std::max(path.stroke.width, least_width);
@@ -128,7 +128,7 @@ void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics&
     const PanelMap map(panel, plot);
     for (const std::vector<Markers>& all : {std::cref(panel.beyond.markers), std::cref(panel.markers)})
         for (const Markers& markers : all)
-            if (markers.shape != Markers::Shape::bar) lay_markers(markers, sheet, plot, map, m);
+            if (markers.shape != Markers::MarkerShape::bar) lay_markers(markers, sheet, plot, map, m);
 }
 
 std::vector<Key> keys_of(const Panel& panel) {
@@ -137,7 +137,7 @@ std::vector<Key> keys_of(const Panel& panel) {
         if (!curve.label.empty()) keys.push_back({curve.label, curve.stroke});
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
-    if (!panel.hatch.label.empty() && !is_bare(panel)) keys.push_back({panel.hatch.label, panel.hatch});
+    if (!panel.hatch.label.empty() && !has_no_fill(panel)) keys.push_back({panel.hatch.label, panel.hatch});
     for (const Tube& tube : panel.tubes)
         if (!tube.label.empty()) keys.push_back({tube.label, Tube{{}, tube.fill, tube.edge, {}}});
     return keys;
@@ -167,7 +167,7 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
         return;
     }
     const Markers& markers = std::get<Markers>(key.sign);
-    if (markers.shape == Markers::Shape::bar)
+    if (markers.shape == Markers::MarkerShape::bar)
         sheet.emplace_back(
             Fill{{std::round(x + (length - m.line) / 2.0F), y - m.text * 0.45F, m.line, m.text * 0.9F}, markers.fill});
     else
@@ -290,7 +290,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     lay_bands(panel, sheet, inner);
     lay_grid(panel, style, sheet, inner, m);
     lay_data(panel, sheet, inner, m);
-    lay_word(panel, style, sheet, inner, m);
+    layout_word(panel, style, sheet, inner, m);
     float lift = 0.0F;
     if (panel.legend && panel.legend_above) {
         const KeyLines keys(keys_of(panel), inner.width, m);
@@ -299,7 +299,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     }
     lay_time_bars(panel, style, sheet, inner, strip, m);
     for (const Markers& markers : panel.markers)  // a bar marker at an instant continues across the time bars
-        if (strip > 0.0F && markers.shape == Markers::Shape::bar)
+        if (strip > 0.0F && markers.shape == Markers::MarkerShape::bar)
             lay_bars(markers, sheet, {inner.x, inner.y + inner.height + m.line, inner.width, strip - m.line},
                      PanelMap(panel, inner), m);
     lay_axes(panel, style, sheet, inner, room, lift, strip, m);

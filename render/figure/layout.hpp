@@ -37,7 +37,7 @@ struct Strip {
 };
 
 struct Mark {
-    Markers::Shape shape = Markers::Shape::square;
+    Markers::MarkerShape shape = Markers::MarkerShape::square;
     Point at;
     Color fill, edge;
     double size = 6.0, edge_width = 1.0;

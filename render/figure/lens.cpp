@@ -89,7 +89,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     for (std::size_t i = first; i + 1 < event; ++i) {  // up to the impact at which the sequence is truncated
         const Event &impact = trajectory.events[i], &next = trajectory.events[i + 1];
         const double w = impact.impact_speed, down = next.impact_speed, length = next.t - impact.t;
-        Flight& drawn = lens.flights_.emplace_back(Flight{x(impact.t), w, {}});
+        FlightCurve& drawn = lens.flights_.emplace_back(FlightCurve{x(impact.t), w, {}});
         for (int k = 0; k <= points_a_flight; ++k) {
             const double u = share(k), t = impact.t + u * length;
             double h = cubic_gap(u, length, lens.e_ * w, down);
@@ -104,7 +104,7 @@ std::optional<Lens> Lens::at(const Trajectory& trajectory, std::size_t event) {
     return lens;
 }
 
-Lens::Part Lens::overview() const {
+Lens::LensPart Lens::overview() const {
     constexpr double least = 4.0, most = 12.0, before = 0.3, between = 0.45;  // decades; fractions of the width
     const double far = interval_ ? (*interval_ - cut_) / between : 0.0;
     const double width = std::clamp(far, least * std::max(1.0, spacing_), most * std::max(1.0, spacing_));
@@ -125,7 +125,7 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
     run.stroke.dash.clear();
     limit.stroke.dash = {2.0, 2.5};
     Markers& impacts = panel.markers.emplace_back(event_markers(theme, Event::Kind::impact));
-    for (const Flight& flight : flights_) {
+    for (const FlightCurve& flight : flights_) {
         if (flight.points.back().x < low || flight.x > high) continue;
         impacts.points.push_back({flight.x, 0.0});
         run.points.insert(run.points.end(), flight.points.begin(), flight.points.end());
@@ -142,7 +142,7 @@ Panel Lens::panel(double low, double high, const Theme& theme) const {
     }
     const auto bar = [&](double x, const char* label, const Color& color) {
         Markers& markers = panel.markers.emplace_back();
-        markers.shape = Markers::Shape::bar;
+        markers.shape = Markers::MarkerShape::bar;
         markers.label = label;
         markers.fill = markers.edge = color;
         markers.size = 1.5;

@@ -27,10 +27,10 @@ class Lens {
     double spacing() const { return spacing_; }
 
     // An interval of x that shows the cut and the start of the certified interval.
-    struct Part {
+    struct LensPart {
         double low, high;
     };
-    Part overview() const;
+    LensPart overview() const;
 
     // The flights between x = low and x = high, and the certified interval of tau_inf as a band. The band starts at
     // zeno_low and has no end, because tau_inf is infinitely far to the right. Up to the cut the flights are those of
@@ -39,11 +39,11 @@ class Lens {
     Panel panel(double low, double high, const Theme& theme) const;
 
  private:
-    struct Flight {
+    struct FlightCurve {
         double x = 0.0, speed = 0.0;  // of the impact at its start
         std::vector<Point> points;    // (x, h/speed^2)
     };
-    std::vector<Flight> flights_;
+    std::vector<FlightCurve> flights_;
     double cut_ = 0.0, spacing_ = 0.0, e_ = 0.0, height_ = 0.0;
     std::optional<double> interval_;
 };

@@ -64,11 +64,11 @@ std::vector<Point> far_apart(const std::vector<Point>& places, double side) {
 
 // Dot size, different for each kind, so that events at one position, such as the end of one contact phase and the start
 // of the next, show as stripes.
-double dot_of(Markers::Shape shape) {
+double dot_of(Markers::MarkerShape shape) {
     switch (shape) {
-        case Markers::Shape::square:
+        case Markers::MarkerShape::square:
             return 4.0;
-        case Markers::Shape::diamond:
+        case Markers::MarkerShape::diamond:
             return 2.5;
         default:
             return 1.2;
@@ -157,15 +157,15 @@ void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& 
     if (hatch.color.a > 0) sheet.emplace_back(hatching_of(hatch, plot, m));
 }
 
-bool is_bare(const Panel& panel) {
+bool has_no_fill(const Panel& panel) {
     const auto has_points = [](const auto& one) { return !one.points.empty(); };
     return !panel.hatch.label.empty() && !panel.raster.cells && panel.dots.points.empty() &&
            std::none_of(panel.curves.begin(), panel.curves.end(), has_points) &&
            std::none_of(panel.markers.begin(), panel.markers.end(), has_points);
 }
 
-void lay_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
-    if (!is_bare(panel)) return;
+void layout_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
+    if (!has_no_fill(panel)) return;
     const float x = plot.x + 0.5F * plot.width, y = plot.y + 0.5F * plot.height;
     const float wide = m.width(panel.hatch.label, m.text) + 1.6F * m.text, high = 1.8F * m.text;
     if (style.background.a > 0)

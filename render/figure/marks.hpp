@@ -18,8 +18,8 @@ void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& 
 // The hatching symbol of a legend.
 void lay_hatched_field(const Hatch& hatch, Sheet& sheet, Rectangle field, const Metrics& metrics);
 // Whether a panel shows nothing but hatching. Its meaning is then written in the middle instead of a legend.
-bool is_bare(const Panel& panel);
-void lay_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m);
+bool has_no_fill(const Panel& panel);
+void layout_word(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m);
 void lay_raster(const Raster& raster, Sheet& sheet, Rectangle plot, const PanelMap& map);
 // Draws dots as cells about one layout point wide.
 void lay_dots(const Dots& dots, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& metrics);

@@ -17,7 +17,7 @@ namespace {
 constexpr int most_halvings = 56;
 constexpr std::size_t most_points = 20000;  // limit for a curve that never ends inside the picture
 
-struct At {
+struct CurveSample {
     double s;
     Point p;
 };
@@ -42,11 +42,11 @@ class Refiner {
         : curve_(curve), seen_(seen), size_(std::hypot(seen.x_high - seen.x_low, seen.y_high - seen.y_low)) {}
 
     // Adds the points between a and b, including b but not a.
-    void add(const At& a, const At& b, int halvings) {
+    void add(const CurveSample& a, const CurveSample& b, int halvings) {
         const bool is_short = std::hypot(b.p.x - a.p.x, b.p.y - a.p.y) <= 0.1 * size_;
         if (halvings < most_halvings && points_.size() < most_points && is_near(a.p, b.p, seen_)) {
             const double s = 0.5 * (a.s + b.s);
-            const At middle{s, curve_(s)};
+            const CurveSample middle{s, curve_(s)};
             constexpr double flat = 5e-5;  // of the diagonal: a twentieth of a pixel
             if (s != a.s && s != b.s && !(is_short && distance_to_chord(middle.p, a.p, b.p) <= flat * size_)) {
                 add(a, middle, halvings + 1);
@@ -67,11 +67,11 @@ class Refiner {
 
 std::vector<Point> refined(const ParametricCurve& curve, double low, double high, int pieces, const Drawing& seen) {
     Refiner refiner(curve, seen);
-    At before{low, curve(low)};
+    CurveSample before{low, curve(low)};
     refiner.points_.push_back(before.p);
     for (int i = 1; i <= pieces; ++i) {
         const double s = low + (high - low) * i / pieces;
-        const At here{s, curve(s)};
+        const CurveSample here{s, curve(s)};
         refiner.add(before, here, 0);
         before = here;
     }
@@ -102,8 +102,8 @@ struct Box {
         y_low = std::min(y_low, p.y - radius);
         y_high = std::max(y_high, p.y + radius);
     }
-    template <class Placed>
-    void include(const Placed& placed) {
+    template <class EvaluatedDrawing>
+    void include(const EvaluatedDrawing& placed) {
         for (const Point& point : placed.points) include(point, std::max(0.0, placed.radius));
     }
     void include(const Box& other) {
@@ -145,8 +145,8 @@ bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Poi
 }
 
 // Includes the point of a floor, wall or pivot that is nearest to the motion, unless it is far away.
-template <class Placed>
-void include_nearest(Box& all, const Box& motion, const Placed& placed) {
+template <class EvaluatedDrawing>
+void include_nearest(Box& all, const Box& motion, const EvaluatedDrawing& placed) {
     constexpr int parts = 100;
     const double reach = motion.size();
     double least = std::numeric_limits<double>::infinity();
@@ -208,13 +208,13 @@ Mechanism::Mechanism(const Model& model) : model_(model), start_(model.default_r
     plane_ = items_.empty() && named(0, "x") && named(1, "y");
 }
 
-Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state,
-                                   const Drawing* seen) const {
+Mechanism::EvaluatedDrawing Mechanism::place(const Item& item, Evaluator<double>& run, double t, const State& state,
+                                             const Drawing* seen) const {
     set_state(run, state);
     run.input(model_.layout().t()) = t;
     run.run();
     const DrawingDescription& d = item.description;
-    Placed placed;
+    EvaluatedDrawing placed;
     if (is_round(d.shape)) placed.radius = run.output(2);
     if (!d.width.text.empty()) placed.width = run.output(run.output_count() - 1);
     for (std::size_t i = 0; i < d.sizes.size(); ++i) placed.sizes.push_back(run.output(2 * d.points.size() + i));
@@ -243,12 +243,12 @@ Mechanism::Placed Mechanism::place(const Item& item, Evaluator<double>& run, dou
 
 // A spring, a damper, or the hatching of a ground, in a world of this size. A size that the file does not give is
 // chosen from the initial state, so that it is constant while the part moves.
-std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& run, const Placed& placed,
+std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& run, const EvaluatedDrawing& placed,
                                            double world) const {
     const Point &from = placed.points.front(), &to = placed.points.back();
     const DrawingShape shape = item.description.shape;
     if (shape == DrawingShape::ground) return hatching(from, to, hatch_of_world * world);
-    const Placed at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
+    const EvaluatedDrawing at_rest = place(item, run, start_.options.start_time, {start_.q, start_.v});
     const Point &a = at_rest.points.front(), &b = at_rest.points.back();
     PartSize size{std::hypot(b.x - a.x, b.y - a.y), placed.sizes.back()};
     if (!(size.across > 0.0)) size.across = fitting_across(size.rest, world);
@@ -258,7 +258,7 @@ std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& 
     return spring_line(from, to, coils >= 1.0 ? static_cast<int>(coils) : fitting_coils(size), size);
 }
 
-Grip::Hold Grip::at(double t, const State& state) {
+AnchorPoint::Hold AnchorPoint::at(double t, const State& state) {
     if (!run_) return {{state.q[0], state.q[1]}, 0.0};
     set_state(*run_, state);
     run_->input(t_) = t;
@@ -280,15 +280,15 @@ const Mechanism::Item* Mechanism::body() const {
     return body != nullptr ? body : line;
 }
 
-std::optional<Grip> Mechanism::grip(std::span<const double> parameters) const {
-    if (plane_) return Grip();
+std::optional<AnchorPoint> Mechanism::grip(std::span<const double> parameters) const {
+    if (plane_) return AnchorPoint();
     const Item* held = body();
     if (held == nullptr) return std::nullopt;
     return grip_of(*held, held->description.points.size() - 1, parameters);
 }
 
-Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
-    Grip grip;
+AnchorPoint Mechanism::grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const {
+    AnchorPoint grip;
     grip.run_ = model_.evaluator(item.program, parameters);
     const DrawingShape shape = item.description.shape;
     grip.sizes_ = is_round(shape) ? 1 : is_body(shape) ? 2 : 0;
@@ -297,8 +297,8 @@ Grip Mechanism::grip_of(const Item& item, std::size_t point, std::span<const dou
     return grip;
 }
 
-std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
-    std::vector<Grip> all;
+std::vector<AnchorPoint> Mechanism::grips(std::span<const double> parameters) const {
+    std::vector<AnchorPoint> all;
     if (auto first = grip(parameters)) all.push_back(std::move(*first));
     for (const Item& item : items_) {
         const DrawingShape shape = item.description.shape;
@@ -311,8 +311,8 @@ std::vector<Grip> Mechanism::grips(std::span<const double> parameters) const {
     return all;
 }
 
-std::vector<std::pair<std::size_t, Grip>> Mechanism::discs(std::span<const double> parameters) const {
-    std::vector<std::pair<std::size_t, Grip>> all;
+std::vector<std::pair<std::size_t, AnchorPoint>> Mechanism::discs(std::span<const double> parameters) const {
+    std::vector<std::pair<std::size_t, AnchorPoint>> all;
     for (std::size_t i = 0; i < items_.size(); ++i)
         if (items_[i].moves && is_round(items_[i].description.shape) && !items_[i].description.contact)
             all.emplace_back(i, grip_of(items_[i], 0, parameters));
@@ -355,10 +355,10 @@ void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::s
 }
 
 Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                        const Theme& theme, ContactSet held, Part part) const {
+                        const Theme& theme, ContactSet held, DrawnPart part) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
-    const bool all = part == Part::all;
+    const bool all = part == DrawnPart::all;
     ContactSet of_body = held;
     for (const Item& item : items_)
         if (item.description.contact) of_body = of_body.without(*item.description.contact);
@@ -368,7 +368,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         const Color own = item.moves && d.shape != DrawingShape::ground ? theme.body : theme.surface;
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
-        Placed placed = place(item, run, t, state, &limits);
+        EvaluatedDrawing placed = place(item, run, t, state, &limits);
         const Shape::Kind kind = is_round(d.shape)               ? Shape::Kind::disc
                                  : d.shape == DrawingShape::text ? Shape::Kind::text
                                                                  : Shape::Kind::polyline;
@@ -423,7 +423,8 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
     for (const Item& item : items_) {
         if (item.moves) continue;
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
-        const Placed placed = place(item, run, trajectory.run.options.start_time, {trajectory.run.q, trajectory.run.v});
+        const EvaluatedDrawing placed =
+            place(item, run, trajectory.run.options.start_time, {trajectory.run.q, trajectory.run.v});
         if (still)
             all.include(placed);
         else if (item.description.shape == DrawingShape::curve)

@@ -16,7 +16,7 @@ namespace achilles {
 
 // The reference point of a mechanism: the center of the last moving disc or box, else the end of the last moving line.
 // It evaluates its program, so use one per thread.
-class Grip {
+class AnchorPoint {
  public:
     struct Hold {
         Point at;
@@ -40,21 +40,21 @@ class Mechanism {
 
     // The shapes at a time and a state. Curves are smooth within `limits`, the visible part (see limits()). Shapes that
     // belong to a held contact are highlighted; if none belongs to it, the body (grip()) is highlighted.
-    enum class Part { all, what_moves };
+    enum class DrawnPart { all, moving };
     Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                 const Theme& theme, ContactSet held = {}, Part part = Part::all) const;
+                 const Theme& theme, ContactSet held = {}, DrawnPart part = DrawnPart::all) const;
 
     // The part of the world that a whole run needs, so that the picture need not move. Only the limits of the drawing
     // are set.
     Drawing limits(const Trajectory& trajectory, std::span<const Sample> samples) const;
 
     // The body. nullopt if no shape moves except texts, curves and connecting parts.
-    std::optional<Grip> grip(std::span<const double> parameters) const;
+    std::optional<AnchorPoint> grip(std::span<const double> parameters) const;
     // The body, then every other point that the mouse can drag: centers, and both ends of lines. Some of them may be
     // static.
-    std::vector<Grip> grips(std::span<const double> parameters) const;
+    std::vector<AnchorPoint> grips(std::span<const double> parameters) const;
     // Index among the file's drawings, center and radius of every moving disc that is not itself a contact surface.
-    std::vector<std::pair<std::size_t, Grip>> discs(std::span<const double> parameters) const;
+    std::vector<std::pair<std::size_t, AnchorPoint>> discs(std::span<const double> parameters) const;
     // Whether the drawing has only a note that there is nothing to draw.
     bool is_empty() const { return items_.empty() && !plane_; }
 
@@ -64,15 +64,16 @@ class Mechanism {
         Program program;     // x and y of its points, then radius, sizes or parameter limits of the curve, then width
         bool moves = false;  // it names a coordinate or t
     };
-    struct Placed {
+    struct EvaluatedDrawing {
         std::vector<Point> points;  // corners, for a box
         double radius = 0.0, width = 2.0;
         std::vector<double> sizes{};
     };
-    Placed place(const Item& item, Evaluator<double>& run, double t, const State& state,
-                 const Drawing* seen = nullptr) const;
-    std::vector<Point> line_between(const Item& item, Evaluator<double>& run, const Placed& placed, double world) const;
-    Grip grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
+    EvaluatedDrawing place(const Item& item, Evaluator<double>& run, double t, const State& state,
+                           const Drawing* seen = nullptr) const;
+    std::vector<Point> line_between(const Item& item, Evaluator<double>& run, const EvaluatedDrawing& placed,
+                                    double world) const;
+    AnchorPoint grip_of(const Item& item, std::size_t point, std::span<const double> parameters) const;
     const Item* body() const;
     void add_plane(Drawing& drawing, double t, const State& state, std::span<const double> parameters,
                    const Theme& theme) const;

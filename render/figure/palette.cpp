@@ -101,14 +101,14 @@ namespace {
 // Marker of each kind of event; the names are in run/trajectory.hpp. An impact has the color of flight.
 struct EventSign {
     Event::Kind kind;
-    Markers::Shape shape;
+    Markers::MarkerShape shape;
     double size;
     Color light, dark;
 };
 constexpr std::array<EventSign, event_names.size()> event_signs{{
-    {Event::Kind::impact, Markers::Shape::square, 6.0, blue, sky},
-    {Event::Kind::zeno, Markers::Shape::diamond, 11.0, purple, pink},
-    {Event::Kind::release, Markers::Shape::triangle, 10.0, green, mint},
+    {Event::Kind::impact, Markers::MarkerShape::square, 6.0, blue, sky},
+    {Event::Kind::zeno, Markers::MarkerShape::diamond, 11.0, purple, pink},
+    {Event::Kind::release, Markers::MarkerShape::triangle, 10.0, green, mint},
 }};
 static_assert(has_all_event_kinds(event_signs));
 

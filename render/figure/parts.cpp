@@ -10,7 +10,7 @@ namespace achilles {
 namespace {
 
 // Local coordinates of a part: along it, and to its left.
-struct Way {
+struct PartFrame {
     Point from, along;
     double length = 0.0;
     // The point at these distances along the part and to its left.
@@ -20,10 +20,10 @@ struct Way {
 };
 
 // nullopt if the ends coincide or are not finite, because the part has no direction.
-std::optional<Way> way(const Point& from, const Point& to) {
+std::optional<PartFrame> way(const Point& from, const Point& to) {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     if (!(length > 0.0) || !std::isfinite(length)) return std::nullopt;
-    return Way{from, {(to.x - from.x) / length, (to.y - from.y) / length}, length};
+    return PartFrame{from, {(to.x - from.x) / length, (to.y - from.y) / length}, length};
 }
 
 Point line_break() { return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()}; }
@@ -31,7 +31,7 @@ Point line_break() { return {std::numeric_limits<double>::quiet_NaN(), std::nume
 }  // namespace
 
 std::vector<Point> box_corners(const Point& middle, double width, double height, double angle) {
-    const Way along{middle, {std::cos(angle), std::sin(angle)}, 0.0};
+    const PartFrame along{middle, {std::cos(angle), std::sin(angle)}, 0.0};
     const double w = 0.5 * width, h = 0.5 * height;
     return {along(-w, -h), along(w, -h), along(w, h), along(-w, h)};
 }

@@ -129,7 +129,7 @@ std::optional<PlaneFunction> Plane::gap(std::size_t contact, std::span<const dou
 Plane::Surfaces Plane::surfaces(std::span<const double> parameters, const State& state, const Drawing& limits) const {
     std::vector<std::size_t> contacts;
     std::vector<PlaneFunction> gaps;
-    std::vector<Field> fields;
+    std::vector<ScalarField> fields;
     for (std::size_t i = 0; i < model_->contacts(); ++i) {
         auto gap = this->gap(i, parameters, state);
         if (!gap) continue;
@@ -139,7 +139,7 @@ Plane::Surfaces Plane::surfaces(std::span<const double> parameters, const State&
     }
     if (contacts.empty()) return {};
     Surfaces result;
-    result.open = Field::least(fields).not_negative();
+    result.open = ScalarField::least(fields).not_negative();
     std::vector<std::vector<Point>> lines = borders(fields, gaps);
     for (std::size_t i = 0; i < contacts.size(); ++i) result.lines.push_back({contacts[i], std::move(lines[i])});
     return result;
@@ -159,7 +159,7 @@ std::vector<Plane::Level> Plane::levels(std::span<const double> parameters, cons
         energy.run();
         return is_potential ? energy.potential() : energy.total();
     };
-    const Field field(limits, value, columns, rows);
+    const ScalarField field(limits, value, columns, rows);
     const auto [low, high] = field.range();
     constexpr double rounding = 1e-12;  // relative rounding error of a constant function
     if (!(high - low > rounding * std::max(std::abs(low), std::abs(high)))) return {};
@@ -238,9 +238,9 @@ std::vector<std::size_t> contacts_of(const Model& model, const Pair& pair, bool 
 }
 
 // Evaluates the first two quantities of a view at given values of two coordinates and zero rates.
-class Place {
+class PairPlane {
  public:
-    Place(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
+    PairPlane(const Trajectory& trajectory, const PreparedView& view, const Pair& pair)
         : run_(trajectory.model->evaluator(view.program(), trajectory.run.parameters)),
           forces_(*trajectory.model, trajectory.run.parameters),
           quantities_(view.quantities()),
@@ -260,7 +260,7 @@ class Place {
  private:
     Evaluator<double> run_;
     ContactForces forces_;
-    std::span<const PreparedView::Quantity> quantities_;
+    std::span<const PreparedView::ViewQuantity> quantities_;
     Sample sample_;
     Pair pair_;
 };
@@ -299,7 +299,7 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
     part.box.y_low = second[0], part.box.y_high = second[1];
     // The quantities must depend on the coordinates only, and on both: equal values at other times and rates, different
     // ones elsewhere.
-    Place place(trajectory, view, part.pair);
+    PairPlane place(trajectory, view, part.pair);
     const Point here{trajectory.run.q[0], trajectory.run.q[1]};
     const Point at_rest = place(here), moving = place(here, 1.25, 0.75);
     const bool is_place = at_rest.x == moving.x && at_rest.y == moving.y && !quantities[0].is_time;
@@ -310,7 +310,7 @@ std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample
 // not added.
 class Straightener {
  public:
-    Straightener(PlaneFunction gap, Place& place, const Panel& panel)
+    Straightener(PlaneFunction gap, PairPlane& place, const Panel& panel)
         : gap_(std::move(gap)), place_(place), panel_(panel) {}
     void add(const Point& a, const Point& b, std::vector<Point>& line, int halvings = 0) {
         constexpr int most = 8;
@@ -354,7 +354,7 @@ class Straightener {
         return std::nullopt;
     }
     PlaneFunction gap_;
-    Place& place_;
+    PairPlane& place_;
     const Panel& panel_;
 };
 
@@ -389,10 +389,10 @@ std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample
     constexpr int least_columns = 160, least_rows = 120, most = 640;
     const int columns = std::clamp(static_cast<int>(size.width / cell), least_columns, most),
               rows = std::clamp(static_cast<int>(size.height / cell), least_rows, most);
-    std::vector<Field> fields;
+    std::vector<ScalarField> fields;
     for (const PlaneFunction& gap : gaps) fields.emplace_back(part->box, gap, columns, rows);
     const std::vector<std::vector<Point>> lines = borders(fields, gaps);
-    Place place(trajectory, view, part->pair);
+    PairPlane place(trajectory, view, part->pair);
     std::vector<Point> line;
     for (std::size_t i = 0; i < lines.size(); ++i) {
         Straightener straightener(gaps[i], place, panel);

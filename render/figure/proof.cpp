@@ -8,7 +8,7 @@
 
 #include "figure/axes.hpp"
 #include "figure/compose.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "output/proof.hpp"
 #include "simulate/sampler.hpp"
 
@@ -20,7 +20,7 @@ constexpr double least_seen = 1.0 / 150.0;  // fraction of the panel's height, p
                                             // tube is hidden by its curve
 
 // Whether the members of the enclosure are in contact at an instant.
-enum class Contact { no, yes, either };
+enum class ContactCertainty { no, yes, either };
 
 // Quantities of a view over the boxes of a proof, x first, in displayed units.
 class EnclosedValues {
@@ -36,23 +36,23 @@ class EnclosedValues {
     }
 
     std::vector<Interval> at(const EnclosedState& state) {
-        const Contact contact = contact_at(state.t);
+        const ContactCertainty contact = contact_at(state.t);
         std::vector<Interval> values;
-        if (contact != Contact::yes) values = at(state, false);
-        if (contact == Contact::no) return values;
+        if (contact != ContactCertainty::yes) values = at(state, false);
+        if (contact == ContactCertainty::no) return values;
         const std::vector<Interval> held = at(state, true);
         for (std::size_t i = 0; i < values.size(); ++i) values[i] = hull(values[i], held[i]);
         return values.empty() ? held : values;
     }
 
  private:
-    Contact contact_at(double t) const {
-        Contact contact = starts_in_contact_ ? Contact::yes : Contact::no;
+    ContactCertainty contact_at(double t) const {
+        ContactCertainty contact = starts_in_contact_ ? ContactCertainty::yes : ContactCertainty::no;
         for (const EnclosedEvent& event : events_) {
             if (event.is_impact()) continue;
-            if (event.t.contains(t)) return Contact::either;
+            if (event.t.contains(t)) return ContactCertainty::either;
             if (event.t.lo() > t) break;
-            contact = event.is_zeno() ? Contact::yes : Contact::no;
+            contact = event.is_zeno() ? ContactCertainty::yes : ContactCertainty::no;
         }
         return contact;
     }
@@ -93,14 +93,14 @@ bool is_within(const Axis& axis, double x) { return x >= axis.low && x <= axis.h
 
 // Proved bounds of the quantities at an instant, and the values of the run just before and just after it, which differ
 // at an event.
-struct Known {
+struct EnclosedSample {
     double t = 0.0;
     std::vector<Interval> proved;
     std::vector<double> before, after;
     bool is_event = false;  // some members have had the event by then, others have not
 };
 
-std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const PreparedView& view) {
+std::vector<EnclosedSample> known_of(const Trajectory& run, const Proof& proof, const PreparedView& view) {
     EnclosedValues enclosed(run, proof, view);
     Values values(view, run);
     Sampler sampler(run);
@@ -110,7 +110,7 @@ std::vector<Known> known_of(const Trajectory& run, const Proof& proof, const Pre
         for (std::size_t i = 0; i < view.quantities().size(); ++i) all.push_back(values[i]);
         return all;
     };
-    std::vector<Known> known;
+    std::vector<EnclosedSample> known;
     auto event = proof.enclosure.events.begin();
     const auto add = [&](const EnclosedState& state) {
         while (event != proof.enclosure.events.end() && event->t.hi() < state.t) ++event;
@@ -137,19 +137,19 @@ std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
 // Slices of the tube of one quantity. At the instants they have the proved bounds. Between two instants the distance of
 // the bounds from the curve is interpolated; beside an event it is that at the other end. These interpolated bounds are
 // at least `least`.
-std::vector<Tube::Slice> slices_of(const std::vector<Known>& known, std::size_t quantity,
+std::vector<Tube::Slice> slices_of(const std::vector<EnclosedSample>& known, std::size_t quantity,
                                    const std::vector<Point>& course, double least) {
     const std::size_t y = quantity + 1;
     std::vector<Tube::Slice> slices;
     auto point = course.begin();
     for (std::size_t k = 0; k < known.size(); ++k) {
-        const Known& here = known[k];
+        const EnclosedSample& here = known[k];
         const Interval& proved = here.proved[y];
         const bool is_there = proved.is_defined() && std::isfinite(proved.lo()) && std::isfinite(proved.hi());
         slices.push_back(
             {here.t, is_there ? proved.lo() : break_of_curve.x, is_there ? proved.hi() : break_of_curve.x});
         if (k + 1 == known.size()) break;
-        const Known& next = known[k + 1];
+        const EnclosedSample& next = known[k + 1];
         while (point != course.end() && point->x <= here.t) ++point;
         for (; is_there && point != course.end() && point->x < next.t; ++point) {
             if (here.is_event && next.is_event) continue;
@@ -199,11 +199,11 @@ bool is_seen(const Tube& tube, const Panel& panel) {
 
 // Widens the limits for tubes that exceed them, up to a maximum. Slices at events are ignored, because they enclose the
 // whole jump.
-void give_room(Panel& panel, const std::vector<Known>& known) {
+void give_room(Panel& panel, const std::vector<EnclosedSample>& known) {
     constexpr double most = 0.5, margin = 0.02;
     const auto is_event = [&](double t) {
         const auto at =
-            std::lower_bound(known.begin(), known.end(), t, [](const Known& a, double b) { return a.t < b; });
+            std::lower_bound(known.begin(), known.end(), t, [](const EnclosedSample& a, double b) { return a.t < b; });
         return at != known.end() && at->t == t && at->is_event;
     };
     const double span = panel.y.high - panel.y.low;
@@ -221,12 +221,12 @@ void give_room(Panel& panel, const std::vector<Known>& known) {
 Markers undecided_mark(const Theme& theme, const Enclosure& proof) {
     Markers mark;
     mark.label = fmt::format("undecided from {} s on", reach_text(proof));
-    mark.shape = Markers::Shape::bar;
+    mark.shape = Markers::MarkerShape::bar;
     mark.fill = mark.edge = theme.error;
     return mark;
 }
 
-bool is_undecided(const Enclosure& proof) { return proof.outcome.kind == Enclosure::Outcome::Kind::undecided; }
+bool is_undecided(const Enclosure& proof) { return proof.outcome.kind == Enclosure::ProofOutcome::Kind::undecided; }
 
 // The sample times of the curves, each once, at most 2000 of them.
 std::vector<double> instants_of(const Trajectory& run) {
@@ -250,26 +250,26 @@ Tube proof_tube(const Theme& theme) {
     return tube;
 }
 
-Claim claim_to_draw(const Trajectory& run, const Spread& spread) {
-    Claim claim = claim_of(run.model->description(), run.run, spread);
+EnclosureProblem problem_to_draw(const Trajectory& run, const InitialUncertainty& spread) {
+    EnclosureProblem claim = problem_of(run.model->description(), run.run, spread);
     check(*run.model, claim);
     claim.times = instants_of(run);
     return claim;
 }
 
-Proof proof_of(const Trajectory& run, const Spread& spread) {
-    const Claim claim = claim_to_draw(run, spread);
+Proof proof_of(const Trajectory& run, const InitialUncertainty& spread) {
+    const EnclosureProblem claim = problem_to_draw(run, spread);
     return {spread, claim, prove(run.model, claim)};
 }
 
 Panel with_proof(Panel panel, const Trajectory& run, const Proof& proof, const PreparedView& view,
                  const Framing& framing, const Theme& theme) {
     if (!view.quantities()[0].is_time || framing.difference) return panel;
-    const Ground ground;
+    const FloatEnvironmentGuard ground;
     panel.shows_proof = true;
     const std::size_t curves = view.quantities().size() - 1;
     const Enclosure& enclosure = proof.enclosure;
-    const std::vector<Known> known = known_of(run, proof, view);
+    const std::vector<EnclosedSample> known = known_of(run, proof, view);
     for (std::size_t i = 0; i < curves; ++i) {
         if (framing.hidden.contains(i)) continue;
         Tube tube = proof_tube(theme);
@@ -293,7 +293,7 @@ void name_proof(Figure& figure, const Proof& proof, const Theme& theme) {
                is_drawn = any_panel([](const Panel&panel) { return !panel.tubes.empty(); });
     std::string name = "proved";
     if (!is_shown && is_undecided(proof.enclosure)) name += fmt::format(" until {} s", reach_text(proof.enclosure));
-    if (const std::string about = told(proof.spread); !about.empty()) name += ": " + about;
+    if (const std::string about = describe(proof.spread); !about.empty()) name += ": " + about;
     if (!is_shown) name += " (tubes are drawn in plots over t only)";
     if (is_shown && !is_drawn) name += " (narrower than the curves)";
     figure.keys.push_back({name, proof_tube(theme)});

@@ -3,15 +3,15 @@
 
 #include <vector>
 
-#include "enclose/spread.hpp"
+#include "enclose/initial_uncertainty.hpp"
 #include "figure/compose.hpp"
 
 namespace achilles {
 
 // A proof about a run with the spread around it.
 struct Proof {
-    Spread spread;
-    Claim claim;
+    InitialUncertainty spread;
+    EnclosureProblem claim;
     Enclosure enclosure;
 };
 
@@ -20,9 +20,9 @@ Tube proof_tube(const Theme& theme);
 
 // The claim to be proved about a run, with as many instants as smooth tubes need. Throws InputError if a spread is
 // impossible.
-Claim claim_to_draw(const Trajectory& run, const Spread& spread);
-// Proves the claim of claim_to_draw(). Throws InputError for a system that no proof covers.
-Proof proof_of(const Trajectory& run, const Spread& spread);
+EnclosureProblem problem_to_draw(const Trajectory& run, const InitialUncertainty& spread);
+// Proves the claim of problem_to_draw(). Throws InputError for a system that no proof covers.
+Proof proof_of(const Trajectory& run, const InitialUncertainty& spread);
 
 // A plot over time with the tubes of a proof of such a claim, where they are wide enough to be visible. At every
 // instant the expressions are evaluated in intervals over the whole box. Automatic limits are widened for the tubes, up

@@ -32,7 +32,7 @@ int columns_for(const std::vector<Panel>& panels) {
 // Markers smaller than on a screen. Impact markers have no edges, because edges of covered markers would leave odd
 // shapes.
 Markers for_print(Markers markers) {
-    const bool is_impact = markers.shape == Markers::Shape::square;
+    const bool is_impact = markers.shape == Markers::MarkerShape::square;
     markers.size = is_impact ? 5.5 : 9.0;
     if (is_impact) markers.edge.a = 0, markers.apart = 1.3 * markers.size;
     if (markers.lift > 0.0) markers.lift = markers.size;
@@ -174,7 +174,7 @@ void share_axes(Figure& figure) {
     for (std::size_t i = 0; i < cells.size(); ++i) panels[i].x.labelled = cells[i].rows > 1 || !shared[cells[i].row];
 }
 
-void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme) {
+void apply_print_style(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme) {
     figure.grid.a = 0;
     figure.smallest_text = 0.9;  // 7 points on a page
     figure.keys = keys_of(runs, figure.panels, theme);
@@ -219,7 +219,7 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
     figure.panels = std::move(panels);
     if (style.transparent) figure.background.a = 0;
     const Trajectory* const run = &trajectory;
-    dress_for_print(figure, {&run, 1}, theme);
+    apply_print_style(figure, {&run, 1}, theme);
     figure.columns = style.columns > 0 ? style.columns : figure.panels.empty() ? 1 : columns_for(figure.panels);
     if (style.columns == 0) set_path(figure, style);
     share_axes(figure);
@@ -237,13 +237,13 @@ constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 const std::vector<double> unstable_dash{5.0, 3.0};
 
 // Special points of one kind along a branch, and their marker.
-struct Happening {
+struct BranchEvents {
     const std::vector<OrbitPoint>* points;
     Markers markers;
 };
 
 // Hollow markers, to be distinct from events of a run.
-Markers marked(const Theme& theme, const char* label, Markers::Shape shape, double size) {
+Markers marked(const Theme& theme, const char* label, Markers::MarkerShape shape, double size) {
     Markers markers;
     markers.label = label;
     markers.shape = shape;
@@ -253,12 +253,12 @@ Markers marked(const Theme& theme, const char* label, Markers::Shape shape, doub
     return markers;
 }
 
-std::vector<Happening> happenings(const Branch& branch, const Theme& theme) {
-    using Shape = Markers::Shape;
-    return {{&branch.folds, marked(theme, "fold", Shape::square, 7.0)},
-            {&branch.flips, marked(theme, "period doubling, \U0001D707 = \u22121", Shape::circle, 8.0)},
-            {&branch.circles, marked(theme, "|\U0001D707| = 1, complex", Shape::triangle, 9.0)},
-            {&branch.lost, marked(theme, "Zeno point lost", Shape::diamond, 10.0)}};
+std::vector<BranchEvents> happenings(const Branch& branch, const Theme& theme) {
+    using MarkerShape = Markers::MarkerShape;
+    return {{&branch.folds, marked(theme, "fold", MarkerShape::square, 7.0)},
+            {&branch.flips, marked(theme, "period doubling, \U0001D707 = \u22121", MarkerShape::circle, 8.0)},
+            {&branch.neimark_sacker, marked(theme, "|\U0001D707| = 1, complex", MarkerShape::triangle, 9.0)},
+            {&branch.zeno_lost, marked(theme, "Zeno point lost", MarkerShape::diamond, 10.0)}};
 }
 
 using Value = std::function<double(const OrbitPoint&)>;
@@ -285,7 +285,7 @@ void trace(Panel& panel, const Branch& branch, const Color& color, const Value& 
 }
 
 void add_happenings(Panel& panel, const Branch& branch, const Theme& theme, const Value& value) {
-    for (Happening& happening : happenings(branch, theme)) {
+    for (BranchEvents& happening : happenings(branch, theme)) {
         for (const OrbitPoint& point : *happening.points)
             happening.markers.points.push_back({branch.value(point), value(point)});
         happening.markers.label.clear();
@@ -408,7 +408,7 @@ std::vector<Key> branch_keys(const Branch& branch, const Theme& theme) {
                         [&](const OrbitPoint& point) { return point.stable == stable; }))
             keys.push_back({stable ? "stable" : "not stable",
                             Stroke{theme.ink, 1.6, stable ? std::vector<double>{} : unstable_dash}});
-    for (const Happening& happening : happenings(branch, theme))
+    for (const BranchEvents& happening : happenings(branch, theme))
         if (!happening.points->empty()) keys.push_back({happening.markers.label, happening.markers});
     return keys;
 }
@@ -434,7 +434,7 @@ Figure compose_branch(const Orbit& orbit, const Branch& branch, std::span<const 
             fmt::format("one period, {} = {:.6g}", typeset(parameter.name), orbit.parameters[branch.parameter]);
     }
     const Trajectory* const run = &orbit.run;
-    dress_for_print(figure, {&run, 1}, theme);
+    apply_print_style(figure, {&run, 1}, theme);
     const std::vector<Key> more = branch_keys(branch, theme);
     figure.keys.insert(figure.keys.end(), more.begin(), more.end());
     figure.panels.insert(figure.panels.begin(), std::make_move_iterator(along.begin()),

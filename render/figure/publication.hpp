@@ -2,9 +2,9 @@
 // once.
 #pragma once
 
+#include "analysis/orbit.hpp"
 #include "figure/palette.hpp"
 #include "figure/proof.hpp"
-#include "study/orbit.hpp"
 
 namespace achilles {
 
@@ -26,7 +26,7 @@ Figure publication(const Trajectory& trajectory, std::span<const ViewDescription
 Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, const PublicationStyle& style);
 // Converts a composed figure to print style: no grid, smaller markers, and one legend above all panels with the kinds
 // of phases and events that occur in these runs.
-void dress_for_print(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme = light_theme());
+void apply_print_style(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme = light_theme());
 
 // "(a)", or "(a) height" if the panel has a name.
 std::string lettered(std::size_t i, const std::string& name);

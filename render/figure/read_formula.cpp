@@ -4,7 +4,7 @@
 #include <cctype>
 #include <utility>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "figure/formula.hpp"
 #include "figure/label.hpp"
 

@@ -45,7 +45,7 @@ void check_drawn(const SweepData& data, const SweepLook& look) {
     const Form form = form_of(data);
     std::size_t numbers = 0, classes = 0;
     for (const std::size_t column : columns_of(data, look))
-        ++(SweepColumn(data, column).is_number() ? numbers : classes);
+        ++(ColumnView(data, column).is_number() ? numbers : classes);
     if (form == Form::section && (numbers != 2 || classes > 0))
         refuse("the figure of a section without an axis needs exactly two numeric quantities",
                "give --print twice, or one --over");
@@ -70,14 +70,14 @@ std::vector<std::string> left_out(const SweepData& data, const SweepLook& look) 
     std::vector<std::string> names;
     if (form_of(data) != Form::diagram) return names;
     for (const std::size_t column : columns_of(data, look))
-        if (const SweepColumn one(data, column); !one.is_number()) names.push_back(one.name());
+        if (const ColumnView one(data, column); !one.is_number()) names.push_back(one.name());
     return names;
 }
 
 std::vector<std::size_t> columns_with_values(const SweepData& data, const SweepLook& look) {
     std::vector<std::size_t> found;
     for (const std::size_t column : columns_of(data, look)) {
-        const SweepColumn one(data, column);
+        const ColumnView one(data, column);
         bool has_value = false;
         for (std::size_t row = 0; row < data.count() && !has_value; ++row) has_value = one.has_value(row);
         if (has_value && (one.is_number() || !data.is_section())) found.push_back(column);
@@ -90,10 +90,10 @@ namespace {
 // Panels of a grid over one axis. Numbers with the same unit share a panel.
 std::vector<Panel> curve_panels(const SweepData& data, const std::vector<std::size_t>& columns, const Theme& theme,
                                 const SweepLook& look) {
-    std::vector<std::vector<SweepColumn>> groups;
+    std::vector<std::vector<ColumnView>> groups;
     for (const std::size_t column : columns) {
-        const SweepColumn one(data, column);
-        const auto fits = [&](const std::vector<SweepColumn>& group) {
+        const ColumnView one(data, column);
+        const auto fits = [&](const std::vector<ColumnView>& group) {
             constexpr std::size_t most = 8;  // number of hues
             return one.is_number() && group.front().is_number() && group.front().unit().text == one.unit().text &&
                    !one.unit().text.empty() && group.size() < most;
@@ -105,7 +105,7 @@ std::vector<Panel> curve_panels(const SweepData& data, const std::vector<std::si
             groups.push_back({one});
     }
     std::vector<Panel> panels;
-    for (const std::vector<SweepColumn>& group : groups)
+    for (const std::vector<ColumnView>& group : groups)
         panels.push_back(group.front().is_number() ? curves_panel(data, group, theme, look)
                                                    : classes_panel(data, group.front(), theme));
     return panels;
@@ -116,10 +116,10 @@ std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const Sw
     const Form form = form_of(data);
     if (form == Form::curves) return curve_panels(data, columns, theme, look);
     if (form == Form::section)
-        return {section_panel(data, SweepColumn(data, columns[0]), SweepColumn(data, columns[1]), theme)};
+        return {section_panel(data, ColumnView(data, columns[0]), ColumnView(data, columns[1]), theme)};
     std::vector<Panel> panels;
     for (const std::size_t column : columns) {
-        const SweepColumn one(data, column);
+        const ColumnView one(data, column);
         if (form == Form::map) panels.push_back(map_panel(data, one, theme, look));
         if (form == Form::samples) panels.push_back(samples_panel(data, one, theme, look));
         if (form == Form::diagram && one.is_number()) panels.push_back(diagram_panel(data, one, theme, look));
@@ -132,7 +132,7 @@ void share_keys(Figure& figure) {
     const auto is_said_twice = [&](const std::string& label) {
         const auto says = [&](const Panel& panel) {
             const auto has = [&](const auto& one) { return one.label == label; };
-            return (panel.hatch.label == label && !is_bare(panel)) ||
+            return (panel.hatch.label == label && !has_no_fill(panel)) ||
                    std::any_of(panel.curves.begin(), panel.curves.end(), has) ||
                    std::any_of(panel.markers.begin(), panel.markers.end(), has);
         };
@@ -148,7 +148,7 @@ void share_keys(Figure& figure) {
         for (const Curve& curve : panel.curves) add(curve.label, curve.stroke);
         for (const Markers& markers : panel.markers)
             if (!markers.points.empty() || panel.raster.cells == nullptr) add(markers.label, markers);
-        if (!is_bare(panel)) add(panel.hatch.label, panel.hatch);
+        if (!has_no_fill(panel)) add(panel.hatch.label, panel.hatch);
     }
     const auto clear = [&](auto& one) {
         if (std::find(shared.begin(), shared.end(), one.label) != shared.end()) one.label.clear();
@@ -156,7 +156,7 @@ void share_keys(Figure& figure) {
     for (Panel& panel : figure.panels) {
         for (Curve& curve : panel.curves) clear(curve);
         for (Markers& markers : panel.markers) clear(markers);
-        if (!is_bare(panel)) clear(panel.hatch);
+        if (!has_no_fill(panel)) clear(panel.hatch);
     }
 }
 

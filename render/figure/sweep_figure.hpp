@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/table.hpp"
 #include "figure/figure.hpp"
 #include "figure/label.hpp"
-#include "study/table.hpp"
 
 namespace achilles {
 

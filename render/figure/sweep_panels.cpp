@@ -13,27 +13,27 @@
 
 namespace achilles {
 
-SweepColumn::SweepColumn(const SweepData& data, std::size_t column) : data_(&data), kind_(Kind::sequence) {
+ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data), kind_(Kind::sequence) {
     if (column == sequence_column) {
         name_ = "sequence of events";
         return;
     }
-    using Of = RunMeasures::Column::Kind;
+    using ColumnKind = RunMeasures::Column::Kind;
     const RunMeasures::Column& one = data.columns[column];
-    kind_ = one.kind == Of::number ? Kind::number : one.kind == Of::held ? Kind::held : Kind::outcome;
+    kind_ = one.kind == ColumnKind::number ? Kind::number : one.kind == ColumnKind::held ? Kind::held : Kind::outcome;
     name_ = one.name;
     unit_ = shown_unit(one.unit);
     quantity_ = one.quantity;
     by_ = one.by;
     if (kind_ != Kind::number) return;
     const auto before = data.columns.begin() + static_cast<std::ptrdiff_t>(column);
-    number_ = static_cast<std::size_t>(
-        std::count_if(data.columns.begin(), before, [](const auto& other) { return other.kind == Of::number; }));
+    number_ = static_cast<std::size_t>(std::count_if(
+        data.columns.begin(), before, [](const auto& other) { return other.kind == ColumnKind::number; }));
 }
 
-bool SweepColumn::is_count() const { return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases"; }
+bool ColumnView::is_count() const { return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases"; }
 
-std::string SweepColumn::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
+std::string ColumnView::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
 
 namespace {
 
@@ -54,12 +54,12 @@ std::string words_of(const std::string& print) {
 
 }  // namespace
 
-std::string SweepColumn::name() const {
+std::string ColumnView::name() const {
     if (!by_.empty()) return "\u2202(" + words_of(quantity_) + ")/\u2202" + typeset(by_);
     return kind_ == Kind::number ? words_of(name_) : name_;
 }
 
-std::vector<double> SweepColumn::numbers() const {
+std::vector<double> ColumnView::numbers() const {
     std::vector<double> all;
     all.reserve(data_->count());
     for (std::size_t row = 0; row < data_->count(); ++row)
@@ -67,7 +67,7 @@ std::vector<double> SweepColumn::numbers() const {
     return all;
 }
 
-std::array<double, 2> SweepColumn::range() const {
+std::array<double, 2> ColumnView::range() const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     const std::vector<double> all = numbers();
     if (all.empty()) return {nan, nan};
@@ -75,18 +75,18 @@ std::array<double, 2> SweepColumn::range() const {
     return {*low, *high};
 }
 
-std::optional<std::uint64_t> SweepColumn::code(std::size_t row) const {
+std::optional<std::uint64_t> ColumnView::code(std::size_t row) const {
     const RunEnd end = data_->rows.ends[row];
     if (kind_ == Kind::outcome) return end.code();
     if (end == RunEnd()) return std::nullopt;  // the row has no run
     return kind_ == Kind::held ? std::bit_cast<std::uint32_t>(data_->rows.held[row]) : data_->rows.signatures[row];
 }
 
-bool SweepColumn::has_value(std::size_t row) const {
+bool ColumnView::has_value(std::size_t row) const {
     return is_number() ? std::isfinite(number(row)) : code(row).has_value();
 }
 
-std::string SweepColumn::class_name(std::uint64_t code, std::size_t place, double share) const {
+std::string ColumnView::class_name(std::uint64_t code, std::size_t place, double share) const {
     if (kind_ == Kind::outcome) return std::string(RunEnd::from(static_cast<std::uint8_t>(code)).text());
     if (kind_ == Kind::sequence) return fmt::format("{}. ({:.{}f} %)", place + 1, 100.0 * share, share < 0.095 ? 1 : 0);
     std::string names;
@@ -95,7 +95,7 @@ std::string SweepColumn::class_name(std::uint64_t code, std::size_t place, doubl
     return names.empty() ? "no contact" : names;
 }
 
-std::vector<std::pair<std::uint64_t, std::string>> SweepColumn::classes() const {
+std::vector<std::pair<std::uint64_t, std::string>> ColumnView::classes() const {
     std::map<std::uint64_t, std::size_t> counts;
     std::size_t all = 0;
     for (std::size_t row = 0; row < data_->count(); ++row)
@@ -131,13 +131,13 @@ std::vector<Color> class_colors(const Theme& theme) {
 
 }  // namespace
 
-SweepClasses::SweepClasses(const SweepColumn& column, const Theme& theme) {
+SweepClasses::SweepClasses(const ColumnView& column, const Theme& theme) {
     const std::vector<Color> colors = class_colors(theme);
     for (const auto& [code, name] : column.classes())
         all.push_back({code, name, all.size() < colors.size() ? colors[all.size()] : theme.surface});
     named = all.size() <= colors.size() + 1 ? all.size() : colors.size();
     std::sort(all.begin() + static_cast<std::ptrdiff_t>(named), all.end(),
-              [](const One& a, const One& b) { return a.code < b.code; });
+              [](const ClassStyle& a, const ClassStyle& b) { return a.code < b.code; });
 }
 
 std::size_t SweepClasses::place(std::uint64_t code) const {

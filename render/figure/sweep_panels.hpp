@@ -17,9 +17,9 @@ inline constexpr const char *broken_at_changes = "broken where the sequence of e
                             *changes_too_often = "the sequence of events changes too often to draw";
 
 // One column of the data, of any kind.
-class SweepColumn {
+class ColumnView {
  public:
-    SweepColumn(const SweepData& data, std::size_t column);
+    ColumnView(const SweepData& data, std::size_t column);
 
     bool is_number() const { return number_.has_value(); }
     // Whether the values are integers, between which nothing is defined.
@@ -54,13 +54,13 @@ class SweepColumn {
 
 // The classes of a column with their colors. Classes beyond the palette share one color.
 struct SweepClasses {
-    SweepClasses(const SweepColumn& column, const Theme& theme);
-    struct One {
+    SweepClasses(const ColumnView& column, const Theme& theme);
+    struct ClassStyle {
         std::uint64_t code;
         std::string name;
         Color color;
     };
-    std::vector<One> all;
+    std::vector<ClassStyle> all;
     Color color(std::uint64_t code) const;
     std::size_t place(std::uint64_t code) const;
     // Entries of the legend: markers without points.
@@ -70,7 +70,7 @@ struct SweepClasses {
 
 // Colors of a column's numbers, and the color scale. Without numbers there is no scale.
 struct NumberColors {
-    NumberColors(const SweepColumn& column, const SweepLook& look);
+    NumberColors(const ColumnView& column, const SweepLook& look);
     Color operator()(double value) const;
     std::vector<Color> table;
     ColorBar bar;
@@ -78,7 +78,7 @@ struct NumberColors {
 
 // Colors of a column of any kind.
 struct ColumnColors {
-    ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look);
+    ColumnColors(const ColumnView& column, const Theme& theme, const SweepLook& look);
     Color operator()(std::size_t row) const;  // of a row that has a value
     void explain(Panel& panel) const;
     // Exactly one of these is set.
@@ -86,7 +86,7 @@ struct ColumnColors {
     std::optional<SweepClasses> classes;
 
  private:
-    const SweepColumn* column_;
+    const ColumnView* column_;
 };
 
 // An axis of the sweep in its displayed unit.
@@ -104,12 +104,12 @@ Hatch nothing(const Theme& theme);
 // Sets limits and ticks. Without any numbers the axis gets no ticks, which would be invented.
 void set_limits(Axis& axis, const std::array<double, 2>& range, double margin);
 
-Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, const Theme& theme,
+Panel curves_panel(const SweepData& data, std::span<const ColumnView> columns, const Theme& theme,
                    const SweepLook& look);
-Panel classes_panel(const SweepData& data, const SweepColumn& column, const Theme& theme);
-Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look);
-Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look);
-Panel section_panel(const SweepData& data, const SweepColumn& x, const SweepColumn& y, const Theme& theme);
-Panel samples_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look);
+Panel classes_panel(const SweepData& data, const ColumnView& column, const Theme& theme);
+Panel map_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look);
+Panel diagram_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look);
+Panel section_panel(const SweepData& data, const ColumnView& x, const ColumnView& y, const Theme& theme);
+Panel samples_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look);
 
 }  // namespace achilles

@@ -26,15 +26,15 @@ bool is_same(const SweepData& data, std::uint32_t a, std::uint32_t b) {
 }
 
 // A curve, and markers for its points that are isolated between breaks.
-struct Traced {
+struct CurveWithDots {
     Curve curve;
     Markers alone;
 };
 
-Traced trace(const SweepData& data, const SweepColumn& column, const std::vector<std::uint32_t>& rows) {
+CurveWithDots trace(const SweepData& data, const ColumnView& column, const std::vector<std::uint32_t>& rows) {
     const ShownUnit x = shown_unit_of_axis(data, 0);
-    Traced traced;
-    traced.alone.shape = Markers::Shape::circle;
+    CurveWithDots traced;
+    traced.alone.shape = Markers::MarkerShape::circle;
     std::vector<Point>& points = traced.curve.points;
     std::uint32_t before = no_row;
     std::size_t length = 0;  // number of points since the last break
@@ -61,14 +61,14 @@ Traced trace(const SweepData& data, const SweepColumn& column, const std::vector
 }
 
 // Bars between neighbors with different sequences that both have a value.
-Markers changes(const SweepData& data, std::span<const SweepColumn> columns, const std::vector<std::uint32_t>& rows,
+Markers changes(const SweepData& data, std::span<const ColumnView> columns, const std::vector<std::uint32_t>& rows,
                 const Theme& theme) {
     Markers bars;
     bars.label = sequence_changes;
-    bars.shape = Markers::Shape::bar;
+    bars.shape = Markers::MarkerShape::bar;
     bars.fill = theme.surface;
     const auto has_value = [&](std::uint32_t row) {
-        return std::any_of(columns.begin(), columns.end(), [&](const SweepColumn& one) { return one.has_value(row); });
+        return std::any_of(columns.begin(), columns.end(), [&](const ColumnView& one) { return one.has_value(row); });
     };
     const SweepAxis axis = shown_axis(data, 0);
     for (std::size_t i = 1; i < rows.size(); ++i)
@@ -94,7 +94,7 @@ void show_changes(Markers bars, const Color& color, Panel& panel) {
 
 }  // namespace
 
-Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, const Theme& theme,
+Panel curves_panel(const SweepData& data, std::span<const ColumnView> columns, const Theme& theme,
                    const SweepLook& look) {
     Panel panel;
     panel.x = axis_of(data, 0);
@@ -104,7 +104,7 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     for (std::size_t i = 0; i < columns.size(); ++i) {
         const std::array<double, 2> own = columns[i].range();
         range = {std::fmin(range[0], own[0]), std::fmax(range[1], own[1])};
-        Traced traced = trace(data, columns[i], rows);
+        CurveWithDots traced = trace(data, columns[i], rows);
         traced.curve.stroke.color = phase_stroke(theme, Phase::Kind::constrained, i, columns.size()).color;
         if (!several) traced.curve.stroke.color = phase_color(theme, Phase::Kind::hybrid);
         traced.curve.stroke.width = 1.6;
@@ -122,12 +122,12 @@ Panel curves_panel(const SweepData& data, std::span<const SweepColumn> columns, 
     show_changes(changes(data, columns, rows, theme), several ? theme.ink : panel.curves.front().stroke.color, panel);
     set_limits(panel.y, range, is_given ? 0.0 : 0.05);
     panel.legend = panel.legend_above = several || panel.curves.size() > 1 || !panel.markers.empty();
-    const auto is_empty = [](const SweepColumn& column) { return column.numbers().empty(); };
+    const auto is_empty = [](const ColumnView& column) { return column.numbers().empty(); };
     if (data.count() > 0 && std::all_of(columns.begin(), columns.end(), is_empty)) panel.hatch = nothing(theme);
     return panel;
 }
 
-Panel classes_panel(const SweepData& data, const SweepColumn& column, const Theme& theme) {
+Panel classes_panel(const SweepData& data, const ColumnView& column, const Theme& theme) {
     Panel panel;
     panel.x = axis_of(data, 0);
     const std::vector<std::uint32_t> rows = rows_of_points(data);
@@ -261,7 +261,7 @@ namespace {
 
 // Limits of the color scale. A few outliers would use up most of the colors. Therefore the outermost 0.1 percent at
 // each end are left out if they extend the range by more than half.
-std::array<double, 2> limits_of_colors(const SweepColumn& column) {
+std::array<double, 2> limits_of_colors(const ColumnView& column) {
     constexpr double share = 1e-3, stretch = 1.5;
     const std::array<double, 2> all = column.range();
     std::vector<double> numbers = column.numbers();
@@ -276,7 +276,7 @@ std::array<double, 2> limits_of_colors(const SweepColumn& column) {
 
 }  // namespace
 
-NumberColors::NumberColors(const SweepColumn& column, const SweepLook& look) : table(number_colors(256)) {
+NumberColors::NumberColors(const ColumnView& column, const SweepLook& look) : table(number_colors(256)) {
     const std::array<double, 2> range = look.range ? *look.range : limits_of_colors(column);
     bar.axis.label = column.label();
     set_limits(bar.axis, range, 0.0);
@@ -291,7 +291,7 @@ Color NumberColors::operator()(double value) const {
     return table[static_cast<std::size_t>(std::lround(share * static_cast<double>(table.size() - 1)))];
 }
 
-ColumnColors::ColumnColors(const SweepColumn& column, const Theme& theme, const SweepLook& look) : column_(&column) {
+ColumnColors::ColumnColors(const ColumnView& column, const Theme& theme, const SweepLook& look) : column_(&column) {
     if (column.is_number())
         numbers.emplace(column, look);
     else
@@ -309,7 +309,7 @@ void ColumnColors::explain(Panel& panel) const {
     for (Markers& key : classes->keys()) panel.markers.push_back(std::move(key));
 }
 
-Panel map_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
+Panel map_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look) {
     Panel panel;
     const Grid2 grid(data);
     panel.x = axis_of(data, 0);
@@ -359,7 +359,7 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
         return;
     }
     Markers markers;
-    markers.shape = Markers::Shape::circle;
+    markers.shape = Markers::MarkerShape::circle;
     markers.fill = color;
     markers.edge.a = 0;
     markers.size = points.size() > 500 ? 2.2 : 3.5;
@@ -373,14 +373,14 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
     panel.markers.push_back(std::move(markers));
 }
 
-void fit(Axis& axis, const SweepColumn& column, const std::optional<std::array<double, 2>>& given) {
+void fit(Axis& axis, const ColumnView& column, const std::optional<std::array<double, 2>>& given) {
     axis.label = column.label();
     set_limits(axis, given ? *given : column.range(), given ? 0.0 : 0.04);
 }
 
 }  // namespace
 
-Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
+Panel diagram_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look) {
     Panel panel;
     panel.x = axis_of(data, 0);
     fit(panel.y, column, look.range);
@@ -400,7 +400,7 @@ Panel diagram_panel(const SweepData& data, const SweepColumn& column, const Them
     return panel;
 }
 
-Panel section_panel(const SweepData& data, const SweepColumn& x, const SweepColumn& y, const Theme& theme) {
+Panel section_panel(const SweepData& data, const ColumnView& x, const ColumnView& y, const Theme& theme) {
     Panel panel;
     fit(panel.x, x, std::nullopt);
     fit(panel.y, y, std::nullopt);
@@ -414,7 +414,7 @@ Panel section_panel(const SweepData& data, const SweepColumn& x, const SweepColu
 namespace {
 
 // Points grouped by color into markers.
-struct Painted {
+struct ColoredMarkers {
     std::vector<Point> points;
     std::vector<Color> colors;
 
@@ -424,7 +424,7 @@ struct Painted {
             return;
         }
         Markers markers;
-        markers.shape = Markers::Shape::circle;
+        markers.shape = Markers::MarkerShape::circle;
         markers.edge.a = 0;
         markers.size = points.size() > 500 ? 4.0 : 6.0;
         for (std::size_t i = 0; i < points.size(); ++i) {
@@ -441,7 +441,7 @@ struct Painted {
 
 }  // namespace
 
-Panel samples_panel(const SweepData& data, const SweepColumn& column, const Theme& theme, const SweepLook& look) {
+Panel samples_panel(const SweepData& data, const ColumnView& column, const Theme& theme, const SweepLook& look) {
     Panel panel;
     panel.x = axis_of(data, 0);
     const bool is_plane = data.sweep.axes.size() > 1;
@@ -465,7 +465,7 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
         for (std::size_t i = 0; i < classes->all.size(); ++i)
             panel.y.ticks.push_back({static_cast<double>(i), classes->all[i].name});
     }
-    Painted painted;
+    ColoredMarkers painted;
     bool lacks = false;
     for (std::size_t row = 0; row < data.count(); ++row) {
         const bool has_value = column.has_value(row);
@@ -480,7 +480,7 @@ Panel samples_panel(const SweepData& data, const SweepColumn& column, const Them
     if (lacks) {
         Markers none;
         none.label = no_value;
-        none.shape = Markers::Shape::circle;
+        none.shape = Markers::MarkerShape::circle;
         none.fill = theme.border;
         none.edge.a = 0;
         panel.markers.push_back(std::move(none));

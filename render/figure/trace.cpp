@@ -34,7 +34,7 @@ class Thinner {
     virtual void add(const PlacedPoint& point) = 0;
     // The curve continues from another point.
     virtual void lift() = 0;
-    virtual Course take() = 0;
+    virtual PhaseCurve take() = 0;
     // Whether points in this rectangle (pixels) would add nothing to the picture; false if unknown.
     virtual bool covers(double, double, double, double) const { return false; }
 
@@ -48,7 +48,7 @@ class Thinner {
         course_.points.push_back(break_of_curve);
         course_.times.push_back(t);
     }
-    Course course_;
+    PhaseCurve course_;
 };
 
 // Thinner for curves over time. Points in one column of a fraction of a pixel show as a vertical line, which the first,
@@ -72,7 +72,7 @@ class ColumnThinner : public Thinner {
         is_lifted_ = true;
         before_.reset();
     }
-    Course take() override {
+    PhaseCurve take() override {
         flush();
         close_window();
         course_.is_crowded = crowded_ > 0.3 * windows_;
@@ -89,13 +89,13 @@ class ColumnThinner : public Thinner {
 
  private:
     static constexpr double columns_per_pixel = 4.0;
-    struct Numbered {
+    struct NumberedPoint {
         PlacedPoint point;
         std::size_t number = 0;
     };
     void flush() {
         if (count_ == 0) return;
-        std::array<const Numbered*, 4> kept{&first_, &lowest_, &highest_, &last_};
+        std::array<const NumberedPoint*, 4> kept{&first_, &lowest_, &highest_, &last_};
         std::sort(kept.begin(), kept.end(), [](auto* a, auto* b) { return a->number < b->number; });
         for (std::size_t i = 0; i < kept.size(); ++i)
             if (i == 0 || kept[i]->number != kept[i - 1]->number) keep(kept[i]->point);
@@ -123,7 +123,7 @@ class ColumnThinner : public Thinner {
     double column_ = 0.0;
     std::size_t count_ = 0;  // number of points in the column
     bool is_lifted_ = false;
-    Numbered first_, lowest_, highest_, last_;
+    NumberedPoint first_, lowest_, highest_, last_;
     std::optional<Point> before_;
     double window_ = -1.0, windows_ = 0.0, crowded_ = 0.0, way_ = 0.0;
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
@@ -149,7 +149,7 @@ class PathThinner : public Thinner {
         last_.reset();
         is_drawn_ = false;
     }
-    Course take() override {
+    PhaseCurve take() override {
         course_.is_crowded = !cells_.empty();
         return std::move(course_);
     }
@@ -245,15 +245,16 @@ class Tracer {
             tolerances_.push_back(request.over_time ? off(i + 1) : std::max(off(0), off(i + 1)));
     }
     Trace run() {
-        sampler_.walk(request_.from, request_.to, request_.with_work, [&](const Sample& sample, const Piece* piece) {
-            read_node(sample, next_);
-            if (piece != nullptr && has_last_)
-                step(*piece);
-            else
-                take(next_);
-            std::swap(last_, next_);
-            has_last_ = true;
-        });
+        sampler_.walk(request_.from, request_.to, request_.with_work,
+                      [&](const Sample& sample, const DenseSegment* piece) {
+                          read_node(sample, next_);
+                          if (piece != nullptr && has_last_)
+                              step(*piece);
+                          else
+                              take(next_);
+                          std::swap(last_, next_);
+                          has_last_ = true;
+                      });
         for (const auto& thinner : thinners_) result_.courses.push_back(thinner->take());
         return std::move(result_);
     }
@@ -281,7 +282,7 @@ class Tracer {
         auto& [low, high] = result_.ranges[quantity];
         low = std::min(low, value), high = std::max(high, value);
     }
-    void read_at(const Piece& piece, double t, Node& node) {
+    void read_at(const DenseSegment& piece, double t, Node& node) {
         Sample sample = sampler_.in(piece, t, request_.with_work);
         sample.phase = next_.phase;
         ++samples_of_step_;
@@ -316,7 +317,7 @@ class Tracer {
 
     // Traces from the last node to the next one inside a step. Two interior instants at uneven spacing distinguish a
     // periodic motion from rest.
-    void step(const Piece& piece) {
+    void step(const DenseSegment& piece) {
         const double a = last_.t, b = next_.t;
         samples_of_step_ = 0;
         if (!(b > a)) return take(next_);
@@ -348,7 +349,7 @@ class Tracer {
     }
     // Adds the points between a and b, including b but not a. For a smooth curve, halving reduces the deviation to a
     // quarter. If the deviation was small before as well, both halves are accurate enough.
-    void refine(const Piece& piece, const Node& a, const Node& b, double before, int halvings) {
+    void refine(const DenseSegment& piece, const Node& a, const Node& b, double before, int halvings) {
         const double t = 0.5 * (a.t + b.t);
         if (samples_of_step_ > most_of_step) return leave_out(b);
         if (halvings >= most_halvings || !(t > a.t && t < b.t)) return take(b);

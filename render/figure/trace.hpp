@@ -21,7 +21,7 @@ struct Resolution {
 using ReadQuantities = std::function<void(const Sample& sample, std::span<double> values)>;
 
 // A curve of one quantity in all phases of one kind. A NaN point breaks it.
-struct Course {
+struct PhaseCurve {
     std::vector<Point> points;
     std::vector<double> times;  // s, of each point
     bool is_crowded = false;    // it oscillates so densely that dashes would be invisible
@@ -39,7 +39,7 @@ struct TraceRequest {
 };
 
 struct Trace {
-    std::vector<Course> courses;  // for each y two: hybrid phases, constrained phases
+    std::vector<PhaseCurve> courses;  // for each y two: hybrid phases, constrained phases
     // Minimum and maximum of each quantity over the values that its axis can show, x first; low > high if there are
     // none.
     std::vector<std::array<double, 2>> ranges;

@@ -32,14 +32,14 @@ std::vector<Point> polygon(const Point& center, double radius, int corners, doub
 // The shapes have similar visual weight: a diamond as wide as a square would look smaller.
 std::vector<Point> corners(const Mark& mark) {
     switch (mark.shape) {
-        case Markers::Shape::square:
+        case Markers::MarkerShape::square:
             return polygon(mark.at, mark.size / std::numbers::sqrt2, 4, std::numbers::pi / 4.0);
-        case Markers::Shape::triangle:
+        case Markers::MarkerShape::triangle:
             return polygon({mark.at.x, mark.at.y + mark.size * 0.1}, mark.size * 0.68, 3, 0.0);
-        case Markers::Shape::diamond:
+        case Markers::MarkerShape::diamond:
             return polygon(mark.at, mark.size * 0.68, 4, 0.0);
-        case Markers::Shape::circle:
-        case Markers::Shape::bar:
+        case Markers::MarkerShape::circle:
+        case Markers::MarkerShape::bar:
             break;
     }
     return polygon(mark.at, mark.size / 2.0, 24, 0.0);
@@ -228,11 +228,11 @@ void paint_formula(ImDrawList* list, const FormulaBox& box, float x, float y, Co
         const float base = ascent_of(font) * one.size / size_of(font);
         paint_label(list, x + one.x, y + one.y - base, one.label, color, one.size);
     }
-    for (const FormulaBox::Rule& rule : box.rules) {
+    for (const FormulaBox::FormulaRule& rule : box.rules) {
         const float left = std::round(x + rule.x), top = std::round(y + rule.y);
         list->AddRectFilled({left, top}, {left + std::max(1.0F, rule.width), top + std::max(1.0F, rule.height)}, ink);
     }
-    for (const FormulaBox::Stroke& one : box.strokes) {
+    for (const FormulaBox::FormulaStroke& one : box.strokes) {
         std::vector<ImVec2> points;
         for (const Point& p : one.points) points.emplace_back(x + static_cast<float>(p.x), y + static_cast<float>(p.y));
         stroke(list, points, false, ink, one.width);
@@ -451,7 +451,7 @@ double paint_scale_bar(ImDrawList* list, const Point& corner, double most, doubl
     return pixels + gap + label_width(label, size);
 }
 
-void paint(const Still& still, ImDrawList* list) {
+void paint(const AnimationFrame& still, ImDrawList* list) {
     paint(still.heading, list);
     const auto room = static_cast<float>(std::round(still_margin * still.scale));
     const Rectangle& w = still.areas.world;

@@ -77,6 +77,6 @@ double paint_scale_bar(ImDrawList* list, const Point& corner, double most, doubl
                        const Color& color, double scale = 1.0);
 
 // Draws a frame of an animation.
-void paint(const Still& still, ImDrawList* list);
+void paint(const AnimationFrame& still, ImDrawList* list);
 
 }  // namespace achilles

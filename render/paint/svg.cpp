@@ -189,7 +189,7 @@ class Writer {
         const std::string look =
             color("fill", mark.fill) +
             (mark.edge.a > 0 ? color("stroke", mark.edge) + " stroke-width=\"" + number(mark.edge_width) + "\"" : "");
-        if (mark.shape == Markers::Shape::circle) {
+        if (mark.shape == Markers::MarkerShape::circle) {
             body_ += fmt::format("<circle cx=\"{}\" cy=\"{}\" r=\"{}\"{}/>\n", number(mark.at.x), number(mark.at.y),
                                  number(mark.size / 2.0), look);
             return;

@@ -29,15 +29,15 @@ void append_utf8(std::string& text, unsigned c) {
 
 }  // namespace
 
-void Events::mouse_at(double x, double y) { waiting_.push_back({Event::Kind::mouse, 0, false, x, y}); }
+void Events::mouse_at(double x, double y) { waiting_.push_back({InputEvent::Kind::mouse, 0, false, x, y}); }
 void Events::mouse_left() { mouse_at(away, away); }
-void Events::button(int number, bool down) { waiting_.push_back({Event::Kind::button, number, down}); }
+void Events::button(int number, bool down) { waiting_.push_back({InputEvent::Kind::button, number, down}); }
 void Events::wheel(double sideways, double clicks) {
-    waiting_.push_back({Event::Kind::wheel, 0, false, sideways, clicks});
+    waiting_.push_back({InputEvent::Kind::wheel, 0, false, sideways, clicks});
 }
-void Events::key(int code, bool down) { waiting_.push_back({Event::Kind::key, code, down}); }
+void Events::key(int code, bool down) { waiting_.push_back({InputEvent::Kind::key, code, down}); }
 void Events::character(unsigned code_point) {
-    waiting_.push_back({Event::Kind::character, static_cast<int>(code_point)});
+    waiting_.push_back({InputEvent::Kind::character, static_cast<int>(code_point)});
 }
 
 void Events::release_all() {
@@ -46,7 +46,7 @@ void Events::release_all() {
 }
 
 // Whether a key only matters through its character.
-bool Events::is_letter(const Event& event) const {
+bool Events::is_letter(const InputEvent& event) const {
     const auto is_held = [this](int code) {
         return std::find(held_.keys.begin(), held_.keys.end(), code) != held_.keys.end();
     };
@@ -61,17 +61,17 @@ Input Events::next(bool is_typing) {
     held_.text.clear();
     bool clicked = false, pressed = false;
     for (; !waiting_.empty(); waiting_.pop_front()) {
-        const Event& event = waiting_.front();
-        const bool is_button = event.kind == Event::Kind::button, is_key = event.kind == Event::Kind::key;
+        const InputEvent& event = waiting_.front();
+        const bool is_button = event.kind == InputEvent::Kind::button, is_key = event.kind == InputEvent::Kind::key;
         // In a frame ImGui processes a move before a click. A move after a click must therefore wait for the next
         // frame, or it would drag; a click after a move hits the new position.
-        if ((is_button || event.kind == Event::Kind::mouse) && clicked) break;
+        if ((is_button || event.kind == InputEvent::Kind::mouse) && clicked) break;
         if (is_key && pressed) break;
         // In a text field characters come first. Keys that act on them wait, and characters wait for keys that came
         // before.
         const bool is_free = is_typing && is_key && is_letter(event);
         if (is_typing && (is_button || (is_key && !is_free)) && !held_.text.empty()) break;
-        if (is_typing && event.kind == Event::Kind::character && (pressed || clicked)) break;
+        if (is_typing && event.kind == InputEvent::Kind::character && (pressed || clicked)) break;
         clicked = clicked || is_button;
         pressed = pressed || (is_key && !is_free);
         apply(event);
@@ -79,26 +79,26 @@ Input Events::next(bool is_typing) {
     return held_;
 }
 
-void Events::apply(const Event& event) {
+void Events::apply(const InputEvent& event) {
     switch (event.kind) {
-        case Event::Kind::mouse:
+        case InputEvent::Kind::mouse:
             held_.mouse_x = event.x;
             held_.mouse_y = event.y;
             break;
-        case Event::Kind::button:
+        case InputEvent::Kind::button:
             if (event.code == 0) held_.left = event.down;
             if (event.code == 1) held_.right = event.down;
             if (event.code == 2) held_.middle = event.down;
             break;
-        case Event::Kind::wheel:
+        case InputEvent::Kind::wheel:
             held_.wheel_sideways += event.x;
             held_.wheel += event.y;
             break;
-        case Event::Kind::key:
+        case InputEvent::Kind::key:
             std::erase(held_.keys, event.code);
             if (event.down) held_.keys.push_back(event.code);
             break;
-        case Event::Kind::character:
+        case InputEvent::Kind::character:
             append_utf8(held_.text, static_cast<unsigned>(event.code));
             break;
     }

@@ -63,17 +63,17 @@ class Events {
     Input next(bool is_typing = false);
 
  private:
-    struct Event {
+    struct InputEvent {
         enum class Kind { mouse, button, wheel, key, character };
         Kind kind;
         int code = 0;
         bool down = false;
         double x = 0.0, y = 0.0;
     };
-    void apply(const Event& event);
-    bool is_letter(const Event& event) const;
+    void apply(const InputEvent& event);
+    bool is_letter(const InputEvent& event) const;
 
-    std::deque<Event> waiting_;
+    std::deque<InputEvent> waiting_;
     Input held_;
 };
 

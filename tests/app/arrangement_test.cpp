@@ -54,7 +54,7 @@ void expect_no_overlap(const Arrangement& arrangement, const Measures& m, const 
 
 // The energy panel below the results: with its time plot if there is room, without it if there is less, and never at
 // the expense of the mechanism.
-TEST(Arrangement, has_room_for_the_energy) {
+TEST(Arrangement, HasRoomForTheEnergy) {
     for (const bool presents : {false, true})
         for (const float unit : {1.0F, 1.5F, 2.0F})
             for (float height = 400.0F; height <= 1600.0F; height += 50.0F) {
@@ -80,7 +80,7 @@ TEST(Arrangement, has_room_for_the_energy) {
 }
 
 // Presentation mode: the mechanism beside one plot, the results and the player, at every supported size.
-TEST(Arrangement, shows_a_class_what_it_looks_at) {
+TEST(Arrangement, ShowsAClassWhatItLooksAt) {
     Scene scene;
     scene.perform(command::Present{true});
     EXPECT_DOUBLE_EQ(scene.text_scale(1280, 800), 1.5);
@@ -110,7 +110,7 @@ TEST(Arrangement, shows_a_class_what_it_looks_at) {
 }
 
 // Equations replace the events, and keep that place if the events are hidden.
-TEST(Arrangement, equations_share_the_place_of_the_events) {
+TEST(Arrangement, EquationsShareThePlaceOfTheEvents) {
     Scene scene;
     const Measures m = measures(1600.0F, 1000.0F);
     const float height = arrange(scene, m).events.height;
@@ -123,7 +123,7 @@ TEST(Arrangement, equations_share_the_place_of_the_events) {
     EXPECT_EQ(arrange(scene, m).events.height, 0.0F);
 }
 
-TEST(Arrangement, nothing_covers_anything_in_any_state) {
+TEST(Arrangement, NothingCoversAnythingInAnyState) {
     for (const auto& [width, height, unit] : {std::tuple{1280.0F, 800.0F, 1.0F},
                                               {1600.0F, 1000.0F, 1.0F},
                                               {2560.0F, 1600.0F, 2.0F},
@@ -135,7 +135,8 @@ TEST(Arrangement, nothing_covers_anything_in_any_state) {
                     const char* const panels[] = {"controls", "plots", "events"};
                     for (int i = 0; i < 3; ++i) scene.perform(command::Show{panels[i], (hidden >> i & 1) == 0});
                     scene.perform(command::Show{"editor", (hidden >> 3 & 1) != 0});
-                    for (const std::string& panel : command::sized_panels) scene.perform(command::Size{panel, share});
+                    for (const std::string& panel : command::sized_panels)
+                        scene.perform(command::SetPanelSize{panel, share});
                     const Measures m = measures(width, height, unit, error);
                     const Arrangement a = arrange(scene, m);
                     const std::string what = std::to_string(width) + ", hidden " + std::to_string(hidden) + ", share " +
@@ -149,7 +150,7 @@ TEST(Arrangement, nothing_covers_anything_in_any_state) {
                 }
 }
 
-TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
+TEST(Arrangement, AWindowTooSmallForAnythingHasNoNegativePart) {
     for (const float width : {1.0F, 60.0F, 300.0F})
         for (const float height : {1.0F, 40.0F, 200.0F}) {
             const Arrangement a = arrange(Scene(), measures(width, height));
@@ -161,7 +162,7 @@ TEST(Arrangement, a_window_too_small_for_anything_has_no_negative_part) {
 }
 
 // An error message must not make the configuration plane too low: it is then shown above the plots.
-TEST(Arrangement, the_plane_is_never_too_low) {
+TEST(Arrangement, ThePlaneIsNeverTooLow) {
     for (const auto& [width, height] : {std::pair{1280.0F, 800.0F}, {1024.0F, 700.0F}, {900.0F, 600.0F}})
         for (const float error : {0.0F, 60.0F, 130.0F, 200.0F}) {
             Scene scene;
@@ -190,7 +191,7 @@ TEST(Arrangement, the_plane_is_never_too_low) {
     EXPECT_EQ(a.error.x, a.mechanism.x);
 }
 
-TEST(Arrangement, a_splitter_gives_the_share_that_puts_it_where_the_hand_is) {
+TEST(Arrangement, ASplitterGivesTheShareThatPutsItWhereTheHandIs) {
     for (const char* panel : {"controls", "plots", "events"}) {
         Scene scene;
         const Measures m = measures(1600, 1000);
@@ -198,7 +199,7 @@ TEST(Arrangement, a_splitter_gives_the_share_that_puts_it_where_the_hand_is) {
             if (splitter.panel != panel) continue;
             const double x = splitter.area.x + 0.5 * splitter.area.width + 40.0;
             const double y = splitter.area.y + 0.5 * splitter.area.height - 30.0;
-            scene.perform(command::Size{panel, splitter.share_at(x, y)});
+            scene.perform(command::SetPanelSize{panel, splitter.share_at(x, y)});
             for (const Arrangement::Splitter& now : arrange(scene, m).splitters) {
                 if (now.panel != panel) continue;
                 if (now.moves_sideways)
@@ -210,7 +211,7 @@ TEST(Arrangement, a_splitter_gives_the_share_that_puts_it_where_the_hand_is) {
     }
 }
 
-TEST(Panels, are_hidden_and_shown_from_the_bar_the_menu_and_the_keyboard) {
+TEST(Panels, AreHiddenAndShownFromTheBarTheMenuAndTheKeyboard) {
     Hands hands("ball_on_sine");
     hands.click("switch plots");
     EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"plots", false})});
@@ -238,7 +239,7 @@ TEST(Panels, are_hidden_and_shown_from_the_bar_the_menu_and_the_keyboard) {
     EXPECT_EQ(to_text(hands.session), to_text(test::session("ball_on_sine")));
 }
 
-TEST(Panels, are_resized_by_the_gap_beside_them) {
+TEST(Panels, AreResizedByTheGapBesideThem) {
     Hands hands("ball_on_sine");
     for (const auto& [panel, dx, dy] :
          {std::tuple{"controls", 60.0, 0.0}, std::tuple{"plots", 50.0, 0.0}, std::tuple{"events", 0.0, -70.0}}) {
@@ -266,7 +267,7 @@ TEST(Panels, are_resized_by_the_gap_beside_them) {
     EXPECT_FALSE(hands.session.can_undo());
     Session replayed = test::session("ball_on_sine");
     for (const char* panel : {"controls", "plots", "events"})
-        replayed.apply(command::Size{panel, hands.session.scene().share(panel)});
+        replayed.apply(command::SetPanelSize{panel, hands.session.scene().share(panel)});
     EXPECT_EQ(to_text(replayed), to_text(hands.session));
     // A double click on the gap restores the automatic size.
     hands.point("splitter plots");
@@ -279,11 +280,11 @@ TEST(Panels, are_resized_by_the_gap_beside_them) {
     EXPECT_EQ(hands.session.scene().share("plots"), 0.0);
 }
 
-TEST(Theme, is_chosen_in_the_window_and_changes_plots_and_panels) {
+TEST(Theme, IsChosenInTheWindowAndChangesPlotsAndPanels) {
     Hands hands("ball_on_sine");
     const Image light = hands.picture();
     hands.click("switch theme");
-    EXPECT_EQ(hands.all, std::vector<Command>{command::UseTheme{true}});
+    EXPECT_EQ(hands.all, std::vector<Command>{command::SetTheme{true}});
     EXPECT_TRUE(hands.session.theme().dark);
     const Color hybrid = phase_color(dark_theme(), Phase::Kind::hybrid);
     EXPECT_EQ(hands.session.plots()[0].curves[0].stroke.color, hybrid);
@@ -302,7 +303,7 @@ TEST(Theme, is_chosen_in_the_window_and_changes_plots_and_panels) {
     EXPECT_EQ(hands.picture(), light);
 }
 
-TEST(Theme, is_part_of_the_journal_but_no_change_of_the_system) {
+TEST(Theme, IsPartOfTheJournalButNoChangeOfTheSystem) {
     Session session = test::session("ball_on_sine");
     session.apply(parse_command("theme dark"));
     EXPECT_FALSE(session.can_undo());

@@ -31,7 +31,7 @@ struct Tree : test::Folder {
     std::string at(const std::string& name) const { return (path() / name).string(); }
 };
 
-TEST(Browser, lists_folders_and_what_can_be_opened) {
+TEST(Browser, ListsFoldersAndWhatCanBeOpened) {
     const Tree tree;
     const auto all = entries_of(tree.at(""), {".toml"}, false);
     EXPECT_EQ(names(all), (Names{"pictures/", "systems/", "ball.toml", "bowl.toml"}));
@@ -41,7 +41,7 @@ TEST(Browser, lists_folders_and_what_can_be_opened) {
     EXPECT_TRUE(entries_of(tree.at("none"), {".toml"}, false).empty());
 }
 
-TEST(Browser, completes_as_a_shell_and_goes_up) {
+TEST(Browser, CompletesAsAShellAndGoesUp) {
     const std::vector<FolderEntry> all{{"systems", true}, {"ball.toml", false}, {"balcony.toml", false}};
     EXPECT_EQ(completed("a/b", all), "a/bal");
     EXPECT_EQ(completed("a/ball", all), "a/ball.toml");
@@ -55,8 +55,8 @@ TEST(Browser, completes_as_a_shell_and_goes_up) {
     EXPECT_EQ(one_up("/a/"), "/");
 }
 
-struct Opening : Tree {
-    Opening() : hands("ball_on_sine") {
+struct BrowserFixture : Tree {
+    BrowserFixture() : hands("ball_on_sine") {
         hands.press_with_control('O');
         hands.rest(2);
         hands.type(at(""));
@@ -67,8 +67,8 @@ struct Opening : Tree {
     Names rows() const { return names(hands.state.browser.rows); }
 };
 
-TEST(Browser, letters_filter_and_Enter_opens) {
-    Opening o;
+TEST(Browser, LettersFilterAndEnterOpens) {
+    BrowserFixture o;
     EXPECT_EQ(o.rows(), (Names{"pictures/", "systems/", "ball.toml", "bowl.toml"}));
     o.hands.type("bo");
     EXPECT_EQ(o.rows(), Names{"bowl.toml"});
@@ -77,15 +77,15 @@ TEST(Browser, letters_filter_and_Enter_opens) {
     EXPECT_EQ(o.hands.session.system(), o.at("bowl.toml")) << o.hands.session.error();
 }
 
-TEST(Browser, arrows_and_Backspace_walk_folders) {
-    Opening o;
+TEST(Browser, ArrowsAndBackspaceWalkFolders) {
+    BrowserFixture o;
     o.hands.press(key::down);
     o.hands.press(key::down);
     o.hands.press(key::enter);
     o.hands.rest(3);
     EXPECT_EQ(o.line(), "/systems/");
     EXPECT_EQ(o.rows(), (Names{"old/", "mine.toml"}));
-    ASSERT_EQ(o.hands.state.editor.asking, EditorState::Asking::open);
+    ASSERT_EQ(o.hands.state.editor.asking, EditorState::OpenDialog::open);
     o.hands.press(key::backspace);
     o.hands.rest(3);
     EXPECT_EQ(o.line(), "/");
@@ -100,8 +100,8 @@ TEST(Browser, arrows_and_Backspace_walk_folders) {
     EXPECT_EQ(o.hands.session.system(), o.at("systems/mine.toml"));
 }
 
-TEST(Browser, a_click_goes_there) {
-    Opening o;
+TEST(Browser, AClickGoesThere) {
+    BrowserFixture o;
     o.hands.click("file systems");
     o.hands.rest(3);
     EXPECT_EQ(o.line(), "/systems/");
@@ -114,7 +114,7 @@ TEST(Browser, a_click_goes_there) {
 }
 
 // The dialog shows where the file is written; Enter does not overwrite an existing file.
-TEST(Browser, of_saving_shows_the_folder_that_is_written_to) {
+TEST(Browser, OfSavingShowsTheFolderThatIsWrittenTo) {
     Tree tree;
     test::Hands hands("ball_on_sine");
     hands.press_with_control('S');

@@ -3,7 +3,7 @@
 #     camera_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-"$build/test_app" --gtest_filter=CameraMenu.tells_where_it_is > "$folder/places"
+"$build/test_app" --gtest_filter=CameraMenu.TellsWhereItIs > "$folder/places"
 
 open_window "" ball_on_sine --record "$folder/record"
 settle

@@ -15,7 +15,7 @@ Event first_zeno(const Trajectory& trajectory) {
 
 TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     Session session = test::session("ball_on_sine");
-    session.apply(command::UseConditions{Conditions::sharp});
+    session.apply(command::SetConditions{Conditions::sharp});
     const Event sharp = first_zeno(session.trajectory());
     const std::vector<std::string> lines = certificate_lines(sharp);
     ASSERT_EQ(lines.size(), 5u);
@@ -24,13 +24,13 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
     EXPECT_EQ(lines[2].rfind("error until τ∞: q ≤ ", 0), 0u) << lines[2];
     EXPECT_EQ(lines[3].rfind("error at τ∞: q ≤ ", 0), 0u) << lines[3];
     EXPECT_EQ(lines[4].rfind("gap'' from −8.5", 0), 0u) << lines[4];
-    session.apply(command::UseConditions{Conditions::paper});
+    session.apply(command::SetConditions{Conditions::paper});
     EXPECT_EQ(certificate_lines(first_zeno(session.trajectory())).size(),
               3u);  // no bound on the reinitialization
     int decisive = 0;
     for (const Inequality& inequality : sharp.certificate->inequalities()) {
         EXPECT_LT(inequality.left, inequality.right);
-        decisive += inequality.name == sharp.certificate->decisive ? 1 : 0;
+        decisive += inequality.name == sharp.certificate->tightest_bound ? 1 : 0;
     }
     EXPECT_EQ(decisive, 1);
 }

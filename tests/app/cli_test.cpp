@@ -1,4 +1,4 @@
-// The command line: exit statuses and files. For refused input see refused_test.cpp.
+// The command line: exit statuses and files. For refused input see command_errors_test.cpp.
 #include <gtest/gtest.h>
 
 #include <algorithm>

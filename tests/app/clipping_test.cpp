@@ -44,27 +44,28 @@ std::string utf8(ImWchar code) {
     return text;
 }
 
-struct Cut {
+struct ClippedText {
     std::string window, letters;
 };
 
 // A letter on the screen.
-struct Placed {
+struct LetterBox {
     ImVec2 from, to;
     ImWchar code;
 };
 
 // True if letters of different words overlap. Letters of one word may touch, and dots may be above theirs.
-bool is_on(const Placed& a, const Placed& b) {
-    const auto width = [](const Placed& letter) { return letter.to.x - letter.from.x; };
-    const auto height = [](const Placed& letter) { return letter.to.y - letter.from.y; };
+bool is_on(const LetterBox& a, const LetterBox& b) {
+    const auto width = [](const LetterBox& letter) { return letter.to.x - letter.from.x; };
+    const auto height = [](const LetterBox& letter) { return letter.to.y - letter.from.y; };
     return std::min(a.to.x, b.to.x) - std::max(a.from.x, b.from.x) > 0.6F * std::min(width(a), width(b)) &&
            std::min(a.to.y, b.to.y) - std::max(a.from.y, b.from.y) > 0.5F * std::max(height(a), height(b));
 }
 
-std::string letters_on_others(std::vector<Placed> letters) {
+std::string letters_on_others(std::vector<LetterBox> letters) {
     std::string found;
-    std::sort(letters.begin(), letters.end(), [](const Placed& a, const Placed& b) { return a.from.x < b.from.x; });
+    std::sort(letters.begin(), letters.end(),
+              [](const LetterBox& a, const LetterBox& b) { return a.from.x < b.from.x; });
     for (std::size_t i = 0; i < letters.size(); ++i)
         for (std::size_t j = i + 1; j < letters.size() && letters[j].from.x < letters[i].to.x; ++j)
             if (is_on(letters[i], letters[j])) found += utf8(letters[i].code) + utf8(letters[j].code) + " ";
@@ -78,15 +79,15 @@ bool scrolls(const char* name) {
     return window != nullptr && window->ScrollMax.y > 0.0F && (window->Flags & ImGuiWindowFlags_NoScrollWithMouse) == 0;
 }
 
-std::vector<Cut> cut_letters(const ImDrawData& data) {
+std::vector<ClippedText> cut_letters(const ImDrawData& data) {
     const Atlas atlas;
-    std::vector<Cut> cuts;
+    std::vector<ClippedText> cuts;
     for (int n = 0; n < data.CmdListsCount; ++n) {
         const ImDrawList& list = *data.CmdLists[n];
         if (list._OwnerName != nullptr && is_editor(list._OwnerName)) continue;
         const bool scrolled = list._OwnerName != nullptr && scrolls(list._OwnerName);
-        Cut cut{list._OwnerName != nullptr ? list._OwnerName : "", ""};
-        std::vector<Placed> placed;
+        ClippedText cut{list._OwnerName != nullptr ? list._OwnerName : "", ""};
+        std::vector<LetterBox> placed;
         for (const ImDrawCmd& command : list.CmdBuffer) {
             if (command.UserCallback != nullptr) continue;
             for (unsigned i = 0; i + 6 <= command.ElemCount;) {
@@ -263,14 +264,14 @@ const State states[] = {
 
 class Clipping : public testing::TestWithParam<std::tuple<int, int, double>> {};
 
-TEST_P(Clipping, cuts_no_letter) {
+TEST_P(Clipping, CutsNoLetter) {
     const auto [width, height, scale] = GetParam();
     Interface interface(test::surface(width, height, scale));
     const Interface::Active active(interface);
     for (const State& state : states) {
         const bool is_own = std::string(state.system) == "long" || std::string(state.system) == "large";
         Session session = test::session(is_own ? "ball_on_sine" : state.system);
-        if (is_own) session.apply(command::Text{state.system[1] == 'o' ? long_names : large_world()});
+        if (is_own) session.apply(command::SetText{state.system[1] == 'o' ? long_names : large_world()});
         ASSERT_TRUE(session.document().problems.empty());
         for (const char* line : state.journal) session.apply(parse_command(line));
         interface.restyle(scale * session.scene().text_scale(width / scale, height / scale), false);
@@ -285,7 +286,7 @@ TEST_P(Clipping, cuts_no_letter) {
                 apply(Input{});
                 data = &interface.frame([&] { explorer(session, panels); }, width, height, 1.0 / 60.0);
             }
-            for (const Cut& cut : cut_letters(*data))
+            for (const ClippedText& cut : cut_letters(*data))
                 ADD_FAILURE() << state.name << ", " << theme << ": in '" << cut.window << "' \"" << cut.letters << "\"";
         }
     }
@@ -297,7 +298,7 @@ INSTANTIATE_TEST_SUITE_P(Sizes, Clipping,
                                          std::tuple(2560, 1600, 2.0), std::tuple(1600, 1000, 1.5)));
 
 // Tests the test: text that is too long for its window is found, horizontally and vertically; text that fits is not.
-TEST(Clipping, finds_what_is_cut) {
+TEST(Clipping, FindsWhatIsCut) {
     Interface interface(test::surface(400, 300));
     const Interface::Active active(interface);
     const auto letters = [&](float width, float height, const char* text) {
@@ -315,13 +316,13 @@ TEST(Clipping, finds_what_is_cut) {
                 400, 300, 1.0 / 60.0);
         }
         std::string all;
-        for (const Cut& cut : cut_letters(*data)) all += cut.letters;
+        for (const ClippedText& cut : cut_letters(*data)) all += cut.letters;
         return all;
     };
     EXPECT_EQ(letters(300.0F, 100.0F, "it fits"), "");
     EXPECT_NE(letters(60.0F, 100.0F, "too wide for it"), "");
     EXPECT_NE(letters(300.0F, 32.0F, "too low\nfor it"), "");
-    const Placed one{{10, 10}, {18, 20}, 'a'};
+    const LetterBox one{{10, 10}, {18, 20}, 'a'};
     EXPECT_EQ(letters_on_others({one, {{16, 10}, {24, 20}, 'b'}, {{10, 5}, {18, 8}, '.'}}), "");
     EXPECT_EQ(letters_on_others({one, {{12, 12}, {20, 22}, 'b'}}), "ab ");
 }

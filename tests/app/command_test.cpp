@@ -16,21 +16,21 @@ const std::vector<Command> one_of_each{
     command::Set{"g", 9.81},
     command::Set{"x'", -1.5},
     command::Set{"theta1", 0.1 + 0.2},
-    command::End{20.0},
+    command::SetEndTime{20.0},
     command::Tolerance{1e-10},
     command::Eps{1e-6, 1e-6, 1e-6},
     command::Eps{1e-6, 2e-6, 1.0 / 3.0},
-    command::UseConditions{Conditions::sharp},
-    command::UseReinitialization{Reinitialization::euclidean},
+    command::SetConditions{Conditions::sharp},
+    command::SetReinitialization{Reinitialization::euclidean},
     command::Seek{3.2},
     command::ShowDependence{"zeno_time(2)"},
     command::FindOrbit{"--from end --continue e=0.1:0.9"},
     command::StopOrbit{},
-    command::GoOnOrbit{12},
+    command::SelectBranchPoint{12},
     command::Play{},
     command::Pause{},
     command::Select{25},
-    command::Grid{3, 2},
+    command::SetGrid{3, 2},
     command::PlotView{2, "t", {"y", "x'^2 + y'^2"}},
     command::Zoom{1, -1.0, 1e-7, 0.1 + 0.2, 3.0},
     command::Fit{4},
@@ -38,8 +38,8 @@ const std::vector<Command> one_of_each{
     command::ShowCurve{1, 2, false},
     command::Link{false},
     command::New{},
-    command::Text{"title = \"A \\ \\n ball\"\n\t# \u03b8\r\n"},
-    command::Text{""},
+    command::SetText{"title = \"A \\ \\n ball\"\n\t# \u03b8\r\n"},
+    command::SetText{""},
     command::Save{"mine.toml", false},
     command::Save{"a folder/mine\n.toml", true},
     command::Show{"editor", true},
@@ -50,15 +50,15 @@ const std::vector<Command> one_of_each{
     command::Enlarge{1.25},
     command::Present{true},
     command::Show{"trail", false},
-    command::Start{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
-    command::Look{-1.5, 1e-7, 3.0},
+    command::SetStart{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
+    command::LookAt{-1.5, 1e-7, 3.0},
     command::LookAll{},
     command::DefaultPlane{},
     command::ShowPlane{"gap", "sin(y) + 1"},
-    command::Camera{"zeno"},
+    command::SetCamera{"zeno"},
     command::Speed{0.001},
     command::Loop{true},
-    command::Step{-1},
+    command::StepEvents{-1},
     command::Undo{},
     command::Redo{},
     command::Pin{},
@@ -69,19 +69,19 @@ const std::vector<Command> one_of_each{
     command::ShowPinned{2, false},
     command::Recall{4},
     command::PlotDifference{3, true},
-    command::Lens{2.5},
-    command::UseTheme{true},
-    command::UseTheme{false},
-    command::Size{"controls", 0.3},
-    command::Size{"plots", 0.0},
+    command::ShowLens{2.5},
+    command::SetTheme{true},
+    command::SetTheme{false},
+    command::SetPanelSize{"controls", 0.3},
+    command::SetPanelSize{"plots", 0.0},
     command::Reset{},
-    command::Done{},
-    command::UseMethod{Method::dopri5},
+    command::EndEdit{},
+    command::SetMethod{Method::dopri5},
     command::MaxImpacts{1000},
-    command::UseOption{"max-steps", {100000}},
-    command::UseOption{"memory", {2.5e8}},
-    command::Range{2, true, -1.0, 0.1 + 0.2},
-    command::Range{1, false, 0.0, 1e-7},
+    command::SetOption{"max-steps", {100000}},
+    command::SetOption{"memory", {2.5e8}},
+    command::SetRange{2, true, -1.0, 0.1 + 0.2},
+    command::SetRange{1, false, 0.0, 1e-7},
     command::Export{"a folder/run.json", false},
     command::Export{"ball.svg", true},
     command::Export{"ball.svg", false, 2},
@@ -93,20 +93,20 @@ const std::vector<Command> one_of_each{
     command::Replay{"the_ball"},
 };
 
-TEST(Command, reads_back_what_it_writes) {
+TEST(Command, ReadsBackWhatItWrites) {
     for (const Command& command : one_of_each) EXPECT_EQ(parse_command(to_text(command)), command) << to_text(command);
 }
 
-TEST(Command, looks_as_the_manual_says) {
+TEST(Command, LooksAsTheManualSays) {
     EXPECT_EQ(to_text(command::Open{"ball_on_sine"}), "open ball_on_sine");
     EXPECT_EQ(to_text(command::Set{"g", 9.81}), "set g 9.81");
     EXPECT_EQ(to_text(command::Set{"x'", 1.5}), "set x' 1.5");
     EXPECT_EQ(to_text(command::Seek{3.2}), "seek 3.2");
     EXPECT_EQ(to_text(command::Eps{1e-6, 1e-6, 1e-6}), "eps 1e-06");
-    EXPECT_EQ(to_text(command::Text{"a = \"1\"\nb\\"}), "text \"a = \\\"1\\\"\\nb\\\\\"");
-    EXPECT_EQ(to_text(command::UseTheme{true}), "theme dark");
-    EXPECT_EQ(to_text(command::Size{"events", 0.0}), "size events auto");
-    EXPECT_EQ(to_text(command::Size{"events", 0.25}), "size events 0.25");
+    EXPECT_EQ(to_text(command::SetText{"a = \"1\"\nb\\"}), "text \"a = \\\"1\\\"\\nb\\\\\"");
+    EXPECT_EQ(to_text(command::SetTheme{true}), "theme dark");
+    EXPECT_EQ(to_text(command::SetPanelSize{"events", 0.0}), "size events auto");
+    EXPECT_EQ(to_text(command::SetPanelSize{"events", 0.25}), "size events 0.25");
     EXPECT_EQ(to_text(command::Save{"mine.toml", true}), "save mine.toml overwrite");
     EXPECT_EQ(parse_command("set g 1/4"), Command(command::Set{"g", 0.25}));
     for (const char* line : {"set theta1 30 deg", "set theta1 \"30 deg\"", "set theta1 30deg"})
@@ -117,7 +117,7 @@ TEST(Command, looks_as_the_manual_says) {
     EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
 }
 
-TEST(Journal, reads_back_what_it_writes) {
+TEST(Journal, ReadsBackWhatItWrites) {
     EXPECT_EQ(parse_journal(journal_text(one_of_each)), one_of_each);
     EXPECT_EQ(parse_journal("# a tour\n\nplay\r\n   # on\npause"),
               (std::vector<Command>{command::Play{}, command::Pause{}}));
@@ -130,7 +130,7 @@ struct Mistake {
     const char* says;
 };
 
-TEST(Journal, names_the_place_of_a_mistake) {
+TEST(Journal, NamesThePlaceOfAMistake) {
     const Mistake mistakes[] = {{"save", 5, "needs more"},
                                 {"theme blue", 7, "there is no theme 'blue'"},
                                 {"size plot 0.3", 6, "did you mean 'plots'"},
@@ -185,7 +185,7 @@ TEST(Journal, names_the_place_of_a_mistake) {
 }
 
 // Every name appears once; twice if the command also switches off, and for `look` and `look all`.
-TEST(Command, is_listed_once) {
+TEST(Command, IsListedOnce) {
     std::string list;
     try {
         parse_command("nonsense");
@@ -216,17 +216,17 @@ TEST(Command, ListsAllWhereNoneIsNear) {
 }
 
 // Every option has a command, alone or with others; invalid values are refused when the command is performed.
-TEST(Command, sets_every_option) {
+TEST(Command, SetsEveryOption) {
     for (const auto group : options_by_command()) {
-        const command::UseOption use(group[0], Options{});
+        const command::SetOption use(group[0], Options{});
         EXPECT_EQ(use.values.size(), group.size());
         EXPECT_EQ(parse_command(to_text(use)), Command(use));
         EXPECT_EQ(to_text(use).rfind(std::string(group[0].command) + " ", 0), 0u);
     }
-    EXPECT_EQ(to_text(command::UseOption("max-steps", {30})), "max-steps 30");
+    EXPECT_EQ(to_text(command::SetOption("max-steps", {30})), "max-steps 30");
 }
 
-TEST(Journal, is_a_file_that_grows_line_by_line) {
+TEST(Journal, IsAFileThatGrowsLineByLine) {
     const auto file = std::filesystem::temp_directory_path() / "achilles_command_test.journal";
     {
         JournalFile journal(file);

@@ -9,7 +9,7 @@
 
 #include "app/hands.hpp"
 #include "panels/sweep.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -25,28 +25,28 @@ Session asking(const std::string& system, const std::string& quantity = {}) {
     return session;
 }
 
-double by(const Session& session, const std::string& name) { return session.influences()->find(name)->derivative; }
+double by(const Session& session, const std::string& name) { return session.sensitivities()->find(name)->derivative; }
 
-TEST(Depend, asks_for_the_last_zeno_time_at_first) {
+TEST(SensitivityCommand, AsksForTheLastZenoTimeAtFirst) {
     Session session = asking("ball_on_sine");
     EXPECT_EQ(session.depend_text(), "zeno_time(2)");
     ASSERT_TRUE(session.influences_are_current());
-    EXPECT_EQ(session.influences()->unit, "s");
-    EXPECT_NEAR(session.influences()->quantity.value, 12.465775, 1e-6);
+    EXPECT_EQ(session.sensitivities()->unit, "s");
+    EXPECT_NEAR(session.sensitivities()->quantity.value, 12.465775, 1e-6);
     EXPECT_NEAR(by(session, "x"), 15.87553773274613, 1e-4);
     EXPECT_NEAR(by(session, "x'"), 32.10721879802504, 1e-4);
     EXPECT_NEAR(by(session, "g"), -30.31330158465276, 1e-4);
-    session.apply(command::End{1.0});
+    session.apply(command::SetEndTime{1.0});
     session.settle();
     EXPECT_EQ(session.depend_text(), "x");
-    EXPECT_EQ(session.influences()->quantity.expression, "x");
+    EXPECT_EQ(session.sensitivities()->quantity.expression, "x");
 }
 
 // t1 + 2 e v1/(g (1 - e)), with v1 = sqrt(2 g (y - r)) and t1 = v1/g.
-TEST(Depend, knows_what_the_formula_says) {
+TEST(SensitivityCommand, KnowsWhatTheFormulaSays) {
     const Session session = asking("ball_on_floor", "zeno_time");
     const double g = 9.81, e = 0.7, fall = 0.94, v = std::sqrt(2.0 * g * fall), k = (1.0 + e) / (1.0 - e);
-    EXPECT_NEAR(session.influences()->quantity.value, k * v / g, 1e-8);
+    EXPECT_NEAR(session.sensitivities()->quantity.value, k * v / g, 1e-8);
     EXPECT_NEAR(by(session, "y"), k / v, 1e-8);
     EXPECT_NEAR(by(session, "r"), -k / v, 1e-8);
     EXPECT_NEAR(by(session, "g"), -0.5 * k * v / g / g, 1e-8);
@@ -55,11 +55,11 @@ TEST(Depend, knows_what_the_formula_says) {
     EXPECT_NEAR(by(session, "x"), 0.0, 1e-12);
 }
 
-TEST(Depend, compares_over_whole_sliders_in_their_order) {
+TEST(SensitivityCommand, ComparesOverWholeSlidersInTheirOrder) {
     const Session session = asking("ball_on_floor", "zeno_time");
-    const Influences& known = *session.influences();
+    const Sensitivities& known = *session.sensitivities();
     std::string order;
-    for (const Influences::Of& one : known.all) order += one.name + " ";
+    for (const Sensitivities::Sensitivity& one : known.all) order += one.name + " ";
     EXPECT_EQ(order, "m r g e x x' y y' ");
     EXPECT_DOUBLE_EQ(known.find("y")->over_slider, by(session, "y") * (3.0 - 0.06));
     // Sliders with a logarithmic scale.
@@ -67,7 +67,7 @@ TEST(Depend, compares_over_whole_sliders_in_their_order) {
     EXPECT_FALSE(goes_by_ratios(0.0, 20.0));
     EXPECT_DOUBLE_EQ(known.find("g")->over_slider, by(session, "g") * 9.81 * std::log(20.0 / 0.1));
     double most = 0.0;
-    for (const Influences::Of& one : known.all) {
+    for (const Sensitivities::Sensitivity& one : known.all) {
         Slider slider;
         slider.varies = one.name;
         put_bar(session, slider);
@@ -79,9 +79,9 @@ TEST(Depend, compares_over_whole_sliders_in_their_order) {
     EXPECT_EQ(most, 1.0);
 }
 
-TEST(Depend, shows_angles_as_the_sliders_do) {
+TEST(SensitivityCommand, ShowsAnglesAsTheSlidersDo) {
     const Session session = asking("double_pendulum", "theta1");
-    const Influences& known = *session.influences();
+    const Sensitivities& known = *session.sensitivities();
     const auto text = [&](const char* name) {
         return derivative_text(session.description(), known, *known.find(name));
     };
@@ -90,40 +90,40 @@ TEST(Depend, shows_angles_as_the_sliders_do) {
     EXPECT_EQ(text("L1"), fmt::format("\u2212{:.4g}\u00b0 per m", -by(session, "L1") * degree));
     EXPECT_EQ(text("e"), fmt::format("{:.4g}\u00b0", by(session, "e") * degree));
     const Session time = asking("double_pendulum", "zeno_time(1)");
-    EXPECT_EQ(derivative_text(time.description(), *time.influences(), *time.influences()->find("theta1'")),
+    EXPECT_EQ(derivative_text(time.description(), *time.sensitivities(), *time.sensitivities()->find("theta1'")),
               fmt::format("{:.4g}\u00a0s per \u00b0/s", by(time, "theta1'") / degree));
 }
 
-TEST(Depend, says_why_there_is_none) {
+TEST(SensitivityCommand, SaysWhyThereIsNone) {
     Session session = asking("ball_on_sine", "work");
-    EXPECT_EQ(session.influences()->quantity.refused, "derivatives of work are not computed");
+    EXPECT_EQ(session.sensitivities()->quantity.refused, "derivatives of work are not computed");
     session.apply(command::ShowDependence{"zeno_time(7)"});
     session.settle();
-    EXPECT_EQ(session.influences()->quantity.refused, "the quantity does not exist in this run");
+    EXPECT_EQ(session.sensitivities()->quantity.refused, "the quantity does not exist in this run");
     Slider slider;
     slider.varies = "g";
     put_bar(session, slider);
     EXPECT_FALSE(slider.bar);
     EXPECT_EQ(slider.bar_about, "no derivative here: the quantity does not exist in this run");
-    session.apply(command::UseReinitialization{Reinitialization::euclidean});
+    session.apply(command::SetReinitialization{Reinitialization::euclidean});
     session.settle();
-    EXPECT_EQ(session.influences(), nullptr);
+    EXPECT_EQ(session.sensitivities(), nullptr);
     EXPECT_NE(session.influences_job().problem().find("uclidean"), std::string::npos);
-    session.apply(command::UseReinitialization{Reinitialization::kinetic});
+    session.apply(command::SetReinitialization{Reinitialization::kinetic});
     session.apply(command::ShowDependence{"x"});
     session.settle();
     EXPECT_EQ(session.influences_job().problem(), "");
     EXPECT_TRUE(session.influences_are_current());
     // At rest on the floor: derivatives for starts that leave the constraint do not exist, those along it do.
     Session resting = test::session("ball_on_floor");
-    resting.apply(command::Start{{{"y", 0.06}, {"x'", 0.5}}});
+    resting.apply(command::SetStart{{{"y", 0.06}, {"x'", 0.5}}});
     resting.apply(command::ShowDependence{"x"});
     resting.settle();
-    EXPECT_NE(resting.influences()->find("y")->reason.find("changes the gap"), std::string::npos);
-    EXPECT_TRUE(resting.influences()->find("x'")->reason.empty());
+    EXPECT_NE(resting.sensitivities()->find("y")->reason.find("changes the gap"), std::string::npos);
+    EXPECT_TRUE(resting.sensitivities()->find("x'")->reason.empty());
 }
 
-TEST(Depend, refuses_what_is_no_quantity_and_keeps_what_there_is) {
+TEST(SensitivityCommand, RefusesWhatIsNoQuantityAndKeepsWhatThereIs) {
     Session session = asking("ball_on_sine", "zeno_time(1)");
     for (const char* wrong : {"zeno_tme(1)", "held", "x +", ""}) {
         session.apply(command::ShowDependence{wrong});
@@ -137,15 +137,15 @@ TEST(Depend, refuses_what_is_no_quantity_and_keeps_what_there_is) {
     EXPECT_EQ(session.depend_text(), "zeno_time(3)");
     EXPECT_TRUE(session.influences_are_current());
     session.apply(command::Show{"depend", false});
-    EXPECT_EQ(session.influences(), nullptr);
+    EXPECT_EQ(session.sensitivities(), nullptr);
 }
 
-TEST(Depend, is_of_the_run_that_is_shown_or_said_to_be_old) {
+TEST(SensitivityCommand, IsOfTheRunThatIsShownOrSaidToBeOld) {
     Session session = asking("ball_on_sine", "zeno_time(1)");
     const double before = by(session, "g");
     for (const double g : {1.1, 1.2, 1.3}) {
         session.apply(command::Set{"g", g});
-        const Influences* const known = session.influences();
+        const Sensitivities* const known = session.sensitivities();
         ASSERT_NE(known, nullptr);  // some result is always available
         EXPECT_EQ(session.influences_are_current(), known->run.get() == &session.trajectory());
         if (!session.influences_are_current()) {
@@ -154,12 +154,12 @@ TEST(Depend, is_of_the_run_that_is_shown_or_said_to_be_old) {
     }
     session.settle();
     EXPECT_TRUE(session.influences_are_current());
-    EXPECT_EQ(session.influences()->run->run.parameters, session.run().parameters);
+    EXPECT_EQ(session.sensitivities()->run->run.parameters, session.run().parameters);
     EXPECT_NE(by(session, "g"), before);
 }
 
 // While a slider is dragged, finished results appear; in the end those of the last request.
-TEST(Depend, finishes_what_it_has_begun) {
+TEST(SensitivityCommand, FinishesWhatItHasBegun) {
     const Session session = test::session("ball_on_sine");
     const auto run_of = [&](double g) {
         achilles::Run run = session.run();
@@ -167,24 +167,24 @@ TEST(Depend, finishes_what_it_has_begun) {
         return std::make_shared<const Trajectory>(simulate(session.model(), run));
     };
     const auto first = run_of(1.0), second = run_of(1.1), third = run_of(1.2);
-    InfluencesJob job;
+    SensitivitiesJob job;
     EXPECT_TRUE(job.ask(first, "x"));
     EXPECT_TRUE(job.ask(second, "x"));
     EXPECT_TRUE(job.ask(third, "x"));
-    while (job.influences() == nullptr) job.update(0.0);
-    EXPECT_EQ(job.influences()->run, first);
+    while (job.sensitivities() == nullptr) job.update(0.0);
+    EXPECT_EQ(job.sensitivities()->run, first);
     EXPECT_TRUE(job.is_busy());
     job.update({});
-    EXPECT_EQ(job.influences()->run, third);
+    EXPECT_EQ(job.sensitivities()->run, third);
     EXPECT_FALSE(job.is_busy());
     EXPECT_FALSE(job.ask(third, "x"));
     job.ask(third, "y");  // results of another quantity are dropped
-    EXPECT_EQ(job.influences(), nullptr);
+    EXPECT_EQ(job.sensitivities(), nullptr);
     job.forget();
     EXPECT_FALSE(job.is_busy());
 }
 
-TEST(Depend, is_in_the_recipe) {
+TEST(SensitivityCommand, IsInTheRecipe) {
     Session session = asking("ball_on_sine", "zeno_time(2) - zeno_time(1)");
     EXPECT_NE(to_text(session).find("zeno_time(2) - zeno_time(1) = "), std::string::npos);
     Session again = test::session("ball_on_sine");
@@ -217,7 +217,7 @@ void touches(const std::string& system, const std::string& quantity, const std::
     EXPECT_LT(near, 0.4 * far + 1e-8) << name;
 }
 
-TEST(Depend, touches_the_curve_of_the_sweep) {
+TEST(SensitivityCommand, TouchesTheCurveOfTheSweep) {
     for (const char* name : {"e", "g", "x", "y'"}) touches("ball_on_sine", "zeno_time(2)", name, 1e-3);
     for (const char* name : {"e", "L1", "theta1", "theta2'"}) {
         touches("double_pendulum", "zeno_time(1)", name, 1e-3);
@@ -225,14 +225,14 @@ TEST(Depend, touches_the_curve_of_the_sweep) {
     }
 }
 
-TEST(Depend, is_straight_along_a_logarithmic_axis) {
+TEST(SensitivityCommand, IsStraightAlongALogarithmicAxis) {
     const TangentLine line{2.0, 5.0, 3.0, true};
     EXPECT_EQ(line.at(2.0), 5.0);
     EXPECT_NEAR((line.at(2.0 + 1e-6) - line.at(2.0 - 1e-6)) / 2e-6, 3.0, 1e-6);
     EXPECT_NEAR(line.at(4.0) - line.at(2.0), line.at(2.0) - line.at(1.0), 1e-12);
 }
 
-TEST(Depend, is_no_slope_of_anything_else) {
+TEST(SensitivityCommand, IsNoSlopeOfAnythingElse) {
     Session session = asking("ball_on_sine", "zeno_time(2)");
     for (const char* other :
          {"--over e=0.1:0.9:5 --print \"zeno_time(1)\"", "--over end=5:20:5 --print \"zeno_time(2)\"",
@@ -245,7 +245,7 @@ TEST(Depend, is_no_slope_of_anything_else) {
 
 // ---- user input ----
 
-TEST(DependPanel, sweeps_what_is_clicked) {
+TEST(SensitivityPanel, SweepsWhatIsClicked) {
     Hands hands("ball_on_sine");
     hands.press_with_control('5');
     hands.session.settle();
@@ -259,7 +259,7 @@ TEST(DependPanel, sweeps_what_is_clicked) {
     EXPECT_TRUE(hands.session.sweep_tangent());
 }
 
-TEST(DependPanel, asks_what_is_chosen_or_typed) {
+TEST(SensitivityPanel, AsksWhatIsChosenOrTyped) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();
@@ -272,14 +272,14 @@ TEST(DependPanel, asks_what_is_chosen_or_typed) {
     EXPECT_TRUE(hands.says("m/s per m"));
     hands.click("tab equations");
     EXPECT_FALSE(hands.session.scene().shows("depend"));
-    EXPECT_EQ(hands.session.influences(), nullptr);
+    EXPECT_EQ(hands.session.sensitivities(), nullptr);
     hands.press_with_control('5');
     EXPECT_FALSE(hands.session.scene().shows("equations"));
     hands.click("tab events");
     EXPECT_FALSE(hands.session.scene().shows("depend"));
 }
 
-TEST(DependPanel, says_that_what_it_shows_is_old) {
+TEST(SensitivityPanel, SaysThatWhatItShowsIsOld) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();
@@ -298,7 +298,7 @@ TEST(DependPanel, says_that_what_it_shows_is_old) {
 }
 
 // Prints positions for depend_window_test.sh.
-TEST(DependPanel, tells_where_it_is) {
+TEST(SensitivityPanel, TellsWhereItIs) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();

@@ -4,7 +4,7 @@
 #     depend_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-"$build/test_app" --gtest_filter=DependPanel.tells_where_it_is > "$folder/places"
+"$build/test_app" --gtest_filter=SensitivityPanel.TellsWhereItIs > "$folder/places"
 
 open_window "" ball_on_sine --record "$folder/record"
 settle

@@ -5,7 +5,7 @@
 #include "app/program.hpp"
 #include "journal/journal.hpp"
 #include "output/output.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -64,7 +64,7 @@ struct Writer : Hands {
     }
 };
 
-TEST(Editor, shows_and_hides_and_does_nothing_by_itself) {
+TEST(Editor, ShowsAndHidesAndDoesNothingByItself) {
     Hands hands("ball_on_sine");
     hands.click("editor");
     EXPECT_TRUE(hands.session.shows_editor());
@@ -75,7 +75,7 @@ TEST(Editor, shows_and_hides_and_does_nothing_by_itself) {
     EXPECT_EQ(journal_text(hands.all), "show editor\nhide editor\n");
 }
 
-TEST(Editor, a_text_takes_effect_when_the_hand_rests) {
+TEST(Editor, ATextTakesEffectWhenTheHandRests) {
     Writer hands;
     const std::string text = replaced(ball(), "value = 1.0, unit = \"m/s^2\"", "value = 2.5, unit = \"m/s^2\"");
     hands.write(text);
@@ -86,7 +86,7 @@ TEST(Editor, a_text_takes_effect_when_the_hand_rests) {
     hands.rest(frames_of_a_pause - 6);
     EXPECT_TRUE(hands.all.empty()) << "every letter begins the pause anew";
     hands.rest(10);
-    ASSERT_EQ(hands.all, std::vector<Command>{command::Text{text + "#"}});
+    ASSERT_EQ(hands.all, std::vector<Command>{command::SetText{text + "#"}});
     EXPECT_EQ(hands.session.run().parameters[1], 2.5);
     EXPECT_EQ(hands.session.trajectory().run.parameters[1], 2.5);
     EXPECT_TRUE(hands.session.document().problems.empty());
@@ -94,7 +94,7 @@ TEST(Editor, a_text_takes_effect_when_the_hand_rests) {
     EXPECT_EQ(hands.all.size(), 1U) << "once";
 }
 
-TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_tells_it) {
+TEST(Editor, WhatCannotBeReadLeavesTheRunAndIsToldAsTheCommandLineTellsIt) {
     Writer hands;
     const std::string before = to_text(hands.session.trajectory());
     const std::string bad = replaced(ball(), "x'^2 + y'^2", "x'^2 + yy'^2");
@@ -121,18 +121,18 @@ TEST(Editor, what_cannot_be_read_leaves_the_run_and_is_told_as_the_command_line_
 }
 
 // The wavy underline and the tinted line change the picture; without the problem the picture is as before.
-TEST(Editor, a_problem_is_marked_in_the_text) {
+TEST(Editor, AProblemIsMarkedInTheText) {
     Writer hands;
     EXPECT_EQ(hands.marked(), 0);
-    hands.session.apply(command::Text{replaced(ball(), "y = [\"lambda\"]", "y = [\"lamda\"]")});
+    hands.session.apply(command::SetText{replaced(ball(), "y = [\"lambda\"]", "y = [\"lamda\"]")});
     hands.rest(3);
     EXPECT_GT(hands.marked(), 300 * 10) << "the line is on the last page: the text scrolls there";
-    hands.session.apply(command::Text{ball()});
+    hands.session.apply(command::SetText{ball()});
     hands.rest(3);
     EXPECT_EQ(hands.marked(), 0);
 }
 
-TEST(Editor, a_message_does_not_hide_the_line_under_the_hand) {
+TEST(Editor, AMessageDoesNotHideTheLineUnderTheHand) {
     Writer hands;
     hands.write(ball() + "y = [\"x\"]");  // duplicate key: an error in the last line
     hands.rest(frames_of_a_pause + 5);
@@ -140,7 +140,7 @@ TEST(Editor, a_message_does_not_hide_the_line_under_the_hand) {
     EXPECT_GT(hands.marked(), 300 * 10);
 }
 
-TEST(Editor, escape_takes_nothing_back) {
+TEST(Editor, EscapeTakesNothingBack) {
     Writer hands;
     hands.write(ball() + "# more");
     hands.press(key::escape);
@@ -148,20 +148,20 @@ TEST(Editor, escape_takes_nothing_back) {
     EXPECT_EQ(hands.session.document().text, ball() + "# more");
 }
 
-TEST(Editor, what_was_typed_counts_when_the_hand_leaves) {
+TEST(Editor, WhatWasTypedCountsWhenTheHandLeaves) {
     Writer hands;
     hands.write(ball() + "# more");
     EXPECT_TRUE(hands.all.empty());
     hands.click("plot 1");
     ASSERT_FALSE(hands.all.empty());
-    EXPECT_EQ(hands.all[0], Command(command::Text{ball() + "# more"}));
+    EXPECT_EQ(hands.all[0], Command(command::SetText{ball() + "# more"}));
     hands.write(ball() + "# and more");
     hands.press_with_control('E');
     EXPECT_EQ(hands.session.document().text, ball() + "# and more");
     EXPECT_FALSE(is_typing(hands.state));
 }
 
-TEST(Editor, a_journal_of_what_was_typed_leads_to_the_same_session) {
+TEST(Editor, AJournalOfWhatWasTypedLeadsToTheSameSession) {
     Writer hands;
     hands.write(replaced(ball(), "y - sin(x)", "y - 1.5*sin(x)"));
     hands.rest(frames_of_a_pause);
@@ -176,14 +176,14 @@ TEST(Editor, a_journal_of_what_was_typed_leads_to_the_same_session) {
     EXPECT_NE(to_text(again.trajectory()), to_text(test::session("ball_on_sine").trajectory()));
 }
 
-TEST(Editor, saves_as_and_asks_before_it_writes_over_a_file) {
+TEST(Editor, SavesAsAndAsksBeforeItWritesOverAFile) {
     const Folder folder;
     folder.put("there.toml", "something else");
     const std::string there = (folder.path() / "there.toml").string(), mine = (folder.path() / "mine.toml").string();
     Writer hands;
     hands.write(ball() + "# mine");
     hands.click("Save");  // opened from the list, so it has no file yet
-    EXPECT_EQ(hands.told(), std::vector<std::string>{to_text(Command(command::Text{ball()})).substr(0, 60)});
+    EXPECT_EQ(hands.told(), std::vector<std::string>{to_text(Command(command::SetText{ball()})).substr(0, 60)});
     hands.write_path((folder.path() / "nowhere" / "mine.toml").string());
     hands.press(key::enter);
     EXPECT_EQ(hands.session.document().file, "") << "there is no such folder";
@@ -210,7 +210,7 @@ TEST(Editor, saves_as_and_asks_before_it_writes_over_a_file) {
     EXPECT_EQ(folder.files().size(), 2U) << "nothing else was written";
 }
 
-TEST(Editor, opens_a_path_that_is_typed) {
+TEST(Editor, OpensAPathThatIsTyped) {
     const Folder folder;
     folder.put("mine.toml", replaced(ball(), "Ball bouncing", "My ball bouncing"));
     Writer hands;
@@ -225,7 +225,7 @@ TEST(Editor, opens_a_path_that_is_typed) {
     EXPECT_EQ(hands.state.editor.text, content(folder.path() / "mine.toml"));
 }
 
-TEST(Editor, asks_what_to_do_with_changes_that_are_not_saved) {
+TEST(Editor, AsksWhatToDoWithChangesThatAreNotSaved) {
     const Folder folder;
     const std::string mine = (folder.path() / "mine.toml").string();
     Writer hands;
@@ -254,7 +254,7 @@ TEST(Editor, asks_what_to_do_with_changes_that_are_not_saved) {
     EXPECT_EQ(folder.files().size(), 1U);
 }
 
-TEST(Editor, asks_before_the_window_is_closed_over_changes) {
+TEST(Editor, AsksBeforeTheWindowIsClosedOverChanges) {
     const Folder folder;
     Writer hands;
     EXPECT_TRUE(request_close(hands.session, hands.state));
@@ -280,7 +280,7 @@ TEST(Editor, asks_before_the_window_is_closed_over_changes) {
     EXPECT_TRUE(other.state.editor.may_close);
 }
 
-TEST(Editor, another_text_takes_the_place_of_the_one_under_the_hand) {
+TEST(Editor, AnotherTextTakesThePlaceOfTheOneUnderTheHand) {
     Writer hands;
     hands.write(ball() + "# more");
     hands.rest(frames_of_a_pause);
@@ -294,22 +294,22 @@ TEST(Editor, another_text_takes_the_place_of_the_one_under_the_hand) {
     EXPECT_EQ(hands.session.system(), "double_pendulum");
 }
 
-TEST(Editor, shows_but_does_not_change_what_it_cannot_keep) {
+TEST(Editor, ShowsButDoesNotChangeWhatItCannotKeep) {
     Writer hands;
-    hands.session.apply(command::Text{"# \U0001F600\n" + ball()});
+    hands.session.apply(command::SetText{"# \U0001F600\n" + ball()});
     hands.rest(2);
     hands.write("gone");
     hands.rest(frames_of_a_pause);
     EXPECT_EQ(hands.session.document().text, "# \U0001F600\n" + ball());
 }
 
-TEST(Editor, draws_the_same_bytes_every_time_in_any_size) {
+TEST(Editor, DrawsTheSameBytesEveryTimeInAnySize) {
     for (const auto& [width, height, scale] :
          {std::tuple{1280, 800, 1.0}, {2560, 1600, 2.0}, {1, 1, 1.0}, {60, 900, 1.0}, {300, 200, 1.0}}) {
         Writer a("double_pendulum", test::surface(width, height, scale));
         Writer b("double_pendulum", test::surface(width, height, scale));
         for (Writer* hands : {&a, &b}) {
-            hands->session.apply(command::Text{"title ="});
+            hands->session.apply(command::SetText{"title ="});
             hands->rest(2);
         }
         EXPECT_EQ(a.picture(), b.picture());
@@ -353,7 +353,7 @@ TEST(Editor, UndoScrollsNoFurtherThanToWhatItChanges) {
     // Without its message the text shows more lines, and it has two lines less.
     for (const float scroll : after) EXPECT_NEAR(scroll, before, 12.0F * 14.0F);
     EXPECT_GT(after.back(), 300.0F);
-    hands.session.apply(command::Text{replaced(hands.session.document().text, "title = \"", "title = \"My ")});
+    hands.session.apply(command::SetText{replaced(hands.session.document().text, "title = \"", "title = \"My ")});
     hands.rest(3);
     EXPECT_LT(scroll_of(hands), 100.0F) << "line 7 is in sight";
 }

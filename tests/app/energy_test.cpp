@@ -8,7 +8,7 @@ namespace {
 
 using test::Hands;
 
-TEST(EnergyBar, is_shown_by_a_command_and_from_the_menu) {
+TEST(EnergyBar, IsShownByACommandAndFromTheMenu) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("energy bar"));
     hands.click("menu View");
@@ -21,7 +21,7 @@ TEST(EnergyBar, is_shown_by_a_command_and_from_the_menu) {
 }
 
 // It shares the player's time axis: a click goes to the time at that place.
-TEST(EnergyBar, goes_where_it_is_pressed) {
+TEST(EnergyBar, GoesWhereItIsPressed) {
     Hands hands("driven_double_pendulum", test::surface(1280, 900));
     hands.session.apply(parse_command("show energy"));
     hands.rest(2);
@@ -33,7 +33,7 @@ TEST(EnergyBar, goes_where_it_is_pressed) {
 }
 
 // In a low panel the time plot is dropped but the bar stays; the mechanism has precedence over both.
-TEST(EnergyBar, gives_place_to_the_mechanism) {
+TEST(EnergyBar, GivesPlaceToTheMechanism) {
     for (const int height : {480, 620, 760, 1000}) {
         Hands hands("ball_on_sine", test::surface(1100, height));
         hands.session.apply(parse_command("show energy"));

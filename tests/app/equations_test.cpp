@@ -59,14 +59,14 @@ void expect_lines(const std::string& text, const std::vector<std::string>& lines
     }
 }
 
-TEST(Equations, of_the_ball) {
+TEST(Equations, OfTheBall) {
     expect_lines(text_of(sheet_of("ball_on_sine")),
                  {"Zeno condition: h\u0308 < 0 where h = h\u0307 = 0", " = x\u0307^2 sin x \u2212 g < 0",
                   "Motion: M q\u0308 + b = 0", "mass matrix", "M [ m  0 ] [ 0  m ]", "b [ 0 ] [ m g ]", "gap",
                   "h = y \u2212 sin x", "rate of the gap", "contact force while held"});
 }
 
-TEST(Equations, of_the_pendulum) {
+TEST(Equations, OfThePendulum) {
     const EquationSheet sheet = sheet_of("double_pendulum");
     expect_lines(text_of(sheet), {"there \u03b8\u2082 = 0, \u03b8\u0307\u2082 = 0",
                                   "h\u0308 = (3 g sin \u03b8\u2081 (m\u2081 (L\u2081 + 2 L\u2082) + m\u2082 L\u2082))/"
@@ -77,14 +77,14 @@ TEST(Equations, of_the_pendulum) {
     EXPECT_EQ(sheet.blocks[sheet.conditions[0].last].kind, Block::Kind::heading);
 }
 
-TEST(Equations, of_forces_and_time) {
+TEST(Equations, OfForcesAndTime) {
     const std::string text = text_of(sheet_of("driven_double_pendulum"));
     EXPECT_NE(text.find("Motion: M q\u0308 + b = Q\n"), std::string::npos) << text;
     EXPECT_NE(text.find("forces\nQ ["), std::string::npos) << text;
     EXPECT_NE(text.find(" t"), std::string::npos);
 }
 
-TEST(Equations, of_several_contacts) {
+TEST(Equations, OfSeveralContacts) {
     const EquationSheet sheet = sheet_of("ball_in_sloped_box");
     const std::string text = text_of(sheet);
     EXPECT_NE(text.find("Zeno condition of "), std::string::npos) << text;
@@ -94,22 +94,22 @@ TEST(Equations, of_several_contacts) {
 }
 
 // Lines do not overlap, stay on the page, and do not extend into the next column.
-TEST(Equations, are_set_in_columns_that_fit) {
+TEST(Equations, AreSetInColumnsThatFit) {
     for (const char* system : {"ball_on_sine", "double_pendulum", "ball_in_sloped_box", "driven_double_pendulum"}) {
         const EquationSheet sheet = sheet_of(system);
         const bool has_forces = text_of(sheet).find("forces\n") != std::string::npos;
         for (const float width : {420.0F, 800.0F, 1600.0F}) {
-            const SetSheet page = set_sheet(sheet, 15.0F, font(), width, 200.0F);
+            const TypesetSheet page = set_sheet(sheet, 15.0F, font(), width, 200.0F);
             EXPECT_EQ(page.now.size(), sheet.conditions.size());
             EXPECT_LE(page.width, width) << system;
             std::size_t columns = 0;
             for (std::size_t i = 0; i < page.lines.size(); ++i) {
-                const SetSheet::Line& a = page.lines[i];
+                const TypesetSheet::SheetLine& a = page.lines[i];
                 EXPECT_GE(a.y - a.box.ascent, -0.01F) << system;
                 EXPECT_LE(a.y + a.box.descent, page.height) << system;
                 columns += i == 0 || a.x > page.lines[i - 1].x + 200.0F ? 1 : 0;
                 for (std::size_t j = 0; j < i; ++j) {
-                    const SetSheet::Line& b = page.lines[j];
+                    const TypesetSheet::SheetLine& b = page.lines[j];
                     const bool beside = a.x >= b.x + b.box.width || b.x >= a.x + a.box.width;
                     const bool below = a.y - a.box.ascent >= b.y + b.box.descent - 0.01F ||
                                        b.y - b.box.ascent >= a.y + a.box.descent - 0.01F;
@@ -122,7 +122,7 @@ TEST(Equations, are_set_in_columns_that_fit) {
     }
 }
 
-TEST(Equations, are_a_command_and_a_tab) {
+TEST(Equations, AreACommandAndATab) {
     Hands hands("double_pendulum");
     EXPECT_FALSE(hands.session.scene().shows("equations"));
     hands.click("tab equations");
@@ -141,7 +141,7 @@ TEST(Equations, are_a_command_and_a_tab) {
     EXPECT_TRUE(hands.session.scene().shows("events"));
 }
 
-TEST(Equations, tell_what_the_condition_is_now) {
+TEST(Equations, TellWhatTheConditionIsNow) {
     Hands hands("double_pendulum");
     hands.session.apply(parse_command("show equations"));
     hands.session.apply(parse_command("seek 1"));
@@ -163,7 +163,7 @@ TEST(Equations, tell_what_the_condition_is_now) {
     EXPECT_TRUE(hands.says("now the contact is held"));
 }
 
-TEST(Equations, and_sliders_light_each_other) {
+TEST(Equations, AndSlidersLightEachOther) {
     Hands hands("double_pendulum");
     hands.session.apply(parse_command("show equations"));
     hands.rest(3);
@@ -177,13 +177,13 @@ TEST(Equations, and_sliders_light_each_other) {
     EXPECT_EQ(hands.state.pointed_slider, "L2");
 }
 
-TEST(Equations, are_simplified_and_set_once) {
+TEST(Equations, AreSimplifiedAndSetOnce) {
     const auto model = std::make_shared<const Model>(test::system("double_pendulum"));
     achilles::Run run = model->default_run();
     EquationsView view;
     const EquationSheet* const sheet = view.sheet(model, run, {});
     ASSERT_NE(sheet, nullptr);
-    const SetSheet::Line* const line = view.set(15.0F, font(), 800.0F, 300.0F).lines.data();
+    const TypesetSheet::SheetLine* const line = view.set(15.0F, font(), 800.0F, 300.0F).lines.data();
     run.parameters[0] *= 1.1;
     EXPECT_EQ(view.sheet(model, run, {}), sheet) << "within its range a value changes no sign";
     EXPECT_EQ(view.set(15.0F, font(), 800.0F, 300.0F).lines.data(), line);
@@ -196,7 +196,7 @@ TEST(Equations, are_simplified_and_set_once) {
 }
 
 // Work is abandoned if the system or the window changes, without waiting.
-TEST(Equations, stop_when_they_are_told_to) {
+TEST(Equations, StopWhenTheyAreToldTo) {
     const Model model(test::system("kneed_leg"));  // seconds
     std::stop_source stop;
     stop.request_stop();
@@ -206,7 +206,7 @@ TEST(Equations, stop_when_they_are_told_to) {
 }
 
 // A window does not wait for the equations.
-TEST(Equations, come_when_they_are_ready) {
+TEST(Equations, ComeWhenTheyAreReady) {
     Hands hands("double_pendulum");
     hands.state.in_window = true;
     hands.session.apply(parse_command("show equations"));

@@ -22,7 +22,7 @@ TEST(EstimateInTheExplorer, IsThatOfTheRunThatIsShown) {
     is_of_the_run();
     session.apply(command::Open{"double_pendulum"});
     is_of_the_run();
-    session.apply(command::UseMethod{Method::dopri5});
+    session.apply(command::SetMethod{Method::dopri5});
     is_of_the_run();
     EXPECT_FALSE(session.error_estimate()->end);
 }
@@ -64,7 +64,7 @@ TEST(HorizonInTheExplorer, IsShownWhenTheEstimateIsThere) {
     const std::vector<double> late = session.errors(0, session.at(9.0)), early = session.errors(0, session.at(1.0));
     EXPECT_TRUE(std::isinf(late.back()));
     EXPECT_LT(early.back(), 1e-6);
-    session.apply(command::End{4.0});
+    session.apply(command::SetEndTime{4.0});
     EXPECT_FALSE(session.horizon());
     EXPECT_TRUE(session.remarks().empty());
     for (const Panel& panel : session.plots()) EXPECT_TRUE(panel.beyond.curves.empty());

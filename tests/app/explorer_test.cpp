@@ -12,12 +12,12 @@ namespace {
 
 using test::Hands;
 
-TEST(Explorer, does_nothing_by_itself) {
+TEST(Explorer, DoesNothingByItself) {
     Hands hands("ball_on_sine");
     EXPECT_TRUE(hands.all.empty());
 }
 
-TEST(Explorer, a_dragged_slider_changes_the_trajectory_and_derives_nothing) {
+TEST(Explorer, ADraggedSliderChangesTheTrajectoryAndDerivesNothing) {
     Hands hands("ball_on_sine");
     const auto model = hands.session.model();
     const std::string before = to_text(hands.session.trajectory());
@@ -40,7 +40,7 @@ TEST(Explorer, a_dragged_slider_changes_the_trajectory_and_derives_nothing) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-TEST(Explorer, every_value_has_a_slider_that_works) {
+TEST(Explorer, EveryValueHasASliderThatWorks) {
     for (const char* system : {"ball_on_sine", "double_pendulum"}) {
         Hands hands(system);
         hands.click("accuracy");
@@ -54,7 +54,7 @@ TEST(Explorer, every_value_has_a_slider_that_works) {
             hands.all.clear();
             // Beside the grab, since a click on the grab does not move it.
             hands.click(name, name == "eps" || name == "end" ? 0.6 : 0.8);
-            std::erase(hands.all, Command(command::Done{}));  // ends the change of the previous slider
+            std::erase(hands.all, Command(command::EndEdit{}));  // ends the change of the previous slider
             ASSERT_FALSE(hands.all.empty()) << system << ": " << name;
             EXPECT_EQ(to_text(hands.all[0]).rfind(name.substr(0, name.rfind("eps ", 0) == 0 ? 3 : name.size()), 0), 0U)
                 << system << ": " << name << ": " << to_text(hands.all[0]);
@@ -62,7 +62,7 @@ TEST(Explorer, every_value_has_a_slider_that_works) {
     }
 }
 
-TEST(Explorer, a_typed_value_is_kept_exactly) {
+TEST(Explorer, ATypedValueIsKeptExactly) {
     Hands hands("ball_on_sine");
     hands.point("set g");
     hands.hand.keys = {key::left_control};
@@ -79,7 +79,7 @@ TEST(Explorer, a_typed_value_is_kept_exactly) {
     EXPECT_EQ(hands.session.run().parameters[1], 9.806650001);
 }
 
-TEST(Explorer, plays_seeks_selects_and_opens) {
+TEST(Explorer, PlaysSeeksSelectsAndOpens) {
     Hands hands("ball_on_sine");
     hands.click("play");
     EXPECT_TRUE(hands.session.playing());
@@ -114,7 +114,7 @@ TEST(Explorer, plays_seeks_selects_and_opens) {
     EXPECT_EQ(hands.session.system(), "double_pendulum");
 }
 
-TEST(Explorer, draws_the_same_bytes_every_time) {
+TEST(Explorer, DrawsTheSameBytesEveryTime) {
     for (const double scale : {1.0, 2.0}) {
         const SurfaceOptions options =
             test::surface(static_cast<int>(1280 * scale), static_cast<int>(800 * scale), scale);
@@ -123,7 +123,7 @@ TEST(Explorer, draws_the_same_bytes_every_time) {
     }
 }
 
-TEST(Explorer, fits_any_window_and_shows_messages) {
+TEST(Explorer, FitsAnyWindowAndShowsMessages) {
     for (const auto& [width, height] :
          {std::pair{1, 1}, std::pair{60, 900}, std::pair{1200, 40}, std::pair{300, 200}}) {
         Hands hands("ball_on_sine", test::surface(width, height));
@@ -136,7 +136,7 @@ TEST(Explorer, fits_any_window_and_shows_messages) {
 // tests/app/window_test.sh reads from this test where to drag the mouse in a window of this size: it presses at a third
 // of the slider and moves right by tenths of the width. This test does the same with the printed numbers: g follows the
 // mouse, and nothing else changes.
-TEST(Explorer, tells_where_the_slider_of_g_is) {
+TEST(Explorer, TellsWhereTheSliderOfGIs) {
     Hands hands("ball_on_sine", test::surface(1280, 800));
     ASSERT_TRUE(hands.state.places.contains("set g"));
     const Rectangle r = hands.state.places.at("set g");
@@ -173,7 +173,7 @@ TEST(Explorer, tells_where_the_slider_of_g_is) {
     EXPECT_LE(share, 0.45);
 }
 
-TEST(ExplorerOnDisplay, the_window_shows_the_bytes_of_the_picture) {
+TEST(ExplorerOnDisplay, TheWindowShowsTheBytesOfThePicture) {
     if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "no DISPLAY";
     const Session session = test::session("ball_on_sine");
     PanelState offscreen_state = test::panels(), window_state = test::panels();

@@ -9,7 +9,7 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
-#include "pictures/take_away.hpp"
+#include "pictures/export.hpp"
 
 namespace achilles {
 namespace {
@@ -32,7 +32,7 @@ struct Studio : test::Folder {
     std::string said() const { return test::content(path() / "said"); }
 };
 
-TEST(Film, is_joined_from_its_frames_which_go) {
+TEST(Film, IsJoinedFromItsFramesWhichGo) {
     const Studio studio;
     const test::Answer answer = studio.make(short_film + "film.mp4");
     ASSERT_EQ(answer.status, 0) << answer.err;
@@ -99,7 +99,7 @@ TEST(Film, TellsHowManyFramesAreJoined) {
 }
 
 // If joining fails, the old file and the frames are kept; the frames are not drawn again.
-TEST(Film, that_cannot_be_joined_changes_nothing) {
+TEST(Film, ThatCannotBeJoinedChangesNothing) {
     const Studio studio("echo no such codec >&2; exit 1");
     studio.put("film.mp4", "another film");
     const test::Answer answer = studio.make(short_film + "film.mp4");
@@ -110,7 +110,7 @@ TEST(Film, that_cannot_be_joined_changes_nothing) {
     EXPECT_FALSE(fs::exists(studio.path() / "film.frames/joined.mp4"));
 }
 
-TEST(Film, goes_over_no_input_and_into_no_frames_of_another) {
+TEST(Film, GoesOverNoInputAndIntoNoFramesOfAnother) {
     const Studio studio;
     studio.put("film.mp4", test::drop_text);
     EXPECT_EQ(studio.make("frames ./film.mp4 --out film.mp4").status, 2);
@@ -121,7 +121,7 @@ TEST(Film, goes_over_no_input_and_into_no_frames_of_another) {
     EXPECT_FALSE(fs::exists(studio.path() / "other.mp4"));
 }
 
-TEST(Film, shows_the_plots_that_commands_ask_for) {
+TEST(Film, ShowsThePlotsThatCommandsAskFor) {
     const test::Folder folder;
     const std::string words = "frames ball_on_sine --end 1 --fps 1 --size 320x200 --jobs 1 ";
     ASSERT_EQ(folder.run(words + "--do 'grid 1 1' --do 'plot 1 x y' --out a").status, 0);
@@ -132,14 +132,14 @@ TEST(Film, shows_the_plots_that_commands_ask_for) {
 }
 
 // A session starts it in another process with its own text, and can stop it.
-TEST(Film, of_a_session_is_followed_and_stopped) {
+TEST(Film, OfASessionIsFollowedAndStopped) {
     const Studio studio;  // its ffmpeg is never run
     const test::Folder folder;
     const std::string before = std::getenv("PATH");
     ::setenv("PATH", ((studio.path() / "bin").string() + ":" + before).c_str(), 1);
     Session session = test::session("ball_on_sine");
-    session.apply(command::Text{session.document().text + "# not saved\n"});
-    session.apply(command::End{2000.0});
+    session.apply(command::SetText{session.document().text + "# not saved\n"});
+    session.apply(command::SetEndTime{2000.0});
     command::Export what{(folder.path() / "film.mp4").string(), false, 0};
     what.pixels = 640;
     EXPECT_THROW(begin_film(session, what), InputError) << "60000 frames";
@@ -154,7 +154,7 @@ TEST(Film, of_a_session_is_followed_and_stopped) {
     ::setenv("PATH", before.c_str(), 1);
 }
 
-TEST(Film, of_a_session_is_checked_before_it_is_begun) {
+TEST(Film, OfASessionIsCheckedBeforeItIsBegun) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine");
     const std::string file = (folder.path() / "film.mp4").string();

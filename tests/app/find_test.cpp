@@ -9,9 +9,9 @@
 #include "app/program.hpp"
 #include "cli/manual.hpp"
 #include "image/image.hpp"
-#include "session/finder.hpp"
+#include "session/command_search.hpp"
 #include "session/glossary.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -20,7 +20,7 @@ using test::Hands;
 
 // ---- card of keys and terms ----
 
-TEST(Help, comes_and_goes_with_its_key_and_by_a_command) {
+TEST(Help, ComesAndGoesWithItsKeyAndByACommand) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.says("certificate theory"));
     hands.press(key::f1);
@@ -40,7 +40,7 @@ TEST(Help, comes_and_goes_with_its_key_and_by_a_command) {
 }
 
 // Escape closes only the card, nothing behind it.
-TEST(Help, takes_escape_for_itself) {
+TEST(Help, TakesEscapeForItself) {
     Hands hands("ball_on_sine");
     hands.session.apply(parse_command("select 3"));
     hands.session.apply(parse_command("show help"));
@@ -50,12 +50,12 @@ TEST(Help, takes_escape_for_itself) {
     EXPECT_FALSE(hands.session.scene().shows("help"));
 }
 
-TEST(Help, has_every_word_and_key_on_the_card) {
+TEST(Help, HasEveryWordAndKeyOnTheCard) {
     const SurfaceOptions tall = test::surface(1400, 1000);
     Hands hands("ball_on_sine", tall);
     hands.session.apply(parse_command("show help"));
     hands.rest(3);
-    for (const Term& term : glossary()) {
+    for (const GlossaryTerm& term : glossary()) {
         EXPECT_TRUE(hands.says(std::string(term.word))) << term.word;
         EXPECT_TRUE(hands.says(std::string(term.meaning))) << term.meaning;
     }
@@ -64,13 +64,13 @@ TEST(Help, has_every_word_and_key_on_the_card) {
 }
 
 // The manual shows the same tables in a monospace font, which requires ASCII.
-TEST(Help, is_the_manuals_table) {
+TEST(Help, IsTheManualsTable) {
     const std::string page = manual_page("words");
     const auto is_ascii = [](std::string_view text) {
         return std::all_of(text.begin(), text.end(), [](char c) { return c >= ' ' && c <= '~'; });
     };
     std::set<std::string_view> words;
-    for (const Term& term : glossary()) {
+    for (const GlossaryTerm& term : glossary()) {
         EXPECT_TRUE(words.insert(term.word).second) << term.word;
         for (const std::string_view text : {term.word, term.formula, term.meaning, term.source}) {
             EXPECT_TRUE(is_ascii(text)) << text;
@@ -84,7 +84,7 @@ TEST(Help, is_the_manuals_table) {
 }
 
 // Menu entries show the shortcuts of the table, and every shortcut of the table that names an entry is shown.
-TEST(Help, tells_keys_of_lines_that_menus_have) {
+TEST(Help, TellsKeysOfLinesThatMenusHave) {
     Hands hands("ball_on_sine");
     for (const char* menu : {"menu File", "menu Edit", "menu View", "menu Help"}) {
         hands.click(menu);
@@ -103,11 +103,11 @@ TEST(Help, tells_keys_of_lines_that_menus_have) {
 
 std::vector<std::string> lines_for(const std::string& typed, const std::vector<Completions>& completions = {}) {
     std::vector<std::string> lines;
-    for (const Found& found : find_commands(typed, completions)) lines.push_back(found.line);
+    for (const CommandMatch& found : find_commands(typed, completions)) lines.push_back(found.line);
     return lines;
 }
 
-TEST(Finder, orders_by_how_well_letters_fit) {
+TEST(Finder, OrdersByHowWellLettersFit) {
     EXPECT_EQ(misfit("grid", "grid"), 0);
     EXPECT_EQ(misfit("GR", "grid"), 1);
     EXPECT_EQ(misfit("imp", "max-impacts"), 2);
@@ -117,7 +117,7 @@ TEST(Finder, orders_by_how_well_letters_fit) {
     EXPECT_EQ(misfit("gridd", "grid"), -1);
 }
 
-TEST(Finder, finds_commands_by_name_then_by_usage) {
+TEST(Finder, FindsCommandsByNameThenByUsage) {
     EXPECT_EQ(lines_for("").size(), command_usages().size());
     ASSERT_FALSE(lines_for("grid").empty());
     EXPECT_EQ(lines_for("grid")[0], "grid ");
@@ -131,7 +131,7 @@ TEST(Finder, finds_commands_by_name_then_by_usage) {
     EXPECT_EQ(usage_of("gird 2 2"), "");
 }
 
-TEST(Finder, completes_values_by_name_or_by_what_they_are) {
+TEST(Finder, CompletesValuesByNameOrByWhatTheyAre) {
     const std::vector<Completions> some{{"open", {{"ball_on_sine", "A ball"}, {"two words", "Kneed leg"}}, true},
                                         {"set", {{"g", "gravity"}, {"e", ""}}, false}};
     EXPECT_EQ(lines_for("open ball", some), std::vector<std::string>{"open ball_on_sine"});
@@ -152,7 +152,7 @@ void open_palette(Hands& hands) {
     hands.rest(3);
 }
 
-TEST(Palette, completes_and_runs_by_enter) {
+TEST(Palette, CompletesAndRunsByEnter) {
     Hands hands("ball_on_sine");
     open_palette(hands);
     EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"palette", true})});
@@ -164,13 +164,13 @@ TEST(Palette, completes_and_runs_by_enter) {
     hands.type("3 2");
     EXPECT_EQ(hands.state.palette.text, "grid 3 2") << "letters go behind what was completed";
     hands.press(key::enter);
-    EXPECT_EQ(hands.all, (std::vector<Command>{command::Grid{3, 2}, command::Show{"palette", false}}));
+    EXPECT_EQ(hands.all, (std::vector<Command>{command::SetGrid{3, 2}, command::Show{"palette", false}}));
     hands.rest(2);
     EXPECT_FALSE(hands.says("COLUMNS"));
     EXPECT_EQ(hands.session.plotted().columns(), 3);
 }
 
-TEST(Palette, is_walked_by_arrows_and_clicked) {
+TEST(Palette, IsWalkedByArrowsAndClicked) {
     Hands hands("ball_on_sine");
     hands.session.apply(parse_command("find \"pi\""));
     hands.rest(3);
@@ -194,7 +194,7 @@ TEST(Palette, is_walked_by_arrows_and_clicked) {
     EXPECT_FALSE(hands.session.scene().shows("palette"));
 }
 
-TEST(Palette, keeps_what_is_refused_and_says_why) {
+TEST(Palette, KeepsWhatIsRefusedAndSaysWhy) {
     Hands hands("ball_on_sine");
     hands.session.apply(parse_command("find \"grid 3\""));
     hands.rest(3);
@@ -213,20 +213,20 @@ TEST(Palette, keeps_what_is_refused_and_says_why) {
 }
 
 // A command that would replace an unsaved text asks first.
-TEST(Palette, asks_before_it_opens_over_changes) {
+TEST(Palette, AsksBeforeItOpensOverChanges) {
     Hands hands("ball_on_sine");
-    hands.session.apply(command::Text{hands.session.document().text + "# mine\n"});
+    hands.session.apply(command::SetText{hands.session.document().text + "# mine\n"});
     hands.session.apply(parse_command("find \"open double\""));
     hands.rest(3);
     hands.press(key::enter);
     hands.rest(3);
     EXPECT_EQ(hands.session.system(), "ball_on_sine");
-    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::unsaved);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::unsaved);
     hands.click("dialog Discard");
     EXPECT_EQ(hands.session.system(), "double_pendulum");
 }
 
-TEST(Palette, takes_the_place_of_the_help) {
+TEST(Palette, TakesThePlaceOfTheHelp) {
     Hands hands("ball_on_sine");
     hands.press(key::f1);
     open_palette(hands);
@@ -244,7 +244,7 @@ std::string record(Hands& hands) {
     return text;
 }
 
-TEST(Enlarged, goes_by_steps_and_back) {
+TEST(UiScale, GoesByStepsAndBack) {
     Hands hands("ball_on_sine");
     for (int i = 0; i < 3; ++i) hands.press_with_control('=');
     hands.press_with_control('-');
@@ -261,7 +261,7 @@ TEST(Enlarged, goes_by_steps_and_back) {
     EXPECT_EQ(hands.session.scene().enlarged(), 3.0);
 }
 
-TEST(Presentation, comes_and_goes_and_keeps_the_keys) {
+TEST(Presentation, ComesAndGoesAndKeepsTheKeys) {
     Hands hands("ball_on_sine");
     hands.press(key::f11);
     EXPECT_EQ(record(hands), "present on; ");
@@ -282,7 +282,7 @@ TEST(Presentation, comes_and_goes_and_keeps_the_keys) {
 }
 
 // Both lines of the strip are used, wherever the panels start.
-TEST(Presentation, shows_as_many_results_as_the_strip_has_lines) {
+TEST(Presentation, ShowsAsManyResultsAsTheStripHasLines) {
     SurfaceOptions surface = test::surface(1366, 768);
     surface.scale = 1.5;
     Hands hands("double_pendulum", surface);
@@ -293,7 +293,7 @@ TEST(Presentation, shows_as_many_results_as_the_strip_has_lines) {
 }
 
 // A picture of it is enlarged by the command alone.
-TEST(Presentation, is_drawn_larger_without_a_window) {
+TEST(Presentation, IsDrawnLargerWithoutAWindow) {
     const test::Folder folder;
     for (const auto& [name, more] : {std::pair{"plain.png", ""}, std::pair{"twice.png", "--do 'enlarge 2'"},
                                      std::pair{"scaled.png", "--scale 2"}, std::pair{"class.png", "--do 'present on'"}})
@@ -305,7 +305,7 @@ TEST(Presentation, is_drawn_larger_without_a_window) {
 }
 
 // The session's journal and its text form include it.
-TEST(Presentation, is_in_the_sessions_recipe) {
+TEST(Presentation, IsInTheSessionsRecipe) {
     Hands hands("ball_on_sine");
     for (const char* line : {"present on", "enlarge 1.25", "find \"grid\""}) hands.session.apply(parse_command(line));
     std::string steps;

@@ -4,7 +4,7 @@
 #     finding_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is | grep '^slider ')
+read -r _ x y width < <("$build/test_app" --gtest_filter=Explorer.TellsWhereTheSliderOfGIs | grep '^slider ')
 "$build/achilles" new "$folder/mine" > /dev/null
 
 

@@ -8,11 +8,13 @@
 namespace achilles {
 namespace {
 
-Stop stop(const char* name, float x, float y, unsigned window = 1) { return {name, {x, y, 10.0F, 10.0F}, 1, window}; }
+FocusTarget stop(const char* name, float x, float y, unsigned window = 1) {
+    return {name, {x, y, 10.0F, 10.0F}, 1, window};
+}
 
-TEST(Focus, an_arrow_goes_to_what_lies_there) {
-    const std::vector<Stop> stops{stop("here", 100, 100), stop("right", 150, 104), stop("far right", 400, 100),
-                                  stop("below", 90, 160), stop("elsewhere", 120, 100, 2)};
+TEST(Focus, AnArrowGoesToWhatLiesThere) {
+    const std::vector<FocusTarget> stops{stop("here", 100, 100), stop("right", 150, 104), stop("far right", 400, 100),
+                                         stop("below", 90, 160), stop("elsewhere", 120, 100, 2)};
     const auto name = [&](int at) { return at < 0 ? std::string() : stops[static_cast<std::size_t>(at)].name; };
     EXPECT_EQ(name(neighbour(stops, stops[0], 1, 0)), "right");
     EXPECT_EQ(name(neighbour(stops, stops[1], 1, 0)), "far right");
@@ -22,7 +24,7 @@ TEST(Focus, an_arrow_goes_to_what_lies_there) {
     EXPECT_EQ(name(neighbour(stops, stops[0], 0, -1)), "");
 }
 
-TEST(Focus, the_player_has_the_keys_until_Tab_and_again_after_Escape) {
+TEST(Focus, ThePlayerHasTheKeysUntilTabAndAgainAfterEscape) {
     test::Hands hands("ball_on_sine");
     hands.press(' ');
     EXPECT_TRUE(hands.session.playing());
@@ -45,7 +47,7 @@ TEST(Focus, the_player_has_the_keys_until_Tab_and_again_after_Escape) {
     EXPECT_TRUE(hands.session.playing());
 }
 
-TEST(Focus, the_mouse_gives_the_keys_back) {
+TEST(Focus, TheMouseGivesTheKeysBack) {
     test::Hands hands("ball_on_sine");
     hands.press(key::tab);
     ASSERT_NE(hands.state.focus.at, "");
@@ -55,7 +57,7 @@ TEST(Focus, the_mouse_gives_the_keys_back) {
 }
 
 // Tab visits every control of the window once; Shift+Tab goes back.
-TEST(Focus, Tab_walks_everything_and_comes_back) {
+TEST(Focus, TabWalksEverythingAndComesBack) {
     test::Hands hands("ball_on_sine");
     std::set<std::string> met;
     hands.press(key::tab);
@@ -79,7 +81,7 @@ void go_to(test::Hands& hands, const std::string& name) {
     ASSERT_EQ(hands.state.focus.at, name);
 }
 
-TEST(Focus, a_slider_goes_by_arrows_is_typed_and_put_back) {
+TEST(Focus, ASliderGoesByArrowsIsTypedAndPutBack) {
     test::Hands hands("ball_on_sine");
     const double before = *hands.session.value("e");
     go_to(hands, "set e");
@@ -101,7 +103,7 @@ TEST(Focus, a_slider_goes_by_arrows_is_typed_and_put_back) {
     EXPECT_FALSE(hands.session.playing());
 }
 
-TEST(Focus, Enter_and_Space_press) {
+TEST(Focus, EnterAndSpacePress) {
     test::Hands hands("ball_on_sine");
     go_to(hands, "show trail");
     ASSERT_TRUE(hands.session.scene().shows("trail"));
@@ -116,7 +118,7 @@ TEST(Focus, Enter_and_Space_press) {
 }
 
 // Arrows walk a menu; Escape closes only the menu.
-TEST(Focus, a_menu_goes_by_keys) {
+TEST(Focus, AMenuGoesByKeys) {
     test::Hands hands("ball_on_sine");
     go_to(hands, "menu View");
     hands.press(key::enter);
@@ -135,7 +137,7 @@ TEST(Focus, a_menu_goes_by_keys) {
 }
 
 // In a dialog Tab goes from the path to the next control and does not leave the dialog.
-TEST(Focus, stays_in_a_dialog) {
+TEST(Focus, StaysInADialog) {
     test::Hands hands("ball_on_sine");
     hands.press_with_control('O');
     hands.rest(2);
@@ -147,7 +149,7 @@ TEST(Focus, stays_in_a_dialog) {
     EXPECT_EQ(met, (std::set<std::string>{"dialog Cancel", "path"}));
     while (hands.state.focus.at != "dialog Cancel") hands.press(key::tab);
     hands.press(key::enter);
-    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::nothing);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::nothing);
 }
 
 }  // namespace

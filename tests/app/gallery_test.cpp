@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Thumbnails, come_one_by_one_and_are_the_same_again) {
+TEST(Thumbnails, ComeOneByOneAndAreTheSameAgain) {
     const auto find = [](const std::string& name) -> fs::path {
         return ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml";
     };
@@ -37,7 +37,7 @@ TEST(Thumbnails, come_one_by_one_and_are_the_same_again) {
     EXPECT_TRUE(eager.find("none")->light.shapes.empty());
 }
 
-TEST(Gallery, is_walked_by_arrows_and_opens) {
+TEST(Gallery, IsWalkedByArrowsAndOpens) {
     test::Hands hands("ball_on_sine");
     hands.press_with_control('G');
     hands.rest(3);

@@ -33,7 +33,7 @@ double unit_of(Hands& hands) {
     const Rectangle before = hands.state.places.at("body");
     const double x = *hands.session.value("x");
     hands.session.apply(command::Set{"x", x + 1.0});
-    hands.session.apply(command::Look{0.0, 0.0, 20.0});
+    hands.session.apply(command::LookAt{0.0, 0.0, 20.0});
     hands.rest(2);
     const Rectangle there = hands.state.places.at("body");
     hands.session.apply(command::Set{"x", x});
@@ -43,7 +43,7 @@ double unit_of(Hands& hands) {
     return unit;
 }
 
-TEST(HandOnMechanism, drags_the_body_to_where_the_run_starts) {
+TEST(MechanismInput, DragsTheBodyToWhereTheRunStarts) {
     Hands hands("ball_on_sine");
     const double unit = unit_of(hands);
     const double x = *hands.session.value("x"), y = *hands.session.value("y");
@@ -65,7 +65,7 @@ TEST(HandOnMechanism, drags_the_body_to_where_the_run_starts) {
     EXPECT_EQ(*hands.session.value("y"), y);
 }
 
-TEST(HandOnMechanism, drags_the_arrow_to_how_fast_it_starts) {
+TEST(MechanismInput, DragsTheArrowToHowFastItStarts) {
     Hands hands("ball_on_sine");
     const Rectangle body = hands.state.places.at("body"), tip = hands.state.places.at("velocity");
     const double scale = (tip.x - body.x) / *hands.session.value("x'");
@@ -75,7 +75,7 @@ TEST(HandOnMechanism, drags_the_arrow_to_how_fast_it_starts) {
     EXPECT_EQ(*hands.session.value("x"), 0.0);
 }
 
-TEST(HandOnMechanism, drags_a_pendulum_by_its_knee) {
+TEST(MechanismInput, DragsAPendulumByItsKnee) {
     Hands hands("double_pendulum");
     const double before = *hands.session.value("theta1");
     drag(hands, "body", 12.0, 0.0);
@@ -83,7 +83,7 @@ TEST(HandOnMechanism, drags_a_pendulum_by_its_knee) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-TEST(HandOnMechanism, zooms_at_the_pointer_pans_and_shows_all) {
+TEST(MechanismInput, ZoomsAtThePointerPansAndShowsAll) {
     Hands hands("ball_on_sine");
     hands.point("mechanism", 0.25);
     hands.hand.wheel = 1.0;
@@ -91,11 +91,11 @@ TEST(HandOnMechanism, zooms_at_the_pointer_pans_and_shows_all) {
     hands.hand.wheel = 0.0;
     hands.rest(2);
     ASSERT_TRUE(hands.session.scene().look());
-    const command::Look closer = *hands.session.scene().look();
+    const command::LookAt closer = *hands.session.scene().look();
     // The world point under the mouse is fixed.
     const Rectangle mechanism = hands.state.places.at("mechanism");
     drag(hands, "mechanism", -40.0, 0.0);
-    const command::Look moved = *hands.session.scene().look();
+    const command::LookAt moved = *hands.session.scene().look();
     EXPECT_NEAR(moved.width, closer.width, 1e-12 * closer.width);
     EXPECT_NEAR(moved.x - closer.x, 40.0 * closer.width / mechanism.width, 8.0 * closer.width / mechanism.width);
     EXPECT_NEAR(moved.y, closer.y, 1e-9);
@@ -109,7 +109,7 @@ TEST(HandOnMechanism, zooms_at_the_pointer_pans_and_shows_all) {
     EXPECT_FALSE(hands.session.scene().look());
 }
 
-TEST(HandOnTimeline, steps_from_event_to_event_and_to_the_ends) {
+TEST(TimelineInput, StepsFromEventToEventAndToTheEnds) {
     Hands hands("ball_on_sine");
     const auto& events = hands.session.trajectory().events;
     hands.press(key::right);
@@ -128,7 +128,7 @@ TEST(HandOnTimeline, steps_from_event_to_event_and_to_the_ends) {
     EXPECT_EQ(hands.session.time(), 0.0);
 }
 
-TEST(HandOnTimeline, plays_at_the_chosen_speed_and_begins_again) {
+TEST(TimelineInput, PlaysAtTheChosenSpeedAndBeginsAgain) {
     Hands hands("ball_on_sine");
     hands.click("speed", 0.01);
     EXPECT_EQ(hands.session.scene().speed(), command::slowest);
@@ -155,7 +155,7 @@ TEST(HandOnTimeline, plays_at_the_chosen_speed_and_begins_again) {
     EXPECT_EQ(hands.session.scene().speed(), 1.0);
 }
 
-TEST(Hand, undoes_and_does_again) {
+TEST(ExplorerInput, UndoesAndDoesAgain) {
     Hands hands("ball_on_sine");
     hands.click("set g", 0.8);
     const double g = *hands.session.value("g");
@@ -166,7 +166,7 @@ TEST(Hand, undoes_and_does_again) {
     EXPECT_EQ(*hands.session.value("g"), g);
 }
 
-TEST(Hand, pins_compares_and_unpins) {
+TEST(ExplorerInput, PinsComparesAndUnpins) {
     Hands hands("ball_on_sine");
     hands.click("pin");
     ASSERT_EQ(hands.session.pinned().size(), 1U);
@@ -190,7 +190,7 @@ TEST(Hand, pins_compares_and_unpins) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-TEST(Hand, opens_the_lens_and_scrolls_it_for_ever) {
+TEST(ExplorerInput, OpensTheLensAndScrollsItForEver) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Select{10});
     hands.rest(2);
@@ -218,7 +218,7 @@ TEST(Hand, opens_the_lens_and_scrolls_it_for_ever) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-TEST(Hand, takes_a_figure_away_and_is_told_what_cannot_be_written) {
+TEST(ExplorerInput, TakesAFigureAwayAndIsToldWhatCannotBeWritten) {
     const test::Folder folder;
     Hands hands("ball_on_sine");
     const std::string file = (folder.path() / "ball.svg").string();
@@ -256,7 +256,7 @@ TEST(Hand, takes_a_figure_away_and_is_told_what_cannot_be_written) {
     hands.rest(2);
 }
 
-TEST(Hand, copies_the_command_line) {
+TEST(ExplorerInput, CopiesTheCommandLine) {
     Hands hands("ball_on_sine");
     hands.click("set e", 0.3);
     hands.click("menu File");

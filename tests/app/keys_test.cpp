@@ -123,7 +123,7 @@ TEST(Keys, OfADropDownChooseNoFileBehindIt) {
     // Escape closes only the list of widths.
     hands.press(key::escape);
     EXPECT_TRUE(hands.session.scene().shows("export"));
-    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::take_away);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::take_away);
     hands.press(key::escape);
     EXPECT_FALSE(hands.session.scene().shows("export"));
 }
@@ -179,11 +179,11 @@ TEST(Keys, AnswerNoQuestionThatWasNotSeen) {
     hands.hand.keys = {key::enter};
     hands.rest(2);
     ASSERT_TRUE(hands.state.recovery_question);
-    EXPECT_EQ(hands.state.recovery_question->answer, RecoveryQuestion::Answer::none);
+    EXPECT_EQ(hands.state.recovery_question->answer, RecoveryQuestion::RecoveryChoice::none);
     hands.hand.keys.clear();
     hands.rest(2);
     hands.press(key::enter);
-    EXPECT_EQ(hands.state.recovery_question->answer, RecoveryQuestion::Answer::recover);
+    EXPECT_EQ(hands.state.recovery_question->answer, RecoveryQuestion::RecoveryChoice::recover);
 }
 
 }  // namespace

@@ -21,14 +21,14 @@ inline SystemSource library() {
             {}};
 }
 
-inline Session session(const std::string& name, Patience patience = {}) {
+inline Session session(const std::string& name, Timeout patience = {}) {
     return {name, system(name), library(), patience};
 }
 
 // Elastic impacts up to max_impacts: takes seconds.
 inline void ask_for_a_long_run(Session& session) {
     session.apply(command::Set{"e", 1.0});
-    session.apply(command::End{1e6});
+    session.apply(command::SetEndTime{1e6});
 }
 
 // A surface with the explorer's options.

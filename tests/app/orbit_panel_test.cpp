@@ -7,8 +7,8 @@
 #include <iostream>
 
 #include "app/hands.hpp"
+#include "session/replay_script.hpp"
 #include "session/study_jobs.hpp"
-#include "session/recipe.hpp"
 
 namespace achilles {
 namespace {
@@ -31,14 +31,14 @@ double missed(const Session& session, double period, double shift) {
     return std::abs(last.q[0] - first.q[0] - shift) + (last.v - first.v).norm();
 }
 
-TEST(OrbitSession, finds_what_the_file_guesses_and_goes_on_it) {
+TEST(OrbitSession, FindsWhatTheFileGuessesAndGoesOnIt) {
     Session session = on("ball_down_a_wave", "");
     ASSERT_TRUE(session.orbit() && session.orbit()->answer.orbit);
     EXPECT_TRUE(session.scene().shows("orbit"));
     EXPECT_NEAR(period_of(session), 3.544294646668781, 1e-12);
     EXPECT_FALSE(session.orbit_point()) << "nothing has been changed yet";
     const double length = session.run().options.end_time - session.run().options.start_time;
-    session.apply(command::GoOnOrbit{1});
+    session.apply(command::SelectBranchPoint{1});
     ASSERT_EQ(session.error(), "");
     EXPECT_EQ(session.orbit_point(), 0u);
     EXPECT_EQ(session.run().options.end_time - session.run().options.start_time, length);
@@ -52,22 +52,22 @@ TEST(OrbitSession, finds_what_the_file_guesses_and_goes_on_it) {
 }
 
 // A driven system keeps the phase of its drive.
-TEST(OrbitSession, goes_on_a_drive_in_its_phase) {
+TEST(OrbitSession, GoesOnADriveInItsPhase) {
     Session session = on("driven_double_pendulum", "");
-    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.why;
-    session.apply(command::GoOnOrbit{1});
+    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.reason;
+    session.apply(command::SelectBranchPoint{1});
     ASSERT_EQ(session.error(), "");
     EXPECT_LT(missed(session, period_of(session), 0.0), 1e-7);
 }
 
-TEST(OrbitSession, follows_a_branch_as_one_change) {
+TEST(OrbitSession, FollowsABranchAsOneChange) {
     Session session = on("ball_down_a_wave", "--continue b=0.04:0.06");
     const auto found = session.orbit();
     ASSERT_TRUE(found && found->answer.branch);
     ASSERT_GT(found->count(), 3u);
     EXPECT_EQ(found->point(found->first()).parameters, session.run().parameters);
     for (std::size_t i = 0; i < found->count(); ++i) {
-        session.apply(command::GoOnOrbit{static_cast<int>(i) + 1});
+        session.apply(command::SelectBranchPoint{static_cast<int>(i) + 1});
         ASSERT_EQ(session.error(), "");
         ASSERT_EQ(session.orbit_point(), i);
         EXPECT_EQ(*session.value("b"), found->answer.branch->value(found->point(i)));
@@ -75,24 +75,24 @@ TEST(OrbitSession, follows_a_branch_as_one_change) {
     }
     session.apply(command::Undo{});
     EXPECT_EQ(session.run(), session.file_run()) << "a slider that is dragged is one change";
-    session.apply(command::GoOnOrbit{0});
+    session.apply(command::SelectBranchPoint{0});
     EXPECT_NE(session.error().find("the branch has no point 0"), std::string::npos) << session.error();
-    session.apply(command::GoOnOrbit{static_cast<int>(found->count()) + 1});
+    session.apply(command::SelectBranchPoint{static_cast<int>(found->count()) + 1});
     EXPECT_NE(session.error().find("numbered from 1 to"), std::string::npos) << session.error();
 }
 
 // The run with e = 0.6 finds the same orbit as that with e = 0.5: the search uses the slider values.
-TEST(OrbitSession, searches_from_the_present_run) {
+TEST(OrbitSession, SearchesFromThePresentRun) {
     Session session = test::session("ball_down_a_wave");
     session.apply(command::Set{"e", 0.6});
     session.apply(command::FindOrbit{"--from end"});
     ASSERT_EQ(session.error(), "");
-    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.why;
+    ASSERT_TRUE(session.orbit()->answer.orbit) << session.orbit()->answer.reason;
     EXPECT_EQ(session.orbit()->answer.orbit->parameters, session.run().parameters);
     EXPECT_GT(std::abs(period_of(session) - 3.544294646668781), 1e-5);
 }
 
-TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
+TEST(OrbitSession, SaysWhatIsNoQuestionAndWhyThereIsNone) {
     Session session = test::session("ball_on_floor");
     for (const auto& [text, words] :
          {std::pair{"--continue q=0:1", "there is no parameter 'q'"},
@@ -104,28 +104,28 @@ TEST(OrbitSession, says_what_is_no_question_and_why_there_is_none) {
         EXPECT_NE(session.error().find(words), std::string::npos) << text << ": " << session.error();
         EXPECT_EQ(session.orbit(), nullptr);
     }
-    session.apply(command::GoOnOrbit{1});
+    session.apply(command::SelectBranchPoint{1});
     EXPECT_NE(session.error().find("no periodic run has been found yet"), std::string::npos) << session.error();
     session.apply(command::FindOrbit{""});
     EXPECT_EQ(session.error(), "");
     ASSERT_TRUE(session.orbit());
     EXPECT_FALSE(session.orbit()->answer.orbit);
-    EXPECT_FALSE(session.orbit()->answer.why.empty());
+    EXPECT_FALSE(session.orbit()->answer.reason.empty());
     EXPECT_NE(to_text(session).find("orbit : none, "), std::string::npos);
     session.apply(command::StopOrbit{});
     EXPECT_EQ(session.orbit(), nullptr);
 }
 
-TEST(OrbitSession, leaves_with_its_system) {
+TEST(OrbitSession, LeavesWithItsSystem) {
     Session session = on("ball_down_a_wave", "");
     session.apply(command::Open{"ball_on_sine"});
     EXPECT_EQ(session.orbit(), nullptr);
 }
 
 // The commands that lead to a session include its periodic orbit.
-TEST(OrbitSession, is_found_again_by_the_recipe) {
+TEST(OrbitSession, IsFoundAgainByTheRecipe) {
     Session session = on("ball_down_a_wave", "--continue b=0.045:0.055");
-    session.apply(command::GoOnOrbit{2});
+    session.apply(command::SelectBranchPoint{2});
     Session again = test::session("ball_on_sine");
     for (const Command& step : recipe(session)) again.apply(step);
     EXPECT_EQ(again.error(), "");
@@ -137,13 +137,13 @@ TEST(OrbitSession, is_found_again_by_the_recipe) {
 }
 
 // With a timeout the search runs in the background; a stop request ends it.
-TEST(OrbitSession, is_searched_beside_the_window) {
+TEST(OrbitSession, IsSearchedBesideTheWindow) {
     Session session = test::session("ball_down_a_wave");
     session.set_patience(0.0);
     session.apply(command::FindOrbit{"--continue e=0.1:0.9"});
     ASSERT_NE(session.orbit_under_way(), nullptr);
     EXPECT_EQ(session.orbit(), nullptr);
-    session.apply(command::GoOnOrbit{1});
+    session.apply(command::SelectBranchPoint{1});
     EXPECT_NE(session.error().find("under way"), std::string::npos) << session.error();
     session.apply(command::StopOrbit{});
     EXPECT_EQ(session.orbit_under_way(), nullptr);
@@ -153,14 +153,14 @@ TEST(OrbitSession, is_searched_beside_the_window) {
     EXPECT_GT(period_of(session), 3.5);
 }
 
-TEST(OrbitSession, commands_are_lines_of_a_journal) {
+TEST(OrbitSession, CommandsAreLinesOfAJournal) {
     for (const char* line : {"orbit \"--from start --shift \\\"x=2*pi\\\"\"", "orbit \"\"", "orbit off", "branch 12"})
         EXPECT_EQ(to_text(parse_command(line)), line);
 }
 
 // ---- user input ----
 
-TEST(OrbitPanel, makes_the_run_periodic) {
+TEST(OrbitPanel, MakesTheRunPeriodic) {
     Hands hands("ball_down_a_wave");
     hands.press_with_control('6');
     hands.rest(2);
@@ -177,7 +177,7 @@ TEST(OrbitPanel, makes_the_run_periodic) {
     EXPECT_TRUE(hands.says("run is off the orbit"));
 }
 
-TEST(OrbitPanel, goes_along_the_branch) {
+TEST(OrbitPanel, GoesAlongTheBranch) {
     Hands hands("ball_down_a_wave");
     hands.session.apply(command::Set{"e", 0.3});
     hands.press_with_control('6');
@@ -203,7 +203,7 @@ TEST(OrbitPanel, goes_along_the_branch) {
 }
 
 // Prints positions for orbit_window_test.sh.
-TEST(OrbitPanel, tells_where_it_is) {
+TEST(OrbitPanel, TellsWhereItIs) {
     Hands hands("ball_down_a_wave");
     hands.press_with_control('6');
     hands.rest(3);

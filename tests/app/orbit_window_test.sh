@@ -4,7 +4,7 @@
 #     orbit_window_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-"$build/test_app" --gtest_filter=OrbitPanel.tells_where_it_is > "$folder/places"
+"$build/test_app" --gtest_filter=OrbitPanel.TellsWhereItIs > "$folder/places"
 
 open_window "" ball_down_a_wave --record "$folder/record"
 settle

@@ -10,15 +10,15 @@
 #include "app/program.hpp"
 #include "cli/inputs.hpp"
 #include "journal/journal.hpp"
+#include "pictures/export.hpp"
 #include "pictures/picture_format.hpp"
-#include "pictures/take_away.hpp"
 
 namespace achilles {
 namespace {
 
 namespace fs = std::filesystem;
 
-TEST(Page, is_as_large_as_it_says) {
+TEST(Page, IsAsLargeAsItSays) {
     const PictureSize png = on_page({85.0, 0.0, 8.0, 300.0}, "png", 14.0, 1.5);
     EXPECT_EQ(png.width, 1004);  // 85/25.4*300
     EXPECT_EQ(png.height, 669);
@@ -35,7 +35,7 @@ TEST(Page, is_as_large_as_it_says) {
 }
 
 // On such a page the plots determine the height after their curves are sampled: sampling must not assume a lower page.
-TEST(Page, is_resolved_whatever_height_its_plots_need) {
+TEST(Page, IsResolvedWhateverHeightItsPlotsNeed) {
     const PaperSize page{85.0, 0.0, 8.0, 300.0};
     const Resolution known = resolution_of(page, {}, "png");
     for (const int plots : {1, 2, 6, 12})
@@ -45,7 +45,7 @@ TEST(Page, is_resolved_whatever_height_its_plots_need) {
 }
 
 // The size stored in the file, which typesetting programs read.
-TEST(Page, is_said_by_the_file) {
+TEST(Page, IsSaidByTheFile) {
     const test::Folder folder;
     const std::string words = "figure ball_on_sine --view height --width-mm 85 --font-pt 9 --out ";
     ASSERT_EQ(folder.run(words + "a.svg").status, 0);
@@ -67,7 +67,7 @@ TEST(Page, is_said_by_the_file) {
     EXPECT_NEAR(std::strtod(pdf.c_str() + box + 16, nullptr), 85.0 / 25.4 * 72.0, 0.01);
 }
 
-TEST(Page, is_refused_where_it_makes_no_sense) {
+TEST(Page, IsRefusedWhereItMakesNoSense) {
     const test::Folder folder;
     for (const char* words : {"--width-mm 5", "--font-pt 8", "--width-mm x", "--at 3", "--width-mm 85 --dpi 9",
                               "--mechanism --view height", "--width-mm 1200 --dpi 1200"}) {
@@ -83,7 +83,7 @@ void replay(const std::string& picture, Session& session) {
 }
 
 // Every format, of plots and mechanism, can be reproduced, and dropped on the window it restores the session.
-TEST(Export, of_a_page_is_made_again_and_leads_back) {
+TEST(Export, OfAPageIsMadeAgainAndLeadsBack) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine");
     for (const char* line : {"set e 0.3", "seek 2.5", "grid 1 2"}) session.apply(parse_command(line));
@@ -108,16 +108,16 @@ TEST(Export, of_a_page_is_made_again_and_leads_back) {
     EXPECT_NE(session.error().find("end it in .svg, .png or .pdf"), std::string::npos) << session.error();
 }
 
-TEST(Export, of_a_system_without_drawing_has_no_mechanism) {
+TEST(Export, OfASystemWithoutDrawingHasNoMechanism) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine");
-    session.apply(command::Text{test::drop_text});
+    session.apply(command::SetText{test::drop_text});
     session.apply(parse_command("export " + (folder.path() / "a.svg").string() + " mechanism"));
     EXPECT_NE(session.error().find("no drawing of a mechanism"), std::string::npos) << session.error();
 }
 
 // The vector form has the lines and fills of the pixel form: a filled disk, the surface, the trail.
-TEST(Mechanism, is_drawn_as_lines_too) {
+TEST(Mechanism, IsDrawnAsLinesToo) {
     const test::Folder folder;
     ASSERT_EQ(folder.run("figure ball_on_cylinder --mechanism --at 0.5 --out a.svg").status, 0);
     const std::string svg = test::content(folder.path() / "a.svg");

@@ -19,8 +19,8 @@ TEST(Paper, TheTableStandsOnTheRunsItIsGiven) {
         return simulate(model, run);
     };
     const Trajectory a = as_in_the_paper(ball), b = as_in_the_paper(pendulum);
-    EXPECT_NEAR(rest_time_with_threshold(a, 1.0), 10.93, 0.005);  // theory.md 8
-    EXPECT_NEAR(rest_time_with_threshold(a, 1e-5), 12.4658, 1e-4);
+    EXPECT_NEAR(contact_time_with_velocity_threshold(a, 1.0), 10.93, 0.005);  // theory.md 8
+    EXPECT_NEAR(contact_time_with_velocity_threshold(a, 1e-5), 12.4658, 1e-4);
     const std::string table = paper_table(a, b);
     for (const char* piece :
          {"ball, second Zeno time             about 11       12.465775      +1.47        see below\n",

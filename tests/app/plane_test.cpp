@@ -6,7 +6,7 @@
 #include <iostream>
 
 #include "app/hands.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -19,7 +19,7 @@ void take(Session& session, const std::vector<std::string>& journal) {
     for (const std::string& line : journal) session.apply(parse_command(line));
 }
 
-TEST(PlaneCommand, takes_any_two_expressions_and_shows_them) {
+TEST(PlaneCommand, TakesAnyTwoExpressionsAndShowsThem) {
     const std::string line = std::string("plane \"") + end_of_leg + "\" theta2";
     EXPECT_EQ(to_text(parse_command(line)), line);
     EXPECT_EQ(to_text(parse_command("plane default")), "plane default");
@@ -40,7 +40,7 @@ TEST(PlaneCommand, takes_any_two_expressions_and_shows_them) {
     EXPECT_TRUE(session.scene().shows("plane"));
 }
 
-TEST(PlaneCommand, stands_in_the_recipe_of_a_session) {
+TEST(PlaneCommand, StandsInTheRecipeOfASession) {
     for (const std::vector<std::string>& journal :
          std::vector<std::vector<std::string>>{{"plane theta1 theta1'", "show contours"},
                                                {"plane gap gap'", "hide plane"},
@@ -54,21 +54,21 @@ TEST(PlaneCommand, stands_in_the_recipe_of_a_session) {
     }
 }
 
-TEST(PlaneCommand, leaves_with_the_system_that_has_what_it_names) {
+TEST(PlaneCommand, LeavesWithTheSystemThatHasWhatItNames) {
     Session session = test::session("double_pendulum");
     take(session, {"plane theta1 theta1'", "open ball_on_sine"});
     EXPECT_FALSE(session.scene().plane());
     take(session, {"open double_pendulum", "plane theta1 theta1'"});
     std::string text = session.document().text;
-    session.apply(command::Text{text + "# another text\n"});
+    session.apply(command::SetText{text + "# another text\n"});
     EXPECT_TRUE(session.scene().plane());
     for (std::size_t at = 0; (at = text.find("theta1", at)) != std::string::npos;) text.replace(at, 6, "alpha1");
-    session.apply(command::Text{text});
+    session.apply(command::SetText{text});
     ASSERT_TRUE(session.document().problems.empty());
     EXPECT_FALSE(session.scene().plane()) << "there is no theta1";
 }
 
-TEST(PlaneMenu, chooses_a_pair_and_takes_expressions) {
+TEST(PlaneMenu, ChoosesAPairAndTakesExpressions) {
     Hands hands("double_pendulum");
     hands.session.apply(command::Show{"plane", true});
     hands.rest(3);
@@ -97,7 +97,7 @@ TEST(PlaneMenu, chooses_a_pair_and_takes_expressions) {
 }
 
 // Prints positions for the window's test.
-TEST(PlaneMenu, tells_where_it_is) {
+TEST(PlaneMenu, TellsWhereItIs) {
     Hands hands("double_pendulum");
     hands.session.apply(command::Show{"plane", true});
     hands.rest(3);
@@ -111,7 +111,7 @@ TEST(PlaneMenu, tells_where_it_is) {
     tell("phase", "plane theta2, theta2'");
 }
 
-TEST(PlaneMenu, switches_contours_where_there_are_any) {
+TEST(PlaneMenu, SwitchesContoursWhereThereAreAny) {
     Hands hands("double_pendulum");
     EXPECT_FALSE(hands.state.places.contains("show contours")) << "of a mechanism";
     hands.click("show plane");
@@ -126,7 +126,7 @@ TEST(PlaneMenu, switches_contours_where_there_are_any) {
     EXPECT_TRUE(hands.state.plane.levels.empty());
 }
 
-TEST(PlaneHand, takes_the_start_where_a_point_is_a_state) {
+TEST(PlaneInput, TakesTheStartWhereAPointIsAState) {
     for (const char* line : {"plane theta2 theta2'", "plane sin(theta1) theta2"}) {
         Hands hands("double_pendulum");
         hands.session.apply(parse_command(line));
@@ -146,7 +146,7 @@ TEST(PlaneHand, takes_the_start_where_a_point_is_a_state) {
 }
 
 // Surfaces and contours follow the current time and are not recomputed while it is unchanged.
-TEST(PlaneLines, are_those_of_the_present) {
+TEST(PlaneLines, AreThoseOfThePresent) {
     Hands hands("ball_on_vibrating_table");
     for (const char* line : {"plane y y'", "show contours", "seek 0.2"}) hands.session.apply(parse_command(line));
     hands.rest(2);
@@ -161,7 +161,7 @@ TEST(PlaneLines, are_those_of_the_present) {
 }
 
 // Cost of a frame during playback, when the contours change at every time.
-TEST(PlaneLines, cost_little) {
+TEST(PlaneLines, CostLittle) {
     Hands hands("kneed_leg", test::surface(1600, 1000));
     for (const char* line : {"show plane", "show contours", "show energy"}) hands.session.apply(parse_command(line));
     hands.rest(3);

@@ -4,7 +4,7 @@
 #     plane_test.sh BUILD_FOLDER
 . "$(dirname "$0")/window.sh"
 
-"$build/test_app" --gtest_filter=PlaneMenu.tells_where_it_is > "$folder/places"
+"$build/test_app" --gtest_filter=PlaneMenu.TellsWhereItIs > "$folder/places"
 
 open_window "" double_pendulum --do "show plane" --record "$folder/record"
 settle

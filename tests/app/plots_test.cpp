@@ -34,7 +34,7 @@ TEST(Plots, FillEveryPlaceWithSeveralContacts) {
     text.erase(std::min(first, text.size()));
     for (const char* y : {"t", "2*t", "3*t"})
         text += fmt::format("[[view]]\nname = \"{0}\"\nx = \"t\"\ny = [\"{0}\"]\n", y);
-    session.apply(command::Text{text});
+    session.apply(command::SetText{text});
     ASSERT_TRUE(session.document().problems.empty());
     ASSERT_EQ(session.plotted().list().size(), 4U);
     EXPECT_EQ(session.plotted().list()[3].view.name, "gap knee");
@@ -134,7 +134,7 @@ TEST(Plots, ATextKeepsThemWhereItCan) {
     apply(session, {"grid 3 2", "plot 1 t y*g", "zoom 1 0 5 0 1"});
     const std::string before = to_text(session.plotted());
     std::string text = session.document().text;
-    session.apply(command::Text{text + "\n# a remark\n"});
+    session.apply(command::SetText{text + "\n# a remark\n"});
     EXPECT_EQ(to_text(session.plotted()), before);
     session.apply(command::Open{"double_pendulum"});
     EXPECT_EQ(session.plotted().columns(), 2);
@@ -147,7 +147,7 @@ struct PlotHand : test::Hands {
 };
 
 // In a small window names are shortened, not left out.
-TEST(PlotHand, EveryCurveOfTwoIsNamedInASmallWindow) {
+TEST(PlotInput, EveryCurveOfTwoIsNamedInASmallWindow) {
     test::Hands hands("ball_on_sine", test::surface(1000, 700));
     hands.session.apply(parse_command("plot 1 t energy*1.000001+y*0.0001 y*1.000001+x*0.0001"));
     ASSERT_EQ(hands.session.error(), "");
@@ -156,7 +156,7 @@ TEST(PlotHand, EveryCurveOfTwoIsNamedInASmallWindow) {
     EXPECT_TRUE(hands.state.places.contains("curve 1 2"));
 }
 
-TEST(PlotHand, TheWheelZoomsAtThePointer) {
+TEST(PlotInput, TheWheelZoomsAtThePointer) {
     PlotHand hand;
     hand.point("plot 1", 0.25);
     const double low = hand.x().low, high = hand.x().high, bottom = hand.y().low, top = hand.y().high;
@@ -170,7 +170,7 @@ TEST(PlotHand, TheWheelZoomsAtThePointer) {
     EXPECT_NEAR((pointer - hand.x().low) / (hand.x().high - hand.x().low), 0.25, 0.005);
 }
 
-TEST(PlotHand, DraggingPansAndADoubleClickFits) {
+TEST(PlotInput, DraggingPansAndADoubleClickFits) {
     PlotHand hand;
     const double low = hand.x().low, width = hand.x().high - low;
     hand.point("plot 1", 0.5);
@@ -194,7 +194,7 @@ TEST(PlotHand, DraggingPansAndADoubleClickFits) {
     EXPECT_EQ(hand.x().low, 0.0);
 }
 
-TEST(PlotHand, TheRightButtonDrawsABoxToZoomTo) {
+TEST(PlotInput, TheRightButtonDrawsABoxToZoomTo) {
     PlotHand hand;
     hand.point("plot 1", 0.25);
     hand.hand.right = true;
@@ -209,7 +209,7 @@ TEST(PlotHand, TheRightButtonDrawsABoxToZoomTo) {
     EXPECT_NEAR(hand.x().high, 10.0, 0.1);
 }
 
-TEST(PlotHand, ThePointersInstantIsInEveryPlotOverTime) {
+TEST(PlotInput, ThePointersInstantIsInEveryPlotOverTime) {
     PlotHand hand;
     const Image before = hand.picture();
     hand.point("plot 1", 0.4);
@@ -218,7 +218,7 @@ TEST(PlotHand, ThePointersInstantIsInEveryPlotOverTime) {
     EXPECT_GT(worst_tile(before, hand.surface.frame([&] { explorer(hand.session, hand.state); }, 3, hand.hand)), 0.02);
 }
 
-TEST(PlotHand, ChoosesTypesAndHides) {
+TEST(PlotInput, ChoosesTypesAndHides) {
     PlotHand hand;
     hand.click("grid 2 3");
     EXPECT_EQ(hand.session.plots().size(), 6U);

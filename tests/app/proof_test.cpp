@@ -10,8 +10,8 @@
 #include "journal/journal.hpp"
 #include "output/precision.hpp"
 #include "output/proof.hpp"
-#include "pictures/take_away.hpp"
-#include "session/recipe.hpp"
+#include "pictures/export.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -33,7 +33,7 @@ TEST(SessionProof, IsThatOfTheCommandLine) {
     const Enclosure& proof = session.proof()->enclosure;
     EXPECT_TRUE(proof.end);
     EXPECT_EQ(proof.proved_until, 20.0);
-    const Enclosure alone = prove(session.model(), claim_as_written(session.run()));
+    const Enclosure alone = prove(session.model(), problem_from_decimals(session.run()));
     ASSERT_EQ(proof.events.size(), alone.events.size());
     for (std::size_t i = 0; i < alone.events.size(); ++i) {
         EXPECT_EQ(proof.events[i].t.lo(), alone.events[i].t.lo());

@@ -24,17 +24,17 @@ class Recoveries : public testing::Test {
     const Folder folder;
 };
 
-TEST_F(Recoveries, lead_to_the_text_wherever_it_belongs) {
+TEST_F(Recoveries, LeadToTheTextWhereverItBelongs) {
     for (const char* const opening : {"new", "open ball_on_floor"}) {
         Session session = test::session("ball_on_sine"), again = test::session("double_pendulum");
         session.apply(parse_command(opening));
         const std::string text = session.document().text + "# \"typed\"\n\tand not saved";
-        session.apply(command::Text{text});
+        session.apply(command::SetText{text});
         Recovery recovery;
         recovery.keep(session.document(), "half of it");
         recovery.keep(session.document(), text);
         EXPECT_EQ(kept(), 1U);
-        const std::vector<Unsaved> left = left_unsaved();
+        const std::vector<RecoveredText> left = left_unsaved();
         ASSERT_EQ(left.size(), 1U);
         EXPECT_EQ(left[0].name, session.document().name);
         for (const Command& step : left[0].steps) again.apply(step);
@@ -48,9 +48,9 @@ TEST_F(Recoveries, lead_to_the_text_wherever_it_belongs) {
     }
 }
 
-TEST_F(Recoveries, of_several_windows_are_several_and_strangers_files_are_none) {
+TEST_F(Recoveries, OfSeveralWindowsAreSeveralAndStrangersFilesAreNone) {
     Session session = test::session("ball_on_sine");
-    session.apply(command::Text{"one"});
+    session.apply(command::SetText{"one"});
     Recovery one, two;
     one.keep(session.document(), "one");
     two.keep(session.document(), "two");
@@ -61,11 +61,11 @@ TEST_F(Recoveries, of_several_windows_are_several_and_strangers_files_are_none) 
     EXPECT_EQ(left_unsaved().size(), 2U);
     two.forget();
     ASSERT_EQ(left_unsaved().size(), 1U);
-    EXPECT_EQ(left_unsaved()[0].steps.back(), Command(command::Text{"one"}));
+    EXPECT_EQ(left_unsaved()[0].steps.back(), Command(command::SetText{"one"}));
 }
 
 // Without a writable folder, editing continues.
-TEST_F(Recoveries, fail_in_silence) {
+TEST_F(Recoveries, FailInSilence) {
     ::setenv("XDG_STATE_HOME", "/proc/nowhere", 1);
     Session session = test::session("ball_on_sine");
     Recovery recovery;
@@ -73,13 +73,13 @@ TEST_F(Recoveries, fail_in_silence) {
     EXPECT_TRUE(left_unsaved().empty());
 }
 
-TEST(RecoveryQuestion, is_answered_by_each_of_its_buttons) {
-    using Answer = RecoveryQuestion::Answer;
+TEST(RecoveryQuestion, IsAnsweredByEachOfItsButtons) {
+    using RecoveryChoice = RecoveryQuestion::RecoveryChoice;
     for (const auto& [name, answer] :
-         {std::pair{"dialog Recover", Answer::recover}, std::pair{"dialog Discard", Answer::discard},
-          std::pair{"dialog Later", Answer::later}}) {
+         {std::pair{"dialog Recover", RecoveryChoice::recover}, std::pair{"dialog Discard", RecoveryChoice::discard},
+          std::pair{"dialog Later", RecoveryChoice::later}}) {
         Hands hands("ball_on_sine");
-        hands.state.recovery_question = RecoveryQuestion{"mine.toml", "2026-11-22 11:40", Answer::none};
+        hands.state.recovery_question = RecoveryQuestion{"mine.toml", "2026-11-22 11:40", RecoveryChoice::none};
         hands.rest(3);
         hands.click(name);
         EXPECT_EQ(hands.state.recovery_question->answer, answer) << name;

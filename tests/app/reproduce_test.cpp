@@ -36,7 +36,7 @@ TEST(Origin, ACommandLineKeepsItsWords) {
         EXPECT_THROW(words_of(damaged), std::runtime_error) << damaged;
 }
 
-class Reproduced : public testing::TestWithParam<std::string> {
+class ReproducedPicture : public testing::TestWithParam<std::string> {
  protected:
     void SetUp() override {
         if (GetParam() == "pdf" && std::system("rsvg-convert --version >/dev/null 2>&1") != 0)
@@ -44,7 +44,7 @@ class Reproduced : public testing::TestWithParam<std::string> {
     }
 };
 
-TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
+TEST_P(ReproducedPicture, FromWhatItCarriesWhateverBecameOfTheFile) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     const std::string picture = "picture." + GetParam();
@@ -71,7 +71,7 @@ TEST_P(Reproduced, FromWhatItCarriesWhateverBecameOfTheFile) {
     EXPECT_EQ(folder.files().size(), 2u);
 }
 
-TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
+TEST_P(ReproducedPicture, TellsAReaderParametersOptionsAndCertificates) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     ASSERT_EQ(folder.run(arguments + "a." + GetParam()).status, 0);
@@ -88,7 +88,7 @@ TEST_P(Reproduced, TellsAReaderParametersOptionsAndCertificates) {
 }
 
 // The notes state limits of the run; the limit of steps only if it was set.
-TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
+TEST_P(ReproducedPicture, TellsAReaderOfALimitOfSteps) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     for (const bool limited : {false, true}) {
@@ -103,7 +103,7 @@ TEST_P(Reproduced, TellsAReaderOfALimitOfSteps) {
     }
 }
 
-TEST_P(Reproduced, ADifferenceIsTold) {
+TEST_P(ReproducedPicture, ADifferenceIsTold) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     const std::string picture = "a." + GetParam();
@@ -127,7 +127,7 @@ TEST_P(Reproduced, ADifferenceIsTold) {
     EXPECT_EQ(content(folder.path() / "again"), bytes);
 }
 
-INSTANTIATE_TEST_SUITE_P(Origin, Reproduced, testing::Values("png", "svg", "pdf"));
+INSTANTIATE_TEST_SUITE_P(Origin, ReproducedPicture, testing::Values("png", "svg", "pdf"));
 
 TEST(Reproduce, PaperAndScreenshotWithItsJournal) {
     const Folder folder;
@@ -332,7 +332,7 @@ TEST(Figure, IsDrawnWhereNoMemoryCanBeMadeExecutable) {
 }
 
 // Uses librsvg's program; if it is missing, the message names its package before the run.
-TEST(Figure, is_written_as_pdf) {
+TEST(Figure, IsWrittenAsPdf) {
     const Folder folder;
     const std::string figure = "figure ball_on_sine --end 5 --view height ";
     const Folder tools;  // a PATH with only what runs the program
@@ -357,7 +357,7 @@ TEST(Figure, is_written_as_pdf) {
 }
 
 // From cairo 1.18 on, rsvg-convert compresses the end of a PDF, where notes are added, except in PDF 1.4.
-TEST(Figure, is_a_pdf_that_notes_can_be_added_to) {
+TEST(Figure, IsAPdfThatNotesCanBeAddedTo) {
     const Folder folder, tools;
     std::filesystem::create_symlink("/usr/bin/timeout", tools.path() / "timeout");
     const std::filesystem::path writer = tools.path() / "rsvg-convert";

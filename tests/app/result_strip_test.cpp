@@ -12,7 +12,7 @@ namespace {
 using test::Hands;
 
 // With dozens of results the last one reached is always visible; the number of hidden ones is shown at both ends.
-TEST(ResultStrip, keep_the_present_in_view) {
+TEST(ResultStrip, KeepThePresentInView) {
     for (const int width : {1024, 1600}) {
         Hands hands("driven_double_pendulum", test::surface(width, 800));
         hands.session.apply(parse_command("end 60"));
@@ -38,7 +38,7 @@ TEST(ResultStrip, keep_the_present_in_view) {
 }
 
 // Drag, wheel and the numbers at the ends only scroll the strip; a change of the current result resets it.
-TEST(ResultStrip, are_moved_by_a_hand) {
+TEST(ResultStrip, AreMovedByAHand) {
     Hands hands("driven_double_pendulum", test::surface(1280, 800));
     hands.session.apply(parse_command("end 60"));
     hands.session.apply(command::Seek{0.0});
@@ -83,7 +83,7 @@ TEST(ResultStrip, are_moved_by_a_hand) {
 }
 
 // A dialog that opens in the frame in which the mouse enters a result. A tooltip there once crashed the program.
-TEST(ResultStrip, say_nothing_behind_a_dialog) {
+TEST(ResultStrip, SayNothingBehindADialog) {
     Hands hands("ball_on_sine");
     const Point at = hands.middle("result 10");
     hands.hand.mouse_x = at.x, hands.hand.mouse_y = at.y;

@@ -18,7 +18,7 @@ namespace {
 using test::Hands;
 
 // Every Zeno point and release can be clicked, and its text states the certified accuracy.
-TEST(Results, tell_every_time_and_how_well_it_is_known) {
+TEST(Results, TellEveryTimeAndHowWellItIsKnown) {
     Hands hands("ball_on_sine");
     const auto& events = hands.session.trajectory().events;
     for (std::size_t i = 0; i < events.size(); ++i)
@@ -47,7 +47,7 @@ TEST(Results, tell_every_time_and_how_well_it_is_known) {
 }
 
 // At a loose tolerance the integration error far exceeds the width of the interval: further digits are not shown.
-TEST(Results, show_no_digits_that_the_integration_may_change) {
+TEST(Results, ShowNoDigitsThatTheIntegrationMayChange) {
     Session session = test::session("ball_on_sine");
     session.apply(parse_command("tolerance 1e-4"));
     const auto& events = session.trajectory().events;
@@ -59,7 +59,7 @@ TEST(Results, show_no_digits_that_the_integration_may_change) {
     }
 }
 
-TEST(Results, select_and_show_the_proof) {
+TEST(Results, SelectAndShowTheProof) {
     Hands hands("ball_on_sine");
     const auto& events = hands.session.trajectory().events;
     std::size_t zeno = events.size();
@@ -77,7 +77,7 @@ TEST(Results, select_and_show_the_proof) {
 }
 
 // With restitution 0 the impact is plastic: no certificate, and no impact sequence to show.
-TEST(Results, call_a_landing_so_and_offer_no_lens) {
+TEST(Results, CallALandingSoAndOfferNoLens) {
     for (const bool is_plastic : {false, true}) {
         Hands hands("ball_on_floor");
         if (is_plastic) hands.session.apply(command::Set{"e", {0.0, {}}});
@@ -95,14 +95,14 @@ TEST(Results, call_a_landing_so_and_offer_no_lens) {
 }
 
 // A run that ends early without a Zeno point states the reason.
-TEST(Results, tell_how_a_run_without_any_ended) {
+TEST(Results, TellHowARunWithoutAnyEnded) {
     Hands hands("ball_on_floor");
     EXPECT_FALSE(hands.says("left the domain at"));
     std::string text = hands.session.document().text;
     const std::string gap = "\"y - r\"";
     ASSERT_NE(text.find(gap), std::string::npos);
     text.replace(text.find(gap), gap.size(), "\"(y - r)^3\"");
-    hands.session.apply(command::Text{text});
+    hands.session.apply(command::SetText{text});
     ASSERT_TRUE(hands.session.document().problems.empty());
     hands.rest(3);
     EXPECT_TRUE(hands.says("left the domain at"));
@@ -110,7 +110,7 @@ TEST(Results, tell_how_a_run_without_any_ended) {
 }
 
 // The list, the status line and the tooltip use the sentence of core.
-TEST(EventList, says_a_sentence_an_event) {
+TEST(EventList, SaysASentenceAnEvent) {
     Hands hands("ball_on_sine", test::surface(1600, 1000));
     const auto& events = hands.session.trajectory().events;
     std::size_t zeno = 0;
@@ -130,7 +130,7 @@ TEST(EventList, says_a_sentence_an_event) {
     EXPECT_EQ(hands.session.time(), 0.0);
 }
 
-TEST(EventList, folds_impacts_until_a_click_opens_them) {
+TEST(EventList, FoldsImpactsUntilAClickOpensThem) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("event 1"));
     ASSERT_TRUE(hands.state.places.contains("impacts 1"));
@@ -152,7 +152,7 @@ TEST(EventList, folds_impacts_until_a_click_opens_them) {
     EXPECT_TRUE(hands.state.places.contains("event 1"));
 }
 
-TEST(EventList, shows_every_impact_where_there_is_nothing_else) {
+TEST(EventList, ShowsEveryImpactWhereThereIsNothingElse) {
     Hands hands("ball_on_floor");
     EXPECT_FALSE(hands.state.places.contains("event 1"));
     hands.session.apply(command::Set{"e", 0.999});
@@ -160,7 +160,7 @@ TEST(EventList, shows_every_impact_where_there_is_nothing_else) {
     EXPECT_TRUE(hands.state.places.contains("event 1"));
 }
 
-TEST(EventList, is_copied_as_a_table) {
+TEST(EventList, IsCopiedAsATable) {
     Hands hands("double_pendulum");
     hands.click("copy events");
     std::string text;
@@ -184,7 +184,7 @@ TEST(EventList, is_copied_as_a_table) {
 constexpr const char* gaps = "../../tests/reference/gaps/";
 
 // Every event of every contact: in the list; in the strip if it changes the held contacts; with its card.
-TEST(SeveralContacts, are_named_wherever_events_are) {
+TEST(SeveralContacts, AreNamedWhereverEventsAre) {
     for (const char* system : {"driven_damped_pendulum", "travelling_wave", "vibrating_table", "bowl_and_post",
                                "pendulum_two_stops", "ball_in_box"}) {
         SCOPED_TRACE(system);
@@ -204,9 +204,9 @@ TEST(SeveralContacts, are_named_wherever_events_are) {
 }
 
 // A ball hits the first of two touching balls without forces: the message must not say that a surface falls away.
-TEST(SeveralContacts, that_take_part_in_an_impact_are_said_to) {
+TEST(SeveralContacts, ThatTakePartInAnImpactAreSaidTo) {
     Hands hands("newtons_cradle", test::surface(1600, 1600));
-    hands.session.apply(command::Text{
+    hands.session.apply(command::SetText{
         "title = \"balls\"\n[[coordinate]]\nname = \"a\"\nstart = -1\nrate = 1\nunit = \"m\"\n[[coordinate]]\nname = "
         "\"b\"\n"
         "unit = \"m\"\n[[coordinate]]\nname = \"c\"\nunit = \"m\"\n[lagrangian]\nkinetic = \"(a'^2 + b'^2 + c'^2)/2\"\n"
@@ -220,7 +220,7 @@ TEST(SeveralContacts, that_take_part_in_an_impact_are_said_to) {
     EXPECT_TRUE(hands.says("m/s")) << "the gap speed has a unit";
 }
 
-TEST(SeveralContacts, are_copied_with_the_list) {
+TEST(SeveralContacts, AreCopiedWithTheList) {
     Hands hands(std::string(gaps) + "pendulum_two_stops");
     hands.click("copy events");
     std::string text;
@@ -235,7 +235,7 @@ TEST(SeveralContacts, are_copied_with_the_list) {
 }
 
 // A character missing in the font appears as a question mark.
-TEST(Panels, write_no_sign_that_the_font_lacks) {
+TEST(Panels, WriteNoSignThatTheFontLacks) {
     Hands hands("ball_on_floor");
     int signs = 0;
     for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/app/panels")) {
@@ -254,7 +254,7 @@ TEST(Panels, write_no_sign_that_the_font_lacks) {
     EXPECT_GT(signs, 20);
 }
 
-TEST(Accuracy, is_one_line_until_it_is_opened) {
+TEST(Accuracy, IsOneLineUntilItIsOpened) {
     Hands hands("ball_on_sine");
     for (const char* place : {"eps", "tolerance", "conditions paper"}) EXPECT_FALSE(hands.state.places.contains(place));
     EXPECT_TRUE(hands.state.places.contains("end"));
@@ -264,7 +264,7 @@ TEST(Accuracy, is_one_line_until_it_is_opened) {
 }
 
 // At the minimum window size every number of the certificate is inside the card, without a scroll bar.
-TEST(Card, shows_the_whole_certificate_in_a_small_window) {
+TEST(Card, ShowsTheWholeCertificateInASmallWindow) {
     for (const char* system : {"ball_on_sine", "double_pendulum"}) {
         Hands hands(system, test::surface(1024, 700));
         const auto& events = hands.session.trajectory().events;
@@ -284,7 +284,7 @@ TEST(Card, shows_the_whole_certificate_in_a_small_window) {
     }
 }
 
-TEST(Plane, stands_in_place_of_a_drawing_and_of_any_mechanism) {
+TEST(Plane, StandsInPlaceOfADrawingAndOfAnyMechanism) {
     for (const char* system : {"double_pendulum", "ball_on_floor", "falling_rod", "ball_on_sine"}) {
         Hands hands(system);
         EXPECT_FALSE(hands.state.places.contains("plane"));
@@ -297,13 +297,13 @@ TEST(Plane, stands_in_place_of_a_drawing_and_of_any_mechanism) {
     Hands hands("double_pendulum");
     std::string text = hands.session.document().text;
     text.erase(text.find("drawing = ["), text.find("view = [") - text.find("drawing = ["));
-    hands.session.apply(command::Text{text});
+    hands.session.apply(command::SetText{text});
     ASSERT_TRUE(hands.session.document().problems.empty());
     hands.rest(2);
     EXPECT_TRUE(hands.state.places.contains("plane"));
 }
 
-TEST(Plane, has_the_start_under_the_hand_at_every_step) {
+TEST(Plane, HasTheStartUnderTheHandAtEveryStep) {
     for (const char* system : {"double_pendulum", "ball_on_sine", "ball_on_floor"}) {
         Hands hands(system);
         hands.session.apply(command::Show{"plane", true});
@@ -329,7 +329,7 @@ TEST(Plane, has_the_start_under_the_hand_at_every_step) {
     }
 }
 
-TEST(Plane, selects_the_event_that_is_clicked) {
+TEST(Plane, SelectsTheEventThatIsClicked) {
     Hands hands("double_pendulum");
     hands.session.apply(command::Show{"plane", true});
     hands.rest(3);
@@ -351,8 +351,8 @@ TEST(Plane, selects_the_event_that_is_clicked) {
     }
 }
 
-TEST(Plane, shades_where_the_gap_is_open) {
-    const Field field({{}, -2.0, 2.0, -1.0, 3.0}, [](const Point& p) { return p.y - p.x * p.x; });
+TEST(Plane, ShadesWhereTheGapIsOpen) {
+    const ScalarField field({{}, -2.0, 2.0, -1.0, 3.0}, [](const Point& p) { return p.y - p.x * p.x; });
     double area = 0.0;
     for (const std::vector<Point>& part : field.not_negative())
         for (std::size_t i = 0; i < part.size(); ++i) {

@@ -11,7 +11,7 @@
 #include "figure/difference.hpp"
 #include "figure/palette.hpp"
 #include "journal/journal.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -44,7 +44,7 @@ std::vector<int> places(const Session& session) {
 
 using Names = std::vector<std::string>;
 
-TEST(Runs, are_called_by_what_differs) {
+TEST(Runs, AreCalledByWhatDiffers) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\n");
     EXPECT_EQ(names(session), (Names{"", ""}));
@@ -58,7 +58,7 @@ TEST(Runs, are_called_by_what_differs) {
     EXPECT_EQ(names(session)[1] == names(session)[2], false) << names(session)[1];
 }
 
-TEST(Runs, stand_at_places_that_stay) {
+TEST(Runs, StandAtPlacesThatStay) {
     Session session = test::session("ball_on_floor");
     apply(session, "pin\nset e 0.1\npin\nset e 0.2\npin\nunpin 2\nset e 0.3\n");
     EXPECT_EQ(places(session), (std::vector<int>{1, 3}));
@@ -78,14 +78,14 @@ TEST(Runs, stand_at_places_that_stay) {
     EXPECT_TRUE(session.pinned().empty());
 }
 
-TEST(Runs, are_pinned_once) {
+TEST(Runs, ArePinnedOnce) {
     Session session = test::session("ball_on_floor");
     apply(session, "pin\nset e 0.1\nreset\n");
     EXPECT_NE(refused(session, "pin").find("this run is already pinned, as 1"), std::string::npos);
 }
 
 // Later changes do not affect them.
-TEST(Runs, stay_as_they_were) {
+TEST(Runs, StayAsTheyWere) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\n");
     const Trajectory* const before = session.pinned()[0].trajectory.get();
@@ -99,7 +99,7 @@ TEST(Runs, stay_as_they_were) {
     EXPECT_EQ(session.value("e"), 0.3);
 }
 
-TEST(Runs, leave_with_their_system_and_come_back) {
+TEST(Runs, LeaveWithTheirSystemAndComeBack) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\npin\nset e 0.4\nopen double_pendulum\n");
     EXPECT_TRUE(session.pinned().empty());
@@ -115,14 +115,14 @@ TEST(Runs, leave_with_their_system_and_come_back) {
     std::string text = session.document().text;
     const std::size_t at = text.find("title");
     text.insert(at, "# a remark\n");
-    session.apply(command::Text{text});
+    session.apply(command::SetText{text});
     ASSERT_TRUE(session.document().problems.empty());
     EXPECT_EQ(places(session), (std::vector<int>{1, 2}));
     EXPECT_EQ(session.drawn(0).curves.size(), 3 * session.plots()[0].curves.size());
     const std::size_t energy = text.find("m/2*(x'^2");
     ASSERT_NE(energy, std::string::npos);
     text.insert(energy, "1*");
-    session.apply(command::Text{text});
+    session.apply(command::SetText{text});
     ASSERT_TRUE(session.document().problems.empty()) << session.document().problems[0].what();
     EXPECT_TRUE(session.pinned().empty());
     EXPECT_EQ(session.notice(), "2 pinned runs of ball_on_sine were unpinned; undo restores them");
@@ -130,17 +130,17 @@ TEST(Runs, leave_with_their_system_and_come_back) {
     EXPECT_EQ(places(session), (std::vector<int>{1, 2}));
 }
 
-TEST(Runs, need_no_more_memory_than_a_run_may) {
+TEST(Runs, NeedNoMoreMemoryThanARunMay) {
     Session session = test::session("ball_on_sine");
     const double bytes = bytes_of(session.trajectory());
-    session.apply(command::UseOption{"memory", {2.5 * bytes}});
+    session.apply(command::SetOption{"memory", {2.5 * bytes}});
     apply(session, "pin\nset e 0.45\npin\nset e 0.4\n");
     EXPECT_NE(refused(session, "pin").find("the pinned runs would take"), std::string::npos) << session.error();
     EXPECT_EQ(session.pinned().size(), 2U);
 }
 
 // Where two runs coincide, both are visible.
-TEST(Runs, lie_under_the_present_one_and_wider) {
+TEST(Runs, LieUnderThePresentOneAndWider) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\npin\nreset\n");
     const std::vector<Curve>& curves = session.drawn(0).curves;
@@ -159,7 +159,7 @@ TEST(Runs, lie_under_the_present_one_and_wider) {
     EXPECT_EQ(session.drawn(0).curves[0].stroke.color, phase_color(session.theme(), Phase::Kind::hybrid));
 }
 
-TEST(RunTable, says_what_differs_and_what_follows) {
+TEST(RunTable, SaysWhatDiffersAndWhatFollows) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\npin\nset e 0.6\nset x' 0.2\n");
     const RunTable& table = session.run_table();
@@ -191,7 +191,7 @@ TEST(RunTable, says_what_differs_and_what_follows) {
     EXPECT_NEAR(number(zeno.change), more, 0.01 * std::abs(more)) << "how much more the present run has";
 }
 
-TEST(RunTable, says_in_words_where_runs_part) {
+TEST(RunTable, SaysInWordsWhereRunsPart) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\n");
     EXPECT_TRUE(session.run_table().partings.empty()) << to_text(session.run_table());
@@ -204,7 +204,7 @@ TEST(RunTable, says_in_words_where_runs_part) {
         << to_text(session.run_table());
 }
 
-TEST(Difference, is_that_of_the_completed_runs) {
+TEST(Difference, IsThatOfTheCompletedRuns) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\ndifference 2 on\n");
     const Panel& panel = session.drawn(1);
@@ -242,7 +242,7 @@ TEST(Difference, is_that_of_the_completed_runs) {
     EXPECT_FALSE(session.plots()[0].curves.empty());
 }
 
-TEST(RunsPanel, shows_hides_recalls_and_removes) {
+TEST(RunsPanel, ShowsHidesRecallsAndRemoves) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("unpin all"));
     hands.click("pin");
@@ -271,7 +271,7 @@ TEST(RunsPanel, shows_hides_recalls_and_removes) {
     EXPECT_EQ(hands.session.error(), "");
 }
 
-TEST(RunsPanel, turns_a_plot_into_the_difference) {
+TEST(RunsPanel, TurnsAPlotIntoTheDifference) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Pin{});
     hands.session.apply(command::Set{"e", 0.3});
@@ -288,7 +288,7 @@ TEST(RunsPanel, turns_a_plot_into_the_difference) {
 }
 
 // A run under way is pinned when it is finished.
-TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
+TEST(Runs, ThatAreUnderWayArePinnedWhenTheyAreThere) {
     Session session("ball_on_sine", test::system("ball_on_sine"), test::library());
     session.set_patience(0.0);
     session.apply(command::Set{"e", 0.3});
@@ -304,14 +304,14 @@ TEST(Runs, that_are_under_way_are_pinned_when_they_are_there) {
 }
 
 // However long each takes, they are listed in the order of the requests.
-TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
+TEST(Runs, StandInTheOrderInWhichTheyWerePinned) {
     Session session = test::session("ball_on_floor");
     for (const char* line : {"set e 1", "end 20000"}) session.apply(parse_command(line));
     session.set_patience(0.0);
     session.apply(command::Set{"g", 8.0});
     session.apply(command::Pin{});
     session.set_patience(1.0);
-    session.apply(command::Start{{{"e", 0.5}, {"g", 9.0}}});  // this one is finished at once
+    session.apply(command::SetStart{{{"e", 0.5}, {"g", 9.0}}});  // this one is finished at once
     ASSERT_EQ(session.under_way(), nullptr);
     session.apply(command::Pin{});
     session.settle();
@@ -321,7 +321,7 @@ TEST(Runs, stand_in_the_order_in_which_they_were_pinned) {
 }
 
 // A run to be pinned continues beside the next one, without waiting, and is not mentioned in comparisons meanwhile.
-TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
+TEST(Runs, ThatAreUnderWayArePinnedWithoutAnybodyWaiting) {
     Hands hands("ball_on_sine");
     Session& session = hands.session;
     session.set_patience(0.02);
@@ -356,7 +356,7 @@ TEST(Runs, that_are_under_way_are_pinned_without_anybody_waiting) {
     EXPECT_EQ(session.error(), "");
 }
 
-TEST(Runs, that_are_under_way_arrive_with_update) {
+TEST(Runs, ThatAreUnderWayArriveWithUpdate) {
     Session session = test::session("ball_on_floor");
     for (const char* line : {"set e 1", "end 20000"}) session.apply(parse_command(line));
     session.set_patience(0.0);
@@ -374,7 +374,7 @@ TEST(Runs, that_are_under_way_arrive_with_update) {
     EXPECT_EQ(session.trajectory().run.parameters[2], 9.0);
 }
 
-TEST(Runs, are_in_a_picture_that_is_made_again) {
+TEST(Runs, AreInAPictureThatIsMadeAgain) {
     const test::Folder folder;
     const test::Answer made = folder.run(
         "screenshot ball_on_sine --do pin --do 'set e 0.3' --do pin --do 'unpin 1' --do 'set e 0.7' --do pin --do "

@@ -2,16 +2,16 @@
 
 #include "app/open.hpp"
 #include "app/program.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "output/output.hpp"
 #include "panels/event_list.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
 namespace {
 
-TEST(Session, begins_with_the_run_of_the_file) {
+TEST(Session, BeginsWithTheRunOfTheFile) {
     const Session session = test::session("ball_on_sine");
     EXPECT_EQ(session.time(), 0.0);
     EXPECT_FALSE(session.playing());
@@ -19,7 +19,7 @@ TEST(Session, begins_with_the_run_of_the_file) {
     EXPECT_EQ(to_text(session.trajectory()), to_text(simulate(session.model(), session.model()->default_run())));
 }
 
-TEST(Session, setting_a_value_runs_the_same_model_again) {
+TEST(Session, SettingAValueRunsTheSameModelAgain) {
     Session session = test::session("ball_on_sine");
     const auto model = session.model();
     const std::uint32_t nodes = model->equations().gaps[0].graph().size();
@@ -38,7 +38,7 @@ TEST(Session, setting_a_value_runs_the_same_model_again) {
     EXPECT_EQ(session.run().q[1], 3.0);
 }
 
-TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
+TEST(Session, WhatCannotBeDoneLeavesTheLastGoodState) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Set{"g", 2.0});
     session.apply(command::Seek{3.0});
@@ -47,10 +47,10 @@ TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
         {command::Set{"yy", 1.0}, "did you mean 'y'"},
         {command::Set{"y", -5.0}, "gap"},
         {command::Set{"e", 1.5}, "restitution"},
-        {command::End{-1.0}, "end time"},
+        {command::SetEndTime{-1.0}, "end time"},
         {command::Tolerance{0.0}, "tolerance"},
         {command::MaxImpacts{0}, "at least one impact must be allowed"},
-        {command::UseOption{"max-steps", {0}}, "at least one step must be allowed"},
+        {command::SetOption{"max-steps", {0}}, "at least one step must be allowed"},
         {command::Eps{1e-6, -1.0, 1e-6}, "eps"},
         {command::Select{4000}, "event"},
         {command::Open{"nowhere"}, "nowhere"}};
@@ -65,7 +65,7 @@ TEST(Session, what_cannot_be_done_leaves_the_last_good_state) {
     EXPECT_EQ(to_text(session), before);
 }
 
-TEST(Session, a_value_says_its_unit_where_that_fits) {
+TEST(Session, AValueSaysItsUnitWhereThatFits) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("set theta1 -20 deg"));
     EXPECT_EQ(session.error(), "");
@@ -78,7 +78,7 @@ TEST(Session, a_value_says_its_unit_where_that_fits) {
     EXPECT_EQ(session.run().parameters, session.file_run().parameters);
 }
 
-TEST(Session, a_value_outside_its_range_is_told_and_used) {
+TEST(Session, AValueOutsideItsRangeIsToldAndUsed) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("set theta1 30"));
     EXPECT_EQ(session.run().q[0], 30.0);
@@ -97,7 +97,7 @@ TEST(Session, a_value_outside_its_range_is_told_and_used) {
 }
 
 // Also for several values at once.
-TEST(Session, starts_outside_their_ranges_are_told) {
+TEST(Session, StartsOutsideTheirRangesAreTold) {
     Session session = test::session("double_pendulum");
     session.apply(parse_command("start theta1 30 theta1' 0.5 theta2 0.2"));
     EXPECT_EQ(session.warnings(),
@@ -109,13 +109,13 @@ TEST(Session, starts_outside_their_ranges_are_told) {
 }
 
 // It opens if there is a Zeno point, and otherwise gives an error. The recorded commands do the same.
-TEST(Session, the_lens_opens_at_a_zeno_point) {
+TEST(Session, TheLensOpensAtAZenoPoint) {
     Session session = test::session("ball_on_sine");
-    session.apply(command::Lens{2.0});
+    session.apply(command::ShowLens{2.0});
     EXPECT_EQ(session.error(), "the lens needs a Zeno point, but none is selected\nselect it first: select 10");
     EXPECT_FALSE(session.scene().shows("lens"));
     session.apply(command::Select{10});
-    session.apply(command::Lens{2.0});
+    session.apply(command::ShowLens{2.0});
     EXPECT_EQ(session.error(), "");
     EXPECT_TRUE(session.scene().shows("lens"));
     Session again = test::session("ball_on_sine");
@@ -126,13 +126,13 @@ TEST(Session, the_lens_opens_at_a_zeno_point) {
     EXPECT_EQ(to_text(again.scene()), to_text(session.scene()));
 }
 
-TEST(Session, options_change_the_run) {
+TEST(Session, OptionsChangeTheRun) {
     Session session = test::session("double_pendulum");
-    session.apply(command::End{5.0});
+    session.apply(command::SetEndTime{5.0});
     EXPECT_EQ(session.trajectory().end_time, 5.0);
     session.apply(command::Tolerance{1e-8});
     session.apply(command::Eps{1e-3, 1e-4, 1e-5});
-    session.apply(command::UseReinitialization{Reinitialization::euclidean});
+    session.apply(command::SetReinitialization{Reinitialization::euclidean});
     const Options& options = session.run().options;
     EXPECT_EQ(options.tolerance, 1e-8);
     EXPECT_EQ(options.truncation.eps_v, 1e-4);
@@ -140,7 +140,7 @@ TEST(Session, options_change_the_run) {
     EXPECT_EQ(session.error(), "");
 }
 
-TEST(Session, plays_and_finds_events) {
+TEST(Session, PlaysAndFindsEvents) {
     Session session = test::session("ball_on_sine");
     const auto& events = session.trajectory().events;
     session.apply(command::Select{2});
@@ -162,25 +162,25 @@ TEST(Session, plays_and_finds_events) {
     EXPECT_FALSE(session.playing());
     session.apply(command::Seek{15.0});
     EXPECT_EQ(session.now().phase, Phase::Kind::constrained);
-    session.apply(command::End{1.0});
+    session.apply(command::SetEndTime{1.0});
     EXPECT_EQ(session.time(), 1.0) << "the present stays inside the run";
     EXPECT_EQ(session.selected(), 0);
 }
 
 // Whatever the start time is.
-TEST(Session, begins_and_begins_again_where_the_run_starts) {
+TEST(Session, BeginsAndBeginsAgainWhereTheRunStarts) {
     Session session = test::session("ball_on_sine");
-    session.apply(command::End{1.0});
-    session.apply(command::UseOption("start-time", {-3.0}));
+    session.apply(command::SetEndTime{1.0});
+    session.apply(command::SetOption("start-time", {-3.0}));
     EXPECT_EQ(session.error(), "");
-    session.apply(command::Step{-100});
+    session.apply(command::StepEvents{-100});
     EXPECT_EQ(session.time(), -3.0);
     session.apply(command::Seek{1.0});
     session.apply(command::Play{});
     EXPECT_EQ(session.time(), -3.0);
 }
 
-TEST(Session, plays_to_the_end_or_round_and_round) {
+TEST(Session, PlaysToTheEndOrRoundAndRound) {
     Session session = test::session("ball_on_sine");
     play_on(session, 1.0);
     EXPECT_EQ(session.time(), 0.0) << "it does not play";
@@ -199,7 +199,7 @@ TEST(Session, plays_to_the_end_or_round_and_round) {
     EXPECT_EQ(session.time(), 20.0);
 }
 
-TEST(Session, opens_another_system) {
+TEST(Session, OpensAnotherSystem) {
     Session session = test::session("ball_on_sine");
     session.apply(command::Seek{4.0});
     session.apply(command::Open{"double_pendulum"});
@@ -212,15 +212,15 @@ std::string with(std::string text, const std::string& from, const std::string& t
     return text.replace(text.find(from), from.size(), to);
 }
 
-TEST(Session, a_text_takes_effect_and_keeps_what_the_sliders_changed) {
+TEST(Session, ATextTakesEffectAndKeepsWhatTheSlidersChanged) {
     Session session = test::session("ball_on_sine");
     const std::string text = session.document().text;
     EXPECT_EQ(text, test::content(session.description().file));
     session.apply(command::Set{"g", 2.0});
     session.apply(command::Set{"x'", 1.25});
-    session.apply(command::End{12.0});
+    session.apply(command::SetEndTime{12.0});
     session.apply(command::Seek{6.0});
-    session.apply(command::Text{with(text, "value = 0.5", "value = 0.25")});
+    session.apply(command::SetText{with(text, "value = 0.5", "value = 0.25")});
     EXPECT_EQ(session.error(), "");
     EXPECT_TRUE(session.document().problems.empty());
     EXPECT_TRUE(session.document().is_changed());
@@ -229,32 +229,32 @@ TEST(Session, a_text_takes_effect_and_keeps_what_the_sliders_changed) {
     EXPECT_EQ(session.run().v[0], 1.25);
     EXPECT_EQ(session.run().options.end_time, 12.0);
     EXPECT_EQ(session.time(), 6.0) << "the present stays";
-    session.apply(command::Text{with(session.document().text, "rate = 1.5", "rate = -1.5")});
+    session.apply(command::SetText{with(session.document().text, "rate = 1.5", "rate = -1.5")});
     EXPECT_EQ(session.run().v[0], -1.5);
     // Values that do not fit the new text are replaced by those of the text.
     session.apply(command::Set{"y", 1.0});
-    session.apply(command::Text{with(session.document().text, "y - sin(x)", "y - sin(x) - 1.5")});
+    session.apply(command::SetText{with(session.document().text, "y - sin(x)", "y - sin(x) - 1.5")});
     EXPECT_TRUE(session.document().problems.empty());
     EXPECT_EQ(session.run().q[1], 2.0);
 }
 
 // Values from the command line still override an edited text, unless the text changes them.
-TEST(Session, a_text_keeps_what_the_command_line_said) {
+TEST(Session, ATextKeepsWhatTheCommandLineSaid) {
     const SystemDescription description = test::system("ball_on_sine");
     auto run = default_run(description);
     assign(run, description, "g=3");
     run.options.end_time = 7.0;
     Session session("ball_on_sine", description, run, test::library());
     const std::string text = session.document().text;
-    session.apply(command::Text{text + "# more\n"});
+    session.apply(command::SetText{text + "# more\n"});
     EXPECT_EQ(session.run().parameters[1], 3.0);
     EXPECT_EQ(session.run().options.end_time, 7.0);
-    session.apply(command::Text{with(text, "end_time = 20.0", "end_time = 5.0")});
+    session.apply(command::SetText{with(text, "end_time = 20.0", "end_time = 5.0")});
     EXPECT_EQ(session.run().options.end_time, 5.0);
     EXPECT_EQ(session.run().parameters[1], 3.0);
 }
 
-TEST(Session, a_text_that_is_no_system_is_told_and_leaves_the_run) {
+TEST(Session, ATextThatIsNoSystemIsToldAndLeavesTheRun) {
     Session session = test::session("ball_on_sine");
     const std::string before = to_text(session.trajectory()), text = session.document().text;
     const std::pair<std::string, int> mistakes[] = {{with(text, "m*g*y", "m*gg*y"), 21},  // unknown name
@@ -263,19 +263,19 @@ TEST(Session, a_text_that_is_no_system_is_told_and_leaves_the_run) {
                                                     {with(text, "run = {", "run = {{"), 25},       // not TOML
                                                     {with(text, "\"lambda\"", "\"lamda\""), 38}};  // in a view
     for (const auto& [wrong, line] : mistakes) {
-        session.apply(command::Text{wrong});
+        session.apply(command::SetText{wrong});
         ASSERT_EQ(session.document().problems.size(), 1U) << line;
         EXPECT_EQ(session.document().problems[0].at.line, line) << session.document().problems[0].what();
         EXPECT_EQ(session.document().text, wrong);
         EXPECT_EQ(to_text(session.trajectory()), before);
         EXPECT_NE(to_text(session).find("problem "), std::string::npos);
     }
-    session.apply(command::Text{text});
+    session.apply(command::SetText{text});
     EXPECT_TRUE(session.document().problems.empty());
     EXPECT_EQ(to_text(session), to_text(test::session("ball_on_sine")));
 }
 
-TEST(Session, opens_a_file_that_is_no_system_in_the_editor) {
+TEST(Session, OpensAFileThatIsNoSystemInTheEditor) {
     const test::Folder folder;
     folder.put("wrong.toml", "title = 3");
     const std::string wrong = (folder.path() / "wrong.toml").string();
@@ -291,7 +291,7 @@ TEST(Session, opens_a_file_that_is_no_system_in_the_editor) {
     EXPECT_EQ(session.system(), "ball_on_sine");
 }
 
-TEST(Session, begins_a_new_system) {
+TEST(Session, BeginsANewSystem) {
     Session session = test::session("double_pendulum");
     session.apply(command::New{});
     EXPECT_TRUE(session.document().problems.empty());
@@ -301,13 +301,13 @@ TEST(Session, begins_a_new_system) {
     EXPECT_EQ(session.trajectory().phases.size(), 2U) << "it comes to rest past a Zeno point";
 }
 
-TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
+TEST(Session, SavesWhereItIsToldAndWritesOverItsOwnFileAlone) {
     const test::Folder folder;
     folder.put("other.toml", "other");
     const std::string mine = (folder.path() / "mine.toml").string(), other = (folder.path() / "other.toml").string();
     Session session = test::session("ball_on_sine");
     session.apply(command::Set{"g", 2.0});
-    session.apply(command::Text{session.document().text + "# mine\n"});
+    session.apply(command::SetText{session.document().text + "# mine\n"});
     session.apply(command::Save{other});
     EXPECT_NE(session.error().find("the file already exists"), std::string::npos);
     EXPECT_EQ(test::content(other), "other");
@@ -322,7 +322,7 @@ TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
     EXPECT_FALSE(session.document().is_changed());
     EXPECT_EQ(session.system(), mine);
     EXPECT_EQ(session.run().parameters[1], 2.0);
-    session.apply(command::Text{session.document().text + "# more\n"});
+    session.apply(command::SetText{session.document().text + "# more\n"});
     session.apply(command::Save{folder.path() / "." / "mine.toml"});
     EXPECT_EQ(session.error(), "");
     EXPECT_EQ(test::content(mine), session.document().text);
@@ -331,7 +331,7 @@ TEST(Session, saves_where_it_is_told_and_writes_over_its_own_file_alone) {
     EXPECT_EQ(folder.files().size(), 2U);
 }
 
-TEST(Turns, are_all_events_but_the_impacts) {
+TEST(ContactChanges, AreAllEventsButTheImpacts) {
     std::size_t found = 0;
     for (const char* system : {"ball_on_sine", "double_pendulum", "triple_pendulum", "cart_pendulum",
                                "ball_on_egg_crate", "impact_oscillator", "falling_rod", "bead_in_ring"}) {
@@ -346,7 +346,7 @@ TEST(Turns, are_all_events_but_the_impacts) {
     EXPECT_GT(found, 20U);
 }
 
-TEST(Session, knows_where_the_present_stands_in_a_plot) {
+TEST(Session, KnowsWhereThePresentStandsInAPlot) {
     Session session = test::session("double_pendulum");
     session.apply(command::Seek{2.0});
     const std::vector<double> values = session.values(0, session.now());

@@ -9,7 +9,7 @@
 #include "app/hands.hpp"
 #include "output/output.hpp"
 #include "panels/slider.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -22,7 +22,7 @@ struct SliderHand : test::Hands {
     }
 };
 
-TEST(Slider, a_double_click_types_a_value_and_moves_nothing) {
+TEST(Slider, ADoubleClickTypesAValueAndMovesNothing) {
     for (const char* place : {"set g", "value of set g"}) {
         SliderHand hands("ball_on_sine");
         hands.double_click(place, 0.9);
@@ -39,7 +39,7 @@ TEST(Slider, a_double_click_types_a_value_and_moves_nothing) {
     }
 }
 
-TEST(Slider, what_is_given_up_changes_nothing) {
+TEST(Slider, WhatIsGivenUpChangesNothing) {
     SliderHand hands("ball_on_sine");
     hands.double_click("value of set g");
     hands.type("5");
@@ -62,7 +62,7 @@ int pixels(SliderHand& hands, const std::string& place, const Color& color) {
     return count;
 }
 
-TEST(Slider, what_is_no_number_turns_the_field_red_and_says_why) {
+TEST(Slider, WhatIsNoNumberTurnsTheFieldRedAndSaysWhy) {
     for (const auto& [text, why] :
          {std::pair{"0,4", "write a decimal point, 0.4"}, std::pair{"abc", "pi is the only name allowed here"},
           std::pair{"1/", "ends where a value"}, std::pair{"30 deg", "the unit is rad"}}) {
@@ -94,7 +94,7 @@ TEST(Slider, what_is_no_number_turns_the_field_red_and_says_why) {
     EXPECT_EQ(hands.session.run().parameters[1], 1.0);
 }
 
-TEST(Slider, an_angle_is_typed_in_degrees) {
+TEST(Slider, AnAngleIsTypedInDegrees) {
     SliderHand hands("double_pendulum");
     hands.double_click("value of set theta1");
     EXPECT_EQ(hands.state.typed.text, "30");
@@ -111,7 +111,7 @@ TEST(Slider, an_angle_is_typed_in_degrees) {
     }
 }
 
-TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
+TEST(Slider, ARightClickPutsBackExactlyWhatTheFileHas) {
     SliderHand hands("double_pendulum");
     const auto file = hands.session.model()->default_run();
     for (const char* line :
@@ -123,7 +123,7 @@ TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
          {"set m1", "value of set theta1", "set theta2'", "tolerance", "end", "eps q", "value of eps v", "eps t"}) {
         hands.all.clear();
         hands.right_click(place);
-        std::erase(hands.all, Command(command::Done{}));  // ends the change of the previous slider
+        std::erase(hands.all, Command(command::EndEdit{}));  // ends the change of the previous slider
         EXPECT_EQ(hands.all.size(), 1U) << place;
     }
     const auto now = hands.session.run();
@@ -137,11 +137,11 @@ TEST(Slider, a_right_click_puts_back_exactly_what_the_file_has) {
     EXPECT_EQ(now.options.truncation.eps_t, file.options.truncation.eps_t);
     hands.all.clear();
     hands.right_click("set m1");
-    std::erase(hands.all, Command(command::Done{}));
+    std::erase(hands.all, Command(command::EndEdit{}));
     EXPECT_TRUE(hands.all.empty()) << "it is the file's already";
 }
 
-TEST(Slider, all_values_are_reset_at_once_and_that_is_undone_at_once) {
+TEST(Slider, AllValuesAreResetAtOnceAndThatIsUndoneAtOnce) {
     SliderHand hands("ball_on_sine");
     const std::string before = to_text(hands.session.trajectory());
     EXPECT_FALSE(hands.state.places.contains("reset all"));
@@ -163,7 +163,7 @@ TEST(Slider, all_values_are_reset_at_once_and_that_is_undone_at_once) {
 }
 
 // Values without a slider can differ from the file, too.
-TEST(Slider, every_value_can_be_reset) {
+TEST(Slider, EveryValueCanBeReset) {
     for (const char* line :
          {"method dopri5", "max-impacts 1000", "max-steps 100000", "memory 2e8", "eps 1e-5 1e-6 1e-6",
           "reinitialization euclidean", "tolerance 1e-9", "set e 0.4", "set y' 0.1"}) {
@@ -185,7 +185,7 @@ std::vector<double> values(const Session& session) {
     return all;
 }
 
-TEST(Slider, every_change_of_the_hand_is_undone) {
+TEST(Slider, EveryChangeOfTheHandIsUndone) {
     for (const char* place : {"set e", "set y", "set x'", "tolerance", "end", "eps", "eps v"}) {
         SliderHand hands("ball_on_sine");
         const std::vector<double> before = values(hands.session);
@@ -199,7 +199,7 @@ TEST(Slider, every_change_of_the_hand_is_undone) {
     }
 }
 
-TEST(Slider, two_drags_of_one_slider_are_two_changes) {
+TEST(Slider, TwoDragsOfOneSliderAreTwoChanges) {
     SliderHand hands("ball_on_sine");
     const auto e = [&] { return *hands.session.value("e"); };
     const double first = e();
@@ -215,7 +215,7 @@ TEST(Slider, two_drags_of_one_slider_are_two_changes) {
     EXPECT_EQ(e(), first);
 }
 
-TEST(Slider, a_click_moves_it_once_it_is_no_double_click) {
+TEST(Slider, AClickMovesItOnceItIsNoDoubleClick) {
     SliderHand hands("ball_on_sine");
     hands.point("set g", 0.8);
     hands.hand.left = true;
@@ -246,7 +246,7 @@ TEST(Slider, a_click_moves_it_once_it_is_no_double_click) {
     EXPECT_LT(*hands.session.value("g"), 1.0);
 }
 
-TEST(Slider, every_undo_takes_something_back) {
+TEST(Slider, EveryUndoTakesSomethingBack) {
     SliderHand hands("ball_on_sine");
     std::vector<std::vector<double>> moments{values(hands.session)};
     const auto done = [&] { moments.push_back(values(hands.session)); };
@@ -269,7 +269,7 @@ TEST(Slider, every_undo_takes_something_back) {
     hands.hand.left = false;
     hands.rest(2);
     hands.session.apply(command::Set{"m", 1.0});
-    hands.session.apply(command::Done{});
+    hands.session.apply(command::EndEdit{});
     hands.session.apply(command::Fit{1});
     hands.click("set x'", 0.9), done();
     hands.hand.mouse_y = -1e6;
@@ -284,7 +284,7 @@ TEST(Slider, every_undo_takes_something_back) {
 }
 
 // The tooltip is placed beside the value and hidden while the value changes.
-TEST(Slider, no_tooltip_covers_the_value) {
+TEST(Slider, NoTooltipCoversTheValue) {
     SliderHand hands("ball_on_sine");
     for (const char* place : {"set g", "value of set g", "end"}) {
         hands.point(place, 0.4);
@@ -302,7 +302,7 @@ TEST(Slider, no_tooltip_covers_the_value) {
     }
 }
 
-TEST(Slider, a_changed_value_is_marked) {
+TEST(Slider, AChangedValueIsMarked) {
     SliderHand hands("ball_on_sine");
     const auto accents = [&] {
         const Image picture = hands.picture();
@@ -324,7 +324,7 @@ TEST(Slider, a_changed_value_is_marked) {
     EXPECT_EQ(accents(), 0);
 }
 
-TEST(Slider, the_roundest_number_has_the_fewest_digits) {
+TEST(Slider, TheRoundestNumberHasTheFewestDigits) {
     struct Case {
         double low, high, roundest;
     };
@@ -336,7 +336,7 @@ TEST(Slider, the_roundest_number_has_the_fewest_digits) {
 }
 
 // The result of a drag is round and within one pixel of the mouse.
-TEST(Slider, a_drag_takes_round_numbers) {
+TEST(Slider, ADragTakesRoundNumbers) {
     SliderHand hands("ball_on_sine");
     const double width = hands.state.places.at("set e").width;
     hands.point("set e", 0.2);
@@ -360,7 +360,7 @@ TEST(Slider, a_drag_takes_round_numbers) {
     EXPECT_NE(*angle.session.value("theta1"), angle.session.file_run().q[0]);
 }
 
-TEST(Slider, shift_makes_a_drag_fine) {
+TEST(Slider, ShiftMakesADragFine) {
     SliderHand hands("ball_on_sine");
     const auto drag = [&](std::vector<int> keys, double pixels) {
         hands.session.apply(parse_command("set g 1"));
@@ -388,10 +388,10 @@ TEST(Slider, shift_makes_a_drag_fine) {
 }
 
 // A drag to the file's value selects exactly that value, however many digits it has.
-TEST(Slider, a_drag_back_takes_exactly_the_files_value) {
+TEST(Slider, ADragBackTakesExactlyTheFilesValue) {
     SliderHand hands("ball_on_sine");
-    hands.session.apply(
-        command::Text{std::regex_replace(hands.session.document().text, std::regex("value = 0.5"), "value = 0.4567")});
+    hands.session.apply(command::SetText{
+        std::regex_replace(hands.session.document().text, std::regex("value = 0.5"), "value = 0.4567")});
     hands.rest(2);
     ASSERT_EQ(*hands.session.value("e"), 0.4567);
     hands.point("set e", 0.4567);
@@ -410,7 +410,7 @@ TEST(Slider, a_drag_back_takes_exactly_the_files_value) {
     EXPECT_EQ(*hands.session.value("e"), 0.4567);
 }
 
-TEST(Slider, counts_and_the_method_stand_in_accuracy) {
+TEST(Slider, CountsAndTheMethodStandInAccuracy) {
     SliderHand hands("ball_on_sine");
     hands.click("max impacts", 0.2);
     hands.click("max steps", 0.2);
@@ -425,7 +425,7 @@ TEST(Slider, counts_and_the_method_stand_in_accuracy) {
 }
 
 // All differences are listed with the file's values; a click restores one, with or without a slider.
-TEST(Slider, all_differences_are_listed_and_put_back) {
+TEST(Slider, AllDifferencesAreListedAndPutBack) {
     SliderHand hands("double_pendulum");
     hands.session.apply(command::Show{"accuracy", false});
     for (const char* line : {"set m1 2", "set theta1 -0.5", "memory 2e8", "eps 1e-3 1e-4 1e-5"})
@@ -437,10 +437,10 @@ TEST(Slider, all_differences_are_listed_and_put_back) {
     ASSERT_EQ(all.size(), 4U);
     EXPECT_EQ(all[1].now, "\u221228.6479\u00b0");
     EXPECT_EQ(all[1].other, "30\u00b0");
-    for (const Difference& difference : all) {
+    for (const RunDifference& difference : all) {
         hands.all.clear();
         hands.click("put back " + difference.name);
-        std::erase(hands.all, Command(command::Done{}));
+        std::erase(hands.all, Command(command::EndEdit{}));
         EXPECT_EQ(hands.all, std::vector<Command>{difference.back}) << difference.name;
         hands.rest(2);
     }

@@ -10,8 +10,8 @@
 #include "journal/journal.hpp"
 #include "number/angle.hpp"
 #include "panels/widgets.hpp"
-#include "pictures/take_away.hpp"
-#include "session/recipe.hpp"
+#include "pictures/export.hpp"
+#include "session/replay_script.hpp"
 
 namespace achilles {
 namespace {
@@ -31,7 +31,7 @@ Session swept(const std::string& system, const std::string& text) {
     return session;
 }
 
-TEST(SweepPanel, begins_with_the_restitution_and_the_first_zeno_time) {
+TEST(SweepPanel, BeginsWithTheRestitutionAndTheFirstZenoTime) {
     Session session = test::session("ball_on_sine");
     EXPECT_EQ(session.sweep_job().data(), nullptr);
     session.apply(command::Show{"sweep", true});
@@ -44,13 +44,13 @@ TEST(SweepPanel, begins_with_the_restitution_and_the_first_zeno_time) {
     EXPECT_FALSE(session.sweep_job().is_busy());
 }
 
-TEST(SweepPanel, shows_what_single_runs_say) {
+TEST(SweepPanel, ShowsWhatSingleRunsSay) {
     Session session = swept("ball_on_sine", "--over x'=0:3:5 --over e=0.2:0.8:4 --print \"zeno_time(1)\" --print x");
     const SweepData& data = *session.sweep_job().data();
     ASSERT_EQ(data.count(), 20U);
     for (const std::size_t row : {0U, 7U, 19U}) {
         Session single = test::session("ball_on_sine");
-        single.apply(command::Start{{{"x'", data.value(0, row)}, {"e", data.value(1, row)}}});
+        single.apply(command::SetStart{{{"x'", data.value(0, row)}, {"e", data.value(1, row)}}});
         const auto& events = single.trajectory().events;
         const auto zeno = std::find_if(events.begin(), events.end(),
                                        [](const Event& event) { return event.kind == Event::Kind::zeno; });
@@ -93,12 +93,12 @@ TEST(SweepPanel, RefusesMoreThanItDraws) {
         << session.error();
 }
 
-TEST(SweepPanel, goes_from_coarse_to_fine) {
+TEST(SweepPanel, GoesFromCoarseToFine) {
     const Session session = test::session("ball_on_sine");
     const auto counts = [&](const std::string& text) {
         std::vector<std::uint64_t> all;
-        Sweep sweep = read_sweep(text, session.description());
-        for (const Sweep& level : coarse_to_fine(sweep)) all.push_back(level.count());
+        SweepSpec sweep = read_sweep(text, session.description());
+        for (const SweepSpec& level : coarse_to_fine(sweep)) all.push_back(level.count());
         return all;
     };
     using Counts = std::vector<std::uint64_t>;
@@ -108,12 +108,12 @@ TEST(SweepPanel, goes_from_coarse_to_fine) {
     EXPECT_EQ(counts("--over e=0:0.9:20 --print x"), (Counts{20}));
     // A section of a single run: with increasing length.
     std::vector<double> ends;
-    for (const Sweep& level : coarse_to_fine(read_sweep("--at impact --print x", session.description())))
+    for (const SweepSpec& level : coarse_to_fine(read_sweep("--at impact --print x", session.description())))
         ends.push_back(level.base.options.end_time);
     EXPECT_EQ(ends, (std::vector<double>{0.3125, 1.25, 5.0, 20.0}));
 }
 
-TEST(SweepPanel, is_made_anew_where_something_else_changes) {
+TEST(SweepPanel, IsMadeAnewWhereSomethingElseChanges) {
     Session session = swept("ball_on_sine", "--over e=0:0.9:16 --print \"zeno_time(1)\"");
     const auto before = session.sweep_job().data();
     session.apply(command::Set{"e", 0.7});  // the cross hair moves, the picture stays
@@ -125,7 +125,7 @@ TEST(SweepPanel, is_made_anew_where_something_else_changes) {
     EXPECT_NE(session.sweep_job().data()->number(8, 0), before->number(8, 0));
 }
 
-TEST(SweepPanel, refuses_what_cannot_be_shown_and_keeps_what_there_is) {
+TEST(SweepPanel, RefusesWhatCannotBeShownAndKeepsWhatThereIs) {
     Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print x");
     EXPECT_NE(refused(session, "--over f=0:1:8 --print x").find("'f'"), std::string::npos) << session.error();
     EXPECT_NE(refused(session, "--over e=0:0.9:8").find("name at least one quantity to print"), std::string::npos)
@@ -142,7 +142,7 @@ TEST(SweepPanel, refuses_what_cannot_be_shown_and_keeps_what_there_is) {
     EXPECT_EQ(session.sweep_job().problem(), "");
 }
 
-TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
+TEST(SweepPanel, IsInTheRecipeAndOnTheCommandLine) {
     Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print \"zeno_time(1)\"");
     session.apply(command::Set{"g", 5.0});
     Session again = test::session("ball_on_sine");
@@ -158,21 +158,21 @@ TEST(SweepPanel, is_in_the_recipe_and_on_the_command_line) {
               "ball_on_sine-sweep.svg");
 }
 
-TEST(SweepPanel, asks_for_sections_of_runs_that_are_longer_than_the_file_says) {
+TEST(SweepPanel, AsksForSectionsOfRunsThatAreLongerThanTheFileSays) {
     Session session = test::session("ball_on_vibrating_table");  // takes 10 s
     const std::string late = "--over om=5:15:8 --at impact --after 50 --print y'";
     EXPECT_NE(refused(session, late).find("--after 50: the runs end at 10"), std::string::npos);
-    session.apply(command::End{60.0});
+    session.apply(command::SetEndTime{60.0});
     EXPECT_EQ(refused(session, late), "");
     session.settle();
     EXPECT_EQ(session.sweep_job().problem(), "");
-    session.apply(command::End{40.0});
+    session.apply(command::SetEndTime{40.0});
     session.settle();
     EXPECT_EQ(session.error(), "");
     EXPECT_EQ(session.sweep_job().problem(), "--after 50: the runs end at 40");
 }
 
-TEST(SweepPanel, takes_the_hand_to_another_run) {
+TEST(SweepPanel, TakesTheHandToAnotherRun) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::ShowSweep{"--over e=0.1:0.9:9 --over x'=0:2:9 --print \"zeno_time(1)\""});
     hands.session.settle();
@@ -185,7 +185,7 @@ TEST(SweepPanel, takes_the_hand_to_another_run) {
 }
 
 // Angles are displayed in degrees; the slider's command uses the file's unit.
-TEST(SweepPanel, takes_the_hand_to_an_angle) {
+TEST(SweepPanel, TakesTheHandToAnAngle) {
     Hands hands("double_pendulum");
     hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
     hands.session.settle();
@@ -202,7 +202,7 @@ TEST(SweepPanel, takes_the_hand_to_an_angle) {
     EXPECT_NEAR(*hands.state.sweep.measure, degrees(hands.session.samples().back().state.q[1]), 1e-6);
 }
 
-TEST(SweepPanel, shows_the_present_run_on_its_curve) {
+TEST(SweepPanel, ShowsThePresentRunOnItsCurve) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::ShowSweep{"--over e=0.1:0.9:9 --print \"zeno_time(1)\""});
     hands.session.settle();
@@ -215,7 +215,7 @@ TEST(SweepPanel, shows_the_present_run_on_its_curve) {
     EXPECT_EQ(*hands.state.sweep.measure, zeno->t);
 }
 
-TEST(SweepPanel, is_chosen_from_menus) {
+TEST(SweepPanel, IsChosenFromMenus) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"sweep", true});
     hands.rest(2);
@@ -239,7 +239,7 @@ TEST(SweepPanel, is_chosen_from_menus) {
 }
 
 // In degrees by default, as for the slider.
-TEST(SweepPanel, takes_limits_in_degrees) {
+TEST(SweepPanel, TakesLimitsInDegrees) {
     Hands hands("double_pendulum");
     hands.session.apply(command::ShowSweep{"--over theta1=-0.5:0.5:9 --print theta2"});
     hands.session.settle();
@@ -261,7 +261,7 @@ TEST(SweepPanel, takes_limits_in_degrees) {
 }
 
 // Prints positions for sweep_window_test.sh.
-TEST(SweepPanel, tells_where_it_is) {
+TEST(SweepPanel, TellsWhereItIs) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"sweep", true});
     hands.session.settle();
@@ -276,7 +276,7 @@ TEST(SweepPanel, tells_where_it_is) {
     tell("rate", "sweep y x'");
 }
 
-TEST(SweepPanel, takes_the_name_of_a_slider_onto_an_axis) {
+TEST(SweepPanel, TakesTheNameOfASliderOntoAnAxis) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"sweep", true});
     hands.session.settle();

@@ -164,11 +164,11 @@ TEST(SweepWork, IsTheSameFromItsOrder) {
     base.options.end_time = 7.0;
     base.options.tolerance = 1e-9;
     base.options.truncation.eps_q = 1e-5;
-    const Sweep sweep = make_sweep({{"x=-3:3:40", "y=-1:1:3"}, {"x", "zeno_time(1)/3", "held"}}, base, description);
+    const SweepSpec sweep = make_sweep({{"x=-3:3:40", "y=-1:1:3"}, {"x", "zeno_time(1)/3", "held"}}, base, description);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
-    const SweepKept kept{true, true, true};
+    const RowStorage kept{true, true, true};
     const std::string order = sweep_order(table, kept, 3);
-    const Share share = sweep_share(order);
+    const RankTask share = sweep_share(order);
     EXPECT_EQ(share.threads, 3);
     EXPECT_EQ(share.task({5, 40}), sweep_chunk(table, kept, {5, 40}));
     EXPECT_NE(share.task({5, 40}), sweep_chunk(table, {true, false, true}, {5, 40}));
@@ -177,7 +177,7 @@ TEST(SweepWork, IsTheSameFromItsOrder) {
     RunFailures failures, none;
     SweepSummary summary(table), whole(table);
     const std::string bytes = failures.take(summary.take(sweep_chunk(table, kept, {0, 120})));
-    EXPECT_EQ(bytes, kept_bytes(table, kept, table.rows(0, 120)));
+    EXPECT_EQ(bytes, serialize_rows(table, kept, table.rows(0, 120)));
     whole.note(table.rows(0, 120));
     EXPECT_EQ(summary.text(), whole.text());
     EXPECT_EQ(none.behind("a"), std::string("a\0", 2));

@@ -35,7 +35,7 @@ void tell(const Hands& hands, const std::string& name, const std::string& place)
                 static_cast<int>(r.y + 0.5F * r.height), static_cast<int>(r.width), static_cast<int>(r.height));
 }
 
-TEST(Tasks, a_time_and_its_interval_are_read_without_a_click) {
+TEST(Tasks, ATimeAndItsIntervalAreReadWithoutAClick) {
     Hands hands("ball_on_sine", surface);
     const int zeno = event_number(hands.session, Event::Kind::zeno, 2);
     ASSERT_GT(zeno, 0);
@@ -52,7 +52,7 @@ TEST(Tasks, a_time_and_its_interval_are_read_without_a_click) {
     tell(hands, "mechanism", "mechanism");
 }
 
-TEST(Tasks, a_release_has_its_reason_after_a_click) {
+TEST(Tasks, AReleaseHasItsReasonAfterAClick) {
     Hands hands("ball_on_sine", surface);
     const std::string place = "result " + std::to_string(event_number(hands.session, Event::Kind::release, 1));
     hands.click(place);
@@ -60,7 +60,7 @@ TEST(Tasks, a_release_has_its_reason_after_a_click) {
     tell(hands, "release", place);
 }
 
-TEST(Tasks, two_runs_are_compared_after_three_clicks_and_a_number) {
+TEST(Tasks, TwoRunsAreComparedAfterThreeClicksAndANumber) {
     Hands hands("ball_on_sine", surface);
     tell(hands, "pin", "pin");
     tell(hands, "e", "value of set e");
@@ -85,7 +85,7 @@ TEST(Tasks, two_runs_are_compared_after_three_clicks_and_a_number) {
             }
 }
 
-TEST(Tasks, one_plot_is_saved_after_two_clicks_and_Enter) {
+TEST(Tasks, OnePlotIsSavedAfterTwoClicksAndEnter) {
     const test::Folder folder;
     const auto here = std::filesystem::current_path();
     std::filesystem::current_path(folder.path());
@@ -109,7 +109,7 @@ TEST(Tasks, one_plot_is_saved_after_two_clicks_and_Enter) {
     std::filesystem::current_path(here);
 }
 
-TEST(Tasks, a_mistake_is_taken_back_at_once) {
+TEST(Tasks, AMistakeIsTakenBackAtOnce) {
     Hands hands("ball_on_sine", surface);
     const std::string text = hands.session.document().text, run = to_text(hands.session.trajectory());
     hands.session.apply(command::Show{"editor", true});
@@ -135,7 +135,7 @@ TEST(Tasks, a_mistake_is_taken_back_at_once) {
 }
 
 // In a valid text, undo takes back single letters.
-TEST(Tasks, undo_in_a_good_text_takes_letters) {
+TEST(Tasks, UndoInAGoodTextTakesLetters) {
     Hands hands("ball_on_sine", surface);
     hands.session.apply(command::Show{"editor", true});
     hands.rest(2);
@@ -195,7 +195,7 @@ Rectangle answer_of(const std::string& task, Hands& hands) {
 }
 
 // The script saves for every task the screen, the record, and the mouse position.
-TEST(TasksOnDisplay, the_window_answers_what_its_record_says) {
+TEST(TasksOnDisplay, TheWindowAnswersWhatItsRecordSays) {
     const char* given = std::getenv("ACHILLES_TASKS");
     if (given == nullptr) GTEST_SKIP() << "no ACHILLES_TASKS";
     for (const char* task : {"read", "why", "compare", "save", "own", "typo"}) {

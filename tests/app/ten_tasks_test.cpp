@@ -9,7 +9,7 @@
 #include "app/program.hpp"
 #include "cli/explore.hpp"
 #include "figure/camera.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "panels/widgets.hpp"
@@ -53,7 +53,7 @@ std::string result(const Hands& hands) {
     return "result " + std::to_string(second_zeno(hands.session.trajectory()) + 1);
 }
 
-TEST(TenTasks, the_zeno_condition_has_its_value_at_an_impact) {
+TEST(TenTasks, TheZenoConditionHasItsValueAtAnImpact) {
     Hands hands("ball_on_sine", surface);
     use(hands, "equations", "tab equations");
     use(hands, "zeno", result(hands));
@@ -64,7 +64,7 @@ TEST(TenTasks, the_zeno_condition_has_its_value_at_an_impact) {
     EXPECT_TRUE(hands.says("< 0: bouncing would end at a Zeno point")) << hands.letters();
 }
 
-TEST(TenTasks, what_differs_from_the_file_is_seen_without_a_hand) {
+TEST(TenTasks, WhatDiffersFromTheFileIsSeenWithoutAHand) {
     Hands hands("ball_on_sine", surface);
     for (const char* command : {"set e 0.3", "set x' 1.2", "method dopri5"}) give(hands, command);
     EXPECT_TRUE(hands.says("Differs from the file"));
@@ -72,7 +72,7 @@ TEST(TenTasks, what_differs_from_the_file_is_seen_without_a_hand) {
         EXPECT_TRUE(hands.says(line)) << line << ": " << hands.letters();
 }
 
-TEST(TenTasks, three_restitutions_have_their_second_zeno_times_in_a_table) {
+TEST(TenTasks, ThreeRestitutionsHaveTheirSecondZenoTimesInATable) {
     Hands hands("ball_on_sine", surface);
     use(hands, "pin", "pin");
     give(hands, "set e 0.3");
@@ -84,7 +84,7 @@ TEST(TenTasks, three_restitutions_have_their_second_zeno_times_in_a_table) {
         EXPECT_TRUE(hands.says(number(run->events[second_zeno(*run)].t, "{:.10g}"))) << hands.letters();
 }
 
-TEST(TenTasks, a_figure_has_the_width_of_a_column_and_letters_of_8_points) {
+TEST(TenTasks, AFigureHasTheWidthOfAColumnAndLettersOf8Points) {
     const test::Folder folder;
     Session session = test::session("ball_on_sine");
     session.apply(parse_command("export " + (folder.path() / "height.svg").string() + " plot 2 width 85 font 8"));
@@ -92,7 +92,7 @@ TEST(TenTasks, a_figure_has_the_width_of_a_column_and_letters_of_8_points) {
     EXPECT_NE(test::content(folder.path() / "height.svg").find("width=\"85mm\""), std::string::npos);
 }
 
-TEST(TenTasks, a_class_sees_one_plot_in_large_letters) {
+TEST(TenTasks, AClassSeesOnePlotInLargeLetters) {
     Hands hands("ball_on_sine", surface);
     hands.press(key::f11);
     EXPECT_TRUE(hands.session.scene().presents());
@@ -105,7 +105,7 @@ TEST(TenTasks, a_class_sees_one_plot_in_large_letters) {
         EXPECT_FALSE(hands.state.places.contains(hidden)) << hidden;
 }
 
-TEST(TenTasks, the_last_bounces_are_seen_in_the_mechanism) {
+TEST(TenTasks, TheLastBouncesAreSeenInTheMechanism) {
     Hands hands("ball_on_sine", surface);
     hands.click(result(hands));
     hands.press(key::left);
@@ -120,7 +120,7 @@ TEST(TenTasks, the_last_bounces_are_seen_in_the_mechanism) {
     EXPECT_LT(width(CameraMode::zeno), 1e-3 * width(CameraMode::fit));
 }
 
-TEST(TenTasks, a_system_of_several_contacts_is_found_by_its_group) {
+TEST(TenTasks, ASystemOfSeveralContactsIsFoundByItsGroup) {
     Hands hands("ball_on_sine", surface);
     hands.state.systems = known_systems();
     hands.press_with_control('G');
@@ -140,7 +140,7 @@ TEST(TenTasks, a_system_of_several_contacts_is_found_by_its_group) {
     EXPECT_GT(hands.session.model()->contacts(), 1U);
 }
 
-TEST(TenTasks, what_impacts_took_is_said_beside_the_energy) {
+TEST(TenTasks, WhatImpactsTookIsSaidBesideTheEnergy) {
     Hands hands("ball_on_sine", surface);
     use(hands, "view", "menu View");
     use(hands, "view_energy", "menu Energy");
@@ -148,7 +148,7 @@ TEST(TenTasks, what_impacts_took_is_said_beside_the_energy) {
     EXPECT_TRUE(hands.says("impact loss")) << hands.letters();
 }
 
-TEST(TenTasks, a_file_of_yesterday_stands_in_the_menu) {
+TEST(TenTasks, AFileOfYesterdayStandsInTheMenu) {
     Hands hands("ball_on_sine", surface);
     hands.state.recent = {"/elsewhere/mine.toml"};
     use(hands, "file", "menu File");

@@ -27,7 +27,7 @@ std::vector<Command> journal(const std::string& name) {
 class Tours : public testing::TestWithParam<std::string> {};
 
 // Their final states are golden files: tests/golden.
-TEST_P(Tours, do_nothing_that_is_refused) {
+TEST_P(Tours, DoNothingThatIsRefused) {
     Session session = test::session("ball_on_floor");
     for (const Command& command : journal(GetParam())) {
         session.apply(command);
@@ -36,7 +36,7 @@ TEST_P(Tours, do_nothing_that_is_refused) {
 }
 
 // A tour works from any session state.
-TEST_P(Tours, begin_wherever_a_session_stands) {
+TEST_P(Tours, BeginWhereverASessionStands) {
     Session fresh = test::session("ball_on_floor"), used = test::session("ball_on_sine");
     for (const char* line :
          {"pin", "show lens", "speed 7", "loop on", "select 3", "grid 1 1", "set e 0.2", "show editor"})
@@ -46,7 +46,7 @@ TEST_P(Tours, begin_wherever_a_session_stands) {
     EXPECT_EQ(to_text(used), to_text(fresh));
 }
 
-TEST_P(Tours, end_the_same_at_any_pace) {
+TEST_P(Tours, EndTheSameAtAnyPace) {
     Session at_once = test::session("ball_on_floor"), slowly = test::session("ball_on_floor");
     for (const Command& command : journal(GetParam())) at_once.apply(command);
     Tour tour(journal(GetParam()));
@@ -57,7 +57,7 @@ TEST_P(Tours, end_the_same_at_any_pace) {
     EXPECT_EQ(to_text(slowly), to_text(at_once));
 }
 
-TEST_P(Tours, draw_the_same_pixels_twice) {
+TEST_P(Tours, DrawTheSamePixelsTwice) {
     const SurfaceOptions options = test::surface(900, 640);
     test::Hands a("ball_on_floor", options), b("ball_on_floor", options);
     for (test::Hands* hands : {&a, &b})
@@ -66,7 +66,7 @@ TEST_P(Tours, draw_the_same_pixels_twice) {
 }
 
 // The mechanism does not move between captions.
-TEST_P(Tours, say_what_fits) {
+TEST_P(Tours, SayWhatFits) {
     test::Hands hands("ball_on_floor");
     hands.state.on_tour = true;
     float top = 0.0F;
@@ -84,9 +84,9 @@ TEST_P(Tours, say_what_fits) {
 
 INSTANTIATE_TEST_SUITE_P(Journals, Tours, testing::ValuesIn(names()));
 
-TEST(Tour, there_are_four) { EXPECT_GE(names().size(), 4U); }
+TEST(Tour, ThereAreFour) { EXPECT_GE(names().size(), 4U); }
 
-TEST(Tour, waits_add_up) {
+TEST(Tour, WaitsAddUp) {
     Tour tour({command::Play{}, command::Wait{1.0}, command::Pause{}, command::Wait{0.25}, command::Seek{1.0}});
     EXPECT_EQ(tour.advance(0.0), (std::vector<Command>{command::Play{}}));
     EXPECT_EQ(tour.advance(0.75), (std::vector<Command>{command::Wait{0.75}}));
@@ -104,7 +104,7 @@ std::vector<Command> lines(std::initializer_list<const char*> texts) {
     return commands;
 }
 
-TEST(Tour, goes_back_a_sentence) {
+TEST(Tour, GoesBackASentence) {
     const auto all = lines({"unpin", "open ball_on_sine", "say \"1\"", "wait 1", "set e 0.4", "say \"2\"", "wait 2",
                             "seek 1", "say \"3\"", "wait 3", "say \"\""});
     Tour tour(all);
@@ -126,7 +126,7 @@ TEST(Tour, goes_back_a_sentence) {
 }
 
 // File output is not repeated, and the commands of a replayed journal appear once.
-TEST(Tour, goes_back_without_writing_again) {
+TEST(Tour, GoesBackWithoutWritingAgain) {
     Tour tour(lines({"say \"1\"", "replay inner", "say \"2\"", "wait 1", "say \"3\"", "wait 1"}));
     tour.advance(0.0);
     tour.begin(lines({"export a.svg", "set e 0.3"}));
@@ -136,7 +136,7 @@ TEST(Tour, goes_back_without_writing_again) {
 }
 
 // Going back from any caption restores the session at the previous one.
-TEST_P(Tours, lead_back_to_what_was) {
+TEST_P(Tours, LeadBackToWhatWas) {
     Session forward = test::session("ball_on_floor");
     Tour tour(journal(GetParam()));
     std::vector<std::string> states;
@@ -159,7 +159,7 @@ TEST_P(Tours, lead_back_to_what_was) {
     }
 }
 
-TEST(Tour, has_buttons_and_says_how_far_it_is) {
+TEST(Tour, HasButtonsAndSaysHowFarItIs) {
     test::Hands hands("ball_on_sine");
     hands.session.apply(command::Say{"A sentence."});
     hands.state.on_tour = true;
@@ -167,18 +167,18 @@ TEST(Tour, has_buttons_and_says_how_far_it_is) {
     hands.rest(2);
     EXPECT_TRUE(hands.says("4/12"));
     hands.click("tour back");
-    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::back);
-    hands.state.tour_wants = PanelState::OnTour::nothing;
+    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::back);
+    hands.state.tour_wants = PanelState::TourAction::none;
     hands.press(key::backspace);
-    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::back);
-    hands.state.tour_wants = PanelState::OnTour::nothing;
+    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::back);
+    hands.state.tour_wants = PanelState::TourAction::none;
     hands.state.tour_said = 1;
     hands.click("tour back");
-    EXPECT_EQ(hands.state.tour_wants, PanelState::OnTour::nothing) << "there is none before the first";
+    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::none) << "there is none before the first";
 }
 
 // A panel is framed until the next caption.
-TEST(Tour, frames_what_it_is_about) {
+TEST(Tour, FramesWhatItIsAbout) {
     test::Hands hands("ball_on_sine");
     const Image before = hands.picture();
     for (const std::string& panel : command::highlighted_panels) {
@@ -195,7 +195,7 @@ TEST(Tour, frames_what_it_is_about) {
     EXPECT_THROW(parse_command("highlight plot"), InputError);
 }
 
-TEST(Tour, a_journal_in_a_journal_comes_first) {
+TEST(Tour, AJournalInAJournalComesFirst) {
     Tour tour({command::Replay{"a"}, command::Seek{1.0}});
     EXPECT_EQ(tour.advance(1.0), (std::vector<Command>{command::Replay{"a"}}));
     tour.begin({command::Play{}});
@@ -203,7 +203,7 @@ TEST(Tour, a_journal_in_a_journal_comes_first) {
 }
 
 // An off-screen session replays nested journals, and a journal that replays itself ends.
-TEST(Tour, sessions_replay_journals) {
+TEST(Tour, SessionsReplayJournals) {
     SystemSource library = test::library();
     library.journal = [](const std::string& name) {
         return parse_journal(name == "inner"        ? "set e 0.25\n"
@@ -226,7 +226,7 @@ TEST(Tour, sessions_replay_journals) {
     EXPECT_NE(session.error().find("too many journals"), std::string::npos);
 }
 
-TEST(HelpMenu, shows_a_page_above_everything_until_escape) {
+TEST(HelpMenu, ShowsAPageAboveEverythingUntilEscape) {
     test::Hands hands("ball_on_sine");
     hands.state.manual = {{"data", "The data"}, {"system", "The system file"}};
     hands.state.manual_page = [](const std::string& topic) { return "# A page about " + topic; };
@@ -244,7 +244,7 @@ TEST(HelpMenu, shows_a_page_above_everything_until_escape) {
     EXPECT_FALSE(hands.state.places.count("Close the manual"));
 }
 
-TEST(Tour, is_chosen_from_the_menu) {
+TEST(Tour, IsChosenFromTheMenu) {
     test::Hands hands("ball_on_sine");
     hands.state.tours = {{"the_ball", "The paper's ball"}};
     hands.click("menu Tours");

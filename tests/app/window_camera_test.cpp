@@ -19,7 +19,7 @@ Scene after(const std::vector<const char*>& journal) {
     return session.scene();
 }
 
-TEST(CameraCommand, chooses_a_camera_and_keeps_where_one_looked) {
+TEST(CameraCommand, ChoosesACameraAndKeepsWhereOneLooked) {
     EXPECT_EQ(after({}).camera(), CameraMode::fit);
     EXPECT_EQ(after({"camera follow"}).camera(), CameraMode::follow);
     EXPECT_EQ(after({"look 1 2 3"}).camera(), CameraMode::fixed);
@@ -38,7 +38,7 @@ TEST(CameraCommand, chooses_a_camera_and_keeps_where_one_looked) {
     EXPECT_THROW(parse_command("camera above"), InputError);
 }
 
-TEST(CameraCommand, is_in_the_recipe_of_a_session) {
+TEST(CameraCommand, IsInTheRecipeOfASession) {
     for (const std::vector<const char*>& journal : std::vector<std::vector<const char*>>{
              {"camera zeno"}, {"look 1 2 3", "camera follow"}, {"look 1 2 3"}, {"look 1 2 3", "camera fit"}}) {
         const Scene scene = after(journal);
@@ -54,7 +54,7 @@ TEST(CameraCommand, is_in_the_recipe_of_a_session) {
     }
 }
 
-TEST(CameraMenu, chooses_each_camera) {
+TEST(CameraMenu, ChoosesEachCamera) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Seek{2.0});
     hands.rest(2);
@@ -71,7 +71,7 @@ TEST(CameraMenu, chooses_each_camera) {
     // The view stays as it was, and is then independent of the time.
     EXPECT_NEAR(hands.state.places.at("body").x, before.x, 0.5);
     EXPECT_NEAR(hands.state.places.at("body").y, before.y, 0.5);
-    const command::Look look = *hands.session.scene().look();
+    const command::LookAt look = *hands.session.scene().look();
     hands.session.apply(command::Seek{9.0});
     hands.rest(2);
     EXPECT_EQ(hands.session.scene().look()->x, look.x);
@@ -82,7 +82,7 @@ TEST(CameraMenu, chooses_each_camera) {
     EXPECT_TRUE(hands.state.places.contains("scale bar"));
 }
 
-TEST(CameraMouse, middle_drag_moves_the_picture_also_over_the_body) {
+TEST(CameraMouse, MiddleDragMovesThePictureAlsoOverTheBody) {
     Hands hands("ball_on_sine");
     hands.point("body");
     const Rectangle body = hands.state.places.at("body");
@@ -101,10 +101,10 @@ TEST(CameraMouse, middle_drag_moves_the_picture_also_over_the_body) {
     EXPECT_EQ(*hands.session.value("x"), 0.0) << "the body is not what moves";
 }
 
-TEST(CameraPicture, says_its_scale_at_every_zoom) {
+TEST(CameraPicture, SaysItsScaleAtEveryZoom) {
     Hands hands("ball_on_sine");
     EXPECT_TRUE(hands.says("1 m"));
-    hands.session.apply(command::Look{4.6, -0.99, 1e-6});
+    hands.session.apply(command::LookAt{4.6, -0.99, 1e-6});
     hands.rest(2);
     EXPECT_TRUE(hands.says("2\u00b710\u22127 m")) << hands.letters();
     // With any layers shown, the scale bar and the labels do not overlap.
@@ -116,7 +116,7 @@ TEST(CameraPicture, says_its_scale_at_every_zoom) {
     }
 }
 
-TEST(SidesOfSpace, are_offered_where_there_is_space) {
+TEST(SidesOfSpace, AreOfferedWhereThereIsSpace) {
     Hands ball("ball_on_sine"), crate("ball_on_egg_crate");
     EXPECT_FALSE(ball.state.places.contains("show sides"));
     crate.click("show sides");
@@ -125,7 +125,7 @@ TEST(SidesOfSpace, are_offered_where_there_is_space) {
 }
 
 // Prints positions for the window's test.
-TEST(CameraMenu, tells_where_it_is) {
+TEST(CameraMenu, TellsWhereItIs) {
     Hands hands("ball_on_sine");
     const auto tell = [&](const char* name, const std::string& place) {
         std::cout << name << " " << std::lround(hands.middle(place).x) << " " << std::lround(hands.middle(place).y)

@@ -40,7 +40,7 @@ double follow(Hands& hands, const std::string& place, const std::vector<Point>& 
 
 const std::vector<Point> up(12, Point{6.0, -9.0});
 
-TEST(Held, what_is_dragged_stays_under_the_hand_at_every_step) {
+TEST(MechanismDrag, WhatIsDraggedStaysUnderTheHandAtEveryStep) {
     for (const char* system : {"ball_on_sine", "ball_in_bowl", "ball_on_floor"})
         for (const double time : {0.0, 1.0}) {
             Hands hands(system);
@@ -56,7 +56,7 @@ TEST(Held, what_is_dragged_stays_under_the_hand_at_every_step) {
     }
 }
 
-TEST(Held, every_body_of_a_mechanism_can_be_dragged) {
+TEST(MechanismDrag, EveryBodyOfAMechanismCanBeDragged) {
     Hands hands("double_pendulum");
     const double theta1 = *hands.session.value("theta1"), theta2 = *hands.session.value("theta2");
     // The lower end, which depends on both angles, then the knee, which depends on one.
@@ -72,7 +72,7 @@ TEST(Held, every_body_of_a_mechanism_can_be_dragged) {
     EXPECT_NEAR(*hands.session.value("theta2"), before, 1e-12);
 }
 
-TEST(Held, a_body_that_is_pushed_into_the_ground_stays_on_it) {
+TEST(MechanismDrag, ABodyThatIsPushedIntoTheGroundStaysOnIt) {
     for (const char* place : {"body", "start"}) {
         Hands hands("ball_on_floor");
         if (std::string(place) == "start") hands.session.apply(command::Show{"plane", true});
@@ -94,7 +94,7 @@ TEST(Held, a_body_that_is_pushed_into_the_ground_stays_on_it) {
     }
 }
 
-TEST(Held, the_picture_moves_only_after_the_hand_lets_go) {
+TEST(MechanismDrag, ThePictureMovesOnlyAfterTheHandLetsGo) {
     Hands hands("ball_on_sine");
     hands.point("body");
     hands.hand.left = true;
@@ -109,11 +109,11 @@ TEST(Held, the_picture_moves_only_after_the_hand_lets_go) {
     const double y = hands.middle("body").y;
     hands.hand.left = false;
     hands.rest(3);
-    EXPECT_EQ(hands.state.held.what, HeldMechanism::What::nothing);
+    EXPECT_EQ(hands.state.held.what, MechanismDrag::DragTarget::none);
     EXPECT_GT(std::abs(hands.middle("body").y - y), 5.0) << "all of the higher flight is seen";
 }
 
-TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
+TEST(Marks, AClickWithinEightPixelsSelectsThatEvent) {
     Hands hands("ball_on_sine");
     const auto& events = hands.session.trajectory().events;
     const auto index = [&](Event::Kind kind) {
@@ -166,7 +166,7 @@ TEST(Marks, a_click_within_eight_pixels_selects_that_event) {
     EXPECT_NEAR(hands.session.time(), 10.0, 0.1);
 }
 
-TEST(Marks, the_right_button_seeks_nothing_and_a_double_click_once) {
+TEST(Marks, TheRightButtonSeeksNothingAndADoubleClickOnce) {
     Hands hands("ball_on_sine");
     hands.right_click("plot 1", 0.45);
     EXPECT_EQ(hands.session.time(), 0.0);
@@ -181,13 +181,13 @@ TEST(Marks, the_right_button_seeks_nothing_and_a_double_click_once) {
     EXPECT_EQ(fits, 1);
 }
 
-TEST(Escape, belongs_to_what_is_in_front) {
+TEST(Escape, BelongsToWhatIsInFront) {
     Hands hands("ball_on_sine");
     hands.click("pin");
     hands.press_with_control('O');
-    ASSERT_EQ(hands.state.editor.asking, EditorState::Asking::open);
+    ASSERT_EQ(hands.state.editor.asking, EditorState::OpenDialog::open);
     hands.press(key::escape);
-    EXPECT_EQ(hands.state.editor.asking, EditorState::Asking::nothing);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::nothing);
     EXPECT_TRUE(hands.session.scene().shows("runs")) << "the dialog had it";
     hands.double_click("value of set g");
     hands.press(key::escape);
@@ -206,7 +206,7 @@ TEST(Escape, belongs_to_what_is_in_front) {
     EXPECT_EQ(hands.session.selected(), 0);
 }
 
-TEST(Escape, closes_menus) {
+TEST(Escape, ClosesMenus) {
     Hands hands("ball_on_sine");
     for (const auto& [open, line] : {std::pair{"menu File", "menu Save"},
                                      {"menu View", "menu Plots"},
@@ -223,7 +223,7 @@ TEST(Escape, closes_menus) {
     EXPECT_TRUE(hands.all.empty());
 }
 
-TEST(PlotMenu, keeps_what_was_mistyped) {
+TEST(PlotMenu, KeepsWhatWasMistyped) {
     Hands hands("ball_on_sine");
     hands.click("menu of plot 2");
     hands.click("expression y");
@@ -246,7 +246,7 @@ TEST(PlotMenu, keeps_what_was_mistyped) {
     EXPECT_FALSE(hands.state.places.contains("expression y"));
 }
 
-TEST(Plots, no_grid_shows_a_plot_twice) {
+TEST(Plots, NoGridShowsAPlotTwice) {
     for (const char* system : {"ball_on_sine", "double_pendulum", "ball_on_floor", "impact_oscillator", "falling_rod"})
         for (const char* grid : {"grid 3 3", "grid 4 4"}) {
             Session session = test::session(system);
@@ -262,7 +262,7 @@ TEST(Plots, no_grid_shows_a_plot_twice) {
         }
 }
 
-TEST(Plots, hues_are_of_curves_and_dashes_of_phases) {
+TEST(Plots, HuesAreOfCurvesAndDashesOfPhases) {
     Session session = test::session("ball_on_sine");
     for (const char* theme : {"theme light", "theme dark"}) {
         session.apply(parse_command(theme));
@@ -277,7 +277,7 @@ TEST(Plots, hues_are_of_curves_and_dashes_of_phases) {
     }
 }
 
-TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {
+TEST(Files, ANoteNamesTheFolderAndASystemGetsItsEnding) {
     const test::Folder folder;
     SystemSource library = test::library();
     library.folder = folder.path().string();
@@ -301,7 +301,7 @@ TEST(Files, a_note_names_the_folder_and_a_system_gets_its_ending) {
 }
 
 // A picture dropped on the window restores its session.
-TEST(Dropped, a_picture_opens_as_a_session) {
+TEST(DroppedFile, APictureOpensAsASession) {
     const test::Folder folder;
     const std::string picture = (folder.path() / "a.png").string(), figure = (folder.path() / "b.svg").string();
     ASSERT_EQ(

@@ -8,7 +8,7 @@
 "$build/test_app" --gtest_filter='ExplorerOnDisplay.*' | tee "$folder/bytes"
 grep -q '\[  PASSED  \] 1 test' "$folder/bytes" || fail "the window does not show the bytes of the picture"
 
-"$build/test_app" --gtest_filter=Explorer.tells_where_the_slider_of_g_is > "$folder/places"
+"$build/test_app" --gtest_filter=Explorer.TellsWhereTheSliderOfGIs > "$folder/places"
 read -r _ x y width < <(grep '^slider ' "$folder/places")
 read -r _ tab_x tab_y < <(grep '^tab ' "$folder/places")
 
@@ -101,19 +101,19 @@ grep -q '^step 1' "$folder/second" || fail "the right arrow does not step"
 # Files dropped on the window: a system is opened, a journal is replayed.
 cp "$folder/mine.toml" "$folder/dropped.toml"
 printf 'grid 3 2\n' > "$folder/dropped.journal"
-timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
+timeout 120 "$build/x11_input" drop "$window" "$folder/dropped.toml" || fail "nobody takes a file that is dropped"
 await grep -q "^open $folder/dropped.toml" "$folder/second" || fail "a system that is dropped is not opened"
-timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
+timeout 120 "$build/x11_input" drop "$window" "$folder/dropped.journal" || fail "nobody takes a second file"
 await grep -q '^grid 3 2' "$folder/second" || fail "a journal that is dropped is not replayed"
 "$build/achilles" screenshot impact_oscillator --do "seek 3" --size 700x500 --out "$folder/dropped.png"
-timeout 120 "$build/x11_hand" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
+timeout 120 "$build/x11_input" drop "$window" "$folder/dropped.png" || fail "nobody takes a picture"
 await grep -q '^open impact_oscillator' "$folder/second" || fail "a picture that is dropped is not opened as a session"
 await grep -q '^seek 3' "$folder/second" || fail "a picture that is dropped does not lead to what it shows"
 # A journal that writes files needs permission; Escape refuses. Files dropped meanwhile wait for the answer.
 printf 'save %s/stolen.toml\n' "$folder" > "$folder/greedy.journal"
-timeout 120 "$build/x11_hand" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
+timeout 120 "$build/x11_input" drop "$window" "$folder/greedy.journal" || fail "nobody takes a third file"
 "$build/achilles" screenshot --set e=0.25 --do "seek 4" --size 700x500 --out "$folder/own.png" "$folder/mine.toml"
-timeout 120 "$build/x11_hand" drop "$window" "$folder/own.png" || fail "nobody takes a file while a question is open"
+timeout 120 "$build/x11_input" drop "$window" "$folder/own.png" || fail "nobody takes a file while a question is open"
 xdotool sleep 0.8 key Return sleep 0.3
 grep -q '^seek 4' "$folder/second" && fail "a question is lost in what is dropped after it"
 xdotool key Escape sleep 0.8
@@ -127,7 +127,7 @@ xdotool key ctrl+z sleep 0.3 key ctrl+z sleep 0.3  # back to a text without unsa
 xdotool key End sleep 0.5 key Home
 "$build/achilles" screenshot --allow-files --journal "$folder/second" --size 1000x700 --out "$folder/replayed.png" ||
     fail "the record cannot be replayed"
-"$build/x11_hand" close "$window"
+"$build/x11_input" close "$window"
 expect_end "closed from outside"
 
 # Unsaved text survives a killed window and is offered in the next one; text that is recovered and then discarded is

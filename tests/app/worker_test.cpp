@@ -23,7 +23,7 @@ int endless(const std::stop_token& stop) {
     return -1;
 }
 
-TEST(Worker, gives_a_result_once) {
+TEST(Worker, GivesAResultOnce) {
     Worker<int> worker;
     EXPECT_FALSE(worker.take({})) << "nothing was asked for";
     worker.start([](const std::stop_token&) { return 7; });
@@ -31,7 +31,7 @@ TEST(Worker, gives_a_result_once) {
     EXPECT_FALSE(worker.take({}));
 }
 
-TEST(Worker, a_newer_job_stops_an_older_one_whose_result_is_never_seen) {
+TEST(Worker, ANewerJobStopsAnOlderOneWhoseResultIsNeverSeen) {
     std::atomic<int> stopped = 0;
     Worker<int> worker;
     for (int i = 0; i < 5; ++i) {
@@ -46,7 +46,7 @@ TEST(Worker, a_newer_job_stops_an_older_one_whose_result_is_never_seen) {
     EXPECT_GE(stopped, 1) << "those that had not begun yet need no stopping";
 }
 
-TEST(Worker, hands_over_what_a_job_throws) {
+TEST(Worker, HandsOverWhatAJobThrows) {
     Worker<int> worker;
     worker.start([](const std::stop_token&) -> int { throw std::runtime_error("no"); });
     EXPECT_THROW(worker.take({}), std::runtime_error);
@@ -54,7 +54,7 @@ TEST(Worker, hands_over_what_a_job_throws) {
     EXPECT_EQ(worker.take({}), 1);
 }
 
-TEST(Worker, tells_when_a_result_is_ready_and_ends_in_the_middle_of_a_job) {
+TEST(Worker, TellsWhenAResultIsReadyAndEndsInTheMiddleOfAJob) {
     std::atomic<bool> told = false;
     {
         Worker<int> worker;
@@ -67,9 +67,9 @@ TEST(Worker, tells_when_a_result_is_ready_and_ends_in_the_middle_of_a_job) {
     }
 }
 
-TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patient_one) {
+TEST(LiveSession, ShowsTheLastRunUntilTheNextIsThereAndEndsAsAPatientOne) {
     Session patient = test::session("ball_on_sine"), live = test::session("ball_on_sine");
-    for (Session* session : {&patient, &live}) session->apply(command::End{20000.0});
+    for (Session* session : {&patient, &live}) session->apply(command::SetEndTime{20000.0});
     live.set_patience(0.0);
     const std::string before = to_text(live.trajectory());
     for (Session* session : {&patient, &live}) {
@@ -94,7 +94,7 @@ TEST(LiveSession, shows_the_last_run_until_the_next_is_there_and_ends_as_a_patie
     EXPECT_EQ(live.time(), 876.5);
 }
 
-TEST(LiveSession, a_newer_value_cancels_a_long_run) {
+TEST(LiveSession, ANewerValueCancelsALongRun) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.02);
     test::ask_for_a_long_run(session);
@@ -102,14 +102,14 @@ TEST(LiveSession, a_newer_value_cancels_a_long_run) {
     for (int i = 0; i < 5000 && session.under_way()->impacts < 100; ++i) std::this_thread::sleep_for(1ms);
     EXPECT_GE(session.under_way()->impacts, 100);
     session.set_patience(5.0);
-    session.apply(command::End{20.0});
+    session.apply(command::SetEndTime{20.0});
     session.apply(command::Set{"e", 0.5});
     EXPECT_EQ(session.under_way(), nullptr);
     EXPECT_EQ(session.trajectory().run.parameters[2], 0.5);
     EXPECT_EQ(session.trajectory().outcome.kind, Outcome::Kind::end_time);
 }
 
-TEST(LiveSession, waits_no_longer_than_its_patience) {
+TEST(LiveSession, WaitsNoLongerThanItsPatience) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.02);
     test::ask_for_a_long_run(session);
@@ -123,7 +123,7 @@ TEST(LiveSession, waits_no_longer_than_its_patience) {
     }
 }
 
-TEST(LiveSession, a_value_that_cannot_start_is_refused_at_once) {
+TEST(LiveSession, AValueThatCannotStartIsRefusedAtOnce) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.0);
     session.apply(command::Set{"y", -5.0});
@@ -132,7 +132,7 @@ TEST(LiveSession, a_value_that_cannot_start_is_refused_at_once) {
     EXPECT_EQ(session.run().q[1], 2.0);
 }
 
-TEST(LiveSession, shows_the_start_of_another_system_until_its_run_is_there) {
+TEST(LiveSession, ShowsTheStartOfAnotherSystemUntilItsRunIsThere) {
     Session session = test::session("ball_on_sine");
     session.set_patience(0.0);
     session.apply(command::Seek{5.0});
@@ -150,13 +150,13 @@ TEST(LiveSession, shows_the_start_of_another_system_until_its_run_is_there) {
 }
 
 // As in the window: frames are drawn while the run is computed, each of them complete, and then the result arrives.
-TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
+TEST(LiveSession, FramesGoOnDuringARunOf100000Impacts) {
     Interface interface(test::surface());
     const Interface::Active active(interface);
     Session session = test::session("ball_on_floor");
     session.set_patience(0.0);
     session.apply(command::Set{"e", 1.0});
-    session.apply(command::End{100000.0});
+    session.apply(command::SetEndTime{100000.0});
     PanelState panels = test::panels();
     int frames = 0;
     for (bool is_done = false; !is_done && frames < 20000; ++frames) {
@@ -172,12 +172,12 @@ TEST(LiveSession, frames_go_on_during_a_run_of_100_000_impacts) {
 }
 
 // For a new system whose run is under way only the start is shown, without results; for another value the previous run.
-TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
+TEST(LiveSession, NothingIsSaidOfARunThatIsNotFinished) {
     int times = 0;
     for (const char* shown : {"equations", "energy", "events"}) {
         test::Hands hands("ball_on_sine");
         hands.session.apply(command::Show{shown, true});
-        hands.session.apply(command::End{20000.0});
+        hands.session.apply(command::SetEndTime{20000.0});
         hands.session.apply(command::Pin{});
         hands.session.set_patience(0.0);
         hands.session.apply(command::Set{"e", 1.0});
@@ -199,7 +199,7 @@ TEST(LiveSession, nothing_is_said_of_a_run_that_is_not_finished) {
 }
 
 // The remaining time is shown in a window, not in a picture, which must not depend on the clock.
-TEST(LiveSession, says_how_long_a_run_still_takes) {
+TEST(LiveSession, SaysHowLongARunStillTakes) {
     EXPECT_EQ(time_left(0.2, 0.5), "") << "too early to tell";
     EXPECT_EQ(time_left(10.0, 0.0), "");
     EXPECT_EQ(time_left(2.0, 0.9), "about 1 s left");
@@ -211,7 +211,7 @@ TEST(LiveSession, says_how_long_a_run_still_takes) {
     test::Hands hands("ball_on_sine");
     hands.session.set_patience(0.02);
     test::ask_for_a_long_run(hands.session);
-    const Watch* const watch = hands.session.under_way();
+    const RunMonitor* const watch = hands.session.under_way();
     ASSERT_NE(watch, nullptr);
     for (int i = 0; i < 1000 && (hands.session.seconds_under_way() < 0.6 || watch->impacts < 3000); ++i)
         std::this_thread::sleep_for(10ms);
@@ -220,7 +220,7 @@ TEST(LiveSession, says_how_long_a_run_still_takes) {
     EXPECT_TRUE(hands.says("left")) << hands.letters();
 }
 
-TEST(LiveSession, closes_in_the_middle_of_a_run) {
+TEST(LiveSession, ClosesInTheMiddleOfARun) {
     const auto begin = std::chrono::steady_clock::now();
     {
         Session session = test::session("ball_on_sine");

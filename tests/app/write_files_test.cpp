@@ -27,7 +27,7 @@ void write(const std::string& file, const std::string& text) {
     files.commit();
 }
 
-TEST(OutputFiles, keep_the_mode_and_follow_links) {
+TEST(OutputFiles, KeepTheModeAndFollowLinks) {
     const Folder folder;
     const fs::path file = folder.path() / "a.toml", link = folder.path() / "link", dangling = folder.path() / "to_new";
     folder.put("a.toml", "old");
@@ -48,14 +48,14 @@ TEST(OutputFiles, keep_the_mode_and_follow_links) {
 }
 
 // Leftover of a killed process, even with our process id.
-TEST(OutputFiles, parts_of_the_dead_are_not_in_the_way) {
+TEST(OutputFiles, PartsOfTheDeadAreNotInTheWay) {
     const Folder folder;
     folder.put("a.json.part" + std::to_string(::getpid()), "half");
     write(folder.path() / "a.json", "whole");
     EXPECT_EQ(content(folder.path() / "a.json"), "whole");
 }
 
-TEST(OutputFiles, are_all_there_or_as_they_were) {
+TEST(OutputFiles, AreAllThereOrAsTheyWere) {
     const Folder folder;
     const std::string one = folder.path() / "one", two = folder.path() / "two", three = folder.path() / "three";
     folder.put("one", "old");
@@ -70,7 +70,7 @@ TEST(OutputFiles, are_all_there_or_as_they_were) {
     EXPECT_FALSE(fs::exists(two));
 }
 
-TEST(OutputFiles, are_no_inputs_and_no_others) {
+TEST(OutputFiles, AreNoInputsAndNoOthers) {
     const Folder folder;
     folder.put("in.toml", drop_text);
     fs::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
@@ -161,7 +161,7 @@ TEST(Memory, ThatIsShortIsSaid) {
 }
 
 // A recorded screenshot is reproduced from its record.
-TEST(Record, is_written_by_a_screenshot) {
+TEST(Record, IsWrittenByAScreenshot) {
     const Folder folder;
     folder.put("j.journal", "# told\nset e 0.4\n");
     const std::string size = " --size 640x480";

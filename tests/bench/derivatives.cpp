@@ -2,9 +2,9 @@
 #include <fmt/format.h>
 
 #include "bench/measure.hpp"
-#include "depend/derivatives.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "sensitivity/derivatives.hpp"
 #include "simulate/simulate.hpp"
 
 using namespace achilles;

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     for (const std::string& name : all_systems()) {
         const auto model = load(name);
         try {
-            tell(name, prove(model, claim_as_written(model->default_run())));
+            tell(name, prove(model, problem_from_decimals(model->default_run())));
         } catch (const InputError& refusal) {
             refused += fmt::format("{}: {}\n", name, refusal.message);
         }

@@ -12,10 +12,10 @@
 // programs do, or batches of eight (simulate_ends).
 //
 // The engine's time is that of simulate(): checks, dense output, events, statistics and certificates. With "end", and
-// in the ensemble, only the final state is recorded (Keep::end), as in the programs. The time without certificates,
-// which the programs do not have, is printed as well. Certificates are measured by repeating their requests in the same
-// round, in the ensemble by the runs' own statistics. Times are processor times; the processor is named beside every
-// ratio. Ratios are medians of the ratios to Boost.Odeint in each round; above 1 is faster.
+// in the ensemble, only the final state is recorded (Recording::final_state), as in the programs. The time without
+// certificates, which the programs do not have, is printed as well. Certificates are measured by repeating their
+// requests in the same round, in the ensemble by the runs' own statistics. Times are processor times; the processor is
+// named beside every ratio. Ratios are medians of the ratios to Boost.Odeint in each round; above 1 is faster.
 //
 // Optimizations, and the change of the engine's time (ball and pendulum at 1e-9, then at 1e-12):
 //   sums, differences and multiples as linear forms instead of rules       pendulum -35 percent

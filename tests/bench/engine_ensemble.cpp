@@ -12,8 +12,8 @@
 #include "bench/measure.hpp"
 #include "certify/execution.hpp"
 #include "model/read_system.hpp"
-#include "simulate/many.hpp"
-#include "simulate/side_by_side.hpp"
+#include "simulate/batch.hpp"
+#include "simulate/batch_simulator.hpp"
 
 namespace achilles::bench {
 namespace {
@@ -61,7 +61,7 @@ Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, c
     };
     const auto all = [=](std::vector<Values>& ends) {
         double certifying = 0.0;
-        const auto take = [&](std::size_t i, Attempt&& attempt) {
+        const auto take = [&](std::size_t i, RunResult&& attempt) {
             const auto& trajectory = std::get<Trajectory>(attempt);
             certifying += trajectory.statistics.certificate_seconds;
             ends[i] = values_of(trajectory.end);
@@ -70,9 +70,9 @@ Ensemble ensemble_of(const std::shared_ptr<const Model>& model, Method method, c
         };
         if (vectors) {
             std::atomic<std::size_t> next = 0;
-            SideBySide(model, *vectors).work({ends.size(), next, run_of, take});
+            BatchSimulator(model, *vectors).work({ends.size(), next, run_of, take});
         } else {
-            simulate_many(model, ends.size(), run_of, take, 1, Keep::end);
+            simulate_many(model, ends.size(), run_of, take, 1, Recording::final_state);
         }
         return certifying;
     };

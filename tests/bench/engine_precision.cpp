@@ -26,8 +26,8 @@ struct Contestant {
 
 // ---- the contestants ----
 
-Contestant engine(const std::shared_ptr<const Model>& model, Method method, Keep keep) {
-    return {"engine " + std::string(to_text(method)) + (keep == Keep::end ? ", end" : ""),
+Contestant engine(const std::shared_ptr<const Model>& model, Method method, Recording keep) {
+    return {"engine " + std::string(to_text(method)) + (keep == Recording::final_state ? ", end" : ""),
             "eps",
             {1e-6, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14},
             [=](const Setting& setting) {
@@ -55,13 +55,13 @@ Contestant by_hand(const std::string& name, std::shared_ptr<Program> program, co
 
 // ---- work and precision ----
 
-struct Tried {
+struct PrecisionSample {
     Setting setting;
     double error = 0.0, seconds = 0.0;
 };
 
-std::vector<Tried> try_all(const Contestant& contestant, const Values& truth) {
-    std::vector<Tried> all;
+std::vector<PrecisionSample> try_all(const Contestant& contestant, const Values& truth) {
+    std::vector<PrecisionSample> all;
     for (const double cut : contestant.cuts) {
         for (int half_decades = 10; half_decades <= 31; ++half_decades) {
             const Setting setting{std::pow(10.0, -0.5 * half_decades), cut};
@@ -76,10 +76,10 @@ std::vector<Tried> try_all(const Contestant& contestant, const Values& truth) {
 }
 
 // The fastest setting with this error, if the settings of slightly smaller tolerance have it as well.
-const Tried* fastest(const std::vector<Tried>& all, double error) {
-    const Tried* best = nullptr;
-    for (const Tried& tried : all) {
-        const bool holds = std::all_of(all.begin(), all.end(), [&](const Tried& other) {
+const PrecisionSample* fastest(const std::vector<PrecisionSample>& all, double error) {
+    const PrecisionSample* best = nullptr;
+    for (const PrecisionSample& tried : all) {
+        const bool holds = std::all_of(all.begin(), all.end(), [&](const PrecisionSample& other) {
             const bool neighbour = other.setting.cut == tried.setting.cut &&
                                    other.setting.tolerance <= 1.01 * tried.setting.tolerance &&
                                    other.setting.tolerance >= 0.099 * tried.setting.tolerance;
@@ -92,7 +92,7 @@ const Tried* fastest(const std::vector<Tried>& all, double error) {
 
 struct Entry {
     const Contestant* contestant = nullptr;
-    const Tried* tried = nullptr;
+    const PrecisionSample* tried = nullptr;
     std::function<void()> certificates;
     std::vector<double> whole, certifying, net;
 };
@@ -109,12 +109,12 @@ void print(const Entry& entry, const std::vector<double>& reference) {
     fmt::print("   ({})\n", processor);
 }
 
-void compare(const std::vector<Contestant>& contestants, const std::vector<std::vector<Tried>>& tried, double error,
-             int rounds) {
+void compare(const std::vector<Contestant>& contestants, const std::vector<std::vector<PrecisionSample>>& tried,
+             double error, int rounds) {
     std::vector<Entry> entries;
     fmt::print(" error <= {:g}\n", error);
     for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const Tried* best = fastest(tried[i], error);
+        const PrecisionSample* best = fastest(tried[i], error);
         if (best == nullptr) {
             fmt::print("  {:<18} does not reach it\n", contestants[i].name);
             continue;
@@ -150,17 +150,18 @@ void work_and_precision(const std::string& asset, const std::string& key, int ro
     const Run run = model->default_run();
     const Values start = values_of({run.q, run.v});
     std::vector<Contestant> contestants;
-    for (const Method method : methods(model)) contestants.push_back(engine(model, method, Keep::everything));
-    contestants.push_back(engine(model, Method::taylor, Keep::end));
+    for (const Method method : methods(model)) contestants.push_back(engine(model, method, Recording::full));
+    contestants.push_back(engine(model, Method::taylor, Recording::final_state));
     contestants.push_back(by_hand("Boost.Odeint", by_odeint<Problem>(), start));
     contestants.push_back(by_hand("ARKODE", by_arkode<Problem>(), start));
-    std::vector<std::vector<Tried>> tried;
+    std::vector<std::vector<PrecisionSample>> tried;
     for (const Contestant& contestant : contestants) tried.push_back(try_all(contestant, truth));
     fmt::print("{} to t = 20, medians of {} rounds\n", asset, rounds);
     for (const double error : {1e-6, 1e-9, 1e-12, 1e-13}) compare(contestants, tried, error, rounds);
     for (std::size_t i = 0; i < contestants.size(); ++i) {
-        const auto best = std::min_element(tried[i].begin(), tried[i].end(),
-                                           [](const Tried& a, const Tried& b) { return a.error < b.error; });
+        const auto best =
+            std::min_element(tried[i].begin(), tried[i].end(),
+                             [](const PrecisionSample& a, const PrecisionSample& b) { return a.error < b.error; });
         fmt::print(" least error of {:<18} {:.1e}\n", contestants[i].name, best->error);
     }
 }

@@ -7,8 +7,8 @@
 #include <cstdlib>
 
 #include "bench/measure.hpp"
-#include "core/depend/estimates.hpp"
-#include "depend/error_estimate.hpp"
+#include "core/sensitivity/estimates.hpp"
+#include "sensitivity/error_estimate.hpp"
 
 using namespace achilles;
 using namespace achilles::test;
@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
             std::vector<double> ratios, errors;
             int runs = 0, other = 0, covered = 0, inside = 0;
             for (const Run& start : starts_around(*model, starts, 1)) {
-                const Rated rated = rate(model, with(start, setting.tolerance, setting.eps));
+                const RatedEstimate rated = rate(model, with(start, setting.tolerance, setting.eps));
                 if (!rated.same) {
                     ++other;
                     continue;

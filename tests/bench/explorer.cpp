@@ -251,7 +251,7 @@ void sweep() {
         std::vector<double> first;
         double all = 0.0;
         for (int round = 0; round < 5; ++round) {
-            Sweep sweep = read_sweep(text, session.description());
+            SweepSpec sweep = read_sweep(text, session.description());
             sweep.base.options.end_time += 1e-9 * round;  // so that the sweep differs from the one before
             SweepJob job;
             const double begin = wall_seconds();

@@ -21,7 +21,7 @@
 
 #include "floor/floor.hpp"
 #include "model/read_system.hpp"
-#include "simulate/many.hpp"
+#include "simulate/batch.hpp"
 
 namespace {
 
@@ -51,10 +51,10 @@ template <class Summarize>
 auto simulate_all(const std::shared_ptr<const Model>& model, const std::vector<Run>& runs, const Way& way,
                   const Summarize& summarize) {
     if (!way.eight_at_a_time) return simulate_many(model, std::span<const Run>(runs), summarize);
-    std::vector<std::invoke_result_t<const Summarize&, std::size_t, Attempt&&>> results(runs.size());
+    std::vector<std::invoke_result_t<const Summarize&, std::size_t, RunResult&&>> results(runs.size());
     simulate_ends(
         model, runs.size(), [&](std::size_t i) { return runs[i]; },
-        [&](std::size_t i, Attempt&& attempt) { results[i] = summarize(i, std::move(attempt)); });
+        [&](std::size_t i, RunResult&& attempt) { results[i] = summarize(i, std::move(attempt)); });
     return results;
 }
 
@@ -84,7 +84,7 @@ long random_starts(const std::shared_ptr<const Model>& model, long count, const 
             double least_gap;
             long impacts, zenos;
         };
-        const auto summaries = simulate_all(model, runs, way, [&](std::size_t, Attempt&& attempt) {
+        const auto summaries = simulate_all(model, runs, way, [&](std::size_t, RunResult&& attempt) {
             if (std::holds_alternative<InputError>(attempt)) {
                 ++refused;
                 return Summary{0.0, 0, 0};
@@ -162,7 +162,7 @@ std::string kind_of(const Outcome& outcome) {
     return text;
 }
 
-Attempt attempt(const std::shared_ptr<const Model>& model, const Run& run) {
+RunResult attempt(const std::shared_ptr<const Model>& model, const Run& run) {
     try {
         return simulate(model, run);
     } catch (const InputError& error) {
@@ -194,7 +194,7 @@ std::string disagreement(const std::shared_ptr<const Model>& model, Run run) {
         } else {
             moved.parameters[i - 2 * n] *= 1.0 + 1e-9;
         }
-        const Attempt there = attempt(model, moved);
+        const RunResult there = attempt(model, moved);
         if (!std::holds_alternative<Trajectory>(there)) return {};
         sensitive =
             std::max(sensitive, between(outline_of(trajectory), outline_of(std::get<Trajectory>(there))).size / 1e-9);
@@ -217,7 +217,7 @@ long random_runs(const std::shared_ptr<const Model>& model, long count, const Wa
     std::mutex mutex;
     std::map<std::string, std::pair<long, std::size_t>> kinds;
     long impacts = 0, events = 0;
-    const auto take = [&](std::size_t i, Attempt&& attempt) {
+    const auto take = [&](std::size_t i, RunResult&& attempt) {
         patience.end(i);
         std::string kind = "refused";
         if (const auto* trajectory = std::get_if<Trajectory>(&attempt)) {
@@ -262,7 +262,7 @@ long against_truth(const std::shared_ptr<const Model>& model, long count, const 
         run.options.tolerance = 1e-12;
         run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
     }
-    const auto all = simulate_all(model, runs, way, [&](std::size_t i, Attempt&& attempt) {
+    const auto all = simulate_all(model, runs, way, [&](std::size_t i, RunResult&& attempt) {
         if (std::holds_alternative<InputError>(attempt)) return Comparison{};
         const auto& trajectory = std::get<Trajectory>(attempt);
         const Comparison comparison = Judge(model, runs[i]).compare(trajectory);

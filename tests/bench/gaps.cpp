@@ -17,7 +17,7 @@
 #include "bench/measure.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
-#include "simulate/many.hpp"
+#include "simulate/batch.hpp"
 
 namespace achilles::bench {
 namespace {
@@ -85,7 +85,8 @@ void measure_additions(int rounds) {
         for (Contestant& one : all) {
             const Run run = run_of(*one.model);
             one.times.push_back(seconds([&] {
-                                    for (int i = 0; i < repeats; ++i) simulate(one.model, run, nullptr, Keep::end);
+                                    for (int i = 0; i < repeats; ++i)
+                                        simulate(one.model, run, nullptr, Recording::final_state);
                                 }) /
                                 repeats);
         }
@@ -112,10 +113,11 @@ void measure_eight(int rounds) {
             run.v[0] = 4.0 * (static_cast<double>(random() >> 11) * 0x1p-53) - 2.0;
             return run;
         };
-        const auto nothing = [](std::size_t, Attempt&&) {};
+        const auto nothing = [](std::size_t, RunResult&&) {};
         std::vector<double> ratios;
         for (int round = 0; round < rounds; ++round) {
-            const double single = seconds([&] { simulate_many(model, count, start, nothing, 1, Keep::end); });
+            const double single =
+                seconds([&] { simulate_many(model, count, start, nothing, 1, Recording::final_state); });
             ratios.push_back(single / seconds([&] { simulate_ends(model, count, start, nothing, 1); }));
         }
         fmt::print("  {:<20} eight at a time {:.2f} times as fast as one by one\n", ball.name, median(ratios));

@@ -14,7 +14,7 @@
 
 #include "cli/assets.hpp"
 #include "golden/comparer.hpp"
-#include "golden/lies.hpp"
+#include "golden/mutated_figures.hpp"
 #include "golden/pictures.hpp"
 #include "golden/tolerance.hpp"
 
@@ -39,17 +39,18 @@ struct Tally {
 
 // The number of falsified pictures that are missed.
 int tell_lies(const std::vector<std::string>& systems) {
-    constexpr std::pair<Lie::Kind, const char*> kinds[] = {{Lie::Kind::moved_right, "curve moved right"},
-                                                           {Lie::Kind::moved_up, "curve moved up"},
-                                                           {Lie::Kind::other_hue, "hue"},
-                                                           {Lie::Kind::thicker, "thicker"},
-                                                           {Lie::Kind::no_marker, "marker missing"},
-                                                           {Lie::Kind::other_digit, "digit"}};
-    std::map<Lie::Kind, Tally> tallies;
+    constexpr std::pair<FigureMutation::Kind, const char*> kinds[] = {
+        {FigureMutation::Kind::moved_right, "curve moved right"},
+        {FigureMutation::Kind::moved_up, "curve moved up"},
+        {FigureMutation::Kind::other_hue, "hue"},
+        {FigureMutation::Kind::thicker, "thicker"},
+        {FigureMutation::Kind::no_marker, "marker missing"},
+        {FigureMutation::Kind::other_digit, "digit"}};
+    std::map<FigureMutation::Kind, Tally> tallies;
     for (const std::string& system : systems) {
         Easel easel(system);
         const Image truth = easel.draw(easel.truth());
-        for (const Lie& lie : lies_about(easel.truth()))
+        for (const FigureMutation& lie : lies_about(easel.truth()))
             tallies[lie.kind].add(distance(truth, easel.draw(told(lie, easel.truth()))),
                                   system + ": " + to_text(lie, easel.truth()));
     }

@@ -62,7 +62,7 @@ struct Case {
 template <class Function>
 class Bench {
  public:
-    Bench(const Operation& operation, Function function, Draw& draw)
+    Bench(const TestOperation& operation, Function function, Draw& draw)
         : operation_(operation), function_(function), draw_(draw) {}
 
     Tally run(long count) {
@@ -138,7 +138,7 @@ class Bench {
                     c.ours.hi());
     }
 
-    Operation operation_;
+    TestOperation operation_;
     Function function_;
     Draw& draw_;
     Tally tally_;
@@ -152,12 +152,12 @@ void print(const char* name, const Tally& t) {
 
 int run(double count) {
     int kinds = 0;
-    visit_everything([&](const Operation&, auto) { ++kinds; });
+    visit_everything([&](const TestOperation&, auto) { ++kinds; });
     std::printf("%-14s %11s %12s %10s %10s %9s %9s %8s\n", "operation", "operations", "values", "violations",
                 "undefined", "by 100", "by 700", "ns");
     Draw draw;
     Tally all;
-    visit_everything([&](const Operation& operation, auto function) {
+    visit_everything([&](const TestOperation& operation, auto function) {
         const Tally tally = Bench(operation, function, draw).run(std::lround(std::ceil(count / kinds)));
         print(operation.name, tally);
         all.add(tally);

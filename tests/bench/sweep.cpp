@@ -15,10 +15,10 @@
 #include <filesystem>
 #include <random>
 
+#include "analysis/chunks.hpp"
 #include "bench/measure.hpp"
 #include "model/read_system.hpp"
 #include "output/sweep_files.hpp"
-#include "study/chunks.hpp"
 
 namespace achilles::bench {
 namespace {
@@ -61,12 +61,12 @@ void compare(const std::shared_ptr<const Model>& model, const SweepTable& table,
         const std::uint64_t point = random() % table.sweep().count();
         const Rows row = table.rows(point, 1);
         const Trajectory alone = simulate(model, points.run(point));
-        std::vector<Passage> of_lanes;
+        std::vector<EventRecord> of_lanes;
         simulate_ends(
             model, 1, [&](std::size_t) { return points.run(point); },
-            [&](std::size_t, Attempt&& attempt) { of_lanes = sequence_of(std::get<Trajectory>(attempt)); }, 1);
-        const std::vector<Passage> sequence = sequence_of(alone);
-        const auto same = [](const Passage& a, const Passage& b) {
+            [&](std::size_t, RunResult&& attempt) { of_lanes = sequence_of(std::get<Trajectory>(attempt)); }, 1);
+        const std::vector<EventRecord> sequence = sequence_of(alone);
+        const auto same = [](const EventRecord& a, const EventRecord& b) {
             return a.kind == b.kind && a.contacts == b.contacts;
         };
         if (!std::equal(sequence.begin(), sequence.end(), of_lanes.begin(), of_lanes.end(), same)) ++other_sequences;
@@ -100,7 +100,8 @@ int main(int argc, char** argv) {
         for (int round = 0; round < rounds; ++round) {
             alone.push_back(seconds_of(threads, [&] {
                 simulate_ends(
-                    model, count, [&](std::size_t i) { return points.run(i); }, [](std::size_t, Attempt&&) {}, threads);
+                    model, count, [&](std::size_t i) { return points.run(i); }, [](std::size_t, RunResult&&) {},
+                    threads);
             }));
             written.push_back(seconds_of(threads, [&] { write_files(table, threads, path); }));
         }

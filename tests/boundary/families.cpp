@@ -46,7 +46,7 @@ std::vector<double> Crest::steps(const Question& question, Way way, double toler
     run.options.tolerance = tolerance;
     const Trajectory trajectory = simulate(model_, run);
     std::vector<double> result;
-    for (const Piece& piece : trajectory.pieces) {
+    for (const DenseSegment& piece : trajectory.pieces) {
         double a = 0.0;
         for (std::size_t k = piece.degree + 1; k-- > 0;) a += trajectory.coefficients[piece.first + 4 * k];
         if (!piece.mode.held().empty()) result.push_back(a);

@@ -52,7 +52,7 @@ std::string impossible(const Trajectory& trajectory) {
     }
     if (const std::string below = below_the_floor(trajectory); !below.empty()) return below;
     last = 0.0;
-    for (const Piece& piece : trajectory.pieces) {
+    for (const DenseSegment& piece : trajectory.pieces) {
         if (piece.start < last || piece.end < piece.start)
             return fmt::format("a step from {:.17g} to {:.17g} after one that ends at {:.17g}", piece.start, piece.end,
                                last);

@@ -110,10 +110,10 @@ typename TrueMotionOf<Number>::Contact TrueMotionOf<Number>::contact(const Point
 
 // The transmissions are kappa = -g_i n_j, with n_j computed while the remaining contacts are held.
 template <class Number>
-typename TrueMotionOf<Number>::Others TrueMotionOf<Number>::others(const Point& point) {
-    Others result;
+typename TrueMotionOf<Number>::OtherContacts TrueMotionOf<Number>::others(const Point& point) {
+    OtherContacts result;
     set(free_surface_, point);
-    for (Held& other : held_) {
+    for (HeldContact& other : held_) {
         set(other.force, point);
         result.forces.push_back(other.force.output(0));
         set(other.without, point);
@@ -140,7 +140,7 @@ PointOf<Number> TrueMotionOf<Number>::collision(const State& before) {
         const Contact c = contact(point);
         Point next = point;
         for (std::size_t i = 0; i < dof_; ++i) next.q[i] -= c.h * c.n[i];
-        for (Held& other : held_) {  // along directions that leave the other gaps unchanged
+        for (HeldContact& other : held_) {  // along directions that leave the other gaps unchanged
             set(other.with, point);
             for (std::size_t i = 0; i < dof_; ++i) {
                 next.q[i] -= other.with.h() * other.with.impulse_direction(i);
@@ -218,20 +218,21 @@ List<Number> TrueMotionOf<Number>::along(const Coefficients& path, Evaluator<Ser
 
 // Follows the motion to an event: the first descent of a watched quantity through zero.
 template <class Number>
-bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longest, double expected, double tolerance) {
+bool TrueMotionOf<Number>::move(Flight& flight, StopCondition until, const Number& longest, double expected,
+                                double tolerance) {
     Number left = longest;
     for (int steps = 0; left > 0; flight.known = 0) {
         if (++steps > 3000) throw std::runtime_error("the truth about this motion takes too many steps");
         const double reach = std::min({expected, static_cast<double>(left), longest_step_});
-        const bool in_contact = until == Until::release || until == Until::least_force;
+        const bool in_contact = until == StopCondition::release || until == StopCondition::least_force;
         const Coefficients path = expand(in_contact ? contact_motion_ : flight_, flight.point, reach, tolerance);
         double step = safe_step(path, reach, tolerance);
         Numbers watched = along(path, in_contact ? release_ : gap_, 0, step, tolerance);  // hddot, or h
-        if (until == Until::dip || until == Until::least_force) watched = derivative(watched);
-        if (until == Until::dip || until == Until::release)
+        if (until == StopCondition::dip || until == StopCondition::least_force) watched = derivative(watched);
+        if (until == StopCondition::dip || until == StopCondition::release)
             for (Number& c : watched) c = -c;
         // Divides out the known root at 0, which would be found again.
-        if (until == Until::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
+        if (until == StopCondition::impact) watched.erase(watched.begin(), watched.begin() + flight.known);
         const auto event = first_descent(watched, step);
         const Number taken = event ? *event : step < static_cast<double>(left) ? Number(step) : left;
         flight.time += taken;
@@ -245,22 +246,22 @@ bool TrueMotionOf<Number>::move(Flight& flight, Until until, const Number& longe
 
 template <class Number>
 bool TrueMotionOf<Number>::fly(Flight& flight, const Number& longest, double expected, double tolerance) {
-    return move(flight, Until::impact, longest, expected, tolerance);
+    return move(flight, StopCondition::impact, longest, expected, tolerance);
 }
 
 template <class Number>
 bool TrueMotionOf<Number>::fly_to_dip(Flight& flight, const Number& longest, double expected, double tolerance) {
-    return move(flight, Until::dip, longest, expected, tolerance);
+    return move(flight, StopCondition::dip, longest, expected, tolerance);
 }
 
 template <class Number>
 bool TrueMotionOf<Number>::stay(Flight& contact, const Number& longest, double tolerance) {
-    return move(contact, Until::release, longest, static_cast<double>(longest), tolerance);
+    return move(contact, StopCondition::release, longest, static_cast<double>(longest), tolerance);
 }
 
 template <class Number>
 bool TrueMotionOf<Number>::stay_to_dip(Flight& contact, const Number& longest, double tolerance) {
-    return move(contact, Until::least_force, longest, static_cast<double>(longest), tolerance);
+    return move(contact, StopCondition::least_force, longest, static_cast<double>(longest), tolerance);
 }
 
 template <class Number>

@@ -24,11 +24,11 @@ struct ZenoPointOf {
     PointOf<Number> point;
     int impacts = 0;
     std::vector<List<Number>> velocities;  // after each impact and before the next, where |v - v*| is largest
-    struct Flown {
+    struct FlightRecord {
         PointOf<Number> start;
         Number time, duration;  // `time` is that of its start
     };
-    std::vector<Flown> flights;  // the first ones
+    std::vector<FlightRecord> flights;  // the first ones
 };
 using ZenoPoint = ZenoPointOf<Real>;
 
@@ -63,7 +63,7 @@ Evaluator<Number> evaluator(const Model& model, const Program& program, const Li
     return result;
 }
 template <class Number, template <class> class TermsOf>
-TermsOf<Evaluator<Number>> evaluator(const Model& model, const ProgramOf<TermsOf>& program,
+TermsOf<Evaluator<Number>> evaluator(const Model& model, const TypedProgram<TermsOf>& program,
                                      const List<Number>& parameters) {
     return {evaluator(model, static_cast<const Program&>(program), parameters), static_cast<std::size_t>(model.dof())};
 }
@@ -122,20 +122,20 @@ class TrueMotionOf {
     Number jerk(const Point& point);
     // Quantities of the other contacts while this one is open, in ascending order of contacts: forces of the held ones,
     // gaps of the open ones, and the transmissions kappa of an impulse to the held ones.
-    struct Others {
+    struct OtherContacts {
         Numbers forces, gaps, transmissions;
     };
-    Others others(const Point& point);
+    OtherContacts others(const Point& point);
     // The state after a short time in contact, to first order.
     Point drift(const Point& slid, const Number& time);
 
  private:
     using Coefficients = std::vector<Point>;  // by order
-    enum class Until { impact, dip, release, least_force };
+    enum class StopCondition { impact, dip, release, least_force };
     Coefficients expand(Evaluator<Series<Number>>& motion, const Point& from, double duration, double tolerance);
     Numbers along(const Coefficients& path, Evaluator<Series<Number>>& program, std::size_t output, double& step,
                   double tolerance);
-    bool move(Flight& flight, Until until, const Number& longest, double expected, double tolerance);
+    bool move(Flight& flight, StopCondition until, const Number& longest, double expected, double tolerance);
     std::vector<Point> follow(Evaluator<Series<Number>>& motion, Point point, const Numbers& times, double tolerance);
 
     template <class Terms>
@@ -149,11 +149,11 @@ class TrueMotionOf {
     ReleaseTerms<Evaluator<Number>> normal_;
     MotionTerms<Evaluator<Number>> acceleration_;
     // For every other held contact: `with` this contact and the remaining ones held, `without` this contact.
-    struct Held {
+    struct HeldContact {
         ContactTerms<Evaluator<Number>> with, without;
         Evaluator<Number> force;
     };
-    std::vector<Held> held_;
+    std::vector<HeldContact> held_;
     std::vector<Evaluator<Number>> open_;  // the gaps
 };
 using TrueMotion = TrueMotionOf<Real>;

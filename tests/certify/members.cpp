@@ -78,8 +78,9 @@ class Comparison {
 
 }  // namespace
 
-achilles::Claim claim_around(const Model& model, double end, double half, double of_parameters, unsigned seed) {
-    achilles::Claim claim = claim_of(model.default_run());
+achilles::EnclosureProblem claim_around(const Model& model, double end, double half, double of_parameters,
+                                        unsigned seed) {
+    achilles::EnclosureProblem claim = problem_of(model.default_run());
     claim.run.options.end_time = std::min(claim.run.options.end_time, end);
     double closest = 1.0;
     for (std::size_t i = 0; i < model.contacts(); ++i) {
@@ -94,7 +95,7 @@ achilles::Claim claim_around(const Model& model, double end, double half, double
         for (Intervals* box : {&claim.q, &claim.v})
             for (Interval& entry : *box)
                 if (seed != 0) entry = Interval(mid(entry) * uniform(random));
-        widen(claim, half);
+        inflate(claim, half);
     }
     for (Interval& parameter : claim.parameters)
         parameter = parameter * Interval(1.0 - of_parameters, 1.0 + of_parameters);
@@ -103,7 +104,7 @@ achilles::Claim claim_around(const Model& model, double end, double half, double
     return claim;
 }
 
-Membership members_of(const std::shared_ptr<const Model>& model, const achilles::Claim& claim, int count,
+Membership members_of(const std::shared_ptr<const Model>& model, const achilles::EnclosureProblem& claim, int count,
                       unsigned seed) {
     Membership result;
     result.proved = prove(model, claim);

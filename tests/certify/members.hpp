@@ -19,12 +19,13 @@ struct Membership {
 };
 
 // Compares `count` members, a quarter of them at corners of the boxes, with runs at a tolerance of 1e-13.
-Membership members_of(const std::shared_ptr<const Model>& model, const achilles::Claim& claim, int count,
+Membership members_of(const std::shared_ptr<const Model>& model, const achilles::EnclosureProblem& claim, int count,
                       unsigned seed);
 
 // The default run of a system until `end` at most. If it starts in flight, each initial value has the half-width
 // `half`. Each parameter has the relative half-width `of_parameters`. With a seed, the start is first changed at random
 // by 1 %.
-achilles::Claim claim_around(const Model& model, double end, double half, double of_parameters, unsigned seed = 0);
+achilles::EnclosureProblem claim_around(const Model& model, double end, double half, double of_parameters,
+                                        unsigned seed = 0);
 
 }  // namespace achilles::test

@@ -10,7 +10,7 @@
 
 namespace achilles::test {
 
-void Tally::add(const Trial& trial, const Certified& certified, const Model& model) {
+void Tally::add(const Trial& trial, const CertificateCase& certified, const Model& model) {
     ++certificates;
     if (!trial.zeno) {
         ++unknown;
@@ -21,11 +21,11 @@ void Tally::add(const Trial& trial, const Certified& certified, const Model& mod
         violated = violated || !claim.holds();
         const double ratio = claim.bound / claim.actual;
         if (!(claim.actual > 0.0)) continue;
-        if (claim.about == Claim::About::latest) ratios[latest].push_back(ratio);
-        if (claim.about == Claim::About::position) ratios[position].push_back(ratio);
-        if (claim.about == Claim::About::velocity) ratios[velocity].push_back(ratio);
-        if (claim.about == Claim::About::shadowing_velocity) ratios[shadowing].push_back(ratio);
-        if (claim.about == Claim::About::uniform_position) ratios[uniform].push_back(ratio);
+        if (claim.about == Claim::ClaimKind::latest) ratios[latest].push_back(ratio);
+        if (claim.about == Claim::ClaimKind::position) ratios[position].push_back(ratio);
+        if (claim.about == Claim::ClaimKind::velocity) ratios[velocity].push_back(ratio);
+        if (claim.about == Claim::ClaimKind::shadowing_velocity) ratios[shadowing].push_back(ratio);
+        if (claim.about == Claim::ClaimKind::uniform_position) ratios[uniform].push_back(ratio);
     }
     const double half_width = 0.5 * (certified.certificate.zeno_high - certified.certificate.zeno_low);
     if (certified.best && half_width > 0.0) {
@@ -62,7 +62,7 @@ double Tally::least(Ratio ratio) const {
 }
 
 void add(Tallies& tallies, const Trial& trial, const Model& model) {
-    for (const Certified& certified : trial.certified)
+    for (const CertificateCase& certified : trial.certified)
         tallies[{certified.asked.conditions, certified.asked.reinitialization, certified.held}].add(trial, certified,
                                                                                                     model);
 }

@@ -23,7 +23,7 @@ struct Tally {
     long estimates = 0;
     double worst_estimate = 0.0;
 
-    void add(const Trial& trial, const Certified& certified, const Model& model);
+    void add(const Trial& trial, const CertificateCase& certified, const Model& model);
     double median(Ratio ratio) const;  // NaN without data
     double least(Ratio ratio) const;
 };

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "simulate/contact_cache.hpp"
 #include "simulate/impact.hpp"
 #include "simulate/simulate.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles::test {
 
@@ -29,10 +29,10 @@ double actual(const Real& x) { return static_cast<double>(x); }
 
 }  // namespace
 
-std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
-    using About = Claim::About;
+std::vector<Claim> claims(const Trial& trial, const CertificateCase& certified) {
+    using ClaimKind = Claim::ClaimKind;
     const Certificate& c = certified.certificate;
-    const Trial::Restarted& own = trial.restarted(certified.asked.reinitialization);
+    const Trial::RestartPoint& own = trial.restarted(certified.asked.reinitialization);
     const ZenoPoint& truth = *trial.zeno;
     const Real tau_k = own.collision.before.t;
     const auto since = [&](double t) { return actual(t - tau_k); };
@@ -44,42 +44,43 @@ std::vector<Claim> claims(const Trial& trial, const Certified& certified) {
         return actual(std::max(distance(a, b) - known, Real(0)));
     };
     const double shadow_q = shadow(truth.point.q, own.at_zeno.q), shadow_v = shadow(truth.point.v, own.at_zeno.v);
-    std::vector<Claim> result{{About::earliest, t, since(c.zeno_low)},
-                              {About::latest, since(c.zeno_high), t},
-                              {About::position, c.position_bound, q},
-                              {About::velocity, c.velocity_bound, v}};
-    if (c.shadowing_position) result.push_back({About::shadowing_position, *c.shadowing_position, shadow_q});
-    if (c.shadowing_velocity) result.push_back({About::shadowing_velocity, *c.shadowing_velocity, shadow_v});
-    if (c.uniform_position) result.push_back({About::uniform_position, *c.uniform_position, own.farthest});
+    std::vector<Claim> result{{ClaimKind::earliest, t, since(c.zeno_low)},
+                              {ClaimKind::latest, since(c.zeno_high), t},
+                              {ClaimKind::position, c.position_bound, q},
+                              {ClaimKind::velocity, c.velocity_bound, v}};
+    if (c.shadowing_position) result.push_back({ClaimKind::shadowing_position, *c.shadowing_position, shadow_q});
+    if (c.shadowing_velocity) result.push_back({ClaimKind::shadowing_velocity, *c.shadowing_velocity, shadow_v});
+    if (c.uniform_position) result.push_back({ClaimKind::uniform_position, *c.uniform_position, own.farthest});
     if (certified.best) {
-        result.push_back({About::best_estimate, *certified.best, c.zeno_low});
-        result.push_back({About::best_estimate, c.zeno_high, *certified.best});
+        result.push_back({ClaimKind::best_estimate, *certified.best, c.zeno_low});
+        result.push_back({ClaimKind::best_estimate, c.zeno_high, *certified.best});
     }
     // The certificate implies that held contacts stay held and open ones stay open.
     if (trial.least)
         for (const Reals* part : {&trial.least->forces, &trial.least->gaps, &trial.least->transmissions})
-            for (const Real& x : *part) result.push_back({About::others, actual(x), 0.0});
+            for (const Real& x : *part) result.push_back({ClaimKind::others, actual(x), 0.0});
     if (c.others) {
         for (std::size_t i = 0; i < c.others->held.size(); ++i) {
-            const Certificate::Others::Held& held = c.others->held[i];
-            result.push_back({About::others, actual(trial.least->forces[i]), held.least_force});
-            result.push_back({About::others, actual(trial.least->transmissions[i]), held.transmission_low});
-            result.push_back({About::others, held.transmission_high, actual(trial.most->transmissions[i])});
+            const Certificate::OtherContactBounds::HeldContactBound& held = c.others->held[i];
+            result.push_back({ClaimKind::others, actual(trial.least->forces[i]), held.least_force});
+            result.push_back({ClaimKind::others, actual(trial.least->transmissions[i]), held.transmission_low});
+            result.push_back({ClaimKind::others, held.transmission_high, actual(trial.most->transmissions[i])});
         }
-        for (const Real& gap : trial.least->gaps) result.push_back({About::others, actual(gap), *c.others->least_gap});
+        for (const Real& gap : trial.least->gaps)
+            result.push_back({ClaimKind::others, actual(gap), *c.others->least_gap});
     }
     if (!certified.held) return result;
     // The requested tolerances: Def. 7 bounds the distance to the Zeno point, the sharp conditions its uncertainty.
     const bool paper = c.conditions == Conditions::paper;
     const double half_width = 0.5 * (c.zeno_high - c.zeno_low);
-    result.push_back({About::tolerance, certified.asked.eps_t, paper ? t : half_width});
-    result.push_back({About::tolerance, certified.asked.eps_q, paper ? q : shadow_q});
-    result.push_back({About::tolerance, certified.asked.eps_v, paper ? v : shadow_v});
+    result.push_back({ClaimKind::tolerance, certified.asked.eps_t, paper ? t : half_width});
+    result.push_back({ClaimKind::tolerance, certified.asked.eps_q, paper ? q : shadow_q});
+    result.push_back({ClaimKind::tolerance, certified.asked.eps_v, paper ? v : shadow_v});
     return result;
 }
 
 double largest_excursion(const Trial& trial, Reinitialization kind) {
-    const Trial::Restarted& own = trial.restarted(kind);
+    const Trial::RestartPoint& own = trial.restarted(kind);
     Real most = distance(trial.zeno->point.v, own.restart.v);
     for (const Reals& v : trial.zeno->velocities) most = std::max(most, distance(v, own.restart.v));
     return actual(most);
@@ -115,7 +116,7 @@ std::optional<State> Trials::zeno_equilibrium(Trial& trial) {
             state.v[k] = uniform(coordinates[i].rate_range[0], coordinates[i].rate_range[1]);
         }
     }
-    Surfaces surfaces(*model_, trial.run);
+    ContactCache surfaces(*model_, trial.run);
     const ContactSet closed = trial.mode.held().with(trial.contact);
     if (!surfaces.project(state, closed, closed)) return std::nullopt;
     if (!(surfaces.of(trial.contact, trial.mode).normal_acceleration(state) < 0.0)) return std::nullopt;
@@ -209,7 +210,7 @@ std::vector<Trial> Trials::next_run() {
             const State before{event.truncation->q, event.truncation->v_before, event.truncation->t};
             collide(trial, before);
             trial.certified.push_back(
-                {run.options.truncation, !event.certificate->below_rounding, *event.certificate, event.t});
+                {run.options.truncation, !event.certificate->cut_at_resolution, *event.certificate, event.t});
             find_truth(trial, before);
         }
     } catch (const InputError&) {  // negative gap at the start
@@ -237,10 +238,10 @@ void Trials::find_truth(Trial& trial, const State& before) const {
     }
     if (model_->contacts() == 1) return;
     const auto look = [&](const Point& point) {
-        const TrueMotion::Others now = motion.others(point);
+        const TrueMotion::OtherContacts now = motion.others(point);
         if (!trial.least) trial.least = trial.most = now;
-        for (const auto part :
-             {&TrueMotion::Others::forces, &TrueMotion::Others::gaps, &TrueMotion::Others::transmissions})
+        for (const auto part : {&TrueMotion::OtherContacts::forces, &TrueMotion::OtherContacts::gaps,
+                                &TrueMotion::OtherContacts::transmissions})
             for (std::size_t i = 0; i < (now.*part).size(); ++i) {
                 const Real& x = (now.*part)[i];
                 Real &low = ((*trial.least).*part)[i], &high = ((*trial.most).*part)[i];

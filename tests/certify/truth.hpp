@@ -12,7 +12,7 @@
 namespace achilles::test {
 
 // One certificate with the tolerances for which it was requested.
-struct Certified {
+struct CertificateCase {
     Truncation asked;
     bool held = false;  // the conditions hold for the tolerances; otherwise it states what can be proved without them
     Certificate certificate;
@@ -25,24 +25,24 @@ struct Trial {
     Run run;
     std::size_t contact = 0;  // the impacting contact
     Mode mode;                // the other contacts that are held
-    std::vector<Certified> certified;
+    std::vector<CertificateCase> certified;
     std::optional<ZenoPoint> zeno;
-    struct Restarted {
+    struct RestartPoint {
         Collision collision;     // input of the conditions
         Point restart, at_zeno;  // the constrained motion: its start, and its state at tau_inf
         double farthest = 0.0;   // the largest sampled |q(t) - q~(t)|, with q~ the constrained motion
     };
-    Restarted kinetic, euclidean;
+    RestartPoint kinetic, euclidean;
     // Minimum and maximum, over the sampled instants, of the forces, gaps and transmissions of the other contacts.
-    std::optional<TrueMotion::Others> least, most;
-    const Restarted& restarted(Reinitialization kind) const {
+    std::optional<TrueMotion::OtherContacts> least, most;
+    const RestartPoint& restarted(Reinitialization kind) const {
         return kind == Reinitialization::kinetic ? kinetic : euclidean;
     }
 };
 
 // One inequality that a certificate claims: actual <= bound.
 struct Claim {
-    enum class About {
+    enum class ClaimKind {
         earliest,
         latest,
         position,
@@ -54,13 +54,13 @@ struct Claim {
         others,         // statements about the other contacts
         tolerance
     };
-    About about;
+    ClaimKind about;
     double bound, actual;
     bool holds() const { return actual <= bound; }
 };
 
 // All claims of the certificate about the trial, with the reference values.
-std::vector<Claim> claims(const Trial& trial, const Certified& certified);
+std::vector<Claim> claims(const Trial& trial, const CertificateCase& certified);
 
 // The largest |v - v*| between tau_k and the Zeno point. No certificate claims it, but the sum in Def. 7 bounds it.
 double largest_excursion(const Trial& trial, Reinitialization kind);

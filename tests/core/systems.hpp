@@ -93,13 +93,13 @@ inline std::shared_ptr<const Model> drop() {
 }
 
 // A system of two coordinates, its parts as text.
-struct Plane {
+struct PlaneSystem {
     std::string kinetic = "1/2*(a'^2 + b'^2)", potential = "b", gap = "b", e = "0.5";
     double a = 0.0, b = 0.0, a_rate = 0.0, b_rate = 0.0, end = 10.0;
     std::string a_force = "0", b_force = "0";
 };
 
-inline std::shared_ptr<const Model> model_of(const Plane& plane) {
+inline std::shared_ptr<const Model> model_of(const PlaneSystem& plane) {
     return typed(
         fmt::format("title = \"two coordinates\"\n[[coordinate]]\nname = \"a\"\nstart = {}\nrate = {}\nforce = \"{}\"\n"
                     "[[coordinate]]\nname = \"b\"\nstart = {}\nrate = {}\nforce = \"{}\"\n[lagrangian]\nkinetic = "

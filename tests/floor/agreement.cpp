@@ -19,7 +19,7 @@ void read_phases(const Trajectory& trajectory, Outline& outline) {
     for (std::size_t i = 1; i < trajectory.phases.size(); ++i) {
         const ContactSet before = trajectory.phases[i - 1].mode.held(), after = trajectory.phases[i].mode.held();
         for (std::size_t contact = 0; contact < outline.contacts.size(); ++contact) {
-            Outline::OfContact& known = outline.contacts[contact];
+            Outline::ContactOutline& known = outline.contacts[contact];
             if (after.without(before).contains(contact)) ++known.zenos;
             if (before.without(after).contains(contact)) known.leaves.push_back(trajectory.phases[i].start);
         }
@@ -30,7 +30,7 @@ void read_phases(const Trajectory& trajectory, Outline& outline) {
 // impacts below the accuracy of the gap.
 constexpr double slowest = 1e-6;
 
-void read_event(const Event& event, std::size_t contact, bool several, Outline::OfContact& known) {
+void read_event(const Event& event, std::size_t contact, bool several, Outline::ContactOutline& known) {
     if (several && event.kind == Event::Kind::impact && event.impact_speed < slowest && event.opened.empty()) return;
     if (event.opened.contains(contact)) known.leaves.push_back(event.t);
     if (!event.contacts.contains(contact)) return;
@@ -43,8 +43,8 @@ void read_event(const Event& event, std::size_t contact, bool several, Outline::
     known.bounces.emplace_back();
 }
 
-void compare(const Outline::OfContact& a, const Outline::OfContact& b, bool ends_alone, const std::string& name,
-             Distance& difference) {
+void compare(const Outline::ContactOutline& a, const Outline::ContactOutline& b, bool ends_alone,
+             const std::string& name, Distance& difference) {
     if (a.zenos != b.zenos || a.leaves.size() != b.leaves.size())
         difference.add(infinity, fmt::format("{}{} Zeno points and {} releases against {} and {}", name, a.zenos,
                                              a.leaves.size(), b.zenos, b.leaves.size()));
@@ -90,7 +90,7 @@ Outline outline_of(const Trajectory& trajectory) {
 
 Outline outline_of(const TrueExecution& truth) {
     Outline outline;
-    Outline::OfContact& known = outline.contacts.emplace_back();
+    Outline::ContactOutline& known = outline.contacts.emplace_back();
     for (const TrueEvent& event : truth.events) {
         const double t = static_cast<double>(event.t);
         if (event.kind == Event::Kind::impact) known.bounces.back().impacts.push_back(t);

@@ -11,16 +11,16 @@ namespace achilles::test {
 
 // An execution by contact: impacts up to a Zeno point, contact up to a release or opening, impacts, and so on.
 struct Outline {
-    struct Bouncing {
+    struct BounceOutline {
         std::vector<double> impacts;  // times
         double zeno_low = 0.0, zeno_high = 0.0;
     };
-    struct OfContact {
-        std::vector<Bouncing> bounces{1};  // the last one may have no Zeno point
-        std::vector<double> leaves;        // times of release, or of opening by an impact
+    struct ContactOutline {
+        std::vector<BounceOutline> bounces{1};  // the last one may have no Zeno point
+        std::vector<double> leaves;             // times of release, or of opening by an impact
         std::size_t zenos = 0;
     };
-    std::vector<OfContact> contacts;
+    std::vector<ContactOutline> contacts;
     Vector end;
     bool ends_alone = false;  // recorded without events
 };

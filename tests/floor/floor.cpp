@@ -8,8 +8,8 @@
 #include <stdexcept>
 
 #include "floor/laws.hpp"
+#include "simulate/batch.hpp"
 #include "simulate/impact.hpp"
-#include "simulate/many.hpp"
 
 namespace achilles::test {
 
@@ -137,7 +137,7 @@ std::string fault(const Trajectory& trajectory, double between) {
     const std::string stored = below_the_floor(trajectory);
     if (!stored.empty()) return stored;
     auto gaps = gaps_of(trajectory);
-    for (const Piece& piece : trajectory.pieces) {
+    for (const DenseSegment& piece : trajectory.pieces) {
         if (!piece.mode.held().empty()) continue;  // samples in contact are projected
         for (const double theta : {0.0625, 0.125, 0.25, 0.5, 0.75, 0.875, 0.9375}) {
             const double t = piece.start + theta * (piece.end - piece.start);
@@ -159,7 +159,7 @@ Trajectory by_eight(const std::shared_ptr<const Model>& model, const Run& run) {
     Trajectory end;
     simulate_ends(
         model, 1, [&](std::size_t) { return run; },
-        [&](std::size_t, Attempt&& attempt) { end = std::get<Trajectory>(std::move(attempt)); }, 1);
+        [&](std::size_t, RunResult&& attempt) { end = std::get<Trajectory>(std::move(attempt)); }, 1);
     return end;
 }
 

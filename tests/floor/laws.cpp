@@ -9,9 +9,9 @@
 
 #include "contacts/complementarity.hpp"
 #include "model/model.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
-#include "simulate/surfaces.hpp"
 
 namespace achilles::test {
 
@@ -25,7 +25,7 @@ Eigen::VectorXd least(const ContactMatrix<double>& W, const Eigen::VectorXd& b) 
 }
 
 // Ratio of the smallest to the largest eigenvalue of W: 0 if gradients are linearly dependent.
-double least_pivot(const Closed& held) {
+double least_pivot(const ClosedContacts& held) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(Eigen::MatrixXd(held.W), Eigen::EigenvaluesOnly);
     return values.eigenvalues().minCoeff() / values.eigenvalues().maxCoeff();
 }
@@ -71,7 +71,7 @@ class Probe {
     // Tolerance for h = 0.
     static double off(const State& state) { return 1e-12 * std::max(1.0, state.q.norm()); }
     // The contact forces that hold these contacts: W lambda = -hddot, with hddot of the free motion.
-    Eigen::VectorXd forces(const State& state, const Closed& held) {
+    Eigen::VectorXd forces(const State& state, const ClosedContacts& held) {
         Eigen::VectorXd hddot(static_cast<Eigen::Index>(held.which.size()));
         for (Eigen::Index i = 0; i < hddot.size(); ++i)
             hddot[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
@@ -79,7 +79,7 @@ class Probe {
     }
 
     // The same; if the forces are not unique, a nonnegative solution if there is one.
-    Eigen::VectorXd pressing(const State& state, const Closed& held) {
+    Eigen::VectorXd pressing(const State& state, const ClosedContacts& held) {
         const Eigen::VectorXd of_any_sign = forces(state, held);
         if (least_pivot(held) > 1e-9) return of_any_sign;
         const auto choice = solve_complementarity(held.W, ContactVector<double>(-held.W * of_any_sign));
@@ -87,7 +87,7 @@ class Probe {
     }
     // The largest remaining acceleration of a held gap under the reported forces, relative to that by the largest
     // force.
-    double off_balance(const State& state, const Closed& held, ContactForces& told) {
+    double off_balance(const State& state, const ClosedContacts& held, ContactForces& told) {
         Eigen::VectorXd left(static_cast<Eigen::Index>(held.which.size())), lambda = left;
         for (Eigen::Index i = 0; i < left.size(); ++i) {
             left[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
@@ -108,7 +108,7 @@ class Probe {
     }
 
     const Model& model;
-    Surfaces surfaces;
+    ContactCache surfaces;
     std::vector<double> restitution;
 
  private:
@@ -173,7 +173,7 @@ struct Blow {
         return set;
     }
 
-    Closed contacts;
+    ClosedContacts contacts;
     Eigen::VectorXd rates, rates_after, p;
 };
 
@@ -347,7 +347,7 @@ class PhaseCheck {
         still(event, event.mode.held());
         check(event.mode.held() == phase.mode.held().with(event.contacts) && event.mode.held() != phase.mode.held(),
               "a Zeno point holds", event.t);
-        const Closed held = probe_.surfaces.at(after(event), event.mode.held());
+        const ClosedContacts held = probe_.surfaces.at(after(event), event.mode.held());
         check(probe_.forces(after(event), held).minCoeff() >= 0.0, "a force pulls at a Zeno point", event.t);
         check(event.impacts == impacts_, "a Zeno point counts other impacts", event.t);
         if (is_plastic_landing(event)) return;
@@ -408,8 +408,8 @@ Violations contact_force(const Trajectory& trajectory) {
                                         [&](const Phase& one) { return one.start <= sample.t && sample.t < one.end; });
         if (phase == trajectory.phases.end() || phase->mode.held().empty() || sample.mode.held() != phase->mode.held())
             continue;
-        const Closed held = probe.surfaces.at(sample.state, phase->mode.held());
-        if (phase->not_unique()) {
+        const ClosedContacts held = probe.surfaces.at(sample.state, phase->mode.held());
+        if (phase->is_nonunique()) {
             // There is a nonnegative solution, and it is recorded.
             told.set(sample);
             const double off = probe.off_balance(sample.state, held, told);
@@ -427,7 +427,7 @@ Violations contact_force(const Trajectory& trajectory) {
     }
     for (const Event& event : trajectory.events) {
         if (event.kind != Event::Kind::release) continue;
-        const Closed held = probe.surfaces.at(after(event), event.mode.held().with(event.contacts));
+        const ClosedContacts held = probe.surfaces.at(after(event), event.mode.held().with(event.contacts));
         const Eigen::VectorXd forces = probe.pressing(after(event), held);
         for (std::size_t i = 0; i < held.which.size(); ++i) {
             if (!event.contacts.contains(held.which[i])) continue;

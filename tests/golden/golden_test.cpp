@@ -11,19 +11,19 @@
 
 namespace achilles::golden {
 
-void PrintTo(const Picture& picture, std::ostream* out) { *out << picture.name; }
+void PrintTo(const GoldenPicture& picture, std::ostream* out) { *out << picture.name; }
 
 namespace {
 
-class Golden : public testing::TestWithParam<Picture> {};
+class Golden : public testing::TestWithParam<GoldenPicture> {};
 
-TEST_P(Golden, is_as_it_was) {
+TEST_P(Golden, IsAsItWas) {
     for (const Finding& finding : check(GetParam(), place()))
         ADD_FAILURE() << GetParam().name << "/" << finding.file << ": " << finding.what << how_to_bless << "\n"
                       << (place().report / "index.html").string() << " shows both";
 }
 
-std::string test_name(const testing::TestParamInfo<Picture>& one) {
+std::string test_name(const testing::TestParamInfo<GoldenPicture>& one) {
     std::string name = one.param.name;
     for (char& c : name)
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
@@ -31,21 +31,21 @@ std::string test_name(const testing::TestParamInfo<Picture>& one) {
 }
 INSTANTIATE_TEST_SUITE_P(Pictures, Golden, testing::ValuesIn(pictures()), test_name);
 
-TEST(Goldens, every_golden_file_belongs_to_a_picture) {
+TEST(Goldens, EveryGoldenFileBelongsToAPicture) {
     for (const std::filesystem::path& file : orphans(pictures(), place()))
         ADD_FAILURE() << file.string() << " belongs to no picture; tests/run --bless removes it";
 }
 
 // Also for a system that was added after the tests above were listed.
-TEST(Goldens, every_picture_has_golden_files) {
-    for (const Picture& picture : pictures())
+TEST(Goldens, EveryPictureHasGoldenFiles) {
+    for (const GoldenPicture& picture : pictures())
         EXPECT_TRUE(std::filesystem::is_directory(place().goldens / picture.name))
             << picture.name << " has no golden files yet; " << how_to_bless;
 }
 
-TEST(Goldens, every_system_and_journal_has_a_picture) {
+TEST(Goldens, EverySystemAndJournalHasAPicture) {
     std::set<std::string> names;
-    for (const Picture& picture : pictures()) names.insert(picture.name);
+    for (const GoldenPicture& picture : pictures()) names.insert(picture.name);
     std::size_t files = 0;
     for (const auto& [folder, kind] :
          {std::pair{"assets/systems", "figure"}, std::pair{"assets/journals", "tour"},
@@ -64,12 +64,12 @@ TEST(Goldens, every_system_and_journal_has_a_picture) {
 }
 
 // Tests of check() and bless() with a picture made here.
-class Machinery : public testing::Test {
+class GoldenStore : public testing::Test {
  protected:
-    Machinery() : where{folder.path() / "goldens", folder.path() / "report"} {
+    GoldenStore() : where{folder.path() / "goldens", folder.path() / "report"} {
         std::filesystem::create_directories(where.goldens);
     }
-    Picture picture(const std::string& text, int gray, const std::string& name = "kind/one") const {
+    GoldenPicture picture(const std::string& text, int gray, const std::string& name = "kind/one") const {
         return {name, [=] {
                     Image image{60, 40, {}};
                     image.rgb.assign(std::size_t{60 * 40 * 3}, static_cast<std::uint8_t>(gray));
@@ -79,10 +79,10 @@ class Machinery : public testing::Test {
     std::string page() const { return test::content(where.report / "index.html"); }
 
     test::Folder folder;
-    Place where;
+    GoldenFolders where;
 };
 
-TEST_F(Machinery, a_missing_golden_fails_until_it_is_blessed) {
+TEST_F(GoldenStore, AMissingGoldenFailsUntilItIsBlessed) {
     const std::vector<Finding> findings = check(picture("t 1\n", 100), where);
     ASSERT_EQ(findings.size(), 2U);
     EXPECT_EQ(findings[0].file, "trajectory.txt");
@@ -96,7 +96,7 @@ TEST_F(Machinery, a_missing_golden_fails_until_it_is_blessed) {
     EXPECT_TRUE(bless(picture("t 1\n", 100), where).empty());
 }
 
-TEST_F(Machinery, text_is_told_before_pixels_and_the_page_shows_the_worst_first) {
+TEST_F(GoldenStore, TextIsToldBeforePixelsAndThePageShowsTheWorstFirst) {
     for (const char* name : {"kind/one", "kind/two"}) bless(picture("t 1\nu 2\n", 100, name), where);
     const std::vector<Finding> findings = check(picture("t 1\nu 3\n", 110), where);
     ASSERT_EQ(findings.size(), 2U);
@@ -118,9 +118,9 @@ TEST_F(Machinery, text_is_told_before_pixels_and_the_page_shows_the_worst_first)
     EXPECT_FALSE(std::filesystem::exists(where.report / "index.html"));
 }
 
-TEST_F(Machinery, another_size_and_a_lost_file_are_told) {
+TEST_F(GoldenStore, AnotherSizeAndALostFileAreTold) {
     bless(picture("t 1\n", 100), where);
-    Picture other = picture("t 1\n", 100);
+    GoldenPicture other = picture("t 1\n", 100);
     other.make = [] { return std::vector<Layer>{{"picture.png", Image{1, 2, std::vector<std::uint8_t>(6, 100)}}}; };
     const std::vector<Finding> findings = check(other, where);
     ASSERT_EQ(findings.size(), 2U);
@@ -131,7 +131,7 @@ TEST_F(Machinery, another_size_and_a_lost_file_are_told) {
     EXPECT_TRUE(check(other, where).empty());
 }
 
-TEST_F(Machinery, an_orphan_is_found) {
+TEST_F(GoldenStore, AnOrphanIsFound) {
     bless(picture("t 1\n", 100), where);
     bless(picture("t 1\n", 100, "kind/gone"), where);
     std::ofstream(where.goldens / "CMakeLists.txt") << "the machinery's own";
@@ -141,7 +141,7 @@ TEST_F(Machinery, an_orphan_is_found) {
                                                   where.goldens / "kind/gone/trajectory.txt"}));
 }
 
-TEST(ImageDistance, sees_a_small_change_of_one_channel_by_the_fine_bar_alone) {
+TEST(ImageDistance, SeesASmallChangeOfOneChannelByTheFineBarAlone) {
     Image before{90, 60, std::vector<std::uint8_t>(std::size_t{3 * 90 * 60}, 200)}, after = before;
     for (std::size_t y = 42; y < 50; ++y)
         for (std::size_t x = 37; x < 39; ++x) after.rgb[3 * (90 * y + x) + 1] = 100;
@@ -157,7 +157,7 @@ TEST(ImageDistance, sees_a_small_change_of_one_channel_by_the_fine_bar_alone) {
     EXPECT_TRUE(std::isinf(distance(before, Image{60, 90, before.rgb}).score()));
 }
 
-TEST(TextDifference, allows_a_unit_in_the_ninth_digit_of_numbers_alone) {
+TEST(TextDifference, AllowsAUnitInTheNinthDigitOfNumbersAlone) {
     EXPECT_EQ(difference("t 1.23456789 (2e-17, -0.5)\n", "t 1.2345679 (-3e-17, -0.5)\n"), "");
     EXPECT_EQ(difference("t 9.87654321\n", "t 9.87654323\n"),
               "line 1: 1 of the golden lines, 1 of the new ones\n- t 9.87654321\n+ t 9.87654323\n");
@@ -167,7 +167,7 @@ TEST(TextDifference, allows_a_unit_in_the_ninth_digit_of_numbers_alone) {
         EXPECT_NE(difference(golden, actual), "") << golden;
 }
 
-TEST(TextDifference, shows_a_line_more_as_one_line) {
+TEST(TextDifference, ShowsALineMoreAsOneLine) {
     EXPECT_EQ(difference("a\nb\nc\n", "a\nnew\nb\nc\n"), "line 2: 0 of the golden lines, 1 of the new ones\n+ new\n");
     const std::string far(500, 'x');
     const std::string told = difference(far + " 1" + far, far + " 2" + far);

@@ -55,7 +55,7 @@ struct Comparison {
     double score = 0.0;  // of its worst image
 };
 
-Comparison compare(const Picture& picture, const Place& place) {
+Comparison compare(const GoldenPicture& picture, const GoldenFolders& place) {
     Comparison result{picture.make(), {}, {}, 0.0};
     const fs::path folder = place.goldens / picture.name;
     std::set<std::string> known;
@@ -105,9 +105,9 @@ void write_failure(const Comparison& comparison, const fs::path& folder) {
 
 }  // namespace
 
-Place place() { return {ACHILLES_SOURCE_DIR "/tests/golden", ACHILLES_BINARY_DIR "/golden"}; }
+GoldenFolders place() { return {ACHILLES_SOURCE_DIR "/tests/golden", ACHILLES_BINARY_DIR "/golden"}; }
 
-std::vector<Finding> check(const Picture& picture, const Place& place) {
+std::vector<Finding> check(const GoldenPicture& picture, const GoldenFolders& place) {
     const Comparison comparison = compare(picture, place);
     const fs::path folder = place.report / picture.name;
     if (comparison.findings.empty() && !fs::exists(folder)) return {};
@@ -121,21 +121,22 @@ std::vector<Finding> check(const Picture& picture, const Place& place) {
     return comparison.findings;
 }
 
-std::vector<fs::path> orphans(const std::vector<Picture>& pictures, const Place& place) {
+std::vector<fs::path> orphans(const std::vector<GoldenPicture>& pictures, const GoldenFolders& place) {
     std::vector<fs::path> found;
     for (const auto& entry : fs::recursive_directory_iterator(place.goldens)) {
         const std::string kind = entry.path().extension();
         const std::string folder = fs::relative(entry.path().parent_path(), place.goldens);
         // Skips the source files in this folder, and journals, which are inputs of pictures.
         if (!entry.is_regular_file() || folder == "." || (kind != ".png" && kind != ".txt")) continue;
-        if (std::none_of(pictures.begin(), pictures.end(), [&](const Picture& one) { return one.name == folder; }))
+        if (std::none_of(pictures.begin(), pictures.end(),
+                         [&](const GoldenPicture& one) { return one.name == folder; }))
             found.push_back(entry.path());
     }
     std::sort(found.begin(), found.end());
     return found;
 }
 
-std::vector<std::string> bless(const Picture& picture, const Place& place) {
+std::vector<std::string> bless(const GoldenPicture& picture, const GoldenFolders& place) {
     const Comparison comparison = compare(picture, place);
     std::vector<std::string> sentences;
     for (const Finding& finding : comparison.findings) {

@@ -18,15 +18,15 @@ struct Layer {
     std::variant<std::string, Image> content;
 };
 
-struct Picture {
+struct GoldenPicture {
     std::string name;                          // name of its folder: "figure/ball_on_sine"
     std::function<std::vector<Layer>()> make;  // returns the layers in the order of comparison
 };
 
-struct Place {
+struct GoldenFolders {
     std::filesystem::path goldens, report;
 };
-Place place();  // goldens in tests/golden, report in "golden" of the build tree
+GoldenFolders place();  // goldens in tests/golden, report in "golden" of the build tree
 
 // A layer that differs from its golden file.
 struct Finding {
@@ -35,13 +35,13 @@ struct Finding {
 
 // Makes the picture and compares it with its golden files. If it differs, the new files, the golden files and the
 // differences are added to the report, whose index.html shows all failed pictures. Otherwise its entry is removed.
-std::vector<Finding> check(const Picture& picture, const Place& place);
+std::vector<Finding> check(const GoldenPicture& picture, const GoldenFolders& place);
 
 // Golden files that belong to no picture.
-std::vector<std::filesystem::path> orphans(const std::vector<Picture>& pictures, const Place& place);
+std::vector<std::filesystem::path> orphans(const std::vector<GoldenPicture>& pictures, const GoldenFolders& place);
 
 // Replaces golden files that differ and removes those without a layer. Returns a sentence for every file.
-std::vector<std::string> bless(const Picture& picture, const Place& place);
+std::vector<std::string> bless(const GoldenPicture& picture, const GoldenFolders& place);
 
 // Advice printed with a finding.
 inline constexpr const char* how_to_bless = "look at the picture; if it is right: tests/run --bless";

@@ -12,16 +12,17 @@ namespace achilles::golden {
 namespace {
 
 int bless_all(const std::vector<std::string>& names) {
-    const std::vector<Picture> all = pictures();
+    const std::vector<GoldenPicture> all = pictures();
     for (const std::string& name : names) {
-        if (std::any_of(all.begin(), all.end(), [&](const Picture& picture) { return picture.name == name; })) continue;
+        if (std::any_of(all.begin(), all.end(), [&](const GoldenPicture& picture) { return picture.name == name; }))
+            continue;
         std::string known;
-        for (const Picture& picture : all) known += "\n  " + picture.name;
+        for (const GoldenPicture& picture : all) known += "\n  " + picture.name;
         fmt::print(stderr, "there is no picture '{}'; they are:{}\n", name, known);
         return 2;
     }
     std::size_t changed = 0;
-    for (const Picture& picture : all) {
+    for (const GoldenPicture& picture : all) {
         if (!names.empty() && std::find(names.begin(), names.end(), picture.name) == names.end()) continue;
         const std::vector<std::string> sentences = bless(picture, place());
         for (const std::string& sentence : sentences) fmt::print("{}", sentence);

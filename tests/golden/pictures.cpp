@@ -29,9 +29,9 @@ namespace {
 namespace fs = std::filesystem;
 
 // Runs a command of the program in an empty folder and lists the files that it writes, texts first.
-class Made {
+class CommandOutput {
  public:
-    explicit Made(const std::string& command, const std::string& environment = {}) {
+    explicit CommandOutput(const std::string& command, const std::string& environment = {}) {
         const test::Answer answer = folder_.run(command, "MESA_SHADER_CACHE_DISABLE=true " + environment);
         if (answer.status != reached_end && answer.status != stopped_early)
             throw std::runtime_error(fmt::format("achilles {}\n{}", command, answer.err));
@@ -79,7 +79,7 @@ std::vector<Layer> paper_layers() {
     for (const NamedFigure& figure : paper_figures(ball, pendulum))
         figures += fmt::format("{} {} x {}\n{}", figure.name, figure.width, figure.height, to_text(figure.figure));
     std::vector<Layer> layers{{"trajectory.txt", to_text(ball) + to_text(pendulum)}, {"figure.txt", figures}};
-    for (Layer& layer : Made("paper --scale 0.5 --out .").layers()) layers.push_back(std::move(layer));
+    for (Layer& layer : CommandOutput("paper --scale 0.5 --out .").layers()) layers.push_back(std::move(layer));
     return layers;
 }
 
@@ -115,8 +115,8 @@ std::vector<Layer> frame_layers(const fs::path& system) {
     const auto model = std::make_shared<const Model>(read_system(system));
     const Trajectory trajectory = simulate(model, model->default_run());
     Animation animation(trajectory, model->description().views, {frame_width, frame_height}, step);
-    const Made frames(fmt::format("frames '{}' --fps {} --size {}x{} --jobs 1 --out .", system.string(), 1.0 / step,
-                                  frame_width, frame_height));
+    const CommandOutput frames(fmt::format("frames '{}' --fps {} --size {}x{} --jobs 1 --out .", system.string(),
+                                           1.0 / step, frame_width, frame_height));
     return {{"figure.txt", to_text(animation.at(3.0 * step))}, {image_name, frames.image("frame_00003.png")}};
 }
 
@@ -129,8 +129,8 @@ std::vector<Layer> sweep_layers(const fs::path& file) {
     const SweepTable table(model, read_sweep(line.substr(space + 1), model->description()));
     SweepData data(table);
     data.add(table.rows(0, table.sweep().count()));
-    const Made made(fmt::format("sweep {} --size {}x{} --scale {} --out {}", line, figure_width, figure_height,
-                                figure_size, image_name));
+    const CommandOutput made(fmt::format("sweep {} --size {}x{} --scale {} --out {}", line, figure_width, figure_height,
+                                         figure_size, image_name));
     return {{"figure.txt", to_text(compose_sweep(data))}, {image_name, made.image(image_name)}};
 }
 
@@ -149,8 +149,8 @@ std::vector<Layer> proof_layers(const fs::path& file) {
         if (option == "--width") width = std::stod(value);
         if (option == "--end") end = std::stod(value);
     }
-    const Spread spread = take_spread(settings, width, description, points);
-    Run run = asked_run(description, points, {});
+    const InitialUncertainty spread = parse_uncertainty(settings, width, description, points);
+    Run run = requested_run(description, points, {});
     run.options.end_time = end;
     const Trajectory trajectory = simulate(std::make_shared<const Model>(description), run);
     const Proof proof = proof_of(trajectory, spread);
@@ -163,8 +163,8 @@ std::vector<Layer> proof_layers(const fs::path& file) {
 }
 
 template <class Make>
-void add_files(std::vector<Picture>& pictures, const std::string& kind, const fs::path& folder, const char* extension,
-               Make make) {
+void add_files(std::vector<GoldenPicture>& pictures, const std::string& kind, const fs::path& folder,
+               const char* extension, Make make) {
     if (!fs::is_directory(folder)) return;
     for (const auto& entry : fs::directory_iterator(folder))
         if (const fs::path file = entry.path(); file.extension() == extension)
@@ -173,8 +173,8 @@ void add_files(std::vector<Picture>& pictures, const std::string& kind, const fs
 
 }  // namespace
 
-std::vector<Picture> pictures() {
-    std::vector<Picture> all;
+std::vector<GoldenPicture> pictures() {
+    std::vector<GoldenPicture> all;
     for (const std::string& system : system_names())
         all.push_back({"figure/" + system, [system] { return figure_layers(system); }});
     all.push_back({"paper", paper_layers});
@@ -183,7 +183,7 @@ std::vector<Picture> pictures() {
     add_files(all, "proof", place().goldens / "proof", ".proof", proof_layers);
     add_files(all, "explorer", place().goldens / "explorer", ".journal", explorer_layers);
     add_files(all, "tour", ACHILLES_SOURCE_DIR "/assets/journals", ".journal", explorer_layers);
-    std::sort(all.begin(), all.end(), [](const Picture& a, const Picture& b) { return a.name < b.name; });
+    std::sort(all.begin(), all.end(), [](const GoldenPicture& a, const GoldenPicture& b) { return a.name < b.name; });
     return all;
 }
 
@@ -197,7 +197,7 @@ Figure gallery_figure(const Trajectory& trajectory, const PublicationStyle& styl
 }
 
 Image image_of(const std::string& command, const std::string& environment) {
-    return Made(fmt::format("{} --out {}", command, image_name), environment).image(image_name);
+    return CommandOutput(fmt::format("{} --out {}", command, image_name), environment).image(image_name);
 }
 
 std::string figure_command(const std::string& system) {

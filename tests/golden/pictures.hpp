@@ -11,7 +11,7 @@ namespace achilles::golden {
 // A figure of every system in assets/systems, the paper's pictures, a frame of every system in tests/golden/frame, the
 // sweeps in tests/golden/sweep, the proofs in tests/golden/proof, and the explorer after every journal in
 // tests/golden/explorer and assets/journals. A new file without golden files is a failure.
-std::vector<Picture> pictures();
+std::vector<GoldenPicture> pictures();
 
 constexpr int frame_width = 1000, frame_height = 625;  // pixels
 // Size of the golden figures: small, with the proportions of `achilles figure`.

@@ -55,7 +55,7 @@ TEST_P(Agreement, TwoRunsAreTheSameBytes) {
     EXPECT_EQ(to_csv(a), to_csv(b));
 }
 
-INSTANTIATE_TEST_SUITE_P(Execution, Agreement, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(ExecutionAutomaton, Agreement, testing::ValuesIn(all_cases()), name_of);
 
 }  // namespace
 }  // namespace achilles::test

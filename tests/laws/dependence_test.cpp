@@ -4,9 +4,9 @@
 
 #include "certify/execution.hpp"
 #include "core/systems.hpp"
-#include "depend/derivatives.hpp"
-#include "depend/gradient.hpp"
 #include "laws/laws.hpp"
+#include "sensitivity/derivatives.hpp"
+#include "sensitivity/gradient.hpp"
 
 namespace achilles::test {
 namespace {
@@ -88,14 +88,14 @@ TEST_P(Dependence, IsTangentInContact) {
     const Trajectory trajectory = simulate(model_, exact_run(*model_));
     const auto d = differentiate(trajectory);
     const std::size_t n = static_cast<std::size_t>(model_->dof()), P = trajectory.run.parameters.size();
-    const Tangent tangent{n, model_->contacts(), P};
+    const TangentLayout tangent{n, model_->contacts(), P};
     const Index K = static_cast<Index>(d.refused.size());
     const auto expect_tangent = [&](const State& state, ContactSet held, const MatrixXd& q, const MatrixXd& v,
                                     const VectorXd& t, const std::string& where) {
         MatrixXd Z = MatrixXd::Zero(tangent.size(), K);
         Z.middleRows(tangent.q(0), static_cast<Index>(n)) = q;
         Z.middleRows(tangent.v(0), static_cast<Index>(n)) = v;
-        Z.row(Tangent::t()) = t.transpose();
+        Z.row(TangentLayout::t()) = t.transpose();
         for (std::size_t k = 0; k < P; ++k) Z(tangent.p(k), static_cast<Index>(2 * n + k)) = 1.0;
         for (std::size_t i = 0; i < model_->contacts(); ++i) {
             if (!held.contains(i)) continue;

@@ -165,7 +165,7 @@ TEST_P(Derivatives, NormalQuantitiesAreThoseOfTheGap) {
 // In (q, s): v = s + n hdot, s' = A + B hdot + D hdot^2, and the derivatives in the shadowing bound (theory.md 5.1 and
 // 5.2).
 TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
-    const Bouncing& bouncing = model_->bouncing();
+    const BouncingModel& bouncing = model_->bouncing();
     for (const Reals& x : states()) {
         const auto tangential = [&](const Reals& at, std::size_t i) {
             return at[dof_ + i] -

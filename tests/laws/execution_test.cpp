@@ -75,7 +75,7 @@ TEST_P(Law, AllHoldFromOtherStarts) {
     EXPECT_EQ(done, 6);
 }
 
-INSTANTIATE_TEST_SUITE_P(Execution, Law, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(ExecutionAutomaton, Law, testing::ValuesIn(all_cases()), name_of);
 
 }  // namespace
 }  // namespace achilles::test

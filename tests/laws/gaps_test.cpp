@@ -174,8 +174,8 @@ TEST(IndependentSystems, InOneFileRunAsEachAlone) {
     }
 }
 
-Plane ball_over_waves() {
-    Plane ball;
+PlaneSystem ball_over_waves() {
+    PlaneSystem ball;
     ball.gap = "b - 0.3*sin(a)";
     ball.a = 0.3;
     ball.b = 1.0;
@@ -188,7 +188,7 @@ Plane ball_over_waves() {
 // Galilean transformation: b = B + u t, B' = b' - u.
 TEST(MovingGaps, WithConstantSpeedAreGapsInAMovingFrame) {
     const double u = 0.4;
-    Plane moving = ball_over_waves();
+    PlaneSystem moving = ball_over_waves();
     moving.gap = "b - 0.4*t - 0.3*sin(a)";
     moving.b_rate = u;
     const Trajectory still = to_its_end(achilles::test::model_of(ball_over_waves())->description());
@@ -205,7 +205,7 @@ TEST(MovingGaps, WithConstantSpeedAreGapsInAMovingFrame) {
 
 // b = B + alpha t^2/2: in the frame of the gap, gravity is larger by alpha.
 TEST(MovingGaps, WithConstantAccelerationAreGravity) {
-    Plane heavy = ball_over_waves(), moving = heavy;
+    PlaneSystem heavy = ball_over_waves(), moving = heavy;
     heavy.potential = "1.5*b";
     moving.gap = "b - 0.25*t^2 - 0.3*sin(a)";
     const Trajectory expected = to_its_end(achilles::test::model_of(heavy)->description());
@@ -240,7 +240,7 @@ TEST(StartTime, ShiftsAnAutonomousRun) {
 // t.
 TEST(StartTime, IsTheTimeThatForcesAndGapsSee) {
     const auto shifted = [](const std::string& by) {
-        Plane ball = ball_over_waves();
+        PlaneSystem ball = ball_over_waves();
         ball.gap = "b - 0.3*sin(a - 1.1*(t + " + by + "))";
         ball.a_force = "0.5*cos(1.3*(t + " + by + ")) - 0.2*a'^3";
         return achilles::test::model_of(ball)->description();
@@ -262,7 +262,7 @@ TEST(PowerBalance, HoldsWithEveryContactThatMoves) {
         return system;
     };
     // A ball on a moving floor hits an inclined wall, and part of the impulse is passed on to the floor.
-    Plane carried;
+    PlaneSystem carried;
     carried.gap = "b - 0.1*sin(3*t)";
     carried.e = "0";
     carried.b_rate = 0.3;

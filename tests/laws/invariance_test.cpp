@@ -164,7 +164,7 @@ TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Execution, Invariance, testing::ValuesIn(all_cases()), name_of);
+INSTANTIATE_TEST_SUITE_P(ExecutionAutomaton, Invariance, testing::ValuesIn(all_cases()), name_of);
 
 }  // namespace
 }  // namespace achilles::test

@@ -35,7 +35,7 @@ TEST(Animation, IsTheSameSmallerAsLongAsItCanBeRead) {
 }
 
 // Without a [[drawing]], a frame shows the plane of two coordinates with h = 0, or the phase plane of a single one.
-TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
+TEST(Animation, ShowsAPlaneWhereNothingIsDrawn) {
     const std::string rest = "[[constraint]]\ngap = \"a\"\nrestitution = 0.5\n";
     const std::string one = "title = \"\"\n[[coordinate]]\nname = \"a\"\nstart = 1\nunit = \"m\"\n";
     const auto plane = test::typed(one + "[[coordinate]]\nname = \"b\"\nrate = 1\n[lagrangian]\n" +
@@ -44,7 +44,7 @@ TEST(Animation, shows_a_plane_where_nothing_is_drawn) {
     for (const auto& model : {plane, line}) {
         const Trajectory trajectory = simulate(model, model->default_run());
         Animation animation(trajectory, {}, {1600, 1000, 1.0}, 1.0 / 30.0);
-        const Still still = animation.at(1.0);
+        const AnimationFrame still = animation.at(1.0);
         ASSERT_EQ(still.plane.panels.size(), 1u);
         const Panel& panel = still.plane.panels[0];
         EXPECT_EQ(panel.x.label, "𝑎 (m)");
@@ -60,7 +60,7 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     const Trajectory trajectory = simulate(model, model->default_run());
     const std::vector<ViewDescription> views{model->description().views[1]};  // the height
     Animation animation(trajectory, views, {1600, 1000, 1.0}, 1.0 / 30.0);
-    const Still before = animation.at(1.0), after = animation.at(3.2);
+    const AnimationFrame before = animation.at(1.0), after = animation.at(3.2);
     EXPECT_EQ(to_text(before).substr(0, to_text(before).find("shape")),
               "Ball bouncing on a sinusoidal surface\n𝑡 = 1.00 s\nin flight\n");
     EXPECT_NE(to_text(after).find("𝑡 = 3.20 s\nin contact\n"), std::string::npos);

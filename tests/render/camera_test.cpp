@@ -9,13 +9,13 @@
 #include "core/systems.hpp"
 #include "figure/compose.hpp"
 #include "figure/mechanism.hpp"
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 
 namespace achilles {
 namespace {
 
-struct Staged {
-    explicit Staged(const std::string& name)
+struct SceneFixture {
+    explicit SceneFixture(const std::string& name)
         : model(test::load(name)),
           run(simulate(model, model->default_run())),
           samples(plot_samples(run)),
@@ -31,7 +31,7 @@ struct Staged {
     Trajectory run;
     std::vector<Sample> samples;
     Mechanism mechanism;
-    Stage stage;
+    MechanismScene stage;
 };
 
 // The last moving disc.
@@ -78,10 +78,10 @@ Drawing around(const Point& p, double size) {
 
 // Gaps such as y - sin(x) refer to the center of a disc. While such a contact is held, the rim is on the line and no
 // part of the disc below it. A gap that includes the radius leaves the disc where the file puts it.
-TEST(Disc, rests_on_the_ground_it_touches) {
+TEST(Disc, RestsOnTheGroundItTouches) {
     for (const char* name : {"ball_on_sine", "ball_on_hills", "ball_in_bowl", "ball_in_gusts", "ball_on_cylinder",
                              "bead_in_ring", "ball_on_floor", "ball_on_incline", "ball_in_sloped_box", "ball_in_v"}) {
-        Staged staged(name);
+        SceneFixture staged(name);
         const double t = staged.first(Event::Kind::zeno).t;
         const Drawing drawing = staged.draw(t, staged.stage.limits());
         const Shape ball = name == std::string("ball_in_gusts") ? [&] {
@@ -107,19 +107,19 @@ TEST(Disc, rests_on_the_ground_it_touches) {
     }
 }
 
-TEST(Disc, is_where_the_file_says_far_from_the_ground) {
-    Staged staged("ball_on_sine");
+TEST(Disc, IsWhereTheFileSaysFarFromTheGround) {
+    SceneFixture staged("ball_on_sine");
     const Shape ball = ball_in(staged.draw(0.0, staged.stage.limits()));
     EXPECT_NEAR(ball.points[0].x, 0.0, 1e-9);
     EXPECT_NEAR(ball.points[0].y, 2.0, 1e-9);
-    Staged floor("ball_on_floor");
+    SceneFixture floor("ball_on_floor");
     const double t = floor.first(Event::Kind::zeno).t;
     EXPECT_EQ(ball_in(floor.draw(t, floor.stage.limits())).points[0].y, floor.at(t).state.q[1]);
 }
 
 // Small heights over the ground are true, so that the scale bar is valid for a bounce.
-TEST(Disc, keeps_small_heights) {
-    Staged staged("ball_on_sine");
+TEST(Disc, KeepsSmallHeights) {
+    SceneFixture staged("ball_on_sine");
     const double t = staged.first(Event::Kind::zeno).t;
     Sample sample = staged.at(t);
     const double x = sample.state.q[0], slope = std::sqrt(1.0 + std::cos(x) * std::cos(x));
@@ -131,8 +131,8 @@ TEST(Disc, keeps_small_heights) {
     for (const double h : {1e-9, 1e-6, 1e-3}) EXPECT_NEAR((height(h) - height(0.0)) / h, 1.0, 0.01 + 0.2 * h) << slope;
 }
 
-TEST(Ground, is_the_side_of_the_gap_and_smooth_at_any_zoom) {
-    Staged staged("ball_on_sine");
+TEST(Ground, IsTheSideOfTheGapAndSmoothAtAnyZoom) {
+    SceneFixture staged("ball_on_sine");
     for (const double x : {0.4, 4.0, 11.0})
         for (const double size : {10.0, 1.0, 1e-3, 1e-6, 1e-9}) {
             const Point on{x, std::sin(x)};
@@ -158,16 +158,16 @@ TEST(Ground, is_the_side_of_the_gap_and_smooth_at_any_zoom) {
             EXPECT_LT(line->points.size(), 3000u);
         }
     // A bead inside a ring: the outside is solid.
-    Staged ring("bead_in_ring");
+    SceneFixture ring("bead_in_ring");
     const Drawing drawing = ring.draw(0.0, ring.stage.limits());
     EXPECT_TRUE(is_solid(drawing, {0.51, 0.0}));
     EXPECT_FALSE(is_solid(drawing, {0.48, 0.0}));
 }
 
-TEST(Contact, is_lit_while_it_is_held_in_every_system_that_draws) {
+TEST(Contact, IsLitWhileItIsHeldInEverySystemThatDraws) {
     const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
     for (const std::string& name : test::all_systems()) {
-        Staged staged(name);
+        SceneFixture staged(name);
         if (staged.mechanism.is_empty()) continue;
         const auto count = [&](const ContactSet& held) {
             Sample sample = staged.at(staged.run.run.options.start_time);
@@ -187,10 +187,10 @@ bool holds(const Drawing& seen, const Point& p) {
     return p.x >= seen.x_low && p.x <= seen.x_high && p.y >= seen.y_low && p.y <= seen.y_high;
 }
 
-TEST(Camera, fit_cuts_no_arrow) {
+TEST(Camera, FitCutsNoArrow) {
     for (const char* name : {"ball_on_sine", "double_pendulum", "ball_in_v", "falling_rod", "cart_pendulum"})
         for (const auto& [width, height] : {std::pair{480.0, 310.0}, {600.0, 600.0}, {900.0, 500.0}}) {
-            Staged staged(name);
+            SceneFixture staged(name);
             const double longest = 0.16 * std::min(width, height);
             const Drawing seen =
                 staged.stage.camera().at(CameraMode::fit, staged.at(0.0), {width, height, longest, longest});
@@ -204,9 +204,9 @@ TEST(Camera, fit_cuts_no_arrow) {
         }
 }
 
-TEST(Camera, follow_never_loses_the_body_and_its_arrow) {
+TEST(Camera, FollowNeverLosesTheBodyAndItsArrow) {
     for (const char* name : {"ball_on_sine", "ball_on_hills", "double_pendulum", "falling_rod"}) {
-        Staged staged(name);
+        SceneFixture staged(name);
         auto grip = staged.mechanism.grip(staged.run.run.parameters);
         const double longest = 80.0;
         Point before;
@@ -231,14 +231,14 @@ TEST(Camera, follow_never_loses_the_body_and_its_arrow) {
 }
 
 // The bounces look alike at every scale: the highest remaining bounce takes a quarter of the picture's height.
-TEST(Camera, zeno_keeps_the_bounces_visible_down_to_1e_9) {
+TEST(Camera, ZenoKeepsTheBouncesVisibleDownTo1e9) {
     for (const char* name : {"ball_on_sine", "ball_on_floor", "falling_rod"}) {
-        Staged staged(name);
+        SceneFixture staged(name);
         const Camera& camera = staged.stage.camera();
         const double zeno = staged.first(Event::Kind::zeno).t;
         double before = std::numeric_limits<double>::infinity(), least = before;
         auto grips = staged.mechanism.grips(staged.run.run.parameters);
-        Grip& grip = grips[staged.stage.touch().tip_of(0).value_or(0)];
+        AnchorPoint& grip = grips[staged.stage.touch().tip_of(0).value_or(0)];
         for (double left = 0.4; left > 1e-12; left *= 0.9) {
             const auto height = camera.height_left(zeno - left);
             if (!height) continue;
@@ -269,8 +269,8 @@ TEST(Camera, zeno_keeps_the_bounces_visible_down_to_1e_9) {
     }
 }
 
-TEST(Strobe, is_thin_near_a_zeno_point) {
-    Staged staged("ball_on_sine");
+TEST(Strobe, IsThinNearAZenoPoint) {
+    SceneFixture staged("ball_on_sine");
     const std::vector<double> poses = staged.stage.poses();
     EXPECT_GE(poses.size(), 6u);
     EXPECT_LE(poses.size(), 40u);
@@ -283,8 +283,8 @@ TEST(Strobe, is_thin_near_a_zeno_point) {
     EXPECT_GE(shapes(true), shapes(false) + poses.size() - 1);
 }
 
-TEST(Way, is_faint_ahead) {
-    Staged staged("ball_on_sine");
+TEST(BodyTrail, IsFaintAhead) {
+    SceneFixture staged("ball_on_sine");
     const Drawing drawing = staged.draw(5.0, staged.stage.limits());
     std::size_t ahead = 0, passed = 0;
     double last = 0.0;
@@ -298,7 +298,7 @@ TEST(Way, is_faint_ahead) {
     EXPECT_GT(last, 11.0) << "to the end of the run";
 }
 
-TEST(ScaleBar, is_round_and_in_the_unit_of_the_file) {
+TEST(ScaleBar, IsRoundAndInTheUnitOfTheFile) {
     EXPECT_EQ(round_length(0.7), 0.5);
     EXPECT_EQ(round_length(1.0), 1.0);
     EXPECT_DOUBLE_EQ(round_length(4.9e-9), 2e-9);
@@ -310,11 +310,11 @@ TEST(ScaleBar, is_round_and_in_the_unit_of_the_file) {
         EXPECT_EQ(length_unit(test::load(name)->description()), "m") << name;
 }
 
-TEST(Sides, cut_a_system_in_space_where_its_point_is) {
-    Staged staged("ball_on_egg_crate");
-    const Sides sides(staged.run, staged.samples);
+TEST(TwoViews, CutASystemInSpaceWhereItsPointIs) {
+    SceneFixture staged("ball_on_egg_crate");
+    const TwoViews sides(staged.run, staged.samples);
     ASSERT_TRUE(sides.exist());
-    EXPECT_FALSE(Sides(Staged("ball_on_sine").run, staged.samples).exist());
+    EXPECT_FALSE(TwoViews(SceneFixture("ball_on_sine").run, staged.samples).exist());
     const auto limits = sides.limits();
     for (std::size_t side = 0; side < 2; ++side) {
         const Sample now = staged.at(staged.run.end_time);

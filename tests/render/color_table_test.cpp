@@ -65,7 +65,7 @@ const Vision visions[] = {
      0.36},
 };
 
-TEST(ColorTable, IsEvenForAnyColourVision) {
+TEST(ColorTable, IsEvenForAnyColorVision) {
     constexpr std::size_t count = 33;
     const std::vector<Color> table = number_colors(count);
     for (const Vision& vision : visions) {
@@ -83,7 +83,7 @@ TEST(ColorTable, IsEvenForAnyColourVision) {
     }
 }
 
-TEST(ColorTable, IsWholeAndInsideTheScreensColours) {
+TEST(ColorTable, IsWholeAndInsideTheScreensColors) {
     EXPECT_EQ(number_color(-1.0), number_color(0.0));
     EXPECT_EQ(number_color(2.0), number_color(1.0));
     // No color is clamped to the sRGB gamut: the inverse map gives the formula.

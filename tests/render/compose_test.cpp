@@ -8,7 +8,7 @@
 #include <numbers>
 #include <tuple>
 
-#include "core/several.hpp"
+#include "core/multi_contact.hpp"
 #include "figure/axes.hpp"
 #include "figure/body.hpp"
 #include "figure/label.hpp"
@@ -53,8 +53,8 @@ std::string labels(double low, double high, double margin = 0.0, int most = 6) {
     return text;
 }
 
-TEST(Label, is_shortened_by_words_then_letters_and_keeps_its_unit) {
-    const auto fitting = [](std::size_t room, Cut cut = Cut::words) {
+TEST(Label, IsShortenedByWordsThenLettersAndKeepsItsUnit) {
+    const auto fitting = [](std::size_t room, EllipsisMode cut = EllipsisMode::words) {
         return [room, cut](const std::string& label) {
             return shortened(
                 label, [room](const std::string& text) { return letters(text).size() <= room; }, cut);
@@ -62,7 +62,7 @@ TEST(Label, is_shortened_by_words_then_letters_and_keeps_its_unit) {
     };
     EXPECT_EQ(fitting(30)("moment of the stop (N)"), "moment of the stop (N)");
     EXPECT_EQ(fitting(18)("moment of the stop (N)"), "moment of the… (N)");
-    EXPECT_EQ(fitting(18, Cut::letters)("moment of the stop (N)"), "moment of the… (N)");
+    EXPECT_EQ(fitting(18, EllipsisMode::letters)("moment of the stop (N)"), "moment of the… (N)");
     EXPECT_EQ(fitting(12)("displacement (m)"), "displac… (m)");
     EXPECT_EQ(fitting(8)("𝜆_{near_left} (N)"), "𝜆_{ne…} (N)");
     EXPECT_EQ(fitting(2)("𝜆_{near_left}"), "𝜆…");
@@ -70,7 +70,7 @@ TEST(Label, is_shortened_by_words_then_letters_and_keeps_its_unit) {
     EXPECT_EQ(fitting(0)(""), "");
 }
 
-TEST(Label, is_taken_apart_into_letters) {
+TEST(Label, IsTakenApartIntoLetters) {
     const auto one = [](const char* label) { return letters(label).at(0); };
     EXPECT_EQ(one("𝜃\u0308"), (Letter{U'θ', true, 0, 2}));
     EXPECT_EQ(one("ℎ"), (Letter{'h', true, 0, 0}));
@@ -118,14 +118,14 @@ TEST(Ticks, AreExactMultiplesWithinTheLimitsAndNotTooMany) {
     EXPECT_EQ(values, (std::vector<double>{0.0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0}));
 }
 
-class Composed : public testing::TestWithParam<std::string> {
+class ComposedFigure : public testing::TestWithParam<std::string> {
  protected:
-    Composed() : model(test::load(GetParam())), trajectory(simulate(model, model->default_run())) {}
+    ComposedFigure() : model(test::load(GetParam())), trajectory(simulate(model, model->default_run())) {}
     std::shared_ptr<const Model> model;
     Trajectory trajectory;
 };
 
-TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
+TEST_P(ComposedFigure, EveryViewShowsThePhasesAndEveryEvent) {
     const Figure figure = compose(trajectory, model->description().views, light_theme(), 2);
     ASSERT_EQ(figure.panels.size(), model->description().views.size());
     for (const Panel& panel : figure.panels) {
@@ -157,7 +157,7 @@ TEST_P(Composed, EveryViewShowsThePhasesAndEveryEvent) {
     EXPECT_EQ(to_text(figure), to_text(compose(trajectory, model->description().views, light_theme(), 2)));
 }
 
-TEST_P(Composed, TheMechanismStaysInsideItsLimits) {
+TEST_P(ComposedFigure, TheMechanismStaysInsideItsLimits) {
     const Mechanism mechanism(*model);
     const std::vector<Sample> samples = plot_samples(trajectory);
     const Drawing limits = mechanism.limits(trajectory, samples);
@@ -175,10 +175,10 @@ TEST_P(Composed, TheMechanismStaysInsideItsLimits) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Systems, Composed, testing::Values("ball_on_sine", "double_pendulum"),
+INSTANTIATE_TEST_SUITE_P(Systems, ComposedFigure, testing::Values("ball_on_sine", "double_pendulum"),
                          [](const auto& test) { return test.param; });
 
-TEST(Composing, AnglesAreShownInDegrees) {
+TEST(FigureComposition, AnglesAreShownInDegrees) {
     const auto model = test::load("double_pendulum");
     const Trajectory trajectory = simulate(model, model->default_run());
     const std::vector<Sample> samples = plot_samples(trajectory);
@@ -191,7 +191,7 @@ TEST(Composing, AnglesAreShownInDegrees) {
 }
 
 // Expressions that are angles are shown in degrees, not only coordinates.
-TEST(Composing, angles_that_are_computed_are_shown_in_degrees) {
+TEST(FigureComposition, AnglesThatAreComputedAreShownInDegrees) {
     const auto model = test::load("double_pendulum");
     ViewDescription view;
     view.x.text = "t";
@@ -208,7 +208,7 @@ TEST(Composing, angles_that_are_computed_are_shown_in_degrees) {
 }
 
 // With thousands of steps, no flight may lose its height.
-TEST(Composing, EveryOneOfVeryManyFlightsHasItsHeight) {
+TEST(FigureComposition, EveryOneOfVeryManyFlightsHasItsHeight) {
     const auto model = test::load("ball_on_floor");
     auto run = model->default_run();
     run.parameters[3] = 1.0;  // e
@@ -226,7 +226,7 @@ TEST(Composing, EveryOneOfVeryManyFlightsHasItsHeight) {
     }
 }
 
-TEST(Composing, ALegendHidesNoCurve) {
+TEST(FigureComposition, ALegendHidesNoCurve) {
     const auto model = test::load("double_pendulum");
     const Trajectory trajectory = simulate(model, model->default_run());
     for (const ViewDescription& view : model->description().views) {
@@ -244,7 +244,7 @@ TEST(Composing, ALegendHidesNoCurve) {
 
 // A quantity at rest is drawn as constant: the axis is not magnified until rounding errors fill it, whatever the scale
 // of the system.
-TEST(Composing, RoundingErrorsAreNoMotion) {
+TEST(FigureComposition, RoundingErrorsAreNoMotion) {
     const auto drawn = [](const std::string& name, const std::string& y, const std::string& x = "t") {
         const auto system = test::load(name);
         ViewDescription view;
@@ -269,7 +269,7 @@ TEST(Composing, RoundingErrorsAreNoMotion) {
 }
 
 // The label of a curve is at the part that is drawn.
-TEST(Composing, ALegendShowsTheCurveAsItIs) {
+TEST(FigureComposition, ALegendShowsTheCurveAsItIs) {
     const auto system = test::load("table_on_legs");
     ViewDescription view;
     view.x.text = "t";
@@ -280,7 +280,7 @@ TEST(Composing, ALegendShowsTheCurveAsItIs) {
     for (const Curve& curve : panel.curves) EXPECT_EQ(curve.label.empty(), curve.points.empty());
 }
 
-TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
+TEST(FigureComposition, ContactForceIsZeroInFlightAndPositiveInContact) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());
     const Panel panel = compose(trajectory, plot_samples(trajectory),
@@ -293,7 +293,7 @@ TEST(Composing, ContactForceIsZeroInFlightAndPositiveInContact) {
 }
 
 // At 10 s the ball rests in the bowl and at the post: g_bowl = (-r, 0, 1), g_post = (1, 0.3 sin(phi), 0).
-TEST(Composing, EveryContactShowsItsForce) {
+TEST(FigureComposition, EveryContactShowsItsForce) {
     const Trajectory trajectory = test::run_gaps("bowl_and_post");
     ViewDescription view;
     view.x.text = "t";
@@ -319,7 +319,7 @@ TEST(Composing, EveryContactShowsItsForce) {
     EXPECT_EQ(after[2], 0.0);
 }
 
-TEST(Compose, very_many_steps_are_thinned) {
+TEST(FigureComposition, VeryManyStepsAreThinned) {
     const auto model = test::load("ball_in_bowl");
     auto run = model->default_run();
     run.options.end_time = 1e8;

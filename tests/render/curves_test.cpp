@@ -22,7 +22,7 @@ double ink(const Image& image) {
     return sum;
 }
 
-TEST(Curves, the_ink_is_width_times_length) {
+TEST(Curves, TheInkIsWidthTimesLength) {
     Offscreen surface(support::options());
     for (const double width : {0.6, 1.0, 1.5, 3.0})
         for (const double angle : {0.0, 0.3, 0.8}) {
@@ -33,21 +33,21 @@ TEST(Curves, the_ink_is_width_times_length) {
         }
 }
 
-TEST(Curves, a_sharp_corner_has_no_spike_and_no_hole) {
+TEST(Curves, ASharpCornerHasNoSpikeAndNoHole) {
     Offscreen surface(support::options());
     const Image image = curve(surface, {{100, 300}, {103, 100}, {106, 300}}, {full, 2.0, {}});
     EXPECT_GT(support::darkness(image, 102, 101) + support::darkness(image, 103, 101), 200);
     for (int x = 0; x < image.width; ++x) ASSERT_EQ(support::darkness(image, x, 97), 0) << x;
 }
 
-TEST(Curves, an_overlap_is_not_darker) {
+TEST(Curves, AnOverlapIsNotDarker) {
     Offscreen surface(support::options());
     const Color half{0, 0, 0, 128};
     const std::vector<Point> once{{50, 50.5}, {400, 50.5}}, often{{50, 50.5}, {400, 50.5}, {50, 50.5}, {400, 50.5}};
     EXPECT_EQ(curve(surface, once, {half, 3.0, {}}), curve(surface, often, {half, 3.0, {}}));
 }
 
-TEST(Curves, stay_inside_the_clip_rectangle) {
+TEST(Curves, StayInsideTheClipRectangle) {
     Offscreen surface(support::options());
     const Image image = support::picture(surface, [](ImDrawList* list) {
         list->PushClipRect({100, 100}, {200, 200}, true);
@@ -62,7 +62,7 @@ TEST(Curves, stay_inside_the_clip_rectangle) {
     EXPECT_EQ(support::darkness(image, 150, 150), 255);
 }
 
-TEST(Curves, break_at_points_that_are_not_finite) {
+TEST(Curves, BreakAtPointsThatAreNotFinite) {
     Offscreen surface(support::options());
     const Image image =
         curve(surface, {{50, 50}, {100, 50}, gap_point(), {200, 50}, {250, 50}, {INFINITY, 50}}, {full, 4.0, {}});
@@ -72,7 +72,7 @@ TEST(Curves, break_at_points_that_are_not_finite) {
     EXPECT_EQ(support::darkness(image, 300, 50), 0);
 }
 
-TEST(Curves, what_is_drawn_afterwards_is_in_its_place) {
+TEST(Curves, WhatIsDrawnAfterwardsIsInItsPlace) {
     // More vertices than 16-bit indices can address, then ordinary rectangles.
     Offscreen surface(support::options());
     std::vector<Point> saw;
@@ -89,7 +89,7 @@ TEST(Curves, what_is_drawn_afterwards_is_in_its_place) {
     EXPECT_GT(support::darkness(image, 300, 150), 250);
 }
 
-TEST(Curves, a_long_curve_may_be_the_last_thing_drawn) {
+TEST(Curves, ALongCurveMayBeTheLastThingDrawn) {
     Offscreen surface(support::options());
     std::vector<Point> saw;
     for (int i = 0; i < 100000; ++i) saw.push_back({50.0 + i * 0.005, i % 2 == 0 ? 50.0 : 250.0});
@@ -98,7 +98,7 @@ TEST(Curves, a_long_curve_may_be_the_last_thing_drawn) {
     EXPECT_EQ(support::darkness(image, 300, 300), 0);
 }
 
-TEST(Curves, thinning_cannot_be_seen) {
+TEST(Curves, ThinningCannotBeSeen) {
     Offscreen surface(support::options());
     std::vector<Point> fine, coarse;
     for (int i = 0; i <= 100000; ++i) {
@@ -110,7 +110,7 @@ TEST(Curves, thinning_cannot_be_seen) {
               support::worst_tile_allowed);
 }
 
-TEST(Curves, the_finer_mask_draws_the_same_curve) {
+TEST(Curves, TheFinerMaskDrawsTheSameCurve) {
     SurfaceOptions options = support::options();
     Offscreen plain(options);
     options.curve_fineness = 2;
@@ -123,7 +123,7 @@ TEST(Curves, the_finer_mask_draws_the_same_curve) {
 }
 
 // A curve shifted by one pixel must be detected as a different picture.
-TEST(Curves, a_curve_moved_by_a_pixel_is_noticed) {
+TEST(Curves, ACurveMovedByAPixelIsNoticed) {
     Offscreen surface(support::options());
     const auto wave = [&](double shift) {
         std::vector<Point> points;

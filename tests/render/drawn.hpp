@@ -53,7 +53,7 @@ class Truth {
           values_(picture.prepared, run),
           map_(picture.map()),
           with_work_(values_.reads(run.model->layout().work())) {}
-    Point at(const Piece& piece, double t, std::size_t quantity) {
+    Point at(const DenseSegment& piece, double t, std::size_t quantity) {
         values_.set(sampler_.in(piece, t, with_work_));
         return map_({values_[0], values_[quantity + 1]});
     }
@@ -137,7 +137,7 @@ inline double worst_over_time(const Trajectory& run, const Picture& picture) {
             if (is_there(p)) real.add(p, p), real_wide.add(p, p);
         };
         const double step = (panel.x.high - panel.x.low) / (samples * static_cast<double>(drawn.size()));
-        for (const Piece& piece : run.pieces) {
+        for (const DenseSegment& piece : run.pieces) {
             for (double t = panel.x.low + step * std::ceil((piece.start - panel.x.low) / step); t <= piece.end;
                  t += step)
                 add(truth.at(piece, t, i));
@@ -255,7 +255,7 @@ inline double worst_in_plane(const Trajectory& run, const Picture& picture, int 
                 const Point a = map(curve->points[k - 1]), b = map(curve->points[k]);
                 if (is_there(a) && is_there(b)) add(drawn, of_drawn, a, b);
             }
-        for (const Piece& piece : run.pieces) {
+        for (const DenseSegment& piece : run.pieces) {
             Point before = truth.at(piece, piece.start, i);
             for (int k = 1; k <= of_step; ++k) {
                 const Point p = truth.at(piece, piece.start + (piece.end - piece.start) * k / of_step, i);

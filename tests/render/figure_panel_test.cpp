@@ -53,7 +53,7 @@ TEST(Palette, TellsPhasesEventsAndCurvesApart) {
         const Markers impact = event_markers(theme, Event::Kind::impact),
                       zeno = event_markers(theme, Event::Kind::zeno),
                       release = event_markers(theme, Event::Kind::release);
-        EXPECT_EQ(impact.shape, Markers::Shape::square);
+        EXPECT_EQ(impact.shape, Markers::MarkerShape::square);
         EXPECT_NE(zeno.shape, impact.shape);
         EXPECT_NE(release.shape, impact.shape);
         EXPECT_NE(release.shape, zeno.shape);
@@ -138,7 +138,7 @@ TEST(Panels, AreBoundedForManyImpacts) {
 }
 
 // The drawing depends on t, and on a parameter computed from others.
-TEST(Mechanism, moves_with_time) {
+TEST(Mechanism, MovesWithTime) {
     const auto model = test::typed(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[parameter]]\nname = \"double\"\nvalue = \"2*om\"\n"
         "[[parameter]]\nname = \"om\"\nvalue = 3\n[lagrangian]\nkinetic = \"x'^2\"\npotential = \"x\"\n"
@@ -167,7 +167,7 @@ TEST(Mechanism, moves_with_time) {
 }
 
 // Drawings of constraints are among the other drawings.
-TEST(Mechanism, draws_what_is_touched) {
+TEST(Mechanism, DrawsWhatIsTouched) {
     const auto model = test::typed(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\npotential = \"x\"\n"
         "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n"
@@ -182,7 +182,7 @@ TEST(Mechanism, draws_what_is_touched) {
     EXPECT_EQ(drawing.shapes[1].kind, Shape::Kind::disc);
 }
 
-TEST(Mechanism, a_circle_is_the_outline_of_a_disc) {
+TEST(Mechanism, ACircleIsTheOutlineOfADisc) {
     const std::string system =
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[lagrangian]\nkinetic = \"x'^2\"\n"
         "potential = \"x\"\n[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n";

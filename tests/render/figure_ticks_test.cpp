@@ -9,14 +9,14 @@
 namespace achilles {
 namespace {
 
-struct Labelled {
+struct LabeledAxis {
     Axis axis;
     std::string text;
     int count = 0;
 };
 
-Labelled axis_of(bool logarithmic, double low, double high, double margin = 0.0, int most = 6) {
-    Labelled result;
+LabeledAxis axis_of(bool logarithmic, double low, double high, double margin = 0.0, int most = 6) {
+    LabeledAxis result;
     result.axis.logarithmic = logarithmic;
     set_ticks(result.axis, low, high, margin, most);
     for (const Tick& tick : result.axis.ticks) {
@@ -48,7 +48,7 @@ TEST(LogarithmicTicks, HaveMinorOnesBetween) {
 TEST(LogarithmicTicks, KeepAPositiveAxis) {
     for (const double low : {-1.0, 0.0, 1e-20, 3.0}) {
         for (const double high : {-0.5, 0.0, 1e-300, 3.0, 1e300}) {
-            const Labelled result = axis_of(true, low, high, 0.05);
+            const LabeledAxis result = axis_of(true, low, high, 0.05);
             EXPECT_GT(result.axis.low, 0.0);
             EXPECT_GT(result.axis.high, result.axis.low);
             EXPECT_GE(result.count, 2) << low << " " << high << " " << result.text;
@@ -61,7 +61,7 @@ TEST(LinearTicks, EndForEveryRange) {
     const double least = std::numeric_limits<double>::denorm_min(), most = std::numeric_limits<double>::max();
     for (const double low : {-most, -1e200, -1.0, -least, 0.0}) {
         for (const double high : {0.0, least, 1e-310, 1e-200, 1.0, 1e200, most}) {
-            const Labelled result = axis_of(false, low, high, 0.05);
+            const LabeledAxis result = axis_of(false, low, high, 0.05);
             EXPECT_TRUE(std::isfinite(result.axis.low) && std::isfinite(result.axis.high));
             EXPECT_GT(result.axis.high, result.axis.low);
             EXPECT_GE(result.count, 1) << low << " " << high;

@@ -61,14 +61,14 @@ void expect_apart(const FormulaBox& box, const std::string& what) {
             EXPECT_TRUE(across <= 0.01F || down <= 0.01F || is_power)
                 << what << ": " << box.letters[i].label << " on " << box.letters[j].label;
         }
-        for (const FormulaBox::Rule& rule : box.rules)
+        for (const FormulaBox::FormulaRule& rule : box.rules)
             EXPECT_TRUE(a.right <= rule.x + 0.01F || a.left >= rule.x + rule.width - 0.01F ||
                         a.bottom <= rule.y + 0.01F || a.top >= rule.y + rule.height - 0.01F)
                 << what << ": a rule through " << box.letters[i].label;
     }
 }
 
-TEST(Formula, reads_what_is_written) {
+TEST(Formula, ReadsWhatIsWritten) {
     EXPECT_EQ(to_text(read("\\frac{3 g \\sin \\theta}{L (4 m_{1} + 3)} < 0")),
               "(3 g sin \u03b8)/(L (4 m\u2081 + 3)) < 0");
     EXPECT_EQ(to_text(read("-\\tfrac{1}{2} m_{1} L^{2} \\dot{\\theta}_{2}^{2} \\cos^{2} \\theta")),
@@ -83,7 +83,7 @@ TEST(Formula, reads_what_is_written) {
               "by the ranges of m\u2081, L: a_b");
 }
 
-TEST(Formula, reads_any_text) {
+TEST(Formula, ReadsAnyText) {
     for (const char* text : {"", "{", "}", "^", "_", "\\frac", "\\frac{1}", "\\sqrt", "((", "))", "\\", "a^", "\\left",
                              "$", "\\text{", "x_{", "\xff\xfe"})
         EXPECT_GE(box(text).width, 0.0F) << text;
@@ -92,7 +92,7 @@ TEST(Formula, reads_any_text) {
     EXPECT_LT(box(deep).width, 1e4F);
 }
 
-TEST(Formula, a_bar_is_as_wide_as_its_wider_part) {
+TEST(Formula, ABarIsAsWideAsItsWiderPart) {
     for (const char* text : {"\\frac{g}{m_{1} + L}", "\\frac{m_{1} + L}{g}", "\\frac{g^{2}}{\\sqrt{L}}"}) {
         const FormulaBox whole = box(text);
         const Formula formula = read(text);
@@ -110,7 +110,7 @@ TEST(Formula, a_bar_is_as_wide_as_its_wider_part) {
     EXPECT_NEAR(letter(one, "g").x + 0.5F * letter(one, "g").width, 0.5F * one.width, 1.0F) << "its middle";
 }
 
-TEST(Formula, base_lines_align) {
+TEST(Formula, BaseLinesAlign) {
     const FormulaBox row = box("g + \\frac{L}{g} + \\sqrt{L} (m_{1} + 1)");
     EXPECT_EQ(letter(row, "m\u2081").y, 0.0F);
     EXPECT_EQ(row.letters.front().y, 0.0F);
@@ -125,7 +125,7 @@ TEST(Formula, base_lines_align) {
     EXPECT_GT(row.rules.front().y, -font().ascent * 20.0F);
 }
 
-TEST(Formula, nothing_overlaps_however_deep) {
+TEST(Formula, NothingOverlapsHoweverDeep) {
     std::string text = "g";
     for (int i = 0; i < 6; ++i) {
         text = "\\frac{" + text + " + L}{\\sqrt{" + text + "} m_{1}^{2}} \\left(\\tfrac{1}{2} " + "L - g^{2}\\right)";
@@ -139,11 +139,11 @@ TEST(Formula, nothing_overlaps_however_deep) {
         "a matrix");
 }
 
-TEST(Formula, brackets_are_as_high_as_what_they_enclose) {
+TEST(Formula, BracketsAreAsHighAsWhatTheyEnclose) {
     const FormulaBox low = box("(g + L)"), high = box("(\\frac{g}{L} + \\frac{L}{g})");
     EXPECT_TRUE(low.strokes.empty());
     ASSERT_EQ(high.strokes.size(), 2U);
-    for (const FormulaBox::Stroke& bow : high.strokes) {
+    for (const FormulaBox::FormulaStroke& bow : high.strokes) {
         EXPECT_LE(bow.points.front().y, -box("\\frac{g}{L}").ascent);
         EXPECT_GE(bow.points.back().y, box("\\frac{g}{L}").descent);
     }
@@ -152,7 +152,7 @@ TEST(Formula, brackets_are_as_high_as_what_they_enclose) {
     EXPECT_NEAR(root.strokes.front().points.back().y, root.rules.back().y, 2.0);
 }
 
-TEST(Formula, long_sums_are_broken_at_their_signs) {
+TEST(Formula, LongSumsAreBrokenAtTheirSigns) {
     std::string text = "m_{1} L";
     for (int i = 0; i < 30; ++i) text += i % 2 == 0 ? " + g (L - 1)" : " - \\frac{g}{L}";
     for (const float width : {150.0F, 300.0F, 700.0F}) {

@@ -20,13 +20,13 @@ Image gradient(int width, int height) {
 
 std::filesystem::path scratch(const std::string& name) { return std::filesystem::path(testing::TempDir()) / name; }
 
-TEST(Image, a_png_reads_back_as_it_was_written) {
+TEST(Image, APngReadsBackAsItWasWritten) {
     const Image image = gradient(61, 47);
     write_png(image, scratch("achilles_round_trip.png"));
     EXPECT_EQ(read_png(scratch("achilles_round_trip.png")), image);
 }
 
-TEST(Image, errors_name_the_file) {
+TEST(Image, ErrorsNameTheFile) {
     const auto says = [](const auto& action, const std::string& words) {
         try {
             action();
@@ -42,13 +42,13 @@ TEST(Image, errors_name_the_file) {
     says([] { read_png(scratch("achilles_no.png")); }, "not a readable PNG");
 }
 
-TEST(Image, equal_images_are_at_distance_zero) { EXPECT_EQ(worst_tile(gradient(100, 80), gradient(100, 80)), 0.0); }
+TEST(Image, EqualImagesAreAtDistanceZero) { EXPECT_EQ(worst_tile(gradient(100, 80), gradient(100, 80)), 0.0); }
 
-TEST(Image, images_of_different_size_are_infinitely_far_apart) {
+TEST(Image, ImagesOfDifferentSizeAreInfinitelyFarApart) {
     EXPECT_TRUE(std::isinf(worst_tile(gradient(100, 80), gradient(80, 100))));
 }
 
-TEST(Image, black_and_white_are_at_distance_one) {
+TEST(Image, BlackAndWhiteAreAtDistanceOne) {
     Image dark{60, 60, std::vector<std::uint8_t>(3 * 60 * 60, 0)}, white = dark;
     white.rgb.assign(white.rgb.size(), 255);
     EXPECT_DOUBLE_EQ(worst_tile(dark, white), 1.0);

@@ -20,7 +20,7 @@ using samples::half;
 // Paths with equal axes must not leave wide margins: in every figure of the gallery the panels fill their cells.
 // Exceptions are single paths in a last row that would take more than its share of the height, and a round path beside
 // which panels with bars would be too low.
-TEST(Layout, paths_fill_their_place) {
+TEST(Layout, PathsFillTheirPlace) {
     const std::set<std::string> is_less{"arm_at_wall", "ball_in_gusts", "cart_between_walls", "ball_round_post"};
     for (const std::string& name : test::all_systems()) {
         const auto system = test::load(name);
@@ -45,7 +45,7 @@ TEST(Layout, paths_fill_their_place) {
 }
 
 // The path comes first, beside two rows. The other panels keep their order and share their axis as usual.
-TEST(Layout, a_round_path_stands_beside_two_rows) {
+TEST(Layout, ARoundPathStandsBesideTwoRows) {
     const auto system = test::load("bead_in_ring");
     const Trajectory run = simulate(system, system->default_run());
     auto views = system->description().views;
@@ -82,7 +82,7 @@ TEST(Layout, a_round_path_stands_beside_two_rows) {
 }
 
 // A marker at the very end of an axis is drawn entirely, for any width of the picture.
-TEST(Layout, markers_on_the_rim_are_drawn) {
+TEST(Layout, MarkersOnTheRimAreDrawn) {
     Figure figure;
     Panel& panel = figure.panels.emplace_back();
     panel.x.low = 0.1, panel.x.high = 20.3;
@@ -99,7 +99,7 @@ TEST(Layout, markers_on_the_rim_are_drawn) {
 }
 
 // Full size, then the size of subscripts, and only then any other size: scaled glyphs look pale.
-TEST(Layout, labels_are_of_sizes_that_have_letters) {
+TEST(Layout, LabelsAreOfSizesThatHaveLetters) {
     const auto size_of = [](const std::string& label) {
         Figure figure;
         figure.panels.push_back(samples::corners(""));
@@ -118,7 +118,7 @@ TEST(Layout, labels_are_of_sizes_that_have_letters) {
 }
 
 // A word longer than the plot is shortened if it cannot be smaller, and stays on the page.
-TEST(Layout, labels_of_one_long_word_stay_on_the_page) {
+TEST(Layout, LabelsOfOneLongWordStayOnThePage) {
     Figure figure;
     figure.smallest_text = 0.9;
     figure.panels.push_back(samples::corners(""));
@@ -149,12 +149,12 @@ std::vector<std::string> numbers_at(float height, bool bars = false) {
 }
 
 // A single label does not define a scale.
-TEST(Layout, an_axis_has_two_numbers_where_there_is_room_for_two) {
+TEST(Layout, AnAxisHasTwoNumbersWhereThereIsRoomForTwo) {
     for (float height = 80.0F; height < 200.0F; height += 1.0F) EXPECT_GE(numbers_at(height).size(), 2U) << height;
 }
 
 // The lowest label on the axis does not touch the first name below it.
-TEST(Layout, numbers_stand_above_the_names_of_time_bars) {
+TEST(Layout, NumbersStandAboveTheNamesOfTimeBars) {
     for (float height = 120.0F; height < 300.0F; height += 1.0F) {
         const std::vector<std::string> numbers = numbers_at(height, true);
         EXPECT_EQ(std::count(numbers.begin(), numbers.end(), "\u22120.4"), 0) << height;
@@ -162,14 +162,14 @@ TEST(Layout, numbers_stand_above_the_names_of_time_bars) {
     }
 }
 
-TEST(Layout, long_names_of_time_bars_leave_the_plot_its_room) {
+TEST(Layout, LongNamesOfTimeBarsLeaveThePlotItsRoom) {
     Figure figure;
     Panel& panel = figure.panels.emplace_back();
     panel.time_bars = {{std::string(40, 'x'), {}}, {"foot", {}}};
     EXPECT_GT(plot_areas(figure, half, {0, 0, 400, 300}, 1.0)[0].plot.width, 250.0F);
 }
 
-TEST(Layout, ticks_without_labels_go_before_they_are_a_comb) {
+TEST(Layout, TicksWithoutLabelsGoBeforeTheyAreAComb) {
     const auto ticks_in = [](float width) {
         Figure figure;
         figure.panels.push_back(samples::corners(""));

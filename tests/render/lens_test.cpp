@@ -102,7 +102,7 @@ TEST(ZenoLens, ShowsTheIntervalAsABandWithoutEnd) {
         const Trajectory trajectory = run_of(system, 1e-6);
         const auto lens = Lens::at(trajectory, first_zeno(trajectory));
         ASSERT_TRUE(lens && lens->interval());
-        const Lens::Part part = lens->overview();
+        const Lens::LensPart part = lens->overview();
         EXPECT_LT(part.low, lens->cut());
         EXPECT_LT(*lens->interval(), part.high);
         const Panel panel = lens->panel(part.low, part.high, light_theme());

@@ -22,7 +22,7 @@ std::array<int, 4> inked(const Image& image) {
     return box;
 }
 
-TEST(Label, dots_take_no_width) {
+TEST(Label, DotsTakeNoWidth) {
     Offscreen surface(support::options());
     surface.step([] {
         EXPECT_EQ(label_width("\u03b8\u0307\u2081", 14.0F), label_width("\u03b8\u2081", 14.0F));
@@ -33,7 +33,7 @@ TEST(Label, dots_take_no_width) {
     });
 }
 
-TEST(Label, the_width_is_the_one_that_is_painted) {
+TEST(Label, TheWidthIsTheOneThatIsPainted) {
     Offscreen surface(support::options());
     for (const float size : {10.0F, 14.0F, 15.0F, 31.0F}) {
         float promised = 0.0F, painted = 0.0F;
@@ -49,7 +49,7 @@ TEST(Label, the_width_is_the_one_that_is_painted) {
     }
 }
 
-TEST(Label, an_upright_label_is_the_turned_one) {
+TEST(Label, AnUprightLabelIsTheTurnedOne) {
     Offscreen surface(support::options());
     const Image flat =
         support::picture(surface, [](ImDrawList* list) { paint_label(list, 50, 50, "q\u0308 [m]", black, 14); });
@@ -61,7 +61,7 @@ TEST(Label, an_upright_label_is_the_turned_one) {
     EXPECT_LE(b[3], 300);
 }
 
-TEST(Paint, leaves_a_margin_at_every_size) {
+TEST(Paint, LeavesAMarginAtEverySize) {
     for (const double scale : {0.7, 1.0, 1.6, 2.0})
         for (const int panels : {1, 2, 6}) {
             Offscreen surface(support::options(900, 600, scale));
@@ -77,7 +77,7 @@ TEST(Paint, leaves_a_margin_at_every_size) {
         }
 }
 
-TEST(Paint, survives_figures_that_make_no_sense) {
+TEST(Paint, SurvivesFiguresThatMakeNoSense) {
     Offscreen surface(support::options(300, 200));
     Figure nothing, empty = samples::figure(2), narrow = samples::figure(6);
     nothing.columns = 0;
@@ -92,7 +92,7 @@ TEST(Paint, survives_figures_that_make_no_sense) {
             });
 }
 
-TEST(Paint, tells_where_the_plot_area_is) {
+TEST(Paint, TellsWhereThePlotAreaIs) {
     Offscreen surface(support::options());
     surface.step([] {
         const Figure figure = samples::figure(2);
@@ -106,7 +106,7 @@ TEST(Paint, tells_where_the_plot_area_is) {
     });
 }
 
-TEST(Paint, maps_data_to_pixels_and_back) {
+TEST(Paint, MapsDataToPixelsAndBack) {
     for (const Panel& panel : {samples::bouncing(), samples::decay()}) {
         const PanelMap map(panel, {10, 20, 300, 200});
         EXPECT_NEAR(map({panel.x.low, panel.y.low}).y, 220.0, 1e-9);
@@ -116,7 +116,7 @@ TEST(Paint, maps_data_to_pixels_and_back) {
 }
 
 // Each of these changes must be detected.
-TEST(Paint, changes_are_noticed) {
+TEST(Paint, ChangesAreNoticed) {
     Offscreen surface(support::options(900, 600));
     const auto draw = [&](const Figure& figure) {
         return surface.frame([&] { paint(figure, ImGui::GetBackgroundDrawList(), {0, 0, 900, 600}); });
@@ -139,7 +139,7 @@ TEST(Paint, changes_are_noticed) {
     EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
 }
 
-TEST(Mechanism, is_placed_in_the_middle_with_equal_axes) {
+TEST(Mechanism, IsPlacedInTheMiddleWithEqualAxes) {
     const Placement placement = place(samples::mechanism(), {100, 50, 400, 400});
     EXPECT_DOUBLE_EQ(placement.unit, 100.0);
     const Point middle = placement.pixel({0.0, 0.0});
@@ -148,7 +148,7 @@ TEST(Mechanism, is_placed_in_the_middle_with_equal_axes) {
     EXPECT_DOUBLE_EQ(placement.world(placement.pixel({0.3, -0.7})).y, -0.7);
 }
 
-TEST(Mechanism, survives_shapes_that_make_no_sense) {
+TEST(Mechanism, SurvivesShapesThatMakeNoSense) {
     Offscreen surface(support::options(300, 200));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     Drawing drawing = samples::mechanism();
@@ -174,7 +174,7 @@ TEST(Mechanism, survives_shapes_that_make_no_sense) {
     }
 }
 
-TEST(Mechanism, fills_a_polygon_with_a_dent) {
+TEST(Mechanism, FillsAPolygonWithADent) {
     Offscreen surface(support::options());
     Drawing drawing;
     Shape arrow;

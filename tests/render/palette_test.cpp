@@ -8,13 +8,13 @@ namespace {
 
 constexpr double of_text = 4.5, of_signs = 3.0;
 
-TEST(Palette, measures_contrast_as_the_standard_does) {
+TEST(Palette, MeasuresContrastAsTheStandardDoes) {
     EXPECT_DOUBLE_EQ(contrast({0, 0, 0, 255}, {255, 255, 255, 255}), 21.0);
     EXPECT_DOUBLE_EQ(contrast({9, 9, 9, 255}, {9, 9, 9, 255}), 1.0);
     EXPECT_NEAR(contrast({119, 119, 119, 255}, {255, 255, 255, 255}), 4.48, 0.005);  // the gray that just fails
 }
 
-TEST(Palette, text_can_be_read) {
+TEST(Palette, TextCanBeRead) {
     for (const Theme& theme : {light_theme(), dark_theme()}) {
         for (const Color& paper : {theme.background, theme.page, theme.frame, theme.selected}) {
             EXPECT_GE(contrast(theme.ink, paper), 7.0) << theme.dark;
@@ -25,7 +25,7 @@ TEST(Palette, text_can_be_read) {
     }
 }
 
-TEST(Palette, curves_and_signs_can_be_seen) {
+TEST(Palette, CurvesAndSignsCanBeSeen) {
     for (const Theme& theme : {light_theme(), dark_theme()}) {
         for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
             EXPECT_GE(contrast(phase_color(theme, kind), theme.background), of_signs);
@@ -47,7 +47,7 @@ TEST(Palette, curves_and_signs_can_be_seen) {
     }
 }
 
-TEST(Palette, a_files_colour_stands_as_far_from_dark_paper_as_from_white) {
+TEST(Palette, AFilesColorStandsAsFarFromDarkPaperAsFromWhite) {
     const Theme dark = dark_theme();
     const Color white{255, 255, 255, 255};
     for (const Color& color : {Color{195, 200, 207, 255}, Color{122, 128, 137, 255}, Color{35, 38, 43, 255},

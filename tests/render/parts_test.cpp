@@ -17,7 +17,7 @@ namespace {
 
 double apart(const Point& a, const Point& b) { return std::hypot(a.x - b.x, a.y - b.y); }
 
-TEST(Parts, a_spring_stretches_between_straight_ends_and_keeps_its_breadth) {
+TEST(Parts, ASpringStretchesBetweenStraightEndsAndKeepsItsBreadth) {
     const PartSize size{2.0, 0.3};
     for (const double length : {0.7, 2.0, 9.0}) {
         const std::vector<Point> line = spring_line({1.0, 1.0}, {1.0, 1.0 + length}, 5, size);
@@ -38,7 +38,7 @@ TEST(Parts, a_spring_stretches_between_straight_ends_and_keeps_its_breadth) {
 }
 
 // Cup: points 3 to 6; piston: 8 and 9; its rod: 11 and 12.
-TEST(Parts, the_piston_of_a_damper_stays_in_its_cup) {
+TEST(Parts, ThePistonOfADamperStaysInItsCup) {
     const PartSize size{1.0, 0.2};
     double before = 0.0;
     for (const double length : {0.05, 0.3, 0.9, 1.0, 1.1, 3.0, 40.0}) {
@@ -66,7 +66,7 @@ TEST(Parts, the_piston_of_a_damper_stays_in_its_cup) {
     }
 }
 
-TEST(Parts, a_ground_is_hatched_on_the_right) {
+TEST(Parts, AGroundIsHatchedOnTheRight) {
     const std::vector<Point> strokes = hatching({0.0, 0.0}, {2.0, 0.0}, 0.1);
     ASSERT_EQ(strokes.size(), 60u);  // two ends and a break each
     for (std::size_t i = 0; i < strokes.size(); i += 3) {
@@ -84,7 +84,7 @@ TEST(Parts, a_ground_is_hatched_on_the_right) {
     EXPECT_EQ(hatching({0.0, 0.0}, {0.05, 0.0}, 0.1).size(), 3u);
 }
 
-TEST(Parts, without_a_direction_draw_nothing_wild) {
+TEST(Parts, WithoutADirectionDrawNothingWild) {
     const PartSize size{1.0, 0.1};
     const Point here{3.0, 4.0};
     EXPECT_EQ(spring_line(here, here, 5, size).size(), 2u);
@@ -99,7 +99,7 @@ TEST(Parts, without_a_direction_draw_nothing_wild) {
     }
 }
 
-TEST(Parts, a_box_turns_about_its_middle) {
+TEST(Parts, ABoxTurnsAboutItsMiddle) {
     const std::vector<Point> corners = box_corners({1.0, 2.0}, 4.0, 2.0, std::numbers::pi / 2.0);
     ASSERT_EQ(corners.size(), 4u);
     EXPECT_NEAR(corners[0].x, 2.0, 1e-15);
@@ -135,7 +135,7 @@ struct Machine {
     Drawing limits;
 };
 
-TEST(Mechanism, draws_parts_between_things_that_move) {
+TEST(Mechanism, DrawsPartsBetweenThingsThatMove) {
     const Machine machine;
     const Drawing start = machine.at(0.0), later = machine.at(1.0);
     ASSERT_EQ(start.shapes.size(), 6u);  // solid, hatches, their line, spring, damper, box
@@ -166,7 +166,7 @@ TEST(Mechanism, draws_parts_between_things_that_move) {
     EXPECT_GT(machine.limits.x_high, 1.0);
 }
 
-TEST(Mechanism, lights_what_is_touched_while_it_is_held) {
+TEST(Mechanism, LightsWhatIsTouchedWhileItIsHeld) {
     const Machine machine("[[drawing]]\nshape = \"segment\"\nfrom = [0, 0]\nto = [1, 0]\n");
     const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
     const Drawing falling = machine.at(1.0), resting = machine.at(2.5);

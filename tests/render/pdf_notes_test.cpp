@@ -31,7 +31,7 @@ const Notes awkward_notes{{"Title", "A (ball) \\ with )("},
                           {"Achilles System", "./b.toml\ntitle = 1\r\n\t\x01>>\nendobj\n%Achilles notes\n"},
                           {"Comment", ""}};
 
-TEST(PdfNotes, come_back_in_order) {
+TEST(PdfNotes, ComeBackInOrder) {
     EXPECT_EQ(pdf_notes(with_pdf_notes(small_pdf(), awkward_notes)), awkward_notes);
     EXPECT_TRUE(pdf_notes(small_pdf()).empty());
     EXPECT_TRUE(pdf_notes(with_pdf_notes(small_pdf(), {})).empty());
@@ -39,7 +39,7 @@ TEST(PdfNotes, come_back_in_order) {
 }
 
 // Follows the file as a PDF reader does: from its end to the cross-reference table, and from there to the object.
-TEST(PdfNotes, are_an_update_of_the_information_dictionary) {
+TEST(PdfNotes, AreAnUpdateOfTheInformationDictionary) {
     const std::string before = small_pdf(), pdf = with_pdf_notes(before, awkward_notes);
     EXPECT_EQ(pdf.substr(0, before.size()), before);
     EXPECT_TRUE(pdf.ends_with("\n%%EOF\n"));
@@ -63,13 +63,13 @@ TEST(PdfNotes, are_an_update_of_the_information_dictionary) {
     EXPECT_TRUE(said.ends_with(">>\nendobj\n"));
 }
 
-TEST(PdfNotes, another_file_or_text_is_refused) {
+TEST(PdfNotes, AnotherFileOrTextIsRefused) {
     for (const char* other : {"", "%PDF-1.7\n", "%PDF-1.5\ntrailer\n<< /Info 3 0 R >>\nstartxref\n0\n%%EOF\n"})
         EXPECT_THROW(with_pdf_notes(other, awkward_notes), std::runtime_error) << other;
     EXPECT_THROW(with_pdf_notes(small_pdf(), {{"Comment", "\xff"}}), std::runtime_error);
 }
 
-TEST(PdfNotes, damaged_ones_are_refused_wherever_they_end) {
+TEST(PdfNotes, DamagedOnesAreRefusedWhereverTheyEnd) {
     const std::string pdf = with_pdf_notes(small_pdf(), awkward_notes), begin = "\n%Achilles notes\n";
     const std::size_t first = pdf.find(begin) + begin.size(), last = pdf.rfind(">>\nendobj");
     for (std::size_t size = first; size < last + 3; ++size)

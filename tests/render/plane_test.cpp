@@ -33,7 +33,7 @@ double area(const std::vector<std::vector<Point>>& parts) {
     return sum;
 }
 
-TEST(Plane, offers_pairs_of_coordinates_and_phase_planes) {
+TEST(Plane, OffersPairsOfCoordinatesAndPhasePlanes) {
     const auto names = [](const char* system) {
         std::string all;
         for (const auto& [x, y] : planes_of(model_of(system)->description())) all += x + "," + y + " ";
@@ -44,7 +44,7 @@ TEST(Plane, offers_pairs_of_coordinates_and_phase_planes) {
               "theta1,theta2 theta1,theta1' theta2,theta2' gap_knee,gap_knee' gap_wall,gap_wall' ");
 }
 
-TEST(Plane, knows_what_its_axes_are) {
+TEST(Plane, KnowsWhatItsAxesAre) {
     const auto model = model_of("double_pendulum");
     const Plane angles(*model, {"theta1", " theta2 "}), phase(*model, {"theta2", "theta2'"}), gap(*model, {"gap", "t"}),
         point(*model, {"L1*sin(theta1)", "theta2"}), line(*model, {"theta1", "theta1"});
@@ -62,7 +62,7 @@ TEST(Plane, knows_what_its_axes_are) {
     EXPECT_NEAR(phase.at(state).y, 0.1 * 180.0 / M_PI, 1e-12);
 }
 
-TEST(Plane, has_a_line_for_each_gap_and_shades_where_all_are_open) {
+TEST(Plane, HasALineForEachGapAndShadesWhereAllAreOpen) {
     const auto model = model_of("double_pendulum_two_stops");
     const auto run = model->default_run();
     const Plane plane(*model, {"theta1", "theta2"});
@@ -82,7 +82,7 @@ TEST(Plane, has_a_line_for_each_gap_and_shades_where_all_are_open) {
 }
 
 // The surface in a phase plane moves with time, and is recomputed only when it does.
-TEST(Plane, has_the_surface_as_it_is_now) {
+TEST(Plane, HasTheSurfaceAsItIsNow) {
     const auto model = model_of("ball_on_vibrating_table");
     const auto run = model->default_run();
     const Plane plane(*model, {"y", "y'"});
@@ -106,7 +106,7 @@ TEST(Plane, has_the_surface_as_it_is_now) {
                     .lines.empty());
 }
 
-TEST(Plane, has_the_line_of_a_gap_that_is_an_axis) {
+TEST(Plane, HasTheLineOfAGapThatIsAnAxis) {
     const auto model = model_of("double_pendulum");
     const auto run = model->default_run();
     const Plane plane(*model, {"gap", "gap'"});
@@ -120,7 +120,7 @@ TEST(Plane, has_the_line_of_a_gap_that_is_an_axis) {
 }
 
 // For a falling ball: V = m g y, so its level lines are horizontal; E = m y'^2/2 + m x'^2/2 + m g y has parabolas.
-TEST(Plane, has_contours_at_round_energies) {
+TEST(Plane, HasContoursAtRoundEnergies) {
     const auto model = model_of("ball_on_floor");
     const auto run = model->default_run();
     const auto parameter = [&](const char* name) {
@@ -160,7 +160,7 @@ TEST(Plane, has_contours_at_round_energies) {
     EXPECT_TRUE(Plane(*model, {"x", "gap"}).levels(run.parameters, state, box(0.0, 2.0, 0.0, 2.0)).empty());
 }
 
-TEST(Plane, has_arrows_from_before_an_impact_to_after_it) {
+TEST(Plane, HasArrowsFromBeforeAnImpactToAfterIt) {
     const auto model = model_of("ball_on_floor");
     const auto run = model->default_run();
     const Trajectory trajectory = simulate(model, run);
@@ -190,13 +190,14 @@ TEST(Plane, has_arrows_from_before_an_impact_to_after_it) {
                     .empty());
 }
 
-TEST(Field, leaves_out_what_is_far_above_all_others) {
-    const Field plain(box(0.0, 1.0, 0.0, 1.0), [](const Point& p) { return p.x; });
+TEST(Field, LeavesOutWhatIsFarAboveAllOthers) {
+    const ScalarField plain(box(0.0, 1.0, 0.0, 1.0), [](const Point& p) { return p.x; });
     EXPECT_EQ(plain.range()[0], 0.0);
     EXPECT_EQ(plain.range()[1], 1.0);
-    const Field peak(box(-1.0, 1.0, -1.0, 1.0), [](const Point& p) { return 1.0 / (1e-6 + p.x * p.x + p.y * p.y); });
+    const ScalarField peak(box(-1.0, 1.0, -1.0, 1.0),
+                           [](const Point& p) { return 1.0 / (1e-6 + p.x * p.x + p.y * p.y); });
     EXPECT_LT(peak.range()[1], 100.0);
-    const Field nothing(box(0.0, 1.0, 0.0, 1.0), [](const Point&) { return std::nan(""); });
+    const ScalarField nothing(box(0.0, 1.0, 0.0, 1.0), [](const Point&) { return std::nan(""); });
     EXPECT_GT(nothing.range()[0], nothing.range()[1]);
 }
 

@@ -44,7 +44,7 @@ std::string png_with(const std::string& name_and_data) {
 
 const Notes some_notes{{"Title", "A ball"}, {"Achilles System", "title = \"θ\"\r\n"}, {"Comment", ""}};
 
-TEST(PngNotes, come_back_in_order_and_leave_the_picture_alone) {
+TEST(PngNotes, ComeBackInOrderAndLeaveThePictureAlone) {
     const std::string png = with_notes(small_png(), some_notes);
     EXPECT_EQ(png_notes(png), some_notes);
     EXPECT_TRUE(png_notes(small_png()).empty());
@@ -56,14 +56,14 @@ TEST(PngNotes, come_back_in_order_and_leave_the_picture_alone) {
     std::filesystem::remove(file);
 }
 
-TEST(PngNotes, have_the_check_sum_of_the_standard) {
+TEST(PngNotes, HaveTheCheckSumOfTheStandard) {
     const std::string png = with_notes(small_png(), {{"k", "v"}});
     EXPECT_EQ(png, png_with(std::string("tEXtk\0v", 7)));
     EXPECT_EQ(png.substr(33, 15), std::string("\0\0\0\3tEXtk\0v\xCB\x04\xF3\x90", 15));
     EXPECT_EQ(png.substr(png.size() - 4), std::string("\xAE\x42\x60\x82", 4));  // of IEND, in every PNG
 }
 
-TEST(PngNotes, every_flipped_bit_and_every_missing_end_is_noticed) {
+TEST(PngNotes, EveryFlippedBitAndEveryMissingEndIsNoticed) {
     const std::string png = with_notes(small_png(), some_notes);
     for (std::size_t i = 0; i < png.size(); ++i) {
         EXPECT_THROW(png_notes(std::string_view(png).substr(0, i)), std::runtime_error) << i;
@@ -76,7 +76,7 @@ TEST(PngNotes, every_flipped_bit_and_every_missing_end_is_noticed) {
 }
 
 // The checksums are valid, but parts of the chunks are missing.
-TEST(PngNotes, chunks_that_are_no_text_are_refused) {
+TEST(PngNotes, ChunksThatAreNoTextAreRefused) {
     for (const std::string& damaged : {"tEXt"s, "tEXtkeyword"s, "iTXt"s, "iTXtkeyword"s, "iTXtk\0"s, "iTXtk\0\0"s,
                                        "iTXtk\0\0\0"s, "iTXtk\0\0\0en"s, "iTXtk\0\0\0en\0"s, "iTXtk\0\0\0en\0word"s})
         EXPECT_THROW(png_notes(png_with(damaged)), std::runtime_error) << damaged;
@@ -86,7 +86,7 @@ TEST(PngNotes, chunks_that_are_no_text_are_refused) {
     EXPECT_EQ(png_notes(png_with("tEXtk\0a\xE9\x62"s)), (Notes{{"k", "aéb"}}));  // Latin-1
 }
 
-TEST(PngNotes, what_no_chunk_can_hold_is_refused) {
+TEST(PngNotes, WhatNoChunkCanHoldIsRefused) {
     for (const Note& note : {Note{"", "v"}, Note{std::string(80, 'k'), "v"}, Note{"kä", "v"},
                              Note{"k", std::string("a\0b", 3)}, Note{"k", "\xff"}, Note{"k", "\xf8\x88\x80\x80"}})
         EXPECT_THROW(with_notes(small_png(), {note}), std::runtime_error) << note.keyword;
@@ -95,7 +95,7 @@ TEST(PngNotes, what_no_chunk_can_hold_is_refused) {
 
 // ---- files from other programs ----
 
-TEST(PngNotes, are_found_before_between_and_after_the_pixels) {
+TEST(PngNotes, AreFoundBeforeBetweenAndAfterThePixels) {
     const std::string png = small_png(), header = png.substr(0, 33), end = png.substr(png.size() - 12);
     const std::string pixels = png.substr(41, png.size() - 41 - 12 - 4);  // of the only IDAT chunk
     const std::string first = chunk("IDAT" + pixels.substr(0, 5)), second = chunk("IDAT" + pixels.substr(5));
@@ -106,14 +106,14 @@ TEST(PngNotes, are_found_before_between_and_after_the_pixels) {
     EXPECT_EQ(png_notes(png_with("tEXta\0v"s) + chunk("tEXtb\0after the end"s)), (Notes{{"a", "v"}}));
 }
 
-TEST(PngNotes, of_one_keyword_all_come_in_order) {
+TEST(PngNotes, OfOneKeywordAllComeInOrder) {
     const std::string png = with_notes(small_png(), {{"k", "one"}, {"l", "two"}});
     EXPECT_EQ(png_notes(with_notes(png, {{"k", "three"}, {"k", ""}, {"k", "one"}})),
               (Notes{{"k", "three"}, {"k", ""}, {"k", "one"}, {"k", "one"}, {"l", "two"}}));
 }
 
 // Notes before and after such a chunk are still found.
-TEST(PngNotes, that_nobody_could_have_written_here_are_left_out) {
+TEST(PngNotes, ThatNobodyCouldHaveWrittenHereAreLeftOut) {
     for (const std::string& strange :
          {"tEXt\0no keyword"s, "tEXt"s + std::string(80, 'k') + "\0too long"s, "tEXtH\xF6he\0Latin-1"s,
           "tEXtk\n\0a keyword of two lines"s, "tEXtk\0a zero \0 byte"s, "iTXtk\0\0\0\0\0a zero \0 byte"s,
@@ -125,7 +125,7 @@ TEST(PngNotes, that_nobody_could_have_written_here_are_left_out) {
     }
 }
 
-TEST(PngNotes, a_length_that_is_wrong_is_noticed) {
+TEST(PngNotes, ALengthThatIsWrongIsNoticed) {
     const std::string png = with_notes(small_png(), some_notes);
     const auto is_read = [](const std::string& file) {
         try {
@@ -150,7 +150,7 @@ TEST(PngNotes, a_length_that_is_wrong_is_noticed) {
 }
 
 // Random chunks with valid checksums: the notes that are read can be written and read again, or the file is rejected.
-TEST(PngNotes, of_random_chunks_are_such_as_can_be_written) {
+TEST(PngNotes, OfRandomChunksAreSuchAsCanBeWritten) {
     std::mt19937 random(17);
     const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random()) % n; };
     const std::string seeds[] = {"tEXtTitle\0A ball"s, "iTXtTitle\0\0\0en\0Titel\0\xCE\xB8 = 1\xE2\x80\xA6"s,
@@ -179,7 +179,7 @@ TEST(PngNotes, of_random_chunks_are_such_as_can_be_written) {
     EXPECT_GT(refused, 1000);
 }
 
-TEST(PngNotes, are_limited_in_number) {
+TEST(PngNotes, AreLimitedInNumber) {
     constexpr std::size_t most = 65536;
     const std::string empty = chunk("tEXtk\0"s);
     std::string all;

@@ -45,13 +45,13 @@ std::vector<Point> bounces(int samples) {
     return points;
 }
 
-TEST(Polyline, thinning_stays_within_its_tolerance) {
+TEST(Polyline, ThinningStaysWithinItsTolerance) {
     const std::vector<Point> points = bounces(2000), thin = thinned(points, tolerance);
     EXPECT_LT(thin.size(), points.size() / 50);
     for (const Point& p : points) ASSERT_LE(distance(p, thin), tolerance * 1.0001);
 }
 
-TEST(Polyline, thinning_keeps_corners_and_extremes) {
+TEST(Polyline, ThinningKeepsCornersAndExtremes) {
     std::vector<Point> saw;
     for (int i = 0; i < 20000; ++i) saw.push_back({i * 0.02, i % 2 == 0 ? 10.0 : 90.0});
     const std::vector<Point> thin = thinned(saw, tolerance);
@@ -62,14 +62,14 @@ TEST(Polyline, thinning_keeps_corners_and_extremes) {
     EXPECT_DOUBLE_EQ(length(kept), 100.0 + 80.0 + 50.0);
 }
 
-TEST(Polyline, thinning_keeps_breaks_and_points_that_stand_alone) {
+TEST(Polyline, ThinningKeepsBreaksAndPointsThatStandAlone) {
     const std::vector<Point> thin =
         thinned({{0, 0}, gap_point(), {5, 5}, {9, 5}, gap_point(), gap_point(), {7, 7}}, 0.05);
     EXPECT_EQ(std::count_if(thin.begin(), thin.end(), [](const Point& p) { return !is_finite(p); }), 2);
     EXPECT_EQ(thinned({}, tolerance).size(), 0U);
 }
 
-TEST(Polyline, cutting_keeps_what_is_inside) {
+TEST(Polyline, CuttingKeepsWhatIsInside) {
     const std::vector<Point> inside =
         cut({{-100, 50}, {300, 50}, {300, 500}, {50, 500}, {50, -1e90}}, {0, 0, 100, 100}, {}, 0);
     EXPECT_DOUBLE_EQ(length(inside), 200.0);
@@ -80,7 +80,7 @@ TEST(Polyline, cutting_keeps_what_is_inside) {
         }
 }
 
-TEST(Polyline, dashes_have_their_lengths_across_corners) {
+TEST(Polyline, DashesHaveTheirLengthsAcrossCorners) {
     // 4 on, 6 off: two fifths of the length is drawn, for any curve.
     std::vector<Point> circle;
     constexpr double radius = 400.0 / (2.0 * std::numbers::pi);
@@ -93,7 +93,7 @@ TEST(Polyline, dashes_have_their_lengths_across_corners) {
     EXPECT_NEAR(length(cut(circle, box, {4, 6}, 1.0)), 80.0, 0.1);  // the caps add the rest
 }
 
-TEST(Polyline, dashes_do_not_depend_on_the_view) {
+TEST(Polyline, DashesDoNotDependOnTheView) {
     const std::vector<Point> line{{-1000.5, 10}, {1000, 10}};
     const std::vector<Point> a = cut(line, {0, 0, 100, 100}, {5, 5}, 0.0),
                              b = cut(line, {50, 0, 100, 100}, {5, 5}, 0.0);
@@ -103,7 +103,7 @@ TEST(Polyline, dashes_do_not_depend_on_the_view) {
         }
 }
 
-TEST(Polyline, strange_dashes_end) {
+TEST(Polyline, StrangeDashesEnd) {
     const std::vector<Point> line{{0, 10}, {1e60, 10}, {0, 10}};
     for (const std::vector<double>& dash :
          {std::vector<double>{0, 0}, {-1, 1}, {1e-9, 1e-9}, {3.0}, {0.0, 4.0}, {1e300, 1e300}})

@@ -16,8 +16,8 @@
 namespace achilles {
 namespace {
 
-struct Proven {
-    explicit Proven(const std::string& name, double end, const Spread& spread = {}) {
+struct ProofFixture {
+    explicit ProofFixture(const std::string& name, double end, const InitialUncertainty& spread = {}) {
         const auto model = test::load(name);
         Run asked = model->default_run();
         asked.options.end_time = end;
@@ -56,7 +56,7 @@ bool holds(const Tube& tube, double t, double y) {
 // Every member of the box stays inside the tubes, including rates and gaps. Excluded are times between two instants
 // within which a member's event and that of the curve lie.
 TEST(ProofTube, HoldsTheMembers) {
-    const Proven ball("ball_on_sine", 6.0, {1e-3, {}});
+    const ProofFixture ball("ball_on_sine", 6.0, {1e-3, {}});
     ASSERT_GT(ball.proof.enclosure.proved_until, 2.0);
     const Panel panel = ball.plot(over_time({"x", "y", "gap"}));
     ASSERT_EQ(panel.tubes.size(), 3U);
@@ -81,7 +81,7 @@ TEST(ProofTube, HoldsTheMembers) {
 
 // The tube is not drawn where its curve hides it. In a close view it is drawn at the proved distance from the curve.
 TEST(ProofTube, IsDrawnWhereItIsSeen) {
-    const Proven ball("ball_on_sine", 4.0, {1e-8, {}});
+    const ProofFixture ball("ball_on_sine", 4.0, {1e-8, {}});
     EXPECT_TRUE(ball.plot(over_time({"x"})).tubes.empty());
     const double x = Sampler(ball.run).at(3.5).state.q[0];
     Framing close;
@@ -108,7 +108,7 @@ TEST(ProofTube, IsDrawnWhereItIsSeen) {
 
 // No member has a negative gap, and in contact the gap is 0.
 TEST(ProofTube, KnowsWhatTheSurfaceForbids) {
-    const Proven ball("ball_on_sine", 3.5, {1e-5, {}});
+    const ProofFixture ball("ball_on_sine", 3.5, {1e-5, {}});
     ASSERT_TRUE(ball.proof.enclosure.end);
     Framing close;
     close.y = {-1e-4, 1e-4};
@@ -128,7 +128,7 @@ TEST(ProofTube, KnowsWhatTheSurfaceForbids) {
 
 // A line marks the end of the proof, and no tube follows.
 TEST(ProofTube, EndsWhereTheProofIsUndecided) {
-    const Proven ball("ball_on_sine", 4.0, {2e-2, {}});
+    const ProofFixture ball("ball_on_sine", 4.0, {2e-2, {}});
     const double until = ball.proof.enclosure.proved_until;
     ASSERT_FALSE(ball.proof.enclosure.end);
     const Panel panel = ball.plot(over_time({"x", "y"}));
@@ -136,7 +136,7 @@ TEST(ProofTube, EndsWhereTheProofIsUndecided) {
     for (const Tube& tube : panel.tubes)
         for (const Tube::Slice& at : tube.slices) EXPECT_LE(at.x, until);
     const auto mark = std::find_if(panel.markers.begin(), panel.markers.end(),
-                                   [](const Markers& markers) { return markers.shape == Markers::Shape::bar; });
+                                   [](const Markers& markers) { return markers.shape == Markers::MarkerShape::bar; });
     ASSERT_NE(mark, panel.markers.end());
     ASSERT_EQ(mark->points.size(), 1U);
     EXPECT_EQ(mark->points[0].x, until);
@@ -164,7 +164,7 @@ TEST(ProofTube, EndsWhereTheProofIsUndecided) {
 }
 
 TEST(ProofTube, IsInTheLegendAndInEveryKindOfPicture) {
-    const Proven ball("ball_on_sine", 4.0, {1e-2, {}});
+    const ProofFixture ball("ball_on_sine", 4.0, {1e-2, {}});
     const std::vector<ViewDescription> views{over_time({"y"})};
     const Figure figure = publication(ball.run, views, {}, &ball.proof);
     ASSERT_GE(figure.keys.size(), 2U);
@@ -195,7 +195,7 @@ TEST(ProofTube, IsInTheLegendAndInEveryKindOfPicture) {
 
 // A path has no tube. Its legend must not suggest that the curve hides one.
 TEST(ProofTube, IsNotClaimedWhereNoPlotIsOverTime) {
-    const Proven proven("ball_on_sine", 5.0, {0.05, {}});
+    const ProofFixture proven("ball_on_sine", 5.0, {0.05, {}});
     ViewDescription path = over_time({"y"});
     path.x.text = "x";
     const auto keys = [&](const std::vector<ViewDescription>& views) {
@@ -204,7 +204,7 @@ TEST(ProofTube, IsNotClaimedWhereNoPlotIsOverTime) {
             if (key.label.starts_with("proved") || key.label.starts_with("undecided")) labels.push_back(key.label);
         return labels;
     };
-    ASSERT_EQ(proven.proof.enclosure.outcome.kind, Enclosure::Outcome::Kind::undecided);
+    ASSERT_EQ(proven.proof.enclosure.outcome.kind, Enclosure::ProofOutcome::Kind::undecided);
     const auto alone = keys({path});
     ASSERT_EQ(alone.size(), 1U);
     EXPECT_TRUE(alone[0].starts_with("proved until ")) << alone[0];

@@ -34,7 +34,7 @@ class Publication : public testing::Test {
     Trajectory trajectory;
 };
 
-TEST_F(Publication, stacked_panels_show_a_shared_axis_once) {
+TEST_F(Publication, StackedPanelsShowASharedAxisOnce) {
     const ViewDescription x = view("x", "t", {"x"}), y = view("y", "t", {"y"}), path = view("path", "x", {"y"});
     const Figure stack = of({x, y, x});
     EXPECT_EQ(stack.columns, 1);
@@ -53,7 +53,7 @@ TEST_F(Publication, stacked_panels_show_a_shared_axis_once) {
     EXPECT_TRUE(even.panels[2].x.labelled && even.panels[3].x.labelled);
 }
 
-TEST_F(Publication, panels_have_letters_and_a_lone_one_has_none) {
+TEST_F(Publication, PanelsHaveLettersAndALoneOneHasNone) {
     const ViewDescription y = view("height", "t", {"y"});
     EXPECT_EQ(of({y}).panels[0].title, "");
     std::vector<ViewDescription> many(28, y);
@@ -65,7 +65,7 @@ TEST_F(Publication, panels_have_letters_and_a_lone_one_has_none) {
     EXPECT_EQ(of(many, 4).columns, 4);
 }
 
-TEST_F(Publication, the_legend_tells_what_occurs_and_nothing_else) {
+TEST_F(Publication, TheLegendTellsWhatOccursAndNothingElse) {
     const ViewDescription y = view("height", "t", {"y"});
     std::string labels;
     for (const Key& key : of({y}).keys) labels += key.label + "|";
@@ -78,7 +78,7 @@ TEST_F(Publication, the_legend_tells_what_occurs_and_nothing_else) {
 }
 
 // At restitution 0 there are no bounces: no legend mentions a Zeno point.
-TEST_F(Publication, a_plastic_landing_is_called_a_landing) {
+TEST_F(Publication, APlasticLandingIsCalledALanding) {
     const ViewDescription y = view("height", "t", {"y", "x"});
     achilles::Run plastic = model->default_run();
     assign(plastic, model->description(), "e=0");
@@ -94,12 +94,12 @@ TEST_F(Publication, a_plastic_landing_is_called_a_landing) {
     EXPECT_EQ(on_screen.markers[1].label, "landing");
     Figure both;
     const Trajectory* const runs[] = {&bouncing, &trajectory};
-    dress_for_print(both, runs);
+    apply_print_style(both, runs);
     EXPECT_TRUE(has(both, "Zeno point, 𝜏_{∞}, landing"));
 }
 
 // Checked in the sheet instead of a picture: no symbol or label of a legend is inside a plot area.
-TEST_F(Publication, no_legend_covers_data) {
+TEST_F(Publication, NoLegendCoversData) {
     const Figure figure = of({view("rates", "t", {"x'", "y'"}), view("height", "t", {"y"})});
     EXPECT_TRUE(figure.panels[0].legend && figure.panels[0].legend_above);
     const Sheet sheet = layout(figure, half, {0, 0, 900, 700}, 1.0);
@@ -122,7 +122,7 @@ TEST_F(Publication, no_legend_covers_data) {
 }
 
 // Limits follow the data, because a legend above the panel needs no space in it.
-TEST_F(Publication, several_curves_fill_their_panel) {
+TEST_F(Publication, SeveralCurvesFillTheirPanel) {
     const Panel panel = of({view("all", "t", {"x", "y", "x'", "y'", "gap"})}).panels[0];
     EXPECT_TRUE(panel.legend);
     double most = 0.0;
@@ -133,7 +133,7 @@ TEST_F(Publication, several_curves_fill_their_panel) {
 }
 
 // Circles are round: units have equal length on both axes, in the drawn sheet.
-TEST_F(Publication, axes_of_one_unit_are_equally_long) {
+TEST_F(Publication, AxesOfOneUnitAreEquallyLong) {
     const auto lengths = [](const Figure& figure) {
         const Panel& panel = figure.panels[0];
         Rectangle clip;
@@ -158,7 +158,7 @@ TEST_F(Publication, axes_of_one_unit_are_equally_long) {
 }
 
 // A path shows h = 0: in the plane of coordinates, and for the path of a mechanism's point.
-TEST_F(Publication, a_path_shows_the_boundary) {
+TEST_F(Publication, APathShowsTheBoundary) {
     const auto of_path = [](const std::string& name) {
         const auto system = test::load(name);
         const auto& views = system->description().views;
@@ -187,7 +187,7 @@ TEST_F(Publication, a_path_shows_the_boundary) {
     EXPECT_TRUE(std::any_of(keys.begin(), keys.end(), [](const Key& key) { return key.label == "ℎ = 0"; }));
 }
 
-TEST_F(Publication, axes_say_their_units) {
+TEST_F(Publication, AxesSayTheirUnits) {
     const auto label = [&](const std::vector<std::string>& ys) { return of({view("", "t", ys)}).panels[0].y.label; };
     EXPECT_EQ(label({"gap"}), "ℎ (m)");
     EXPECT_EQ(label({"gap'"}), "ℎ\u0307 (m/s)");
@@ -209,7 +209,7 @@ TEST_F(Publication, axes_say_their_units) {
 }
 
 // Also for plots arranged by the user.
-TEST_F(Publication, a_legend_above_needs_no_room_in_the_panel) {
+TEST_F(Publication, ALegendAboveNeedsNoRoomInThePanel) {
     const PreparedView rates(*model, view("rates", "t", {"x'", "y'"}));
     Framing screen, print;
     screen.legend = false;
@@ -222,7 +222,7 @@ TEST_F(Publication, a_legend_above_needs_no_room_in_the_panel) {
 }
 
 // A last row that is not full has no gap: its panels are wider and end where the others do.
-TEST_F(Publication, a_last_row_fills_its_width) {
+TEST_F(Publication, ALastRowFillsItsWidth) {
     const ViewDescription y = view("height", "t", {"y"}), x = view("x", "t", {"x"});
     const auto clips = [&](std::size_t panels, int columns) {
         std::vector<Rectangle> found;
@@ -248,14 +248,15 @@ TEST_F(Publication, a_last_row_fills_its_width) {
 }
 
 // Impacts before a Zeno point are drawn individually while they are far enough apart, on each of several curves.
-TEST_F(Publication, impacts_that_crowd_thin_out) {
+TEST_F(Publication, ImpactsThatCrowdThinOut) {
     for (const auto& ys : {std::vector<std::string>{"y"}, {"y", "x'"}}) {
         const Figure figure = of({view("", "t", ys)});
         const Color fill = figure.panels[0].markers[0].fill;
         std::vector<Point> squares;
         for (const auto& item : layout(figure, half, {0, 0, 1200, 800}, 1.4))
-            if (const auto* mark = std::get_if<Mark>(&item);
-                mark != nullptr && mark->shape == Markers::Shape::square && mark->fill == fill && mark->at.y > 60.0)
+            if (const auto* mark = std::get_if<Mark>(&item); mark != nullptr &&
+                                                             mark->shape == Markers::MarkerShape::square &&
+                                                             mark->fill == fill && mark->at.y > 60.0)
                 squares.push_back(mark->at);
         EXPECT_GT(squares.size(), 5u * ys.size());
         EXPECT_LT(squares.size(), figure.panels[0].markers[0].points.size());
@@ -268,7 +269,7 @@ TEST_F(Publication, impacts_that_crowd_thin_out) {
 }
 
 // A second lap of dashes over the first would look solid.
-TEST_F(Publication, what_is_retraced_is_drawn_once) {
+TEST_F(Publication, WhatIsRetracedIsDrawnOnce) {
     const auto system = test::typed(
         "title = \"lap\"\n[[coordinate]]\nname = \"x\"\nstart = 1\n[[coordinate]]\nname = \"y\"\nrate = 1\n"
         "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"(x^2 + y^2)/2\"\n"
@@ -284,7 +285,7 @@ TEST_F(Publication, what_is_retraced_is_drawn_once) {
 }
 
 // A path continues where it crosses itself.
-TEST_F(Publication, crossings_are_not_retraced) {
+TEST_F(Publication, CrossingsAreNotRetraced) {
     const auto system = test::typed(
         "title = \"eight\"\n[[coordinate]]\nname = \"x\"\nrate = 1\n[[coordinate]]\nname = \"y\"\nrate = 2\n"
         "[lagrangian]\nkinetic = \"(x'^2 + y'^2)/2\"\npotential = \"(x^2 + 4*y^2)/2\"\n"
@@ -294,7 +295,7 @@ TEST_F(Publication, crossings_are_not_retraced) {
 }
 
 // A long title is above the legend if there is no space beside it; a short one is on the same line.
-TEST_F(Publication, titles_and_legends_do_not_overlap) {
+TEST_F(Publication, TitlesAndLegendsDoNotOverlap) {
     for (const char* name : {"rates", "the rates of both coordinates of the ball, each in a colour of its own"}) {
         const Sheet sheet =
             layout(of({view(name, "t", {"x'", "y'"}), view("b", "t", {"y"})}), half, {0, 0, 700, 700}, 1.0);
@@ -312,7 +313,7 @@ TEST_F(Publication, titles_and_legends_do_not_overlap) {
     }
 }
 
-TEST_F(Publication, a_transparent_figure_has_no_background) {
+TEST_F(Publication, ATransparentFigureHasNoBackground) {
     const std::vector<ViewDescription> views{view("height", "t", {"y"})};
     const Figure figure = publication(trajectory, views, {0, true});
     EXPECT_EQ(figure.background.a, 0);
@@ -322,7 +323,7 @@ TEST_F(Publication, a_transparent_figure_has_no_background) {
     }
 }
 
-TEST_F(Publication, as_text_tells_its_keys_and_shared_axes) {
+TEST_F(Publication, AsTextTellsItsKeysAndSharedAxes) {
     const ViewDescription y = view("height", "t", {"y"});
     const std::string text = to_text(of({y, view("rates", "t", {"x'", "y'"})}));
     EXPECT_NE(text.find("key \"release\"\n"), std::string::npos) << text;
@@ -330,7 +331,7 @@ TEST_F(Publication, as_text_tells_its_keys_and_shared_axes) {
     EXPECT_NE(text.find("panel \"(b)\u00A0\u00A0rates\" legend above\n"), std::string::npos) << text;
 }
 
-TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
+TEST_F(Publication, ASmallOneShowsItsDataRatherThanItsLegend) {
     const Figure figure = of({view("height", "t", {"y"})});
     const auto holds = [&](float width, float height, const std::string& label) {
         bool found = false;
@@ -344,7 +345,7 @@ TEST_F(Publication, a_small_one_shows_its_data_rather_than_its_legend) {
 }
 
 // On a page, 1200 pixels are 170 mm: all text at --scale 1 has at least 7 points, except subscripts.
-TEST_F(Publication, text_is_never_too_small_to_be_printed) {
+TEST_F(Publication, TextIsNeverTooSmallToBePrinted) {
     ViewDescription long_one = view("a view whose name is much longer than the panel that it stands above, twice", "t",
                                     {"sqrt(x'^2 + y'^2)*sqrt(x'^2 + y'^2) + x'*y' + x'*x' + y'*y'"});
     const ViewDescription two = view("rates", "t", {"x'", "y'"});

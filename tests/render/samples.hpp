@@ -54,7 +54,7 @@ inline Panel bouncing(const std::string& title = "(a)") {
     panel.x = axis("t [s]", 0.0, 5.0, 1.0);
     panel.y = axis("y [m]", 0.0, 2.2, 0.5);
     Curve flight = curve("hybrid phase", blue, 1.5, {});
-    Markers impacts{"impacts", Markers::Shape::circle, white, blue, 6.0, {}};
+    Markers impacts{"impacts", Markers::MarkerShape::circle, white, blue, 6.0, {}};
     double t = 0.0, speed = 0.0, height = 2.0;
     constexpr double g = 4.0;
     for (int bounce = 0; bounce < 60; ++bounce) {
@@ -68,7 +68,7 @@ inline Panel bouncing(const std::string& title = "(a)") {
         speed = 0.5 * (g * flight_time - speed);
         height = 0.0;
     }
-    panel.markers.push_back({"Zeno point", Markers::Shape::bar, grey, grey, 6.0, {{t, 0.0}}});
+    panel.markers.push_back({"Zeno point", Markers::MarkerShape::bar, grey, grey, 6.0, {{t, 0.0}}});
     panel.curves.push_back(flight);
     Curve rest = curve("constrained phase", red, 2.0, {7.0, 4.0});
     rest.points = {{t, 0.02}, {5.0, 0.02}};
@@ -93,9 +93,9 @@ inline Panel phase_plane(const std::string& title = "(b)") {
     }
     panel.curves.push_back(spiral);
     const Color edge{40, 40, 40, 255};
-    panel.markers.push_back({"impact", Markers::Shape::square, red, edge, 7.0, {{-1.0, 0.5}}});
-    panel.markers.push_back({"release", Markers::Shape::triangle, {240, 180, 40, 255}, edge, 8.0, {{0.5, -0.5}}});
-    panel.markers.push_back({"Zeno point", Markers::Shape::diamond, blue, edge, 8.0, {{0.0, 0.0}}});
+    panel.markers.push_back({"impact", Markers::MarkerShape::square, red, edge, 7.0, {{-1.0, 0.5}}});
+    panel.markers.push_back({"release", Markers::MarkerShape::triangle, {240, 180, 40, 255}, edge, 8.0, {{0.5, -0.5}}});
+    panel.markers.push_back({"Zeno point", Markers::MarkerShape::diamond, blue, edge, 8.0, {{0.0, 0.0}}});
     panel.legend = true;
     panel.legend_at = {0.0, 1.0};
     return panel;
@@ -122,7 +122,7 @@ inline Panel decay(const std::string& title = "(d)") {
     const char* powers[] = {"10\u207b\u2076", "10\u207b\u2074", "10\u207b\u00b2", "1"};
     for (int i = 0; i < 4; ++i) panel.y.ticks.push_back({std::pow(10.0, 2.0 * i - 6.0), powers[i]});
     for (int i = 0; i < 3; ++i) panel.y.ticks.push_back({std::pow(10.0, 2.0 * i - 5.0), ""});
-    Markers speeds{"", Markers::Shape::circle, blue, blue, 4.0, {}};
+    Markers speeds{"", Markers::MarkerShape::circle, blue, blue, 4.0, {}};
     Curve line = curve("", grey, 1.0, {4.0, 3.0});
     for (int i = 0; i <= 24; ++i) {
         speeds.points.push_back({static_cast<double>(i), 3.0 * std::pow(0.55, i)});

@@ -39,15 +39,15 @@ Panel panel_of(const Trajectory& trajectory, const std::string& x, const std::st
 const Color held = phase_color(light_theme(), Phase::Kind::constrained),
             struck = phase_color(light_theme(), Phase::Kind::hybrid);
 
-TEST(TimeBars, are_filled_while_a_contact_is_held_and_ticked_at_its_impacts) {
+TEST(TimeBars, AreFilledWhileAContactIsHeldAndTickedAtItsImpacts) {
     const Trajectory& trajectory = run_of("pendulum_two_stops");
     const Panel panel = panel_of(trajectory, "t", "th2");
     ASSERT_EQ(panel.time_bars.size(), 2u);
     const TimeBar &knee = panel.time_bars[0], &wall = panel.time_bars[1];
     EXPECT_EQ(knee.label, "knee");
     EXPECT_EQ(wall.label, "wall");
-    std::vector<TimeBar::Mark> filled;
-    for (const TimeBar::Mark& mark : knee.marks)
+    std::vector<TimeBar::TimeMark> filled;
+    for (const TimeBar::TimeMark& mark : knee.marks)
         if (mark.high > mark.low) filled.push_back(mark);
     ASSERT_EQ(filled.size(), 2u);  // Zeno points, opening and release of the reference
     EXPECT_NEAR(filled[0].low, 4.850414795914218, 1e-8);
@@ -55,26 +55,26 @@ TEST(TimeBars, are_filled_while_a_contact_is_held_and_ticked_at_its_impacts) {
     EXPECT_NEAR(filled[1].low, 10.476602100186066, 1e-8);
     EXPECT_NEAR(filled[1].high, 12.670936299916242, 1e-8);
     EXPECT_EQ(filled[0].color, held);
-    const auto opening = [](const TimeBar::Mark& mark) {
+    const auto opening = [](const TimeBar::TimeMark& mark) {
         return mark.low == mark.high && std::abs(mark.low - 6.648636034206552) < 1e-8 && mark.color == struck;
     };
     EXPECT_TRUE(std::any_of(wall.marks.begin(), wall.marks.end(), opening));
     EXPECT_FALSE(std::any_of(knee.marks.begin(), knee.marks.end(), opening));
     EXPECT_TRUE(std::none_of(wall.marks.begin(), wall.marks.end(),
-                             [](const TimeBar::Mark& mark) { return mark.high > mark.low; }));
+                             [](const TimeBar::TimeMark& mark) { return mark.high > mark.low; }));
     // A bouncing sequence is not drawn as ticks too dense to be distinguished.
     for (std::size_t i = 1; i < wall.marks.size(); ++i)
         EXPECT_GT(wall.marks[i].low - wall.marks[i - 1].low, (panel.x.high - panel.x.low) / 5000.0);
 }
 
-TEST(TimeBars, are_under_plots_over_time_of_several_contacts_alone) {
+TEST(TimeBars, AreUnderPlotsOverTimeOfSeveralContactsAlone) {
     EXPECT_TRUE(panel_of(run_of("pendulum_two_stops"), "th1", "th2").time_bars.empty());
     const Panel one = panel_of(run_of("travelling_wave"), "t", "y");
     EXPECT_TRUE(one.time_bars.empty());
     EXPECT_EQ(one.markers.size(), 3u);
 }
 
-TEST(Plots, over_time_begin_where_the_run_does) {
+TEST(Plots, OverTimeBeginWhereTheRunDoes) {
     const auto model = test::load("ball_on_floor");
     auto run = model->default_run();
     run.options.start_time = -2.0;
@@ -93,7 +93,7 @@ std::vector<Rectangle> fills(const Sheet& sheet, const Color& color) {
     return found;
 }
 
-TEST(TimeBars, stand_between_the_plot_and_the_numbers_of_its_axis) {
+TEST(TimeBars, StandBetweenThePlotAndTheNumbersOfItsAxis) {
     const Panel panel = panel_of(run_of("pendulum_two_stops"), "t", "th2");
     Panel without = panel;
     without.time_bars.clear();
@@ -136,7 +136,7 @@ TEST(TimeBars, stand_between_the_plot_and_the_numbers_of_its_axis) {
 }
 
 // Sixteen bars leave space for the plot.
-TEST(TimeBars, take_less_than_half_of_a_panel) {
+TEST(TimeBars, TakeLessThanHalfOfAPanel) {
     Panel panel = panel_of(run_of("pendulum_two_stops"), "t", "th2");
     panel.time_bars.resize(16, panel.time_bars.front());
     Sheet sheet;
@@ -148,12 +148,12 @@ TEST(TimeBars, take_less_than_half_of_a_panel) {
     for (const Rectangle& bar : fills(sheet, held)) EXPECT_LE(bar.y + bar.height, 160.0F);
 }
 
-TEST(Openings, are_hollow_triangles_above_the_impact) {
+TEST(Openings, AreHollowTrianglesAboveTheImpact) {
     const Trajectory& trajectory = run_of("pendulum_two_stops");
     const Panel panel = panel_of(trajectory, "t", "th2");
     ASSERT_EQ(panel.markers.size(), 4u);
     const Markers& opened = panel.markers[3];
-    EXPECT_EQ(opened.shape, Markers::Shape::triangle);
+    EXPECT_EQ(opened.shape, Markers::MarkerShape::triangle);
     EXPECT_EQ(opened.fill, light_theme().background);
     EXPECT_EQ(opened.edge, event_markers(light_theme(), Event::Kind::release).fill);
     EXPECT_GT(opened.lift, 0.0);
@@ -172,7 +172,7 @@ TEST(Openings, are_hollow_triangles_above_the_impact) {
               "in flight");
 }
 
-TEST(Boundaries, of_several_gaps_are_drawn_where_no_other_is_negative) {
+TEST(Boundaries, OfSeveralGapsAreDrawnWhereNoOtherIsNegative) {
     const Trajectory& trajectory = run_of("ball_in_box");
     const Panel panel = panel_of(trajectory, "x", "y");
     const auto floor = [](const Point& p) { return p.y - p.x * p.x / 4.0; };
@@ -192,7 +192,7 @@ TEST(Boundaries, of_several_gaps_are_drawn_where_no_other_is_negative) {
     EXPECT_EQ(count[2], 0);  // it meets the floor outside the panel, and would be below it
 }
 
-TEST(Boundaries, that_move_are_drawn_as_they_are_at_an_instant) {
+TEST(Boundaries, ThatMoveAreDrawnAsTheyAreAtAnInstant) {
     const Trajectory& trajectory = run_of("travelling_wave");
     EXPECT_TRUE(has_moving_gap(*trajectory.model));
     EXPECT_FALSE(has_moving_gap(*run_of("ball_in_box").model));
@@ -215,7 +215,7 @@ TEST(Boundaries, that_move_are_drawn_as_they_are_at_an_instant) {
 }
 
 // Two equal gaps must not remove each other's line.
-TEST(Boundaries, of_gaps_that_are_the_same_are_there) {
+TEST(Boundaries, OfGapsThatAreTheSameAreThere) {
     Drawing limits;
     const PlaneFunction circle = [](const Point& p) { return p.x * p.x + p.y * p.y - 0.25; };
     const std::array<PlaneFunction, 1> once{circle};
@@ -225,7 +225,7 @@ TEST(Boundaries, of_gaps_that_are_the_same_are_there) {
 
 // Every row is even, and its arcs have the height of their limit, also while another contact is held and on a moving
 // surface.
-TEST(ZenoLens, looks_at_the_contact_that_bounces) {
+TEST(ZenoLens, LooksAtTheContactThatBounces) {
     int rows = 0, with_others = 0;
     for (const std::string name : {"bowl_and_post", "pendulum_two_stops", "ball_in_box", "travelling_wave"}) {
         const Trajectory& trajectory = run_of(name);

@@ -41,7 +41,7 @@ std::string complaint(const Action& action) {
     return "";
 }
 
-TEST(Offscreen, draws_the_same_bytes_every_time) {
+TEST(Offscreen, DrawsTheSameBytesEveryTime) {
     Offscreen a(support::options());
     const Image first = a.frame(everything, 3);
     EXPECT_EQ(a.frame(everything), first);
@@ -49,7 +49,7 @@ TEST(Offscreen, draws_the_same_bytes_every_time) {
     EXPECT_EQ(b.frame(everything, 3), first);
 }
 
-TEST(Offscreen, draws_the_same_bytes_by_osmesa_and_by_egl) {
+TEST(Offscreen, DrawsTheSameBytesByOsmesaAndByEgl) {
     if (const std::string missing = complaint([] { LoadedLibrary("libOSMesa.so.8"); }); !missing.empty())
         GTEST_SKIP() << missing << ": Mesa has dropped it";
     std::vector<Image> images;
@@ -65,13 +65,13 @@ TEST(Offscreen, draws_the_same_bytes_by_osmesa_and_by_egl) {
     EXPECT_EQ(images[0], images[2]);
 }
 
-TEST(Offscreen, knows_no_other_library) {
+TEST(Offscreen, KnowsNoOtherLibrary) {
     setenv("ACHILLES_OFFSCREEN", "mesa", 1);
     EXPECT_EQ(complaint([] { Offscreen(support::options()); }), "ACHILLES_OFFSCREEN must be osmesa or egl, not 'mesa'");
     unsetenv("ACHILLES_OFFSCREEN");
 }
 
-TEST(Offscreen, keeps_clear_what_nothing_was_drawn_on) {
+TEST(Offscreen, KeepsClearWhatNothingWasDrawnOn) {
     SurfaceOptions options = support::options(200, 100);
     options.transparent = true;
     Offscreen surface(options);
@@ -91,7 +91,7 @@ TEST(Offscreen, keeps_clear_what_nothing_was_drawn_on) {
     EXPECT_EQ(png_bytes(image).at(25), 6);  // color type: RGBA
 }
 
-TEST(Offscreen, draws_the_same_bytes_with_any_number_of_threads) {
+TEST(Offscreen, DrawsTheSameBytesWithAnyNumberOfThreads) {
     const char* before = std::getenv("LP_NUM_THREADS");
     const std::string kept = before != nullptr ? before : "";
     std::vector<Image> images;
@@ -105,7 +105,7 @@ TEST(Offscreen, draws_the_same_bytes_with_any_number_of_threads) {
     EXPECT_EQ(images[0], images[2]);
 }
 
-TEST(Offscreen, says_what_it_cannot_do) {
+TEST(Offscreen, SaysWhatItCannotDo) {
     SurfaceOptions options = support::options();
     options.fonts = "/nowhere";
     EXPECT_NE(complaint([&] { Offscreen surface(options); }).find("fonts-dejavu-core"), std::string::npos);
@@ -114,7 +114,7 @@ TEST(Offscreen, says_what_it_cannot_do) {
     EXPECT_NE(complaint([&] { Offscreen surface(support::options(100, 100, 0.0)); }).find("scale"), std::string::npos);
 }
 
-TEST(Offscreen, draws_pictures_as_large_as_the_limit) {
+TEST(Offscreen, DrawsPicturesAsLargeAsTheLimit) {
     Offscreen surface(support::options(16384, 40));
     const Image image = support::picture(surface, [](ImDrawList* list) {
         add_curve(list, {{0, 20}, {16384, 20}}, {{0, 0, 0, 255}, 4.0, {}});
@@ -122,7 +122,7 @@ TEST(Offscreen, draws_pictures_as_large_as_the_limit) {
     EXPECT_EQ(support::darkness(image, 16380, 20), 255);
 }
 
-TEST(Offscreen, takes_a_mouse_and_a_keyboard) {
+TEST(Offscreen, TakesAMouseAndAKeyboard) {
     Offscreen surface(support::options());
     float value = 0.0F;
     std::string typed(20, '\0');
@@ -164,7 +164,7 @@ TEST(Offscreen, takes_a_mouse_and_a_keyboard) {
     EXPECT_TRUE(space);
 }
 
-TEST(Offscreen, restyles_between_frames) {
+TEST(Offscreen, RestylesBetweenFrames) {
     Offscreen surface(support::options());
     const Image light = surface.frame(everything, 3);
     surface.restyle(1.0, true);
@@ -173,7 +173,7 @@ TEST(Offscreen, restyles_between_frames) {
     EXPECT_EQ(surface.frame(everything, 3), light);
 }
 
-TEST(Events, a_click_within_a_frame_is_seen) {
+TEST(Events, AClickWithinAFrameIsSeen) {
     Events events;
     events.mouse_at(3, 4);
     events.button(0, true);
@@ -194,7 +194,7 @@ TEST(Events, a_click_within_a_frame_is_seen) {
     EXPECT_TRUE(events.empty());
 }
 
-TEST(Events, a_slow_frame_keeps_up_with_typing_and_keeps_its_order) {
+TEST(Events, ASlowFrameKeepsUpWithTypingAndKeepsItsOrder) {
     Events events;
     const auto press = [&](int code, const char* text) {
         events.key(code, true);
@@ -234,14 +234,14 @@ TEST(Events, a_slow_frame_keeps_up_with_typing_and_keeps_its_order) {
     EXPECT_LT(texts.size(), 12U);
 }
 
-class OnDisplay : public testing::Test {
+class WindowOnDisplay : public testing::Test {
  protected:
     void SetUp() override {
         if (std::getenv("DISPLAY") == nullptr) GTEST_SKIP() << "no DISPLAY";
     }
 };
 
-TEST_F(OnDisplay, a_window_draws_the_bytes_of_offscreen) {
+TEST_F(WindowOnDisplay, AWindowDrawsTheBytesOfOffscreen) {
     Offscreen surface(support::options());
     const Image expected = surface.frame(everything, 3);
     Window window(support::options(), "achilles");
@@ -259,7 +259,7 @@ TEST_F(OnDisplay, a_window_draws_the_bytes_of_offscreen) {
     EXPECT_EQ(window.picture(), expected);
 }
 
-TEST_F(OnDisplay, a_frame_may_draw_a_picture_offscreen) {
+TEST_F(WindowOnDisplay, AFrameMayDrawAPictureOffscreen) {
     Offscreen surface(support::options());
     const Image expected = surface.frame(everything, 3);
     Window window(support::options(), "achilles");
@@ -275,7 +275,7 @@ TEST_F(OnDisplay, a_frame_may_draw_a_picture_offscreen) {
     EXPECT_EQ(window.picture().width, 600);
 }
 
-TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
+TEST_F(WindowOnDisplay, AWindowThatRestsStillWakes) {
     Window window(support::options(200, 100), "achilles");
     window.keep_drawing(false);
     int frames = 0;
@@ -288,7 +288,7 @@ TEST_F(OnDisplay, a_window_that_rests_still_wakes) {
 }
 
 // An idle window draws nothing until it is woken, even while a text field is active.
-TEST_F(OnDisplay, a_window_that_rests_draws_nothing) {
+TEST_F(WindowOnDisplay, AWindowThatRestsDrawsNothing) {
     Window window(support::options(200, 100), "achilles");
     window.keep_drawing(false);
     int frames = 0, when_woken = 0;
@@ -311,7 +311,7 @@ TEST_F(OnDisplay, a_window_that_rests_draws_nothing) {
     EXPECT_LE(when_woken, 12);
 }
 
-TEST(Window, without_a_display_there_is_a_message) {
+TEST(Window, WithoutADisplayThereIsAMessage) {
     const char* before = std::getenv("DISPLAY");
     const std::string kept = before != nullptr ? before : "";
     unsetenv("DISPLAY");
@@ -320,7 +320,7 @@ TEST(Window, without_a_display_there_is_a_message) {
     if (before != nullptr) setenv("DISPLAY", kept.c_str(), 1);
 }
 
-TEST(LoadedLibrary, names_itself_and_what_it_lacks) {
+TEST(LoadedLibrary, NamesItselfAndWhatItLacks) {
     EXPECT_EQ(complaint([] { LoadedLibrary("libnone.so.1"); }), "libnone.so.1 is missing");
     const LoadedLibrary library("libm.so.6");
     double (*cosine)(double) = nullptr;

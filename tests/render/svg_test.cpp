@@ -42,14 +42,14 @@ int status_of(const std::string& command, const std::filesystem::path& file, con
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
-TEST(Svg, is_valid_xml) {
+TEST(Svg, IsValidXml) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_valid.svg";
     EXPECT_EQ(status_of("xmllint --noout %s", file, sample()), 0);
     EXPECT_NE(status_of("xmllint --noout %s 2>/dev/null", file, sample().substr(0, 20000)), 0);
     std::filesystem::remove(file);
 }
 
-TEST(Svg, has_text_as_text) {
+TEST(Svg, HasTextAsText) {
     const std::string text = sample();
     // Theta with its index, lowered by 0.13 of the line height and at 0.72 of its size.
     EXPECT_NE(text.find(">θ<tspan dy=\"1.82\" font-size=\"8.66\">1</tspan><tspan dy=\"-1.82\"> [°]</tspan></text>"),
@@ -64,7 +64,7 @@ TEST(Svg, has_text_as_text) {
     EXPECT_EQ(text.find("inf"), std::string::npos);
 }
 
-TEST(Svg, keeps_curves_within_a_hundredth_and_small) {
+TEST(Svg, KeepsCurvesWithinAHundredthAndSmall) {
     Figure figure = samples::figure(1);
     Curve& curve = figure.panels[0].curves[0];
     curve.points.clear();
@@ -89,7 +89,7 @@ Figure without_words(Figure figure) {
 }
 
 // librsvg renders the same picture as our painter.
-TEST(Svg, looks_like_the_png) {
+TEST(Svg, LooksLikeThePng) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_look.svg";
     const auto rendered = [&](const Figure& figure) {
         const std::string text = svg(figure, {900, 600, 1.0}, fonts, {});
@@ -113,7 +113,7 @@ TEST(Svg, looks_like_the_png) {
 }
 
 // The figures of all systems of the gallery: valid SVG with words, and the same picture without them.
-TEST(Svg, of_the_gallery_is_valid_and_looks_like_the_png) {
+TEST(Svg, OfTheGalleryIsValidAndLooksLikeThePng) {
     const auto file = std::filesystem::path(testing::TempDir()) / "achilles_gallery.svg";
     SurfaceOptions options = support::options(1200, 800, publication_scale);
     options.curve_fineness = 2;
@@ -152,7 +152,7 @@ std::array<double, 4> box_of(const std::string& path) {
 }
 
 // A release and an impact exactly at the ends of an axis are neither clipped nor crossed by the box, in SVG and pixels.
-TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
+TEST(Svg, EventsAtTheEndsOfAnAxisAreDrawnWhole) {
     const auto model =
         std::make_shared<const Model>(read_system(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml"));
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -219,7 +219,7 @@ TEST(Svg, events_at_the_ends_of_an_axis_are_drawn_whole) {
 }
 
 // At page size no label is shortened.
-TEST(Svg, labels_of_the_gallery_are_whole) {
+TEST(Svg, LabelsOfTheGalleryAreWhole) {
     for (const auto& entry : std::filesystem::directory_iterator(ACHILLES_SOURCE_DIR "/assets/systems")) {
         const auto model = std::make_shared<const Model>(read_system(entry.path()));
         const Figure figure = publication(simulate(model, model->default_run()), model->description().views, {});
@@ -230,7 +230,7 @@ TEST(Svg, labels_of_the_gallery_are_whole) {
     }
 }
 
-TEST(Svg, carries_notes) {
+TEST(Svg, CarriesNotes) {
     EXPECT_EQ(svg_notes(sample()), quoted_notes);
     EXPECT_TRUE(svg_notes("<svg/>").empty());
     EXPECT_TRUE(svg_notes("").empty());
@@ -238,7 +238,7 @@ TEST(Svg, carries_notes) {
         EXPECT_THROW(xml_escaped(text), std::runtime_error) << text;
 }
 
-TEST(Svg, damaged_notes_are_refused_wherever_they_end) {
+TEST(Svg, DamagedNotesAreRefusedWhereverTheyEnd) {
     const std::string whole = xml_notes(quoted_notes);
     const std::size_t first_line = whole.find('\n') + 1;
     for (std::size_t size = 0; size < whole.size(); ++size) {
@@ -252,7 +252,7 @@ TEST(Svg, damaged_notes_are_refused_wherever_they_end) {
     EXPECT_THROW(xml_notes_of(unknown), std::runtime_error);
 }
 
-TEST(Svg, survives_figures_that_make_no_sense) {
+TEST(Svg, SurvivesFiguresThatMakeNoSense) {
     Figure nothing, empty = samples::figure(2);
     nothing.columns = 0;
     empty.panels[0].x.low = empty.panels[0].x.high = 1.0;

@@ -24,7 +24,7 @@ std::vector<std::vector<double>> pieces(const Curve& curve) {
     return all;
 }
 
-TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
+TEST(SweepCurve, BreaksWhereNothingIsAndWhereTheSequenceChanges) {
     const SweepData data =
         grid({{"e", 0.0, 0.7, 8, false}}, {1, 2, 3, nothing_there, 5, 6, 9, 10}, {1, 1, 1, 1, 1, 1, 2, 2});
     const Figure figure = compose_sweep(data, only(0));
@@ -48,7 +48,7 @@ TEST(SweepCurve, breaks_where_nothing_is_and_where_the_sequence_changes) {
     EXPECT_NEAR(panel.markers[0].points[0].x, 0.55, 1e-12);
 }
 
-TEST(SweepCurve, says_why_it_is_broken_where_lines_would_be_too_many) {
+TEST(SweepCurve, SaysWhyItIsBrokenWhereLinesWouldBeTooMany) {
     std::vector<double> numbers(64, 1.0);
     std::vector<std::uint64_t> sequences;
     for (std::uint64_t i = 0; i < 64; ++i) sequences.push_back(i / 2);
@@ -67,7 +67,7 @@ TEST(SweepCurve, says_why_it_is_broken_where_lines_would_be_too_many) {
 }
 
 // A count has no values between integers.
-TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
+TEST(SweepCurve, OfACountIsNotJoinedWhereItSteps) {
     SweepData data = grid({{"e", 0.0, 0.5, 6, false}}, {1, 1, 2, 2, 2, 4}, {1, 1, 1, 1, 1, 1});
     EXPECT_EQ(pieces(compose_sweep(data, only(0)).panels[0].curves[0]).size(), 1u);
     for (const char* count : {"impacts", "zeno_points", "releases"}) {
@@ -78,7 +78,7 @@ TEST(SweepCurve, of_a_count_is_not_joined_where_it_steps) {
     }
 }
 
-TEST(SweepCurve, without_a_value_is_named_beside_others) {
+TEST(SweepCurve, WithoutAValueIsNamedBesideOthers) {
     const Figure figure = compose_sweep(
         sweeps::data_of("ball_on_floor", "--over e=0:0.5:3 --print \"zeno_time(1)\" --print \"zeno_time(2)\""));
     ASSERT_EQ(figure.panels.size(), 1u);
@@ -87,21 +87,21 @@ TEST(SweepCurve, without_a_value_is_named_beside_others) {
     EXPECT_TRUE(figure.panels[0].hatch.label.empty());
 }
 
-TEST(SweepCurve, shows_a_point_that_stands_alone) {
+TEST(SweepCurve, ShowsAPointThatStandsAlone) {
     const SweepData data = grid({{"e", 0.0, 0.4, 5, false}}, {1, nothing_there, 3, nothing_there, 5}, {1, 1, 1, 1, 1});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
     ASSERT_EQ(panel.markers.size(), 1u);
     EXPECT_EQ(panel.markers[0].points.size(), 3u);
 }
 
-TEST(SweepCurve, has_a_logarithmic_axis_where_the_sweep_has) {
+TEST(SweepCurve, HasALogarithmicAxisWhereTheSweepHas) {
     const Panel panel = compose_sweep(grid({{"g", 1e-3, 1.0, 4, true}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(0)).panels[0];
     EXPECT_TRUE(panel.x.logarithmic);
     EXPECT_EQ(panel.x.label, "\U0001D454 (m/s\u00B2)");
     EXPECT_NEAR(panel.curves[0].points[1].x, 1e-2, 1e-12);
 }
 
-TEST(SweepCurve, of_a_class_is_a_bar_for_each) {
+TEST(SweepCurve, OfAClassIsABarForEach) {
     const Panel panel = compose_sweep(grid({{"e", 0.0, 0.3, 4, false}}, {1, 2, 3, 4}, {1, 1, 1, 1}), only(1)).panels[0];
     ASSERT_EQ(panel.curves.size(), 2u);
     EXPECT_EQ(panel.y.ticks[0].label, "no contact");

@@ -23,7 +23,7 @@ namespace {
 using sweeps::data_of, sweeps::grid, sweeps::nothing_there, sweeps::only;
 
 // The first axis points to the right, the second upward. Half of each outer cell is outside the range of the axis.
-TEST(SweepMap, has_a_cell_for_every_point) {
+TEST(SweepMap, HasACellForEveryPoint) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 2.0, 0.0, 3, false}}, {0, 1, 2, 3, 4, nothing_there},
                                 {1, 1, 1, 1, 1, 2});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
@@ -59,7 +59,7 @@ TEST(SweepMap, has_a_cell_for_every_point) {
     EXPECT_EQ(line[4].x, 1.5);
 }
 
-TEST(SweepMap, says_where_lines_would_be_too_many) {
+TEST(SweepMap, SaysWhereLinesWouldBeTooMany) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 2, 3, 4});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
     ASSERT_EQ(panel.curves.size(), 1u);
@@ -69,7 +69,7 @@ TEST(SweepMap, says_where_lines_would_be_too_many) {
 }
 
 // Two outliers do not use up the color scale, and the figure mentions them.
-TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
+TEST(SweepMap, LeavesTheFarthestBeyondItsColors) {
     std::vector<double> numbers;
     for (int i = 0; i < 2000; ++i) numbers.push_back(i % 100);
     numbers[17] = 5000.0;
@@ -86,7 +86,7 @@ TEST(SweepMap, leaves_the_farthest_beyond_its_colours) {
     EXPECT_EQ(panel.color_bar.axis.label, "Zeno time 2 (s)");
 }
 
-TEST(SweepMap, has_room_left_for_rows_that_are_not_there_yet) {
+TEST(SweepMap, HasRoomLeftForRowsThatAreNotThereYet) {
     SweepData data =
         grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 3, false}}, {0, 1, 2, 3, 4, 5}, {1, 1, 1, 1, 1, 1});
     Rows rows = data.rows;
@@ -99,7 +99,7 @@ TEST(SweepMap, has_room_left_for_rows_that_are_not_there_yet) {
     EXPECT_TRUE(panel.hatch.label.empty());
 }
 
-TEST(SweepMap, of_classes_has_the_hues_of_phases_and_names) {
+TEST(SweepMap, OfClassesHasTheHuesOfPhasesAndNames) {
     const SweepData data =
         grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, nothing_there}, {1, 1, 1, 1});
     const Panel panel = compose_sweep(data, only(1)).panels[0];
@@ -111,14 +111,14 @@ TEST(SweepMap, of_classes_has_the_hues_of_phases_and_names) {
     EXPECT_TRUE(panel.color_bar.colors.empty());
 }
 
-TEST(SweepMap, of_sequences_counts_them) {
+TEST(SweepMap, OfSequencesCountsThem) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {7, 9, 9, 9});
     const Panel panel = compose_sweep(data, only(sequence_column)).panels[0];
     EXPECT_EQ(panel.markers[0].label, "1. (75 %)");
     EXPECT_EQ(panel.markers[1].label, "2. (25 %)");
 }
 
-TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {
+TEST(SweepSection, IsADiagramOfDotsWherePointsAreMany) {
     const SweepData data = data_of("ball_on_vibrating_table", "--over a=0.07:0.1:60 --print y --at impact --end 30");
     const Panel panel = compose_sweep(data).panels[0];
     ASSERT_GT(data.count(), 3000u);
@@ -127,7 +127,7 @@ TEST(SweepSection, is_a_diagram_of_dots_where_points_are_many) {
     EXPECT_EQ(panel.markers[0].label, "at every impact; color strength: number of points (log scale)");
 }
 
-TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
+TEST(SweepSection, WithoutAnAxisIsOnePrintOverTheOther) {
     const SweepData data = data_of("ball_on_sine", "--print x --print \"x'\" --at impact --end 6");
     ASSERT_GT(data.count(), 3u);
     const Panel panel = compose_sweep(data).panels[0];
@@ -138,7 +138,7 @@ TEST(SweepSection, without_an_axis_is_one_print_over_the_other) {
 }
 
 // An axis without numbers has no labels.
-TEST(SweepFigure, says_that_there_is_no_value) {
+TEST(SweepFigure, SaysThatThereIsNoValue) {
     const std::vector<double> none(4, nothing_there);
     const std::vector<std::uint64_t> same(4, 1);
     const auto is_empty = [](const Panel& panel) {
@@ -172,13 +172,13 @@ TEST(SweepFigure, says_that_there_is_no_value) {
         << "it is not there yet";
 }
 
-TEST(SweepSection, of_zeros_says_which_way_they_are_passed) {
+TEST(SweepSection, OfZerosSaysWhichWayTheyArePassed) {
     const SweepData data = data_of("ball_on_sine", "--over e=0:0.5:3 --at \"x - 1\" --print y --end 3");
     EXPECT_EQ(compose_sweep(data).panels[0].markers[0].label, "at every upward zero of " + typeset("x - 1"));
 }
 
 // As in the figure of a run; the frequency of a drive is not converted to degrees.
-TEST(SweepFigure, shows_angles_in_degrees) {
+TEST(SweepFigure, ShowsAnglesInDegrees) {
     const SweepData data =
         data_of("driven_double_pendulum",
                 "--over theta1=0.1:0.3:3 --over om=1:2:2 --print theta1 --print \"theta1'\" --end 0.5");
@@ -190,7 +190,7 @@ TEST(SweepFigure, shows_angles_in_degrees) {
     EXPECT_TRUE(panel.y.label.ends_with(" (rad/s)")) << panel.y.label;
     EXPECT_EQ(panel.y.high, 2.0);
     EXPECT_TRUE(panel.color_bar.axis.label.ends_with(" (\u00B0)")) << panel.color_bar.axis.label;
-    EXPECT_NEAR(SweepColumn(data, 0).number(3), degrees(data.number(3, 0)), 1e-9);
+    EXPECT_NEAR(ColumnView(data, 0).number(3), degrees(data.number(3, 0)), 1e-9);
     EXPECT_TRUE(figure.panels[1].color_bar.axis.label.ends_with(" (\u00B0/s)"));
     const SweepData rates = data_of("double_pendulum", "--over theta1'=1:2:3 --print theta2 --end 0.5");
     const Panel curve = compose_sweep(rates).panels[0];
@@ -199,7 +199,7 @@ TEST(SweepFigure, shows_angles_in_degrees) {
     EXPECT_TRUE(curve.x.label.ends_with(" (\u00B0/s)")) << curve.x.label;
 }
 
-TEST(SweepSamples, stand_where_they_are) {
+TEST(SweepSamples, StandWhereTheyAre) {
     const SweepData data =
         data_of("ball_on_sine", "--over x=-3:3 --over y=-1:2 --random 40 --print x --print held --end 3");
     const Figure figure = compose_sweep(data);
@@ -215,7 +215,7 @@ TEST(SweepSamples, stand_where_they_are) {
 }
 
 // A dot darkens with the logarithm of its number of points.
-TEST(SweepDots, are_shaded_by_the_logarithm_of_their_number) {
+TEST(SweepDots, AreShadedByTheLogarithmOfTheirNumber) {
     Panel panel;
     panel.x.high = panel.y.high = 10.0;
     panel.dots.ink = {0, 0, 0, 255};
@@ -235,7 +235,7 @@ TEST(SweepDots, are_shaded_by_the_logarithm_of_their_number) {
     EXPECT_EQ(alphas, (std::multiset<int>{128, 191, 255}));
 }
 
-TEST(SweepFigure, has_its_bar_inside_the_picture) {
+TEST(SweepFigure, HasItsBarInsideThePicture) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
     const auto width = [](const std::string& label, float size) {
         return 0.6F * size * static_cast<float>(label.size());
@@ -251,7 +251,7 @@ TEST(SweepFigure, has_its_bar_inside_the_picture) {
 }
 
 // Also below a panel without a color scale.
-TEST(SweepFigure, has_its_bar_inside_the_picture_in_a_row_that_is_not_full) {
+TEST(SweepFigure, HasItsBarInsideThePictureInARowThatIsNotFull) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
     SweepLook look;
     look.columns = {1, 1, 0};
@@ -266,7 +266,7 @@ TEST(SweepFigure, has_its_bar_inside_the_picture_in_a_row_that_is_not_full) {
     }
 }
 
-TEST(SweepFigure, says_once_what_several_panels_show) {
+TEST(SweepFigure, SaysOnceWhatSeveralPanelsShow) {
     SweepData data =
         grid({{"e", 0.0, 1.0, 3, false}, {"g", 0.0, 2.0, 3, false}},
              {1, 2, 3, 4, nothing_there, 6, nothing_there, nothing_there, nothing_there}, {1, 1, 1, 1, 1, 1, 1, 1, 2});
@@ -288,7 +288,7 @@ TEST(SweepFigure, says_once_what_several_panels_show) {
 
 // The widths are in points: 1200 pixels, or 170 mm, and half of it. With a given height, the maps stay side by side if
 // they are larger so.
-TEST(SweepFigure, has_narrow_maps_below_one_another) {
+TEST(SweepFigure, HasNarrowMapsBelowOneAnother) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 1, 1, 1});
     const auto columns = [&](double width, double height) {
         SweepLook look;
@@ -303,7 +303,7 @@ TEST(SweepFigure, has_narrow_maps_below_one_another) {
     EXPECT_EQ(columns(600.0 / publication_scale, 200.0 / publication_scale), 2);
 }
 
-TEST(SweepFigure, is_as_high_as_its_panels_need) {
+TEST(SweepFigure, IsAsHighAsItsPanelsNeed) {
     SweepData data = grid({{"e", 0.0, 1.0, 2, false}}, {1, 2}, {1, 1});
     data.columns[0].unit = "";
     SweepLook look;
@@ -320,7 +320,7 @@ TEST(SweepFigure, is_as_high_as_its_panels_need) {
     }
 }
 
-TEST(SweepFigure, says_what_has_none) {
+TEST(SweepFigure, SaysWhatHasNone) {
     const auto refusal = [](const std::string& text) -> std::string {
         try {
             check_drawn(data_of("ball_on_sine", text, false), {});

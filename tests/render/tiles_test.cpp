@@ -23,7 +23,7 @@ Color at(const Image& image, int x, int y) {
 }
 
 // Exact to the pixel, inside the clip rectangle, with strokes below and above.
-TEST(TilesPainted, are_rectangles_of_their_colours) {
+TEST(TilesPainted, AreRectanglesOfTheirColors) {
     constexpr Color white{255, 255, 255, 255}, black{0, 0, 0, 255};
     Offscreen surface(support::options());
     const auto draw = [&](const Sheet& sheet) {
@@ -47,7 +47,7 @@ TEST(TilesPainted, are_rectangles_of_their_colours) {
     EXPECT_EQ(draw(sheet), image);
 }
 
-TEST(TilesPainted, may_be_many) {
+TEST(TilesPainted, MayBeMany) {
     Offscreen surface(support::options(700, 700));
     auto cells = std::make_shared<Cells>(Cells{600, 600, std::vector<Color>(360000, red)});
     cells->colors[600 * 599 + 599] = blue;
@@ -58,7 +58,7 @@ TEST(TilesPainted, may_be_many) {
     EXPECT_EQ(at(image, 655, 655), green);
 }
 
-TEST(TilesInSvg, are_an_embedded_picture) {
+TEST(TilesInSvg, AreAnEmbeddedPicture) {
     Figure figure;
     Panel panel;
     panel.raster = {tiles().cells, 0.0, 1.0, 0.0, 1.0};
@@ -70,7 +70,7 @@ TEST(TilesInSvg, are_an_embedded_picture) {
     EXPECT_EQ(svg(figure, {400, 300, 1.0}, ACHILLES_BINARY_DIR "/assets/fonts", {}).find("xlink"), std::string::npos);
 }
 
-TEST(Base64, is_that_of_RFC_4648) {
+TEST(Base64, IsThatOfRFC4648) {
     EXPECT_EQ(base64(""), "");
     EXPECT_EQ(base64("f"), "Zg==");
     EXPECT_EQ(base64("fo"), "Zm8=");

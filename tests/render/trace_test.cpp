@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "figure/stage.hpp"
+#include "figure/mechanism_scene.hpp"
 #include "render/drawn.hpp"
 
 namespace achilles {
@@ -99,7 +99,7 @@ radius = "0.04"
     ASSERT_EQ(trajectory.end_phase, Phase::Kind::constrained);
     const Mechanism mechanism(*model);
     const std::vector<Sample> samples = plot_samples(trajectory);
-    Stage stage(mechanism, trajectory, samples);
+    MechanismScene stage(mechanism, trajectory, samples);
     const Drawing& world = stage.limits();
     constexpr double pixels = 700.0;
     const double unit = (world.x_high - world.x_low) / pixels;

@@ -13,7 +13,7 @@
 #include <string_view>
 
 #include "cli/assets.hpp"
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/picture_format.hpp"

@@ -25,11 +25,11 @@ struct CheckArguments {
 
 int check(const CheckArguments& arguments) {
     const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
-    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const Run run = requested_run(description, arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
     const Model model(description);
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
-    check_asked(model, run, arguments.settings);
+    validate_overrides(model, run, arguments.settings);
     warn(description, run);
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;

@@ -28,7 +28,7 @@ void add_frames(CLI::App& program, int& status, PictureJob& job);
 void add_orbit(CLI::App& program, int& status, PictureJob& job);
 void add_paper(CLI::App& program, int& status, PictureJob& job);
 void add_screenshot(CLI::App& program, int& status, PictureJob& job);
-// `ranks`: the processes that share the runs (study/ranks.hpp); null if there is only this process.
+// `ranks`: the processes that share the runs (analysis/distributed_chunks.hpp); null if there is only this process.
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks);
 // Adds all commands that make pictures.
 void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks = nullptr);

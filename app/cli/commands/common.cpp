@@ -9,10 +9,10 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/terminal.hpp"
-#include "depend/error_estimate.hpp"
 #include "enclose/enclosure.hpp"
 #include "output/output.hpp"
 #include "output/proof.hpp"
+#include "sensitivity/error_estimate.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -56,7 +56,7 @@ int told_of(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate
         print_clean(stderr, "achilles: the run stopped early: {}\n",
                     with_reasons ? trajectory.outcome.message : std::string(to_text(trajectory.outcome.kind)));
     if (with_reasons)
-        for (const Remark& remark : estimate != nullptr ? remarks(trajectory, *estimate) : remarks(trajectory))
+        for (const RunWarning& remark : estimate != nullptr ? remarks(trajectory, *estimate) : remarks(trajectory))
             print_clean(stderr, "achilles: warning: {}\n", remark.sentence);
     return is_whole ? reached_end : stopped_early;
 }
@@ -95,13 +95,13 @@ void add_run_options(CLI::App& command, std::vector<std::string>& settings, Opti
         ->type_name("NAME=VALUE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    for (const Option* option : told_options()) {
+    for (const Option* option : options_in_report_order()) {
         const std::string flag(option->flag), common = common_flag(*option);
         if (common != flag && option == &options_set_by(option->command)[0])
             add_option(command, *option, common, "set --eps-q, --eps-v and --eps-t together", overrides);
         const std::string unit = option->unit.empty() ? "" : fmt::format(", {}", option->unit);
         add_option(command, *option, flag,
-                   fmt::format("{}{} (default: from the file, else {})", option->about, unit, to_text(option->get({}))),
+                   fmt::format("{}{} (default: from the file, else {})", option->help, unit, to_text(option->get({}))),
                    overrides);
     }
 }

@@ -8,15 +8,15 @@
 #include "cli/commands/commands.hpp"
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
-#include "depend/error_estimate.hpp"
 #include "figure/proof.hpp"
 #include "figure/publication.hpp"
 #include "journal/journal.hpp"
 #include "model/model.hpp"
+#include "pictures/export.hpp"
 #include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
-#include "pictures/take_away.hpp"
-#include "session/recipe.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "session/replay_script.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -74,12 +74,12 @@ int put_mechanism(const FigureArguments& arguments, const Session& session, cons
 }
 
 // The boxes to prove, if a proof is requested. `points` receives the settings with the midpoint of each interval.
-std::optional<Spread> spread_of(const FigureArguments& arguments, const SystemDescription& description,
-                                std::vector<std::string>& points) {
+std::optional<InitialUncertainty> spread_of(const FigureArguments& arguments, const SystemDescription& description,
+                                            std::vector<std::string>& points) {
     points = arguments.settings;
     if (!arguments.proof) return std::nullopt;
     points.clear();
-    return take_spread(arguments.settings, arguments.width, description, points);
+    return parse_uncertainty(arguments.settings, arguments.width, description, points);
 }
 
 // Draws the plots of the explorer after a journal and further commands.
@@ -97,7 +97,7 @@ int draw_session(const FigureArguments& arguments, const std::string& format, Pi
     steps.insert(steps.end(), more.begin(), more.end());
     const SystemDescription description = job.inputs().system(arguments.system);
     std::vector<std::string> points;
-    const std::optional<Spread> spread = spread_of(arguments, description, points);
+    const std::optional<InitialUncertainty> spread = spread_of(arguments, description, points);
     Session session = open_session(arguments.system, description, points, arguments.overrides, source_of(job), {});
     job.add(arguments.out);
     if (spread) steps.emplace_back(prove_command(*spread));
@@ -130,12 +130,12 @@ int draw(const FigureArguments& arguments, PictureJob& job) {
         return draw_session(arguments, format, job);
     const SystemDescription description = job.inputs().system(arguments.system);
     std::vector<std::string> points;
-    const std::optional<Spread> spread = spread_of(arguments, description, points);
-    const Run run = asked_run(description, points, arguments.overrides);
+    const std::optional<InitialUncertainty> spread = spread_of(arguments, description, points);
+    const Run run = requested_run(description, points, arguments.overrides);
     job.check(run.options);
     const auto model = std::make_shared<const Model>(description);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
-    check_asked(*model, run, points);
+    validate_overrides(*model, run, points);
     warn(description, run);
     job.add(arguments.out);
 

@@ -16,7 +16,7 @@
 #include "pictures/frame_folder.hpp"
 #include "pictures/picture_job.hpp"
 #include "pictures/process_pool.hpp"
-#include "session/recipe.hpp"
+#include "session/replay_script.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -62,7 +62,7 @@ std::vector<ViewDescription> views_for(const SystemDescription& description, con
 class Painter {
  public:
     explicit Painter(const StillSize& size) : surface_(options(size)) {}
-    std::string png(const Still& still, const Notes& notes) {
+    std::string png(const AnimationFrame& still, const Notes& notes) {
         return surface_.png([&] { paint(still, ImGui::GetBackgroundDrawList()); }, notes);
     }
 
@@ -157,11 +157,11 @@ struct Scenario {
 
 Scenario plain(const FramesArguments& arguments, PictureJob& job) {
     const SystemDescription description = job.inputs().system(arguments.system);
-    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const Run run = requested_run(description, arguments.settings, arguments.overrides);
     job.check(run.options);
     const auto model = std::make_shared<const Model>(description);
     std::vector<ViewDescription> views = views_for(description, arguments.views);
-    check_asked(*model, run, arguments.settings);
+    validate_overrides(*model, run, arguments.settings);
     warn(description, run);
     check_count({arguments.fps, arguments.speed, run.options.start_time, run.options.end_time});
     return {simulate(model, run), std::move(views)};
@@ -190,7 +190,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
     check_count(clock);
     Animation animation(trajectory, scenario.views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
-    const std::vector<Shown> shown{{arguments.system, &trajectory}};
+    const std::vector<PictureRun> shown{{arguments.system, &trajectory}};
     int status = reached_end;
     if (job.reproduces()) {
         for (std::size_t i = 0; i < clock.count(); ++i)

@@ -1,5 +1,5 @@
 // The command orbit: a periodic orbit, its Floquet multipliers and its branch.
-#include "study/orbit.hpp"
+#include "analysis/orbit.hpp"
 
 #include <fmt/format.h>
 
@@ -10,9 +10,9 @@
 #include "cli/terminal.hpp"
 #include "figure/publication.hpp"
 #include "output/output.hpp"
+#include "pictures/export.hpp"
 #include "pictures/picture_format.hpp"
 #include "pictures/picture_job.hpp"
-#include "pictures/take_away.hpp"
 
 namespace achilles {
 
@@ -20,7 +20,7 @@ namespace {
 
 struct OrbitArguments {
     std::string system, json, out;
-    AskedOrbit asked;
+    OrbitOptions asked;
     std::vector<std::string> views;
     OptionOverrides overrides;
     PublicationStyle style;
@@ -32,16 +32,16 @@ struct OrbitArguments {
 int run(const OrbitArguments& arguments, PictureJob& job) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const auto model = std::make_shared<const Model>(description);
-    AskedOrbit asked = arguments.asked;
-    const Run run = asked_run(description, asked.settings, arguments.overrides);
+    OrbitOptions asked = arguments.asked;
+    const Run run = requested_run(description, asked.settings, arguments.overrides);
     job.check(run.options);
-    check_asked(*model, run, asked.settings);
+    validate_overrides(*model, run, asked.settings);
     warn(description, run);
     for (const Option& option : all_options())
         if (arguments.overrides.given(option) != nullptr) asked.options.insert(option.key);
     if (!asked.from.empty() && asked.from != "start" && asked.from != "end")
         asked.guess = orbit_guess(job.inputs().data(asked.from), asked.from, description.coordinates.size());
-    const OrbitQuestion question = make_orbit_question(asked, run, model);
+    const OrbitRequest question = parse_orbit_request(asked, run, model);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
     std::string format;
     if (!arguments.out.empty()) {
@@ -53,12 +53,12 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
     }
     const std::string text = arguments.json.empty() ? "-" : arguments.json;
     if (text != arguments.out) job.add(text);
-    const OrbitAnswer found = answer_to(question, model);
+    const OrbitResult found = solve_orbit_request(question, model);
     if (!found.orbit) {
         print_clean(
             stderr,
             "achilles: no periodic orbit found: {}. Try another guess: --from end, --from FILE or --set NAME=VALUE\n",
-            found.why);
+            found.reason);
         return stopped_early;
     }
     const Branch* const followed = found.branch ? &*found.branch : nullptr;

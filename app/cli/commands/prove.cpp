@@ -9,7 +9,7 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
-#include "enclose/spread.hpp"
+#include "enclose/initial_uncertainty.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
@@ -32,10 +32,10 @@ struct ProveArguments {
 };
 
 // The boxes of initial states and parameters. `points` receives the settings with the midpoint of each interval.
-Claim claim_of(const ProveArguments& arguments, const SystemDescription& description,
-               std::vector<std::string>& points) {
-    const Spread spread = take_spread(arguments.settings, arguments.width, description, points);
-    Claim claim = claim_of(description, asked_run(description, points, arguments.overrides), spread);
+EnclosureProblem problem_of(const ProveArguments& arguments, const SystemDescription& description,
+                            std::vector<std::string>& points) {
+    const InitialUncertainty spread = parse_uncertainty(arguments.settings, arguments.width, description, points);
+    EnclosureProblem claim = problem_of(description, requested_run(description, points, arguments.overrides), spread);
     if (const auto* given = arguments.overrides.given(option("eps_t"))) claim.eps_t = std::get<double>(given->second);
     return claim;
 }
@@ -53,15 +53,15 @@ std::vector<double> times_of(const ProveArguments& arguments, const Run& run) {
 int run(const ProveArguments& arguments) {
     const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
     std::vector<std::string> points;
-    Claim claim = claim_of(arguments, description, points);
+    EnclosureProblem claim = problem_of(arguments, description, points);
     const auto model = std::make_shared<const Model>(description);
-    check_asked(*model, claim.run, points);
+    validate_overrides(*model, claim.run, points);
     check(*model, claim);
     claim.times = times_of(arguments, claim.run);
     warn(description, claim.run);
     OutputFiles files;
-    files.spare(find_system(arguments.system));
-    if (!arguments.times.empty()) files.spare(arguments.times);
+    files.protect_input(find_system(arguments.system));
+    if (!arguments.times.empty()) files.protect_input(arguments.times);
     const std::string out = arguments.json.empty() ? "-" : arguments.json;
     files.add(out);
     const Enclosure proof = arguments.parts > 1 ? prove_in_parts(model, claim, arguments.parts) : prove(model, claim);

@@ -55,7 +55,7 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
 
 int reproduce(const std::string& picture, const std::string& out) {
     OutputFiles files;
-    files.spare(picture);
+    files.protect_input(picture);
     if (!out.empty()) files.add(out);
     const std::string before = read_text(picture, largest_picture);
     if (before.size() > largest_picture) throw InputError(picture, {}, "this file is too large for a picture");

@@ -12,13 +12,13 @@
 #include "cli/commands/common.hpp"
 #include "cli/terminal.hpp"
 #include "cli/write_files.hpp"
-#include "depend/chain.hpp"
-#include "depend/error_estimate.hpp"
-#include "depend/quantities.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
 #include "pictures/origin.hpp"
+#include "sensitivity/chain.hpp"
+#include "sensitivity/error_estimate.hpp"
+#include "sensitivity/quantities.hpp"
 
 namespace achilles {
 
@@ -80,9 +80,9 @@ Instants instants_of(const SimulateArguments& arguments, const Run& run) {
 int run(const SimulateArguments& arguments) {
     check_files(arguments);
     const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
-    const Run run = asked_run(description, arguments.settings, arguments.overrides);
+    const Run run = requested_run(description, arguments.settings, arguments.overrides);
     const auto model = std::make_shared<const Model>(description);
-    check_asked(*model, run, arguments.settings);
+    validate_overrides(*model, run, arguments.settings);
     const Instants instants = instants_of(arguments, run);
     const Quantities quantities(model, arguments.of);
     if (arguments.derivatives) Chain::check(run);
@@ -90,8 +90,8 @@ int run(const SimulateArguments& arguments) {
     warn_of_endings(arguments);
     // Checked before the work, so that a path that cannot be written does not lose results at the end.
     OutputFiles files;
-    files.spare(find_system(arguments.system));
-    if (!arguments.times.empty()) files.spare(arguments.times);
+    files.protect_input(find_system(arguments.system));
+    if (!arguments.times.empty()) files.protect_input(arguments.times);
     if (!arguments.json.empty()) files.add(arguments.json);
     if (!arguments.csv.empty()) files.add(arguments.csv);
 

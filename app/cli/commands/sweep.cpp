@@ -25,9 +25,9 @@ namespace {
 
 struct SweepArguments {
     std::string system;
-    AskedSweep asked;
-    SweepOutputAsked output;
-    SweepPicturesAsked pictures;
+    SweepOptions asked;
+    SweepOutputOptions output;
+    SweepPictureOptions pictures;
     std::vector<std::string> settings;
     OptionOverrides overrides;
     int threads = 0;
@@ -53,7 +53,7 @@ int threads_from(const std::string& text) {
 }
 
 // Prints warnings that concern all runs, once: for the base run, and for ends of axes outside the ranges of the file.
-void warn_of(const SystemDescription& description, const Sweep& sweep) {
+void warn_of(const SystemDescription& description, const SweepSpec& sweep) {
     warn(description, sweep.base);
     for (const SweepAxis& axis : sweep.axes) {
         Run file = default_run(description);
@@ -82,10 +82,10 @@ void print_summary(const SweepSummary& summary, const SweepOutput& output) {
 // `ranks`: the other processes that share the sweep; may be null.
 int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
-    const Run base = asked_run(description, arguments.settings, arguments.overrides);
-    AskedSweep asked = arguments.asked;
+    const Run base = requested_run(description, arguments.settings, arguments.overrides);
+    SweepOptions asked = arguments.asked;
     if (!job.reproduces()) asked.fixed = fixed_names(arguments.settings, arguments.overrides);
-    const Sweep sweep = make_sweep(asked, base, description);
+    const SweepSpec sweep = make_sweep(asked, base, description);
     job.check(sweep);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
     if (job.reproduces()) {
@@ -154,7 +154,7 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     CLI::App* command = program.add_subcommand(
         "sweep", "Simulates many runs over parameters, initial values and options: a table, a curve, a map");
     add_system_argument(*command, arguments->system);
-    AskedSweep& asked = arguments->asked;
+    SweepOptions& asked = arguments->asked;
     add_texts(
         *command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
         "axis of the sweep: a parameter, a start x, a rate x' or a numeric option such as end, with COUNT values from "
@@ -178,7 +178,7 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     text_option("--random", asked.random, "N",
                 "number of random points instead of a grid; --over then takes NAME=LOW:HIGH");
     text_option("--seed", asked.seed, "S", "seed of the random points (default 1)");
-    SweepOutputAsked& output = arguments->output;
+    SweepOutputOptions& output = arguments->output;
     command->add_option("--csv", output.csv, "file for the table (default: standard output)")->type_name("F");
     command->add_option("--hdf5", output.hdf5, "HDF5 file for the table: /axes/NAME, /values/WHAT")->type_name("F");
     add_texts(*command, "--out", arguments->pictures.files, "F.png|F.svg|F.pdf",
@@ -190,7 +190,7 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
             "--threads", [arguments](const std::string& text) { arguments->threads = threads_from(text); },
             "worker threads per process (default: one per core); does not change the output")
         ->type_name("N");
-    SweepPicturesAsked& pictures = arguments->pictures;
+    SweepPictureOptions& pictures = arguments->pictures;
     command->add_flag("--transparent", pictures.look.transparent, "with --out: leave out the background");
     command->add_flag("--dark", pictures.look.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, pictures.page);

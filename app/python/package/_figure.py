@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from . import _core
-from ._asked import number_in, whole_number_in
+from ._arguments import number_in, whole_number_in
 from ._errors import InputError
 
 

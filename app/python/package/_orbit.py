@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._asked import Asked, number_in, text_of, with_options
+from ._arguments import RunArguments, number_in, text_of, with_options
 from ._errors import AchillesWarning, InputError, NoOrbit, as_arguments
 from ._figure import Figure, figure_of
 from ._records import Event, OrbitPoint, Record, _Result, entry
@@ -199,7 +199,7 @@ def orbit(system: System | str | os.PathLike[str], *,
     KeyboardInterrupt.
     """
     what = system_of(system)
-    of_run = Asked(what._core, set, values)
+    of_run = RunArguments(what._core, set, values)
     asked = (*_place(what, from_), "" if period is None else text_of("period", period), _shifts(shift), _along(continue_),
              of_run.settings, of_run.options)
     core = _core.orbit(what._core, *asked)

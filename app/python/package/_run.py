@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from . import _core
-from ._asked import Asked, with_options
+from ._arguments import RunArguments, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._figure import Figure, figure_of
 from ._records import Certificate, Event, Phase, Record, _Result, derivative_records, entry
@@ -194,7 +194,7 @@ def simulate(system: System | str | os.PathLike[str], *, set: Mapping[str, float
     Other threads keep running; Ctrl-C ends the run with KeyboardInterrupt. Raises InputError.
     """
     what = system_of(system)
-    asked = Asked(what._core, set, values)
+    asked = RunArguments(what._core, set, values)
     run = _made(what, asked.settings, asked.options)
     core = run._core
     told = core.warnings + core.remarks()

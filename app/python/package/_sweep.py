@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._asked import Asked, text_of, texts_in, with_options
+from ._arguments import RunArguments, text_of, texts_in, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._system import System, system_of
 
@@ -114,7 +114,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
         raise InputError(f"threads={threads}: a whole number from 1 to 1024 is expected")
     if progress is not None and not callable(progress):
         raise TypeError("progress: a function of (done, count) is expected")
-    asked = Asked(what._core, set, values)
+    asked = RunArguments(what._core, set, values)
     prints = texts_in("print", print, "zeno_time(2)")
 
     def text(name: str, value: object) -> str | None:

@@ -56,7 +56,7 @@ TEST(Multinomial, WorkHasALimit) {
     Work work{100};
     Multinomial sum;
     for (std::size_t i = 0; i < 20; ++i) sum = sum + Multinomial::atom(i);
-    EXPECT_THROW(power(sum, 2, work), TooLong);
+    EXPECT_THROW(power(sum, 2, work), SimplificationLimit);
 }
 
 // a, b, x, y are slots 0 .. 3; the first two are positive.

@@ -125,7 +125,7 @@ TEST(Restarts, KineticIsOfThirdOrderEuclideanOfFirst) {
 // What is certified of a Zeno point, to six digits, as it was when the numbers of the truth tests were found to lie
 // within: a term left out, or with the other sign, is seen here where another one outweighs it there.
 std::vector<double> certificate_of(const std::string& system, Conditions conditions, double eps, std::size_t zeno) {
-    test::Plane cubic;  // whose forces are of the third degree in the rates
+    test::PlaneSystem cubic;  // whose forces are of the third degree in the rates
     cubic.gap = "b - 0.3*sin(a)";
     cubic.a = 0.3;
     cubic.b = 1.0;
@@ -312,7 +312,7 @@ TEST(PaperCertificates, RestOnTheirOwnNumbers) {
 }
 
 // Loose tolerances: eps' = eps is infeasible there (V would reach where hddot > 0), a smaller V is not.
-TEST(PaperCertificates, LooseTolerancesFindASmallerNeighbourhood) {
+TEST(PaperCertificates, LooseTolerancesFindASmallerNeighborhood) {
     const auto model = test::load("double_pendulum");
     auto run = model->default_run();
     run.options.truncation = {1.0, 1.0, 1.0, Conditions::paper, Reinitialization::kinetic};

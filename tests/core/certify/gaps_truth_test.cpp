@@ -15,8 +15,8 @@ namespace achilles::test {
 namespace {
 
 // A ball in wind on a sine, with a force against its motion in each direction.
-Plane windy_ball(const std::string& drag_a, const std::string& drag_b) {
-    Plane ball;
+PlaneSystem windy_ball(const std::string& drag_a, const std::string& drag_b) {
+    PlaneSystem ball;
     ball.gap = "b - 0.3*sin(a)";
     ball.a = 0.3;
     ball.b = 1.0;
@@ -198,7 +198,7 @@ class TangentialRate {
 // T5: s' = A + B sigma + D(xi) sigma^2 with some xi between 0 and sigma, for a force of the third degree and a moving
 // gap, in which every term of B counts. The derivatives by sigma are central differences.
 TEST(ShiftedVariables, AreThoseOfTheMotion) {
-    Plane plane = windy_ball(drags[3].a, drags[3].b);
+    PlaneSystem plane = windy_ball(drags[3].a, drags[3].b);
     plane.kinetic = "1/2*(a'^2 + (2 + sin(a))*b'^2 + 0.6*a'*b')";
     plane.gap = "b - 0.3*sin(a - 1.1*t) - 0.1*a^2";
     const auto model = model_of(plane);
@@ -253,7 +253,7 @@ TEST(ShiftedVariables, AreThoseOfTheMotion) {
 
 // T6: the certificate of a table that vibrates holds while it moves on. Of a bouncing that takes a quarter of its
 // period the acceleration changes so much that a certificate of the collision's instant alone would be false.
-TEST(Truth, TheTimeIsACoordinateOfTheNeighbourhood) {
+TEST(Truth, TheTimeIsACoordinateOfTheNeighborhood) {
     const auto model = load("vibrating_table");
     auto run = model->default_run();
     run.parameters = {0.2, 2.0};  // a om^2 = 0.8 of gravity

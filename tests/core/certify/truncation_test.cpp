@@ -100,12 +100,12 @@ TEST(Truncation, TheImpactAtTheCutIsAnImpactLikeAnyOther) {
     }
 }
 
-struct Cut {
+struct CutError {
     double w, estimate_error, half_width, first_order_half_width;
 };
 
 // The wait for the first Zeno point as it is seen from each impact before it.
-std::vector<Cut> cuts_of(const std::string& system) {
+std::vector<CutError> cuts_of(const std::string& system) {
     const auto model = test::load(system);
     auto run = model->default_run();
     run.options.tolerance = 1e-14;
@@ -115,7 +115,7 @@ std::vector<Cut> cuts_of(const std::string& system) {
     ContactKinematics surface(*model, run);
     const auto conditions = truncation_conditions(*model, run);
     const Interval e(0.5);
-    std::vector<Cut> cuts;
+    std::vector<CutError> cuts;
     for (const Event& event : trajectory.events) {
         if (event.t >= zeno.t || event.kind != Event::Kind::impact) break;
         const State before{event.q, event.v_before, event.t};
@@ -125,29 +125,30 @@ std::vector<Cut> cuts_of(const std::string& system) {
         if (!c) continue;
         EXPECT_LE(c->zeno_low, zeno.t);
         EXPECT_GE(c->zeno_high, zeno.t);
-        const Wait wait = wait_for_zeno(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
+        const AccumulationTime wait =
+            wait_for_zeno(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
         cuts.push_back({event.impact_speed, std::abs(c->zeno_time - zeno.t), 0.5 * (c->zeno_high - c->zeno_low),
                         0.5 * (wait.latest.hi() - wait.earliest.lo())});
     }
     return cuts;
 }
 
-double slope(const Cut& a, const Cut& b, double Cut::*value) {
+double slope(const CutError& a, const CutError& b, double CutError::*value) {
     return std::log(a.*value / (b.*value)) / std::log(a.w / b.w);
 }
 
 TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
     for (const auto& problem : test::problems) {
-        const std::vector<Cut> cuts = cuts_of(problem.asset);
-        const Cut *large = nullptr, *small = nullptr;
-        for (const Cut& cut : cuts) {
+        const std::vector<CutError> cuts = cuts_of(problem.asset);
+        const CutError *large = nullptr, *small = nullptr;
+        for (const CutError& cut : cuts) {
             if (cut.w < 2e-2 && large == nullptr) large = &cut;
             if (cut.w > 3e-4) small = &cut;
         }
         ASSERT_TRUE(large != nullptr && small != nullptr && small->w < 0.1 * large->w);
-        EXPECT_GT(slope(*large, *small, &Cut::half_width), 2.8) << problem.key;
-        EXPECT_GT(slope(*large, *small, &Cut::estimate_error), 2.8) << problem.key;
-        EXPECT_NEAR(slope(*large, *small, &Cut::first_order_half_width), 2.0, 0.5) << problem.key;
+        EXPECT_GT(slope(*large, *small, &CutError::half_width), 2.8) << problem.key;
+        EXPECT_GT(slope(*large, *small, &CutError::estimate_error), 2.8) << problem.key;
+        EXPECT_NEAR(slope(*large, *small, &CutError::first_order_half_width), 2.0, 0.5) << problem.key;
         EXPECT_LT(small->half_width, 0.1 * small->first_order_half_width) << problem.key;
         // The estimate is not an end of the interval but far inside.
         EXPECT_LT(small->estimate_error, 0.1 * small->half_width) << problem.key;
@@ -172,7 +173,7 @@ TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
 
 // (E) is what the exact identity gives: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
 TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
-    const Trend trend{2.0, 0.3, 0.7};
+    const AccelerationTrend trend{2.0, 0.3, 0.7};
     const double e = 0.5, w = 1e-2, a = trend.a, b = trend.b, c = trend.c, K = (1 + e) / (1 - e);
     const double cB = -b * K / (2 * a * a), cC = -(b / (a * a) + c / a) / (2 * a);
     const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
@@ -183,7 +184,7 @@ TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
 // The enclosure of third order is that of theory-truncation.md 4, evaluated here from what is printed there: with none
 // of the six terms of rho (0), with each of them alone, so that no other hides it, and with all of them (7).
 void expect_third_order(double a_min, double a_max) {
-    const Trend trend{2.0, 0.3, 0.7};
+    const AccelerationTrend trend{2.0, 0.3, 0.7};
     const double e = 0.5, w = 1e-2, T = 0.03, a = trend.a, b = trend.b, c = trend.c;
     const double K = (1 + e) / (1 - e), h_m = e * w * e * w / (2 * a_min);
     const double cA = -b / (a * a), cB = -b * K / (2 * a * a), cE = cB, cC = -(b / (a * a) + c / a) / (2 * a);
@@ -198,9 +199,9 @@ void expect_third_order(double a_min, double a_max) {
         const auto size = [&](int of) { return term == of || term == 7 ? 0.4 + 0.1 * of : 0.0; };
         const double start = size(1), by_sigma = size(2), P = size(3), phi_mid = size(4), phi_rad = size(5),
                      xi = size(6);
-        const Drift drift{Interval(a - start, a + 0.5 * start), Interval(c - 0.5 * by_sigma, c + by_sigma),
-                          Interval(b - P, b + 0.5 * P), Interval(-phi_mid - phi_rad, -phi_mid + phi_rad),
-                          Interval(-xi, 0.5 * xi)};
+        const AccelerationBounds drift{Interval(a - start, a + 0.5 * start), Interval(c - 0.5 * by_sigma, c + by_sigma),
+                                       Interval(b - P, b + 0.5 * P), Interval(-phi_mid - phi_rad, -phi_mid + phi_rad),
+                                       Interval(-xi, 0.5 * xi)};
         const double rho = start + by_sigma * w + P * T + phi_mid * h_m + phi_rad * w * T + xi * w * w * T;
         const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), centre = estimated_wait(trend, e, w);
         const Interval wait = third_order_wait(trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w),

@@ -3,7 +3,7 @@
 
 #include "certify/definition7.hpp"
 #include "certify/execution.hpp"
-#include "certify/lies.hpp"
+#include "certify/false_certificates.hpp"
 #include "certify/slope.hpp"
 #include "certify/tally.hpp"
 #include "core/systems.hpp"
@@ -162,7 +162,7 @@ TEST(Truth, CertificatesAreTrue) {
 
 // theory.md 3.3: with the least V that proves itself, the conditions hold wherever they do with any eps' <= eps of a
 // logarithmic grid, and never with a worse bound than eps' = eps gives.
-TEST(Truth, NoNeighbourhoodOfAGridDoesBetter) {
+TEST(Truth, NoNeighborhoodOfAGridDoesBetter) {
     constexpr int points = 13;  // over four decades
     int feasible = 0, only_smaller = 0;
     for (const std::string system : systems) {
@@ -216,11 +216,11 @@ TEST(Truth, KnowsTheTopOfTheFirstFlight) {
         const double e = trial.run.parameters[1];
         const double top = std::pow(e * trial.kinetic.collision.speed, 2) / (2.0 * trial.run.parameters[0]);
         EXPECT_NEAR(trial.kinetic.farthest, top, 1e-15 * top);
-        Certified said = trial.certified[0];
+        CertificateCase said = trial.certified[0];
         const auto uniform_holds = [&](double bound) {
             said.certificate.uniform_position = bound;
             for (const Claim& claim : claims(trial, said))
-                if (claim.about == Claim::About::uniform_position) return claim.holds();
+                if (claim.about == Claim::ClaimKind::uniform_position) return claim.holds();
             return false;
         };
         EXPECT_TRUE(uniform_holds(top * (1.0 + 1e-9)));
@@ -232,17 +232,17 @@ TEST(Truth, KnowsTheTopOfTheFirstFlight) {
 
 // A comparison that lets false certificates pass would prove nothing.
 TEST(Truth, EveryLieIsCaught) {
-    std::map<std::pair<Lie, Conditions>, int> caught;
+    std::map<std::pair<FalseCertificate, Conditions>, int> caught;
     int uniform = 0;
     for (const std::string system : systems) {
         Trials trials(load(system), 1);
         for (int count = 0; count < sample; ++count) {
             const Trial trial = trials.next();
             if (!trial.zeno) continue;
-            for (const Certified& honest : trial.certified) {
+            for (const CertificateCase& honest : trial.certified) {
                 uniform += honest.certificate.uniform_position ? 1 : 0;
-                for (const Lie lie : lies) {
-                    Certified liar = honest;
+                for (const FalseCertificate lie : lies) {
+                    CertificateCase liar = honest;
                     liar.certificate =
                         falsified(honest.certificate, lie, trial.restarted(honest.asked.reinitialization).collision,
                                   trial.run, trials.model());
@@ -253,13 +253,14 @@ TEST(Truth, EveryLieIsCaught) {
             }
         }
     }
-    for (const Lie lie : lies) {
+    for (const FalseCertificate lie : lies) {
         SCOPED_TRACE(static_cast<int>(lie));
-        const bool shadowing = lie == Lie::shadowing_position || lie == Lie::shadowing_velocity;
+        const bool shadowing =
+            lie == FalseCertificate::shadowing_position || lie == FalseCertificate::shadowing_velocity;
         const int by_paper = caught[{lie, Conditions::paper}], by_sharp = caught[{lie, Conditions::sharp}];
-        EXPECT_TRUE(shadowing || lie == Lie::uniform_position || by_paper > 0);
-        const bool unsaid = lie == Lie::uniform_position && uniform == 0;
-        EXPECT_TRUE(lie == Lie::eta_with_M || unsaid || by_sharp > 0);
+        EXPECT_TRUE(shadowing || lie == FalseCertificate::uniform_position || by_paper > 0);
+        const bool unsaid = lie == FalseCertificate::uniform_position && uniform == 0;
+        EXPECT_TRUE(lie == FalseCertificate::eta_with_M || unsaid || by_sharp > 0);
     }
 }
 
@@ -268,7 +269,7 @@ TEST(Truth, EveryLieIsCaught) {
 // A collision at rest on the floor b = 0 of a system of two coordinates, but for the speed w, and what the sharp
 // conditions prove of it.
 struct FloorCollision {
-    FloorCollision(const Plane& plane, double w) : model(model_of(plane)), run(model->default_run()) {
+    FloorCollision(const PlaneSystem& plane, double w) : model(model_of(plane)), run(model->default_run()) {
         state = run.start();
         state.v[1] = -w;
         Vector s = run.v;

@@ -8,7 +8,7 @@
 
 #include "algebra/writer.hpp"
 #include "check/simplified.hpp"
-#include "core/several.hpp"
+#include "core/multi_contact.hpp"
 #include "model/read_system.hpp"
 
 namespace achilles {
@@ -21,7 +21,7 @@ struct Condition {
 };
 
 Condition condition(const Model& model, const Run& run) {
-    const Simplified simplified(model, run);
+    const SimplifiedEquations simplified(model, run);
     EXPECT_TRUE(simplified.contacts[0].zeno);
     if (!simplified.contacts[0].zeno) return {};
     const ZenoCondition& zeno = *simplified.contacts[0].zeno;
@@ -394,10 +394,10 @@ TEST(CheckReport, TellsOfAGapWhoseNormalVanishes) {
 TEST(CheckReport, SeesWrongForces) {
     const auto model = test::load_gaps("pendulum_two_stops");
     const auto run = model->default_run();
-    Simplified force(*model, run);
+    SimplifiedEquations force(*model, run);
     force.Q[0]->numerator = force.Q[0]->numerator + Multinomial(1);
     EXPECT_GT(compare_with_differences(*model, run, force).largest(), 0.1);
-    Simplified held(*model, run);
+    SimplifiedEquations held(*model, run);
     ASSERT_FALSE(held.while_held.empty());
     ASSERT_TRUE(held.while_held[0].zeno);
     held.while_held[0].zeno->positive.number *= 2;
@@ -446,7 +446,7 @@ TEST(CheckAnswer, NamesSeveralContactsAndSignsThatNeverChange) {
 TEST(CheckAnswer, SaysThatTheCheckFailed) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
-    Simplified wrong(*model, run);
+    SimplifiedEquations wrong(*model, run);
     auto& hddot = wrong.contacts[0].hddot;
     hddot->numerator = hddot->numerator + Multinomial(1);
     const std::string answer = check_answer(*model, run, wrong, compare_with_differences(*model, run, wrong));
@@ -460,13 +460,13 @@ TEST(CheckAnswer, SaysThatTheCheckFailed) {
 TEST(CheckReport, SeesWrongEquations) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
-    const Simplified right(*model, run);
+    const SimplifiedEquations right(*model, run);
     EXPECT_LT(compare_with_differences(*model, run, right).largest(), 1e-15);
-    Simplified wrong(*model, run);
+    SimplifiedEquations wrong(*model, run);
     auto& hddot = wrong.contacts[0].hddot;
     hddot->numerator = hddot->numerator + Multinomial(1);
     EXPECT_GT(compare_with_differences(*model, run, wrong).largest(), 0.1);
-    Simplified in_contact(*model, run);
+    SimplifiedEquations in_contact(*model, run);
     in_contact.contacts[0].zeno->positive.number *= 2;
     EXPECT_GT(compare_with_differences(*model, run, in_contact).largest(), 1e-3);
 }

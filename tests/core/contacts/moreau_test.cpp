@@ -14,7 +14,7 @@ namespace {
 using Matrix = ContactMatrix<double>;
 using Vector = ContactVector<double>;
 using Eigen::Index;
-using End = ImpactSequence::End;
+using SequenceEnd = ImpactSequence::SequenceEnd;
 
 constexpr ContactSet nobody;
 
@@ -38,7 +38,7 @@ TEST(Moreau, RodDroppedFlat) {
     EXPECT_EQ(other[0].hdot_after, numbers({0.40625, 0.265625}));
     EXPECT_EQ(other[1].hdot_after, numbers({0.265625, 0.40625}));
     EXPECT_EQ(other[0].impacts, 3);
-    EXPECT_EQ(other[0].end, End::finite);
+    EXPECT_EQ(other[0].end, SequenceEnd::finite);
 }
 
 TEST(Moreau, TallBlockDroppedFlat) {
@@ -114,16 +114,16 @@ TEST(Moreau, EndlessImpactsAreTakenToTheirLimit) {
     Matrix W(2, 2);
     W << 2.0, -1.0, -1.0, 2.0;
     const auto collapse = impacts_in_turn(W, numbers({-1.0, 0.0}), numbers({0.05, 0.05}), nobody, 0);
-    EXPECT_EQ(collapse->end, End::limit);
+    EXPECT_EQ(collapse->end, SequenceEnd::limit);
     EXPECT_GT(collapse->impacts, 10);
     EXPECT_LT(collapse->hdot_after.maxCoeff(), 1e-10);
     EXPECT_GE(collapse->hdot_after.minCoeff(), 0.0);
     const auto separate = impacts_in_turn(W, numbers({-1.0, 0.0}), numbers({0.08, 0.08}), nobody, 0);
-    EXPECT_EQ(separate->end, End::finite);
+    EXPECT_EQ(separate->end, SequenceEnd::finite);
     // Elastic ones in a narrow wedge: pi over its angle.
     const auto wedge =
         impacts_in_turn(pair_with(-std::cos(0.001)), numbers({-1.0, 0.0}), numbers({1.0, 1.0}), nobody, 0);
-    EXPECT_EQ(wedge->end, End::cut);
+    EXPECT_EQ(wedge->end, SequenceEnd::cut);
     EXPECT_EQ(wedge->impacts, ImpactSequence::most_impacts);
 }
 
@@ -264,7 +264,7 @@ TEST(Moreau, SequencesLoseEnergy) {
         const Scene s = random_scene(random);
         if (!HeldBlock<double>::of(s.W, all_contacts(s.e.size()), 1e-4)) continue;
         for (const ImpactSequence& turns : alternatives(s.W, s.before, s.e, s.held)) {
-            if (turns.end == End::cut) continue;
+            if (turns.end == SequenceEnd::cut) continue;
             ++finite;
             ASSERT_GE(turns.hdot_after.minCoeff(), 0.0) << run;
             ASSERT_GE(turns.impulses.minCoeff(), 0.0) << run;
@@ -303,7 +303,7 @@ TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
 
 // ---- when order matters ----
 
-TEST(OrderMatters, BySignsOfWhatMeets) {
+TEST(ImpactOrder, BySignsOfWhatMeets) {
     const Matrix exact = Matrix::Zero(2, 2);
     const Vector plastic = numbers({0.0, 0.0}), elastic = numbers({0.0, 0.5});
     const ContactSet both = contacts({0, 1});
@@ -323,7 +323,7 @@ TEST(OrderMatters, BySignsOfWhatMeets) {
     EXPECT_TRUE(order_matters(W, Matrix::Zero(3, 3), numbers({0.5, 0.5, 0.5}), contacts({2}), both));
 }
 
-TEST(OrderMatters, CountsRoundingAsZeroAndSaysSo) {
+TEST(ImpactOrder, CountsRoundingAsZeroAndSaysSo) {
     const Vector e = numbers({0.5, 0.5});
     const ContactSet both = contacts({0, 1});
     const auto with_radius = [&](double W12, double radius) {

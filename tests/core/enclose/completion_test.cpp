@@ -3,14 +3,14 @@
 
 #include "certify/truth.hpp"
 #include "core/enclose/truth.hpp"
-#include "enclose/maps.hpp"
+#include "enclose/event_maps.hpp"
 #include "enclose/step.hpp"
 
 namespace achilles::test {
 
 namespace {
 
-Coordinates coordinates_of(const Model& model, const achilles::Claim& claim) {
+Coordinates coordinates_of(const Model& model, const achilles::EnclosureProblem& claim) {
     Coordinates z;
     z.dof = static_cast<std::size_t>(model.dof());
     z.parameters = claim.parameters;
@@ -28,9 +28,9 @@ Doubleton landing(double x, double rate, double w) {
 // a = sin(t): what is left behind order 20 is its tail, which the remainder holds and half of it does not.
 TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
     const auto model = model_of({.potential = "a^2/2 + b", .b = 1.0, .a_rate = 1.0});
-    const achilles::Claim claim = achilles::claim_of(model->default_run());
+    const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     const Coordinates z = coordinates_of(*model, claim);
-    Stepper stepper(*model, z, {});
+    EnclosureStepper stepper(*model, z, {});
     const Doubleton start(
         {Interval(0.0), Interval(0.0), Interval(1.0), Interval(1.0), Interval(0.0), Interval(1.0), Interval(0.0)});
     const Step step = stepper.make(start, 1.0, {{}});
@@ -38,7 +38,7 @@ TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
     Real term = length, tail = 0;
     for (int k = 3; k < 60; k += 2) {
         term *= -length * length / (k * (k - 1));
-        if (k > Stepper::order) tail += term;
+        if (k > EnclosureStepper::order) tail += term;
     }
     const Interval remainder = step.remainder_at(Interval(step.length()))[z.q(0)];
     EXPECT_GT(step.length(), 0.2);
@@ -50,7 +50,7 @@ TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
 // Signed bounds gain an order: the middle of the error falls with w^3, its radius with w^4.
 TEST(Completion, ItsErrorIsOfFourthOrder) {
     const auto model = load("ball_on_sine");
-    const achilles::Claim claim = achilles::claim_of(model->default_run());
+    const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     const Coordinates z = coordinates_of(*model, claim);
     Completion completion(*model, z);
     std::vector<double> middles, radii;
@@ -77,7 +77,7 @@ TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
     const auto model =
         model_of({.potential = "0*a", .a = 3.0, .a_rate = 50.0, .a_force = "2*b'", .b_force = "-(1 + a)"});
     const achilles::Run run = model->default_run();
-    const Coordinates z = coordinates_of(*model, achilles::claim_of(run));
+    const Coordinates z = coordinates_of(*model, achilles::problem_of(run));
     Completion completion(*model, z);
     TrueMotion motion(*model, run);
     const double w = 0.02;
@@ -103,7 +103,7 @@ TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
 TEST(Completion, HoldsTheWaitAndTheShadow) {
     const auto model = load("ball_on_sine");
     const achilles::Run run = model->default_run();
-    const Coordinates z = coordinates_of(*model, achilles::claim_of(run));
+    const Coordinates z = coordinates_of(*model, achilles::problem_of(run));
     Completion completion(*model, z);
     TrueMotion motion(*model, run);
     for (const double w : {0.05, 0.02, 1e-2, 1e-3})
@@ -144,7 +144,7 @@ TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
             const Trial trial = trials.next();
             if (!trial.zeno) continue;
             const Collision& collision = trial.kinetic.collision;
-            const Coordinates z = coordinates_of(*model, achilles::claim_of(trial.run));
+            const Coordinates z = coordinates_of(*model, achilles::problem_of(trial.run));
             const auto maps = make_maps(*model, z);
             Intervals box(z.size());
             box[0] = Interval(collision.before.t);

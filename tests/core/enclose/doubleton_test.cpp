@@ -86,14 +86,14 @@ TEST(Doubleton, DoesNotGrowByTurning) {
 
 TEST(Doubleton, RefusesWhatIsNotDefined) {
     Doubleton set({Interval(0.0), Interval(1.0, 2.0)});
-    EXPECT_THROW(set.map({Interval::undefined(), Interval(0.0)}, IntervalMatrix::identity(2)), Undecided);
+    EXPECT_THROW(set.map({Interval::undefined(), Interval(0.0)}, IntervalMatrix::identity(2)), ProofStopped);
     IntervalMatrix endless = IntervalMatrix::identity(2);
     endless(0, 1) = Interval::everything();
-    EXPECT_THROW(set.map({Interval(0.0), Interval(0.0)}, endless), Undecided);
+    EXPECT_THROW(set.map({Interval(0.0), Interval(0.0)}, endless), ProofStopped);
 }
 
 // Orthogonal to rounding, and clearly less than that.
-TEST(NearlyOrthogonal, EnclosesWhatItsInverseGives) {
+TEST(NearOrthogonalMatrix, EnclosesWhatItsInverseGives) {
     std::mt19937_64 random(2);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);
     constexpr int n = 4;
@@ -112,10 +112,10 @@ TEST(NearlyOrthogonal, EnclosesWhatItsInverseGives) {
                 const double near = static_cast<double>(sum);
                 x.emplace_back(std::nextafter(near, -10.0), std::nextafter(near, 10.0));
             }
-            const Intervals inverse = NearlyOrthogonal(matrix).solve(x);
+            const Intervals inverse = NearOrthogonalSolver(matrix).solve(x);
             for (std::size_t i = 0; i < n; ++i) ASSERT_TRUE(contains(inverse[i], y[i])) << off;
         }
-    EXPECT_THROW(NearlyOrthogonal(Eigen::MatrixXd::Zero(3, 3)), Undecided);
+    EXPECT_THROW(NearOrthogonalSolver(Eigen::MatrixXd::Zero(3, 3)), ProofStopped);
 }
 
 }  // namespace achilles::test

@@ -7,7 +7,7 @@
 #include <xmmintrin.h>
 #endif
 
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles::test {
 
@@ -22,7 +22,7 @@ Reals reals(const nlohmann::json& texts, std::size_t first, std::size_t count) {
 }
 
 // All numbers of fig4.json that the enclosure speaks of: how many, and how many are inside.
-struct Compared {
+struct ComparisonCount {
     int all = 0, inside = 0;
     void add(bool is_inside) {
         ++all;
@@ -30,9 +30,9 @@ struct Compared {
     }
 };
 
-Compared with_reference(const Enclosure& enclosure, const std::string& key) {
+ComparisonCount with_reference(const Enclosure& enclosure, const std::string& key) {
     const nlohmann::json expected = reference("fig4")["problems"][key];
-    Compared compared;
+    ComparisonCount compared;
     std::size_t zeno = 0, release = 0, impact = 0;
     for (const EnclosedEvent& event : enclosure.events) {
         if (event.kind == Event::Kind::impact) {
@@ -74,10 +74,10 @@ TEST(Enclosure, HoldsAllDigitsOfThePapersTwoProblems) {
     for (std::size_t i = 0; i < 2; ++i) {
         SCOPED_TRACE(problems[i].key);
         const auto model = load(problems[i].asset);
-        const Enclosure proved = prove(model, claim_of(problems[i], *model));
+        const Enclosure proved = prove(model, problem_of(problems[i], *model));
         ASSERT_TRUE(proved.end) << proved.outcome.message;
         EXPECT_EQ(proved.proved_until, 20.0);
-        const Compared compared = with_reference(proved, problems[i].key);
+        const ComparisonCount compared = with_reference(proved, problems[i].key);
         EXPECT_EQ(compared.inside, compared.all);
         EXPECT_GT(compared.all, 50);
         std::size_t zeno = 0;
@@ -96,12 +96,12 @@ TEST(Enclosure, HoldsThemWhereverTheBouncingIsCut) {
         for (const Problem& problem : problems) {
             SCOPED_TRACE(fmt::format("{} {}", problem.key, eps_t));
             const auto model = load(problem.asset);
-            achilles::Claim claim = claim_of(problem, *model);
+            achilles::EnclosureProblem claim = problem_of(problem, *model);
             claim.eps_t = eps_t;
             claim.cut_early = true;
             const Enclosure proved = prove(model, claim);
             ASSERT_TRUE(proved.end) << proved.outcome.message;
-            const Compared compared = with_reference(proved, problem.key);
+            const ComparisonCount compared = with_reference(proved, problem.key);
             EXPECT_EQ(compared.inside, compared.all);
         }
 }
@@ -112,7 +112,7 @@ TEST(Enclosure, RunsTheBallAtAnyRestitution) {
     const nlohmann::json expected = reference("ball_restitution");
     for (const auto& [e, times] : expected.items()) {
         if (e == "about") continue;
-        achilles::Claim claim = claim_of(problems[0], *model);
+        achilles::EnclosureProblem claim = problem_of(problems[0], *model);
         claim.parameters.back() = Interval(std::stod(e));
         const Enclosure proved = prove(model, claim);
         ASSERT_TRUE(proved.end) << e << ": " << proved.outcome.message;
@@ -124,7 +124,7 @@ TEST(Enclosure, RunsTheBallAtAnyRestitution) {
         EXPECT_EQ(at, 3u) << e;
     }
     for (const double e : {0.0, 0.9, 0.99, 1.0}) {
-        achilles::Claim claim = claim_of(problems[0], *model);
+        achilles::EnclosureProblem claim = problem_of(problems[0], *model);
         claim.parameters.back() = Interval(e);
         EXPECT_TRUE(prove(model, claim).end) << e;
     }
@@ -138,7 +138,7 @@ TEST(Enclosure, HoldsTheTruthOfEveryGallerySystemOfOneGap) {
         const auto model = load(name);
         achilles::Run run = model->default_run();
         run.options.end_time = std::min(run.options.end_time, name == "triple_pendulum" ? 0.8 : 4.0);
-        const Enclosure proved = prove(model, achilles::claim_of(run));
+        const Enclosure proved = prove(model, achilles::problem_of(run));
         EXPECT_TRUE(proved.end) << proved.outcome.message;
         if (!proved.end) continue;
         ++proved_ones;
@@ -181,7 +181,7 @@ TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
     const auto model = load("double_pendulum");
     achilles::Run run = model->default_run();
     run.options.end_time = 1.0;
-    achilles::Claim claim = achilles::claim_of(run);
+    achilles::EnclosureProblem claim = achilles::problem_of(run);
     claim.times = {0.0, 0.1, 0.25, 0.5, 0.75};
     const Enclosure proved = prove(model, claim);
     ASSERT_TRUE(proved.end);
@@ -200,7 +200,7 @@ TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
 // On an impact both sides are in the box; in the window of a completion all of it; and after an early stop nothing.
 TEST(Enclosure, AtTheTimeOfAnEventHoldsBothSides) {
     const auto model = load("ball_on_sine");
-    achilles::Claim claim = claim_of(problems[0], *model);
+    achilles::EnclosureProblem claim = problem_of(problems[0], *model);
     claim.run.options.end_time = 4.0;
     const double impact = number(reference("fig4")["problems"]["ball"]["impacts"][0][0]["t"]);
     const double zeno = number(reference("fig4")["problems"]["ball"]["zeno_times"][0]);
@@ -224,11 +224,11 @@ TEST(Enclosure, AtTheTimeOfAnEventHoldsBothSides) {
 
 TEST(Enclosure, PrintsNoStateAfterAnEarlyStop) {
     const auto model = load("ball_on_sine");
-    achilles::Claim claim = widened(model->default_run(), 1e-3);
+    achilles::EnclosureProblem claim = widened(model->default_run(), 1e-3);
     claim.run.options.end_time = 20.0;
     for (int i = 1; i < 200; ++i) claim.times.push_back(0.1 * i);
     const Enclosure proved = prove(model, claim);
-    EXPECT_EQ(proved.outcome.kind, Enclosure::Outcome::Kind::undecided);
+    EXPECT_EQ(proved.outcome.kind, Enclosure::ProofOutcome::Kind::undecided);
     EXPECT_FALSE(proved.end);
     EXPECT_LT(proved.proved_until, 20.0);
     ASSERT_FALSE(proved.samples.empty());
@@ -241,9 +241,9 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
     for (const double half : {1e-14, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4}) {
-        achilles::Claim claim = achilles::claim_of(run);
+        achilles::EnclosureProblem claim = achilles::problem_of(run);
         claim.v[0] = Interval(5.64340560783886) + Interval(-half, half);
-        EXPECT_EQ(prove(model, claim).outcome.kind, Enclosure::Outcome::Kind::undecided) << half;
+        EXPECT_EQ(prove(model, claim).outcome.kind, Enclosure::ProofOutcome::Kind::undecided) << half;
         for (const double side : {-30.0, 30.0}) {
             if (half < 1e-13) continue;
             claim.v[0] = Interval(5.64340560783886 + side * half) + Interval(-half, half);
@@ -256,7 +256,7 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
 // In contact from the trough; with sqrt 5 the contact force touches zero on the way up.
 TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
     const auto model = load("ball_on_sine");
-    achilles::Claim claim = achilles::claim_of(model->default_run());
+    achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     claim.q = {-Interval::pi() / Interval(2.0), Interval(-1.0)};
     claim.run.options.end_time = 3.0;
     for (const double half : {1e-10, 1e-8, 1e-6}) {
@@ -276,7 +276,7 @@ TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
 // A run stays where it is on its thread: another rounding, denormals as zero.
 TEST(Enclosure, StandsOnItsOwnGround) {
     const auto model = load("ball_on_floor");
-    const achilles::Claim claim = achilles::claim_of(model->default_run());
+    const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     const Enclosure plain = prove(model, claim);
     const int rounding = std::fegetround();
     std::fesetround(FE_UPWARD);
@@ -301,7 +301,7 @@ TEST(Enclosure, StandsOnItsOwnGround) {
 
 TEST(Enclosure, RefusesWhatItDoesNotCover) {
     const auto model = load("ball_on_sine");
-    achilles::Claim claim = achilles::claim_of(model->default_run());
+    achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     claim.parameters.back() = Interval(0.9, 1.1);
     EXPECT_THROW(prove(model, claim), InputError);
 }

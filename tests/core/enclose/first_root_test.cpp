@@ -4,7 +4,7 @@
 #include <random>
 
 #include "certify/taylor.hpp"
-#include "enclose/section.hpp"
+#include "enclose/crossing_surface.hpp"
 
 namespace achilles::test {
 
@@ -17,16 +17,16 @@ TEST(FirstRoot, ProvesThatThereIsNoneOrOneOrSaysNothing) {
     EXPECT_LT(width(one.at), 1e-6);
     const Intervals touches{Interval(1.0), Interval(-2.0), Interval(1.0)};  // (1 - t)^2
     const FirstRoot doubt = first_root(touches, 2.0);
-    EXPECT_EQ(doubt.kind, FirstRoot::Kind::doubt);
+    EXPECT_EQ(doubt.kind, FirstRoot::Kind::undecided);
     EXPECT_GT(doubt.at.lo(), 0.9);
     EXPECT_LT(doubt.at.lo(), 1.0);
     // Two roots in one step, and members of which some have them.
     EXPECT_EQ(first_root({Interval(0.99), Interval(-2.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::one);
-    EXPECT_EQ(first_root({Interval(0.99, 1.01), Interval(-2.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::doubt);
-    EXPECT_EQ(first_root({Interval(-0.1, 1.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::doubt);
+    EXPECT_EQ(first_root({Interval(0.99, 1.01), Interval(-2.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::undecided);
+    EXPECT_EQ(first_root({Interval(-0.1, 1.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::undecided);
     // One that the length cuts in two.
-    EXPECT_EQ(first_root({Interval(0.9, 1.1), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::doubt);
-    EXPECT_EQ(first_root({Interval::undefined(), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::doubt);
+    EXPECT_EQ(first_root({Interval(0.9, 1.1), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::undecided);
+    EXPECT_EQ(first_root({Interval::undefined(), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::undecided);
 }
 
 // The lemma: h/t^m and its derivative lie in those of the sum with the remainder's coefficient as a constant interval.

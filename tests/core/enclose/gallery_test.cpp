@@ -22,7 +22,7 @@ TEST(Gallery, IsProvedOrUndecided) {
     std::vector<std::string> outcomes(names.size());
     tbb::parallel_for(std::size_t{0}, names.size(), [&](std::size_t i) {
         const auto model = load(names[i]);
-        const Enclosure proof = prove(model, claim_as_written(model->default_run()));
+        const Enclosure proof = prove(model, problem_from_decimals(model->default_run()));
         const auto known = undecided_after.find(names[i]);
         const bool far = known != undecided_after.end() && proof.proved_until > known->second;
         outcomes[i] = proof.end ? "proved" : far ? "undecided" : proof.outcome.message;

@@ -22,8 +22,8 @@ inline double widest(const Intervals& box) {
 }
 
 // The paper's problem as fig4.json starts it: the pendulum's angles are no doubles.
-inline achilles::Claim claim_of(const Problem& problem, const Model& model) {
-    achilles::Claim claim = achilles::claim_of(model.default_run());
+inline achilles::EnclosureProblem problem_of(const Problem& problem, const Model& model) {
+    achilles::EnclosureProblem claim = achilles::problem_of(model.default_run());
     claim.run.options.end_time = 20.0;
     if (problem.key == "double_pendulum")
         claim.q = {Interval::pi() / Interval(6.0), Interval::pi() * Interval(25.0) / Interval(180.0)};
@@ -31,9 +31,9 @@ inline achilles::Claim claim_of(const Problem& problem, const Model& model) {
 }
 
 // Of a run's numbers those around them.
-inline achilles::Claim widened(const Run& run, double half) {
-    achilles::Claim claim = achilles::claim_of(run);
-    widen(claim, half);
+inline achilles::EnclosureProblem widened(const Run& run, double half) {
+    achilles::EnclosureProblem claim = achilles::problem_of(run);
+    inflate(claim, half);
     return claim;
 }
 

@@ -100,7 +100,7 @@ TEST_F(Expressions, ConstantsAreExactUntilEvaluation) {
 }
 
 // Numerators and denominators on both sides of 2^53, where another way to divide takes over.
-TEST_F(Expressions, AConstantIsEnclosedByNeighbours) {
+TEST_F(Expressions, AConstantIsEnclosedByNeighbors) {
     std::mt19937_64 random(11);
     for (int trial = 0; trial < 2000; ++trial) {
         const auto draw = [&] { return static_cast<long>(random() >> (1 + random() % 62)); };

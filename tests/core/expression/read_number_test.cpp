@@ -12,7 +12,7 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-TEST(ReadNumber, takes_constant_expressions) {
+TEST(ReadNumber, TakesConstantExpressions) {
     for (const auto& [text, value] : std::initializer_list<std::pair<const char*, double>>{{"0.3", 0.3},
                                                                                            {" +4 ", 4.0},
                                                                                            {"-1e-3", -1e-3},
@@ -25,7 +25,7 @@ TEST(ReadNumber, takes_constant_expressions) {
         EXPECT_DOUBLE_EQ(read_number(text).value, value) << text;
 }
 
-TEST(ReadNumber, degrees_are_a_factor_where_the_unit_is_rad) {
+TEST(ReadNumber, DegreesAreAFactorWhereTheUnitIsRad) {
     for (const auto& [text, value] : std::initializer_list<std::pair<const char*, double>>{{"30 deg", pi / 6.0},
                                                                                            {"30deg", pi / 6.0},
                                                                                            {"30\u00b0", pi / 6.0},
@@ -45,7 +45,7 @@ TEST(ReadNumber, degrees_are_a_factor_where_the_unit_is_rad) {
 }
 
 // Of a rate.
-TEST(ReadNumber, degrees_a_second_are_a_factor_where_the_unit_is_rad_per_second) {
+TEST(ReadNumber, DegreesASecondAreAFactorWhereTheUnitIsRadPerSecond) {
     for (const char* text : {"20 deg/s", "20\u00b0/s", "20 deg", "20 rad/s*pi/180", "40 deg/s/2"}) {
         EXPECT_NEAR(read_number(text, "rad/s").value, pi / 9.0, 1e-16) << text;
         EXPECT_TRUE(read_number(text, "rad/s").has_unit) << text;
@@ -68,7 +68,7 @@ std::string told(const std::string& text, const std::string& unit = {}) {
     return "";
 }
 
-TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
+TEST(ReadNumber, TellsWhatIsWrongWithTheText) {
     EXPECT_EQ(told("0,4"), "0 '0,4' is not a finite number: write a decimal point, 0.4");
     EXPECT_EQ(told("abc"), "0 'abc' is not a finite number: pi is the only name allowed here");
     EXPECT_EQ(told("p/6"), "0 'p/6' is not a finite number: pi is the only name allowed here; did you mean 'pi'?");
@@ -104,7 +104,7 @@ TEST(ReadNumber, tells_what_is_wrong_with_the_text) {
 }
 
 // Degrees in an equation are told what to write instead.
-TEST(ReadNumber, an_expression_of_a_file_has_no_degrees) {
+TEST(ReadNumber, AnExpressionOfAFileHasNoDegrees) {
     Graph graph;
     try {
         parse("sin(30 deg)", Scope{}, graph);

@@ -10,9 +10,9 @@
 namespace achilles {
 namespace {
 
-class Repair : public testing::Test {
+class SyntaxRepair : public testing::Test {
  protected:
-    Repair() {
+    SyntaxRepair() {
         unsigned slot = 0;
         for (const char* name : {"x", "y", "theta1", "x'", "y'", "theta1'", "m", "g", "k", "om"})
             scope_.allowed.emplace(name, graph_.symbol(slot++));
@@ -31,7 +31,7 @@ class Repair : public testing::Test {
     Scope scope_;
 };
 
-TEST_F(Repair, WritesOtherNotationsInTheLanguage) {
+TEST_F(SyntaxRepair, WritesOtherNotationsInTheLanguage) {
     const std::pair<const char*, const char*> cases[] = {
         {"0.5x\u00b2", "0.5*x^2"},
         {"m x\u207b\u00b9", "m*x^(-1)"},
@@ -86,7 +86,7 @@ TEST_F(Repair, WritesOtherNotationsInTheLanguage) {
 }
 
 // What is right stays, letter by letter; what cannot be guessed gets no suggestion.
-TEST_F(Repair, LeavesTheRestAlone) {
+TEST_F(SyntaxRepair, LeavesTheRestAlone) {
     for (const char* text :
          {"m/2*(x'^2 + y'^2)", "2.*x", "1e-3*x", "zeno_time(1) + 2", "sqrt(x^2 + y^2)", "-x^2", "pi*x"}) {
         EXPECT_EQ(repaired(text, scope_), text);

@@ -1,7 +1,7 @@
 // Names as people write them elsewhere: what to write here.
 #include <gtest/gtest.h>
 
-#include "expression/nearest.hpp"
+#include "expression/name_suggestions.hpp"
 
 namespace achilles {
 namespace {

@@ -19,7 +19,7 @@ class Ingredients {
  public:
     explicit Ingredients(const std::string& text) : system_(parse_system(text)) {
         Names names;
-        Mistakes mistakes;
+        ErrorCollector mistakes;
         read_equations(system_, layout_, graph_, names, equations, mistakes);
         EXPECT_EQ(mistakes.count(), 0u);
     }
@@ -40,14 +40,14 @@ class Ingredients {
     Graph graph_;
 };
 
-TEST(Forces, there_are_none_where_none_is_written) {
+TEST(Forces, ThereAreNoneWhereNoneIsWritten) {
     const Ingredients none(good);
     ASSERT_EQ(none.equations.Q.size(), 2u);
     EXPECT_TRUE(none.equations.Q[0].is_zero());
     EXPECT_TRUE(none.equations.Q[1].is_zero());
 }
 
-TEST(Forces, may_have_coordinates_rates_time_and_parameters) {
+TEST(Forces, MayHaveCoordinatesRatesTimeAndParameters) {
     const Ingredients one(changed(good, {{theta_name, theta_name + "force = \"m*cos(2*t) - x*theta'^3\"\n"}}));
     EXPECT_TRUE(one.equations.Q[0].is_zero());
     EXPECT_NEAR(one.value(one.equations.Q[1]), 3.0 * std::cos(12.0) - 0.7 * 2.5 * 2.5 * 2.5, 1e-12);
@@ -55,7 +55,7 @@ TEST(Forces, may_have_coordinates_rates_time_and_parameters) {
     EXPECT_EQ(number.value(number.equations.Q[1]), -2.0);
 }
 
-TEST(Forces, minus_the_rate_derivatives_of_the_dissipation_belong_to_them) {
+TEST(Forces, MinusTheRateDerivativesOfTheDissipationBelongToThem) {
     const std::string text = changed(
         good, {{x_name, x_name + "force = \"m*x\"\n"},
                {potential_line, potential_line + "dissipation = \"t/2*(theta' - x')^2 + m*x'^4/4 + x*theta'\"\n"}});
@@ -64,7 +64,7 @@ TEST(Forces, minus_the_rate_derivatives_of_the_dissipation_belong_to_them) {
     EXPECT_NEAR(both.value(both.equations.Q[1]), -6.0 * (2.5 - 1.5) - 0.7, 1e-12);
 }
 
-TEST(Time, may_stand_in_the_potential_and_the_gap) {
+TEST(Time, MayStandInThePotentialAndTheGap) {
     const Ingredients moving(changed(good, {{"\"m*x\"", "\"m*x*t\""}, {gap_text, "x - 0.1*sin(t)"}}));
     EXPECT_NEAR(moving.value(moving.equations.potential), 3.0 * 0.7 * 6.0, 1e-12);
     EXPECT_NEAR(moving.value(moving.equations.gaps[0]), 0.7 - 0.1 * std::sin(6.0), 1e-12);

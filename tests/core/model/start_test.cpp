@@ -6,7 +6,7 @@
 
 #include "core/systems.hpp"
 #include "model/read_system.hpp"
-#include "number/ground.hpp"
+#include "number/float_environment.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

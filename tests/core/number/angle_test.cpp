@@ -8,7 +8,7 @@ namespace achilles {
 namespace {
 
 // Bit by bit: figures and tables are compared so.
-TEST(Angle, degrees_are_radians_by_180_over_pi) {
+TEST(Angle, DegreesAreRadiansBy180OverPi) {
     EXPECT_EQ(degrees(1.0), 57.29577951308232);
     EXPECT_EQ(degrees(1.0), 180.0 / std::numbers::pi);
     EXPECT_EQ(degrees(std::numbers::pi), 180.0);

@@ -140,7 +140,7 @@ inline bool is_inside(Domain domain, const Interval& a, const Interval& b) {
 // Undefined is right within rounding of a pole, and where x^n underflows before it is inverted.
 inline bool may_refuse(Domain domain) { return domain == Domain::no_pole || domain == Domain::reciprocal; }
 
-struct Operation {
+struct TestOperation {
     const char* name;
     double low, high;  // most arguments are taken from here, the others from anywhere
     Domain domain = Domain::everywhere;
@@ -174,31 +174,31 @@ Number as_set(const Number& exact, Ours ours, const Number& x, const Number& y) 
 template <class Visit>
 void visit_arithmetic(Visit&& visit) {
     constexpr double all = 1e3;
-    visit(Operation{"+", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x + y; });
-    visit(Operation{"-", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x - y; });
-    visit(Operation{"*", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x * y; });
-    visit(Operation{"/", -all, all, Domain::divisor, true}, [](const auto& x, const auto& y) { return x / y; });
-    visit(Operation{"negate", -all, all, Domain::everywhere, false, false, true},
+    visit(TestOperation{"+", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x + y; });
+    visit(TestOperation{"-", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x - y; });
+    visit(TestOperation{"*", -all, all, Domain::everywhere, true}, [](const auto& x, const auto& y) { return x * y; });
+    visit(TestOperation{"/", -all, all, Domain::divisor, true}, [](const auto& x, const auto& y) { return x / y; });
+    visit(TestOperation{"negate", -all, all, Domain::everywhere, false, false, true},
           [](const auto& x, const auto&) { return -x; });
-    visit(Operation{"square", -all, all}, [](const auto& x, const auto&) { return raised(x, 2); });
-    visit(Operation{"abs", -all, all, Domain::everywhere, false, false, true}, [](const auto& x, const auto&) {
+    visit(TestOperation{"square", -all, all}, [](const auto& x, const auto&) { return raised(x, 2); });
+    visit(TestOperation{"abs", -all, all, Domain::everywhere, false, false, true}, [](const auto& x, const auto&) {
         using std::abs;
         return abs(x);
     });
-    visit(Operation{"max", -all, all, Domain::everywhere, true, false, true}, [](const auto& x, const auto& y) {
+    visit(TestOperation{"max", -all, all, Domain::everywhere, true, false, true}, [](const auto& x, const auto& y) {
         using std::max;
         return max(x, y);
     });
     const auto joined = [](const auto& x, const auto& y) { return hull(x, y); };
-    visit(Operation{"hull, first", -all, all, Domain::everywhere, true, false, true},
+    visit(TestOperation{"hull, first", -all, all, Domain::everywhere, true, false, true},
           [=](const auto& x, const auto& y) { return as_set(x, joined, x, y); });
-    visit(Operation{"hull, second", -all, all, Domain::everywhere, true, false, true},
+    visit(TestOperation{"hull, second", -all, all, Domain::everywhere, true, false, true},
           [=](const auto& x, const auto& y) { return as_set(y, joined, x, y); });
     const auto greatest = [](const auto& x, const auto&) { return Interval(-mag(x), mag(x)); };
-    visit(Operation{"mag", -all, all, Domain::everywhere, false, false, true},
+    visit(TestOperation{"mag", -all, all, Domain::everywhere, false, false, true},
           [=](const auto& x, const auto& y) { return as_set(x, greatest, x, y); });
     const auto least = [](const auto& x, const auto&) { return Interval(mig(x), rounding::infinity); };
-    visit(Operation{"mig", -all, all, Domain::everywhere, false, false, true}, [=](const auto& x, const auto& y) {
+    visit(TestOperation{"mig", -all, all, Domain::everywhere, false, false, true}, [=](const auto& x, const auto& y) {
         using std::abs;
         return as_set(std::decay_t<decltype(x)>(abs(x)), least, x, y);
     });
@@ -206,7 +206,7 @@ void visit_arithmetic(Visit&& visit) {
 
 template <int N, class Visit>
 void visit_power(const char* name, Visit&& visit) {
-    visit(Operation{name, -1e3, 1e3, N < 0 ? Domain::reciprocal : Domain::everywhere, false, false, N == 0},
+    visit(TestOperation{name, -1e3, 1e3, N < 0 ? Domain::reciprocal : Domain::everywhere, false, false, N == 0},
           [](const auto& x, const auto&) { return raised(x, N); });
 }
 
@@ -220,16 +220,16 @@ void visit_powers(Visit&& visit) {
     visit_power<3>("power 3", visit);
     visit_power<4>("power 4", visit);
     visit_power<7>("power 7", visit);
-    visit(Operation{"pow", 1e-10, 1e3, Domain::positive, true}, [](const auto& x, const auto& y) {
+    visit(TestOperation{"pow", 1e-10, 1e3, Domain::positive, true}, [](const auto& x, const auto& y) {
         using std::pow;
         return pow(x, y);
     });
 }
 
-#define ACHILLES_CASE(function, ...)                                          \
-    visit(Operation{#function, __VA_ARGS__}, [](const auto& x, const auto&) { \
-        using std::function;                                                  \
-        return static_cast<std::decay_t<decltype(x)>>(function(x));           \
+#define ACHILLES_CASE(function, ...)                                              \
+    visit(TestOperation{#function, __VA_ARGS__}, [](const auto& x, const auto&) { \
+        using std::function;                                                      \
+        return static_cast<std::decay_t<decltype(x)>>(function(x));               \
     })
 
 template <class Visit>
@@ -257,7 +257,7 @@ void visit_everything(Visit&& visit) {
 }
 
 // Arguments for an operation: mostly where it has something to say, now and then (one in eight) anywhere.
-inline std::pair<Argument, Argument> arguments(Draw& draw, const Operation& operation) {
+inline std::pair<Argument, Argument> arguments(Draw& draw, const TestOperation& operation) {
     double x = draw.number();
     const bool anywhere = draw.engine() % 8 == 0;
     for (int i = 0; i < 20 && !anywhere && !(x >= operation.low && x <= operation.high); ++i) {

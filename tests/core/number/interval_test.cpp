@@ -16,12 +16,12 @@ using cases::Argument;
 using cases::Draw;
 using cases::encloses;
 using cases::Exact;
-using cases::Operation;
+using cases::TestOperation;
 
 // Of points: undefined exactly where there is no value, and otherwise around the exact one.
-TEST(Interval, contains_the_exact_result) {
+TEST(Interval, ContainsTheExactResult) {
     Draw draw;
-    cases::visit_everything([&](const Operation& operation, auto function) {
+    cases::visit_everything([&](const TestOperation& operation, auto function) {
         for (int i = 0; i < 2000; ++i) {
             const auto [a, b] = cases::arguments(draw, operation);
             const double x = a.inside, y = b.inside;
@@ -39,9 +39,9 @@ TEST(Interval, contains_the_exact_result) {
 }
 
 // Tight at points, too: a handful of ulps.
-TEST(Interval, functions_of_points_are_narrow) {
+TEST(Interval, FunctionsOfPointsAreNarrow) {
     Draw draw;
-    cases::visit_functions([&](const Operation& operation, auto function) {
+    cases::visit_functions([&](const TestOperation& operation, auto function) {
         for (int i = 0; i < 2000; ++i) {
             const Interval x(cases::arguments(draw, operation).first.inside);
             if (x.lo() < operation.low || x.hi() > operation.high) continue;
@@ -56,9 +56,9 @@ TEST(Interval, functions_of_points_are_narrow) {
 //
 // At w = 2^-53 it is lost where r is a power of two below the exact value. Quotients alone are safe: if x > y then
 // x / y >= 1 + ulp(y) / y > 1 + 2^-53, which is not rounded to 1.
-TEST(Interval, less_widening_would_be_caught) {
+TEST(Interval, LessWideningWouldBeCaught) {
     Draw draw;
-    cases::visit_everything([&](const Operation& operation, auto function) {
+    cases::visit_everything([&](const TestOperation& operation, auto function) {
         if (operation.selects) return;
         int half = 0, none = 0;
         for (int i = 0; i < 6000; ++i) {
@@ -87,7 +87,7 @@ TEST(Interval, less_widening_would_be_caught) {
     });
 }
 
-TEST(Interval, sine_and_cosine_reach_one_exactly_at_their_extrema) {
+TEST(Interval, SineAndCosineReachOneExactlyAtTheirExtrema) {
     for (int k = -40; k <= 40; ++k) {
         const double x = k * 1.5707963267948966;  // next to k pi/2
         const Interval around(std::nextafter(x, -HUGE_VAL) - 1e-9, std::nextafter(x, HUGE_VAL) + 1e-9);
@@ -104,7 +104,7 @@ TEST(Interval, sine_and_cosine_reach_one_exactly_at_their_extrema) {
     EXPECT_LT(width(cos(Interval(1e5, 1e5 + 1e-3))), 1.1e-3);
 }
 
-TEST(Interval, powers) {
+TEST(Interval, Powers) {
     Draw draw;
     for (int i = 0; i < 3000; ++i) {
         const auto [a, x] = draw.around(draw.number());
@@ -126,7 +126,7 @@ TEST(Interval, powers) {
     EXPECT_FALSE(integer_power(Interval(-1.0, 1.0), -1).is_defined());
 }
 
-TEST(Interval, unbounded_sets_are_sets) {
+TEST(Interval, UnboundedSetsAreSets) {
     const double inf = HUGE_VAL;
     EXPECT_TRUE((Interval(0.0, inf) * Interval(0.0)).contains(0.0));
     EXPECT_TRUE((Interval(1.0, inf) / Interval(1.0, inf)).contains(Interval(0.0, 1e300)));
@@ -138,7 +138,7 @@ TEST(Interval, unbounded_sets_are_sets) {
     EXPECT_FALSE(Interval(-inf, -inf).is_defined());
 }
 
-TEST(Interval, undefined_propagates_and_proves_nothing) {
+TEST(Interval, UndefinedPropagatesAndProvesNothing) {
     const Interval one(1.0);
     const std::vector<Interval> undefined{
         Interval::undefined(),      Interval(2.0, 1.0),    Interval(std::nan("")),         one / Interval(-1.0, 1.0),
@@ -167,7 +167,7 @@ TEST(Interval, undefined_propagates_and_proves_nothing) {
     }
 }
 
-TEST(Interval, is_a_scalar_of_programs) {
+TEST(Interval, IsAScalarOfPrograms) {
     EXPECT_TRUE(encloses(scalar_pi<Interval>(), boost::math::constants::pi<Exact>()));
     EXPECT_EQ(scalar_from<Interval>(Constant{0.1, 0.09, 0.11, "1", "10"}).hi(), 0.11);
     EXPECT_EQ(integer_power<double>(3.0, -2), 1.0 / 9.0);

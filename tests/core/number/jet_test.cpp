@@ -24,9 +24,9 @@ std::vector<Number> functions_of(const Number& x, const Number& y) {
 }  // namespace
 
 TEST(Jet, DerivativesAreThoseOfDifferences) {
-    using Two = Jet<double, 2>;
+    using TwoDirections = Jet<double, 2>;
     const double x = 0.7, y = 0.45, step = 1e-6;
-    const auto all = functions_of(Two::variable(x, 0), Two::variable(y, 1));
+    const auto all = functions_of(TwoDirections::variable(x, 0), TwoDirections::variable(y, 1));
     const auto at = [](double a, double b) { return functions_of(Jet<double, 1>(a), Jet<double, 1>(b)); };
     for (std::size_t i = 0; i < all.size(); ++i) {
         SCOPED_TRACE(i);
@@ -37,9 +37,9 @@ TEST(Jet, DerivativesAreThoseOfDifferences) {
 }
 
 TEST(Jet, OverABoxContainsThePoints) {
-    using Two = Jet<Interval, 2>;
+    using TwoDirections = Jet<Interval, 2>;
     const Interval x(0.69, 0.71), y(0.44, 0.46);
-    const auto all = functions_of(Two::variable(x, 0), Two::variable(y, 1));
+    const auto all = functions_of(TwoDirections::variable(x, 0), TwoDirections::variable(y, 1));
     for (const double a : {0.69, 0.7, 0.71})
         for (const double b : {0.44, 0.45, 0.46}) {
             const auto here = functions_of(Jet<double, 2>::variable(a, 0), Jet<double, 2>::variable(b, 1));
@@ -48,8 +48,8 @@ TEST(Jet, OverABoxContainsThePoints) {
                 for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE(all[i].slope[j].contains(here[i].slope[j])) << i;
             }
         }
-    EXPECT_FALSE(log(Two::variable({-1.0, 1.0}, 0)).value.is_defined());
-    EXPECT_FALSE((Two(1.0) / Two::variable({-1.0, 1.0}, 0)).slope[0].is_defined());
+    EXPECT_FALSE(log(TwoDirections::variable({-1.0, 1.0}, 0)).value.is_defined());
+    EXPECT_FALSE((TwoDirections(1.0) / TwoDirections::variable({-1.0, 1.0}, 0)).slope[0].is_defined());
 }
 
 // Constants as the number sees them: 1/3 is no double, and has no derivative.

@@ -21,7 +21,7 @@ Polynomial from_roots(std::initializer_list<double> roots, double lead) {
     return p;
 }
 
-using Kind = Descent::Kind;
+using Kind = FirstCrossing::Kind;
 
 TEST(Polynomials, InterpolationMeetsItsValues) {
     const std::array<double, 5> values{1.0, -2.0, 0.5, 3.0, 7.0};
@@ -31,7 +31,7 @@ TEST(Polynomials, InterpolationMeetsItsValues) {
 }
 
 double root_of(const Polynomial& polynomial, int known) {
-    const Descent descent = first_descent(polynomial, known, 0.0);
+    const FirstCrossing descent = first_descent(polynomial, known, 0.0);
     EXPECT_EQ(descent.kind, Kind::root);
     return descent.theta;
 }
@@ -90,8 +90,8 @@ TEST(Polynomials, WhatLiesInsideTheRemainderIsUndecided) {
     }
     // It ends inside: open. It starts inside and rises: rose. It starts inside and falls: a root.
     EXPECT_EQ(first_descent(from_roots({1.0000001}, -1.0), 0, 1e-6).kind, Kind::open);
-    EXPECT_EQ(first_descent(from_roots({-1e-7}, 1.0), 0, 1e-6).kind, Kind::rose);
-    const Descent falls = first_descent(from_roots({1e-7}, -1.0), 0, 1e-6);
+    EXPECT_EQ(first_descent(from_roots({-1e-7}, 1.0), 0, 1e-6).kind, Kind::increasing);
+    const FirstCrossing falls = first_descent(from_roots({1e-7}, -1.0), 0, 1e-6);
     EXPECT_EQ(falls.kind, Kind::root);
     EXPECT_NEAR(falls.theta, 1e-7, 1e-15);
 }
@@ -106,7 +106,7 @@ TEST(Polynomials, RandomRootsAgreeWithASearchOnAGrid) {
         std::optional<double> expected;
         for (int i = 1; i <= 4000 && !expected; ++i)
             if (p(i / 4000.0) < 0.0) expected = i / 4000.0;
-        const Descent found = first_descent(p, 0, 0.0);
+        const FirstCrossing found = first_descent(p, 0, 0.0);
         if (expected) {
             ASSERT_EQ(found.kind, Kind::root);
             EXPECT_LE(found.theta, *expected);

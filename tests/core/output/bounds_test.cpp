@@ -61,7 +61,7 @@ TEST(Bounds, OfIntervalsHoldThem) {
     for (int i = 0; i < 2000; ++i) {
         const double low = drawn(random, -20.0, 20.0), high = low + std::pow(10.0, drawn(random, -17.0, 1.0));
         const Interval all(low, high);
-        const Printed said = Printed::of("in " + interval_text(low, high));
+        const PrintedSet said = PrintedSet::of("in " + interval_text(low, high));
         EXPECT_TRUE(holds(said, all)) << interval_text(low, high);
         EXPECT_LE(said.width(), Real(1.03) * (Real(high) - Real(low)) + Real(1e-15) * mag(all));
     }
@@ -84,7 +84,7 @@ TEST(ShortText, HoldsBothEnds) {
         const std::size_t decimals = point == std::string::npos ? 0 : bracket - point - 1;
         const Real shown(text.substr(0, bracket)), off = Real(text.substr(bracket + 1, text.size() - bracket - 2)) *
                                                          pow(Real(10), -static_cast<int>(decimals));
-        EXPECT_TRUE(holds(Printed{shown - off, shown + off}, Interval(low, high))) << text;
+        EXPECT_TRUE(holds(PrintedSet{shown - off, shown + off}, Interval(low, high))) << text;
         EXPECT_LE(off, Real(1.2) * (high - low) + Real(2e-15)) << text << " of " << low << ", " << high;
     }
 }
@@ -100,7 +100,7 @@ TEST(OuterText, HoldsBothEnds) {
         const double scale = std::pow(10.0, drawn(random, -20.0, 6.0)), low = scale * drawn(random, -1.0, 1.0);
         const Interval all(low, low + scale * std::pow(10.0, drawn(random, -17.0, 1.0)));
         const std::string text = outer_text(all);
-        const Printed said = Printed::of(text);
+        const PrintedSet said = PrintedSet::of(text);
         EXPECT_TRUE(holds(said, all)) << text << " of " << all.lo() << ", " << all.hi();
         EXPECT_LE(said.width(), Real(1.25) * (Real(all.hi()) - Real(all.lo())) + Real(4e-16) * mag(all)) << text;
     }
@@ -108,12 +108,12 @@ TEST(OuterText, HoldsBothEnds) {
 
 // What a person wrote, or inside it.
 TEST(InnerText, LiesInside) {
-    EXPECT_EQ(inner_text(as_written(0.1)), "= 0.1");
-    EXPECT_EQ(inner_text(as_written(-9.81)), "= -9.81");
-    EXPECT_EQ(inner_text(as_written(0.0)), "= 0");
-    EXPECT_EQ(inner_text(as_written(0.30000000000000004)), "= 0.30000000000000004");
-    EXPECT_EQ(inner_text(hull(as_written(0.059), as_written(0.061))), "in [0.059, 0.061]");
-    EXPECT_EQ(inner_text(as_written(0.7) + Interval(-1.0, 1.0) * as_written(0.3)), "in [0.4, 1]");
+    EXPECT_EQ(inner_text(interval_of_decimal(0.1)), "= 0.1");
+    EXPECT_EQ(inner_text(interval_of_decimal(-9.81)), "= -9.81");
+    EXPECT_EQ(inner_text(interval_of_decimal(0.0)), "= 0");
+    EXPECT_EQ(inner_text(interval_of_decimal(0.30000000000000004)), "= 0.30000000000000004");
+    EXPECT_EQ(inner_text(hull(interval_of_decimal(0.059), interval_of_decimal(0.061))), "in [0.059, 0.061]");
+    EXPECT_EQ(inner_text(interval_of_decimal(0.7) + Interval(-1.0, 1.0) * interval_of_decimal(0.3)), "in [0.4, 1]");
     EXPECT_EQ(inner_text(Interval(0.1)), "= 1.000000000000000055511151231257827021181583404541015625e-1")
         << "the claim is of the double alone";
     EXPECT_EQ(inner_text(Interval(-1.0, 0.5)), "in [-1, 0.5]");
@@ -121,12 +121,12 @@ TEST(InnerText, LiesInside) {
     std::vector<double> ends = numbers();
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         const double a = ends[i], b = ends[i + 1];
-        EXPECT_EQ(inner_text(as_written(a)), fmt::format("= {}", a));
-        EXPECT_TRUE(lies_in(Printed::of(inner_text(as_written(a))), as_written(a)));
-        EXPECT_TRUE(lies_in(Printed::of(inner_text(Interval(a))), Interval(a))) << inner_text(Interval(a));
+        EXPECT_EQ(inner_text(interval_of_decimal(a)), fmt::format("= {}", a));
+        EXPECT_TRUE(lies_in(PrintedSet::of(inner_text(interval_of_decimal(a))), interval_of_decimal(a)));
+        EXPECT_TRUE(lies_in(PrintedSet::of(inner_text(Interval(a))), Interval(a))) << inner_text(Interval(a));
         for (const double low : {a, -a, b * (1.0 - 1e-13)}) {
-            const Interval all = hull(as_written(low), as_written(b));
-            const Printed said = Printed::of(inner_text(all));
+            const Interval all = hull(interval_of_decimal(low), interval_of_decimal(b));
+            const PrintedSet said = PrintedSet::of(inner_text(all));
             EXPECT_TRUE(lies_in(said, all)) << inner_text(all);
             EXPECT_GE(said.width(), Real(all.hi()) - Real(all.lo()) - Real(0x1p-46) * mag(all)) << inner_text(all);
         }

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <sstream>
 
-#include "core/several.hpp"
+#include "core/multi_contact.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -322,9 +322,9 @@ restitution = 0.5
 end_time = 20
 )toml");
     const Trajectory trajectory = simulate(model, model->default_run());
-    const std::vector<Chatter> chatters = chatters_of(trajectory);
+    const std::vector<ChatterPhases> chatters = chatters_of(trajectory);
     ASSERT_EQ(chatters.size(), 1u) << to_text(trajectory);
-    const Chatter& chatter = chatters[0];
+    const ChatterPhases& chatter = chatters[0];
     ASSERT_GT(chatter.last, chatter.first + 8);
     for (std::size_t i = chatter.first_event; i < chatter.last_event; ++i)
         EXPECT_NE(trajectory.events[i].kind, Event::Kind::release);

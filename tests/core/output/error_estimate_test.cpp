@@ -1,7 +1,7 @@
 // What is told of estimated errors: as JSON and in the summary.
 #include <gtest/gtest.h>
 
-#include "core/depend/estimates.hpp"
+#include "core/sensitivity/estimates.hpp"
 #include "output/output.hpp"
 
 namespace achilles::test {
@@ -14,7 +14,7 @@ Trajectory ball(Method method) {
     return simulate(model, run);
 }
 
-TEST(ToldErrors, StandInJson) {
+TEST(ErrorEstimateOutput, StandInJson) {
     const Trajectory trajectory = ball(Method::taylor);
     const auto estimate = estimate_error(trajectory);
     const auto json = nlohmann::json::parse(to_json(trajectory));
@@ -29,14 +29,14 @@ TEST(ToldErrors, StandInJson) {
         EXPECT_EQ(json["events"][i]["error_estimate"], estimate.events[i]);
 }
 
-TEST(ToldErrors, AreNullWithAReason) {
+TEST(ErrorEstimateOutput, AreNullWithAReason) {
     const auto json = nlohmann::json::parse(to_json(ball(Method::dopri5)));
     EXPECT_TRUE(json["end"]["error_estimate"].is_null());
     EXPECT_EQ(json["end"]["no_error_estimate"], "errors are estimated only for Taylor's method (--method taylor)");
     for (const auto& event : json["events"]) EXPECT_TRUE(event["error_estimate"].is_null());
 }
 
-TEST(ToldErrors, AreCalledAnEstimate) {
+TEST(ErrorEstimateOutput, AreCalledAnEstimate) {
     const std::string told = summary(ball(Method::taylor));
     EXPECT_NE(told.find("\nestimated error 4e-09 at the end: an estimate, not a proof\n"), std::string::npos) << told;
     EXPECT_NE(told.find("integration error of this time: about 1e-08 s (estimate)"), std::string::npos) << told;

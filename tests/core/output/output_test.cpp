@@ -296,9 +296,9 @@ TEST(Summary, RoundingNoiseIsZeroForPeople) {
     ASSERT_LT(std::abs(release.q[0]), 1e-20);
     EXPECT_NE(summary(trajectory).find("theta1 = 0 rad, theta2 = 0 rad"), std::string::npos) << summary(trajectory);
     EXPECT_NE(to_json(trajectory).find(fmt::format("{}", release.q[0])), std::string::npos);
-    EXPECT_EQ(without_noise(-5.6e-16, 12.0), 0.0);
-    EXPECT_EQ(without_noise(1e-20, 1e-20), 1e-20);
-    EXPECT_EQ(without_noise(2e-14, 1.0), 2e-14);
+    EXPECT_EQ(flush_noise_to_zero(-5.6e-16, 12.0), 0.0);
+    EXPECT_EQ(flush_noise_to_zero(1e-20, 1e-20), 1e-20);
+    EXPECT_EQ(flush_noise_to_zero(2e-14, 1.0), 2e-14);
     const State scale = scale_of(trajectory);
     EXPECT_GT(scale.q[0], 0.5);
     EXPECT_GT(scale.v[0], 0.5);
@@ -330,9 +330,9 @@ TEST_F(Outputs, TellRoundingFromNothingAndFromALie) {
 TEST_F(Outputs, SayByWhichTolerancesAnUndecidedRunWasMadeAgain) {
     EXPECT_TRUE(nlohmann::json::parse(to_json(trajectory))["outcome"]["made_again_by"].is_null());
     EXPECT_TRUE(remarks(trajectory).empty());
-    trajectory.made_again_by = trajectory.run.options;
-    trajectory.made_again_by->tolerance = 1e-14;
-    trajectory.made_again_by->truncation.eps_q = 1e-12;
+    trajectory.rerun_options = trajectory.run.options;
+    trajectory.rerun_options->tolerance = 1e-14;
+    trajectory.rerun_options->truncation.eps_q = 1e-12;
     const auto again = nlohmann::json::parse(to_json(trajectory))["outcome"]["made_again_by"];
     EXPECT_EQ(again, (nlohmann::json{{"tolerance", 1e-14}, {"eps_q", 1e-12}, {"eps_v", 1e-6}, {"eps_t", 1e-6}}));
     const std::string told =

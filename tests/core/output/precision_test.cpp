@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "core/depend/estimates.hpp"
+#include "core/sensitivity/estimates.hpp"
+#include "output/event_descriptions.hpp"
 #include "output/output.hpp"
-#include "output/sentences.hpp"
 
 namespace achilles::test {
 namespace {
@@ -123,8 +123,8 @@ TEST(Sentences, TellGapSpeedsInTheUnitOfTheAngles) {
     const Trajectory trajectory = simulate(model, model->default_run());
     ASSERT_EQ(trajectory.events[0].kind, Event::Kind::impact);
     const double speed = trajectory.events[0].impact_speed;
-    EXPECT_TRUE(holds(Sentences(trajectory).of(0), fmt::format("gap speed {:.4g} rad/s", speed)));
-    EXPECT_TRUE(holds(Sentences(trajectory, nullptr, Sentences::Angles::degrees).of(0),
+    EXPECT_TRUE(holds(EventDescriptions(trajectory).of(0), fmt::format("gap speed {:.4g} rad/s", speed)));
+    EXPECT_TRUE(holds(EventDescriptions(trajectory, nullptr, EventDescriptions::Angles::degrees).of(0),
                       fmt::format("gap speed {:.4g} deg/s", speed * 57.29577951308232)));
 }
 

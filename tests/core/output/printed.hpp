@@ -6,9 +6,9 @@
 namespace achilles::test {
 
 // The set of reals that a text stands for: "= 0.1", "= 2.5 +- 1.3e-09", "in [0.059, 0.061]".
-struct Printed {
+struct PrintedSet {
     Real low, high;
-    static Printed of(const std::string& text) {
+    static PrintedSet of(const std::string& text) {
         if (text.starts_with("in [") && text.ends_with("]")) {
             const std::size_t comma = text.find(", ");
             return {Real(text.substr(4, comma - 4)), Real(text.substr(comma + 2, text.size() - comma - 3))};
@@ -23,13 +23,13 @@ struct Printed {
 };
 
 // What quadruples round is no fault of what is printed.
-inline Real rounding_of(const Printed& x) {
+inline Real rounding_of(const PrintedSet& x) {
     return (boost::multiprecision::abs(x.low) + boost::multiprecision::abs(x.high)) * Real(1e-32);
 }
-inline bool holds(const Printed& x, const Interval& all) {
+inline bool holds(const PrintedSet& x, const Interval& all) {
     return x.low - rounding_of(x) <= Real(all.lo()) && Real(all.hi()) <= x.high + rounding_of(x);
 }
-inline bool lies_in(const Printed& x, const Interval& all) {
+inline bool lies_in(const PrintedSet& x, const Interval& all) {
     return x.low + rounding_of(x) >= Real(all.lo()) && Real(all.hi()) >= x.high - rounding_of(x);
 }
 

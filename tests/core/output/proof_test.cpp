@@ -7,7 +7,7 @@
 #include <random>
 
 #include "core/systems.hpp"
-#include "enclose/spread.hpp"
+#include "enclose/initial_uncertainty.hpp"
 
 namespace achilles::test {
 
@@ -20,7 +20,7 @@ TEST(EnclosedEvents, AreThoseOfTheRun) {
         achilles::Run run = model->default_run();
         run.options.end_time = std::min(run.options.end_time, 8.0);
         const Trajectory trajectory = simulate(model, run);
-        const Enclosure proof = prove(model, claim_as_written(run));
+        const Enclosure proof = prove(model, problem_from_decimals(run));
         const auto enclosed = enclosed_events(trajectory, proof);
         ASSERT_EQ(enclosed.size(), trajectory.events.size());
         ASSERT_FALSE(enclosed.empty());
@@ -37,10 +37,10 @@ TEST(EnclosedEvents, AreThoseOfTheRun) {
 // After an undecided proof there are none.
 TEST(EnclosedEvents, EndWhereTheProofDoes) {
     const auto model = load("ball_on_sine");
-    achilles::Claim claim = claim_as_written(model->default_run());
-    widen(claim, 1e-3);
+    achilles::EnclosureProblem claim = problem_from_decimals(model->default_run());
+    inflate(claim, 1e-3);
     const Enclosure proof = prove(model, claim);
-    ASSERT_EQ(proof.outcome.kind, Enclosure::Outcome::Kind::undecided);
+    ASSERT_EQ(proof.outcome.kind, Enclosure::ProofOutcome::Kind::undecided);
     const Trajectory trajectory = simulate(model, model->default_run());
     const auto enclosed = enclosed_events(trajectory, proof);
     for (std::size_t i = 0; i < enclosed.size(); ++i)

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "core/output/printed.hpp"
-#include "enclose/spread.hpp"
+#include "enclose/initial_uncertainty.hpp"
 #include "output/proof.hpp"
 
 namespace achilles::test {
@@ -61,8 +61,8 @@ class Reader {
     }
 
     // Of "  x = 1, y in [0, 1]".
-    std::vector<Printed> list(const std::vector<std::string>& names) {
-        std::vector<Printed> all;
+    std::vector<PrintedSet> list(const std::vector<std::string>& names) {
+        std::vector<PrintedSet> all;
         next_line();
         std::size_t at = line_.find_first_not_of(' ');
         for (std::size_t i = 0; i < names.size(); ++i) {
@@ -71,14 +71,14 @@ class Reader {
             const std::size_t end = i + 1 < names.size() ? line_.find(", " + names[i + 1] + " ", at) : line_.size();
             EXPECT_NE(end, line_.npos) << line_;
             if (end == line_.npos) return {};
-            all.push_back(Printed::of(line_.substr(at, end - at)));
+            all.push_back(PrintedSet::of(line_.substr(at, end - at)));
             at = end + 2;
         }
         return all;
     }
 
     void assumed(const std::vector<std::string>& names, const Json& boxes) {
-        const std::vector<Printed> all = list(names);
+        const std::vector<PrintedSet> all = list(names);
         ASSERT_EQ(all.size(), names.size());
         for (std::size_t i = 0; i < names.size(); ++i) {
             const Interval box = interval_of(boxes.is_object() ? boxes[names[i]] : boxes[i]);
@@ -87,14 +87,14 @@ class Reader {
         }
     }
 
-    void concluded(const Printed& said, const Interval& box) {
+    void concluded(const PrintedSet& said, const Interval& box) {
         EXPECT_TRUE(holds(said, box)) << line_;
         EXPECT_LE(said.width(), Real(1.3) * width(box) + Real(4e-16) * mag(box)) << line_;
         ++conclusions;
     }
 
     void concluded(const std::vector<std::string>& names, const Json& boxes) {
-        const std::vector<Printed> all = list(names);
+        const std::vector<PrintedSet> all = list(names);
         ASSERT_EQ(all.size(), boxes.size());
         for (std::size_t i = 0; i < all.size(); ++i) concluded(all[i], interval_of(boxes[i]));
     }
@@ -176,7 +176,7 @@ class Reader {
         if (comma != line_.npos) {
             EXPECT_EQ(line_.substr(comma + 2), event["contact"].get<std::string>());
         }
-        concluded(Printed::of(line_.substr(at, comma == line_.npos ? comma : comma - at)), interval_of(event["t"]));
+        concluded(PrintedSet::of(line_.substr(at, comma == line_.npos ? comma : comma - at)), interval_of(event["t"]));
         concluded(names_, event["q"]);
     }
 
@@ -209,7 +209,7 @@ struct ReadProof {
     int conclusions = 0, cuts = 0;
 };
 
-ReadProof read_back(const Model& model, const achilles::Claim& claim, const Enclosure& proof) {
+ReadProof read_back(const Model& model, const achilles::EnclosureProblem& claim, const Enclosure& proof) {
     ReadProof result{proof_text(model, claim, proof), Json::parse(to_json(model, claim, proof))};
     Reader reader(model, result.text, result.json);
     reader.read();
@@ -218,11 +218,11 @@ ReadProof read_back(const Model& model, const achilles::Claim& claim, const Encl
     return result;
 }
 
-ReadProof read_back(const std::string& system, double end, const Spread& spread, int parts = 1) {
+ReadProof read_back(const std::string& system, double end, const InitialUncertainty& spread, int parts = 1) {
     const auto model = load(system);
     achilles::Run run = model->default_run();
     run.options.end_time = end;
-    achilles::Claim claim = claim_of(model->description(), run, spread);
+    achilles::EnclosureProblem claim = problem_of(model->description(), run, spread);
     claim.times = {0.25 * end, 0.7 * end};
     return read_back(*model, claim, prove_in_parts(model, claim, parts));
 }
@@ -234,13 +234,13 @@ bool says(const ReadProof& proof, const std::string& words) { return proof.text.
 TEST(ProofText, ClaimsNoMoreThanItsJson) {
     const std::vector<std::string> names = all_systems();
     std::vector<std::shared_ptr<const Model>> models(names.size());
-    std::vector<achilles::Claim> claims(2 * names.size());
+    std::vector<achilles::EnclosureProblem> claims(2 * names.size());
     std::vector<Enclosure> proofs(claims.size());
     tbb::parallel_for(std::size_t{0}, claims.size(), [&](std::size_t i) {
         const auto model = load(names[i / 2]);
         achilles::Run run = model->default_run();
         run.options.max_steps = 40;  // a quick proof, to the end or until then
-        claims[i] = claim_of(model->description(), run, {i % 2 == 0 ? 0.0 : 3e-9, {}});
+        claims[i] = problem_of(model->description(), run, {i % 2 == 0 ? 0.0 : 3e-9, {}});
         claims[i].times = {0.9 * run.options.start_time + 0.1 * run.options.end_time};
         proofs[i] = prove(model, claims[i]);
         if (i % 2 == 0) models[i / 2] = model;
@@ -270,7 +270,7 @@ TEST(ProofText, PrintsHypothesesAsTyped) {
     EXPECT_TRUE(says(both, "  x in [-0.2, 0.5], y in [0.7, 1.3]\n")) << both.text;
     const auto time_of = [](const ReadProof& proof) {
         const std::size_t at = proof.text.find("impact   t ") + 11;
-        return Printed::of(proof.text.substr(at, proof.text.find('\n', at) - at));
+        return PrintedSet::of(proof.text.substr(at, proof.text.find('\n', at) - at));
     };
     const auto lands = [](const char* r, const char* g) { return sqrt(2 * (1 - Real(r)) / Real(g)); };
     for (const char* r : {"0.059", "0.06", "0.061"}) {
@@ -301,7 +301,7 @@ TEST(ProofText, SaysWhichTimesAreRounded) {
     const auto model = load("ball_on_floor");
     achilles::Run run = model->default_run();
     run.options.end_time = 0.25;
-    const achilles::Claim claim = claim_of(model->description(), run, {});
+    const achilles::EnclosureProblem claim = problem_of(model->description(), run, {});
     EXPECT_FALSE(says(read_back(*model, claim, prove(model, claim)), "doubles nearest"));
 }
 

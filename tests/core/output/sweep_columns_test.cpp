@@ -55,7 +55,7 @@ TEST(Library, KnowsTheStateAtATime) {
 // Column by column what the CSV says line by line.
 void expect_as_csv(const std::string& text, int threads) {
     const auto model = test::load("ball_on_sine");
-    const Sweep sweep = read_sweep(text, model->description());
+    const SweepSpec sweep = read_sweep(text, model->description());
     const SweepColumns columns = sweep_columns(model, sweep, threads);
     const SweepTable table(model, sweep);
     std::string lines, units;
@@ -83,7 +83,7 @@ TEST(Library, HasSweepsAsColumns) {
 
 TEST(Library, StopsASweepWhenItIsTold) {
     const auto model = test::load("ball_on_sine");
-    const Sweep sweep =
+    const SweepSpec sweep =
         make_sweep({.over = {"x=-3:3:1e6"}, .prints = {"x"}}, NamedRun(model->description()), model->description());
     const SweepColumns columns = sweep_columns(model, sweep, 2, [](std::uint64_t done) { return done < 100; });
     EXPECT_GE(columns.rows(), 100u);

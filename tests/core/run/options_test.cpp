@@ -16,14 +16,14 @@ OptionValue another(const Option& option) {
     return option.words[usual == OptionValue(option.words[0]) ? 1 : 0];
 }
 
-TEST(Options, each_has_a_place_of_its_own) {
+TEST(Options, EachHasAPlaceOfItsOwn) {
     std::set<std::string_view> keys, flags;
     for (const Option& one : all_options()) {
         SCOPED_TRACE(one.key);
         EXPECT_TRUE(keys.insert(one.key).second);
         EXPECT_TRUE(flags.insert(one.flag).second);
-        EXPECT_TRUE(allows(one, one.get({}))) << "the default";
-        ASSERT_TRUE(allows(one, another(one)));
+        EXPECT_TRUE(is_valid_value(one, one.get({}))) << "the default";
+        ASSERT_TRUE(is_valid_value(one, another(one)));
         Options changed;
         one.set(changed, another(one));
         EXPECT_EQ(one.get(changed), another(one));
@@ -35,7 +35,7 @@ TEST(Options, each_has_a_place_of_its_own) {
     }
 }
 
-TEST(Options, the_table_has_them_all) {
+TEST(Options, TheTableHasThemAll) {
     Options all;
     for (const Option& one : all_options()) one.set(all, another(one));
     EXPECT_NE(all.start_time, Options{}.start_time);
@@ -53,34 +53,35 @@ TEST(Options, the_table_has_them_all) {
     EXPECT_NE(all.truncation.reinitialization, Options{}.truncation.reinitialization);
 }
 
-TEST(Options, what_is_not_allowed_is_told) {
+TEST(Options, WhatIsNotAllowedIsTold) {
     Options options;
-    EXPECT_TRUE(faults(options).empty());
+    EXPECT_TRUE(validation_errors(options).empty());
     options.tolerance = -1.0;
     options.max_steps = 0;
     options.truncation.eps_t = 1.0 / 0.0;
-    EXPECT_EQ(faults(options), (std::vector<std::string>{"tolerance must be a positive number, but it is -1",
-                                                         "max_steps must be at least 1",
-                                                         "eps_t must be a positive number, but it is inf"}));
+    EXPECT_EQ(validation_errors(options), (std::vector<std::string>{"tolerance must be a positive number, but it is -1",
+                                                                    "max_steps must be at least 1",
+                                                                    "eps_t must be a positive number, but it is inf"}));
 }
 
 // The start may be at any time, the end is after it.
-TEST(Options, times_have_an_order) {
+TEST(Options, TimesHaveAnOrder) {
     Options options;
     options.start_time = -20.0;
     options.end_time = -10.0;
-    EXPECT_TRUE(allows(option("start_time"), options.start_time));
-    EXPECT_TRUE(faults(options).empty());
+    EXPECT_TRUE(is_valid_value(option("start_time"), options.start_time));
+    EXPECT_TRUE(validation_errors(options).empty());
     options.end_time = options.start_time;
-    EXPECT_EQ(faults(options), std::vector<std::string>{"the end time -20 is not after the start time -20"});
+    EXPECT_EQ(validation_errors(options), std::vector<std::string>{"the end time -20 is not after the start time -20"});
     options.start_time = 1.0 / 0.0;
-    EXPECT_EQ(faults(options), (std::vector<std::string>{"start_time must be a finite number, but it is inf",
-                                                         "the end time -20 is not after the start time inf"}));
-    EXPECT_FALSE(allows(option("tolerance"), -1.0));
+    EXPECT_EQ(validation_errors(options),
+              (std::vector<std::string>{"start_time must be a finite number, but it is inf",
+                                        "the end time -20 is not after the start time inf"}));
+    EXPECT_FALSE(is_valid_value(option("tolerance"), -1.0));
 }
 
 // Whatever the times before and after, there is always a run between the two commands.
-TEST(Options, are_set_in_an_order_in_which_the_end_stays_after_the_start) {
+TEST(Options, AreSetInAnOrderInWhichTheEndStaysAfterTheStart) {
     const double times[] = {-7.0, -2.0, 0.0, 3.0, 9.0};
     for (const double start : times)
         for (const double end : times)
@@ -88,26 +89,26 @@ TEST(Options, are_set_in_an_order_in_which_the_end_stays_after_the_start) {
                 for (const double new_end : times) {
                     Options from, to;
                     from.start_time = start, from.end_time = end, to.start_time = new_start, to.end_time = new_end;
-                    if (!faults(from).empty() || !faults(to).empty()) continue;
+                    if (!validation_errors(from).empty() || !validation_errors(to).empty()) continue;
                     Options now = from;
                     for (const auto group : options_by_command(from, to))
                         for (const Option& one : group) {
                             one.set(now, one.get(to));
-                            EXPECT_TRUE(faults(now).empty()) << faults(now)[0];
+                            EXPECT_TRUE(validation_errors(now).empty()) << validation_errors(now)[0];
                         }
                     EXPECT_EQ(now, to);
                 }
 }
 
-TEST(Options, are_told_in_one_order_but_for_the_first) {
+TEST(Options, AreToldInOneOrderButForTheFirst) {
     std::string keys;
-    for (const Option* one : told_options({"tolerance", "method"})) keys += std::string(one->key) + " ";
+    for (const Option* one : options_in_report_order({"tolerance", "method"})) keys += std::string(one->key) + " ";
     EXPECT_EQ(keys,
               "tolerance method start_time end_time max_impacts max_steps memory simultaneous conditions "
               "reinitialization eps_q eps_v eps_t ");
 }
 
-TEST(Options, a_command_sets_those_that_share_it) {
+TEST(Options, ACommandSetsThoseThatShareIt) {
     EXPECT_EQ(options_set_by("eps").size(), 3u);
     EXPECT_EQ(options_set_by("end").size(), 1u);
     EXPECT_TRUE(options_set_by("seek").empty());

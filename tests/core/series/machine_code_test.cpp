@@ -388,7 +388,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
         for (const Width vectors : of_lanes()) {
             const auto by_code = eight_by(vectors);
             for (std::size_t i = 0; i < one.size(); ++i) {
-                for (std::size_t lane = 0; lane < Eight::count; ++lane)
+                for (std::size_t lane = 0; lane < Double8::count; ++lane)
                     EXPECT_EQ(by_code[i][lane], by_loops[i][lane]) << system << ", row " << i / width;
                 EXPECT_NEAR(by_code[i][5], one[i], 1e-9 * (1.0 + std::abs(one[i]))) << system << ", row " << i / width;
             }

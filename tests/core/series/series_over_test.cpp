@@ -52,7 +52,7 @@ double difference(const SeriesProgram& program, std::size_t variable, int k, std
 
 void expect_slopes(const std::string& text) {
     SCOPED_TRACE(text);
-    using Number = Directed<16>;
+    using Number = Jet8<16>;
     const SeriesProgram program = make_series(text);
     std::array<Number, 4> numbers;
     for (std::size_t d = 0; d < 4; ++d)
@@ -68,7 +68,7 @@ void expect_slopes(const std::string& text) {
             for (std::size_t d = 0; d < 4; ++d)
                 EXPECT_NEAR(c.slope[d], difference(program, variable_order[d], k, i), 1e-7 * size)
                     << k << ", " << i << ", " << d;
-            for (std::size_t d = 4; d < Eight::count; ++d) EXPECT_EQ(c.slope[d], 0.0);
+            for (std::size_t d = 4; d < Double8::count; ++d) EXPECT_EQ(c.slope[d], 0.0);
         }
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "core/several.hpp"
+#include "core/multi_contact.hpp"
 #include "simulate/explain.hpp"
 
 namespace achilles {
@@ -108,7 +108,7 @@ TEST(ContactForces, AreToldToViews) {
     }
 }
 
-TEST(Explain, EventsOfSeveralContacts) {
+TEST(EventExplanations, EventsOfSeveralContacts) {
     for (const char* name : test::gap_systems) {
         SCOPED_TRACE(name);
         const Trajectory trajectory = test::run_gaps(name);

@@ -5,14 +5,14 @@
 #include <cmath>
 
 #include "core/systems.hpp"
+#include "simulate/batch.hpp"
 #include "simulate/impact.hpp"
-#include "simulate/many.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {
 
-using test::model_of, test::Plane;
+using test::model_of, test::PlaneSystem;
 
 Run with(const Model& model, Method method, double tolerance) {
     Run run = model.default_run();
@@ -26,12 +26,12 @@ using test::count;
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-13};
 
 // The least contact force is -0.3 of a tolerance of 1e-6, and the end of a step lies in that dip.
-const Plane crest{.gap = "b - 0.25*cos(a)",
-                  .a = -1.1410500000000001,
-                  .b = 0.10416005219094915,
-                  .a_rate = 2.0201237165063586,
-                  .b_rate = 0.45910920882362767,
-                  .end = 0.77};
+const PlaneSystem crest{.gap = "b - 0.25*cos(a)",
+                        .a = -1.1410500000000001,
+                        .b = 0.10416005219094915,
+                        .a_rate = 2.0201237165063586,
+                        .b_rate = 0.45910920882362767,
+                        .end = 0.77};
 
 TEST(Decisions, AReleaseInADipOfTheForceIsNotMissed) {
     const auto model = model_of(crest);
@@ -52,7 +52,7 @@ TEST(Decisions, NorEightAtATime) {
         const auto run = with(*model, Method::taylor, tolerance);
         simulate_ends(
             model, 1, [&](std::size_t) { return run; },
-            [&](std::size_t, Attempt&& attempt) {
+            [&](std::size_t, RunResult&& attempt) {
                 const auto& trajectory = std::get<Trajectory>(attempt);
                 if (trajectory.outcome.kind == Outcome::Kind::undecided) return;
                 EXPECT_EQ(trajectory.statistics.impacts, 5) << tolerance;
@@ -63,24 +63,24 @@ TEST(Decisions, NorEightAtATime) {
 
 // Their hddot nears zero, so that a low bounce lasts long: 7 impacts, and 4, the last of 2.6e-7.
 TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
-    const Plane seven{.kinetic = "0.9453125*(a'^2 + b'^2)",
-                      .potential = "1.890625*b - 0.296875*a",
-                      .gap = "b - 0.023681640625*sin(8.078125*a) - 0.09375*cos(1.484375*a)",
-                      .e = "0.0625",
-                      .a = 1.0480548592173542,
-                      .b = 1.2339401331589663,
-                      .a_rate = -1.7332196105057307,
-                      .b_rate = -1.1107608947996346,
-                      .end = 0.9508598332279208};
-    const Plane four{.kinetic = "0.3046875*a'^2 + 0.4375*b'^2",
-                     .potential = "0.875*b - 0.296875*a",
-                     .gap = "b - 0.08642578125*sin(5.875*a) + 0.21875*cos(0.875*a)",
-                     .e = "0.0625",
-                     .a = -0.66499660396276272,
-                     .b = 0.78582978907778978,
-                     .a_rate = 1.4581090508588603,
-                     .b_rate = -1.3785151046714215,
-                     .end = 1.94655};
+    const PlaneSystem seven{.kinetic = "0.9453125*(a'^2 + b'^2)",
+                            .potential = "1.890625*b - 0.296875*a",
+                            .gap = "b - 0.023681640625*sin(8.078125*a) - 0.09375*cos(1.484375*a)",
+                            .e = "0.0625",
+                            .a = 1.0480548592173542,
+                            .b = 1.2339401331589663,
+                            .a_rate = -1.7332196105057307,
+                            .b_rate = -1.1107608947996346,
+                            .end = 0.9508598332279208};
+    const PlaneSystem four{.kinetic = "0.3046875*a'^2 + 0.4375*b'^2",
+                           .potential = "0.875*b - 0.296875*a",
+                           .gap = "b - 0.08642578125*sin(5.875*a) + 0.21875*cos(0.875*a)",
+                           .e = "0.0625",
+                           .a = -0.66499660396276272,
+                           .b = 0.78582978907778978,
+                           .a_rate = 1.4581090508588603,
+                           .b_rate = -1.3785151046714215,
+                           .end = 1.94655};
     for (const auto& [plane, impacts] : {std::pair{seven, 7u}, {four, 4u}}) {
         const auto model = model_of(plane);
         for (const Method method : {Method::taylor, Method::dopri5})
@@ -201,9 +201,9 @@ TEST(Decisions, ADipUpToTheEndOfAStepIsNotPassedOver) {
 
 // A dip to 1e-12 at t = 1: told there, or decided where 1e-14 decides it.
 TEST(Decisions, ADoubtIsToldWhereItIs) {
-    const auto below_rounding = model_of(
+    const auto cut_at_resolution = model_of(
         {.kinetic = "1/2*(a'^2 + b'^2)", .potential = "0", .gap = "b + (a - 1)^2 - 1e-16", .a_rate = 1.0, .end = 2.0});
-    const Trajectory undecided = simulate(below_rounding, below_rounding->default_run());
+    const Trajectory undecided = simulate(cut_at_resolution, cut_at_resolution->default_run());
     ASSERT_EQ(undecided.outcome.kind, Outcome::Kind::undecided);
     EXPECT_NEAR(undecided.end_time, 1.0, 1e-5);
     EXPECT_GT(undecided.end_time, 0.99);

@@ -1,6 +1,6 @@
 // Where a motion leaves the domain of its equations, the run ends and says what ceases to be defined, when and in which
 // state; it neither hangs nor goes on.
-#include "simulate/edge_watch.hpp"
+#include "simulate/domain_monitor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,23 +8,23 @@
 #include <ostream>
 
 #include "core/systems.hpp"
-#include "model/flat.hpp"
+#include "model/degenerate_gap.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
 namespace {
 
-struct Edge {
+struct BoundaryCase {
     std::string name, start, rate, kinetic, potential, gap;
     Outcome::Kind kind;
     std::string beginning;  // of the message
     double t;               // the instant, known in closed form
 };
 
-void PrintTo(const Edge& edge, std::ostream* out) { *out << edge.name; }
+void PrintTo(const BoundaryCase& edge, std::ostream* out) { *out << edge.name; }
 
 // Flat is what stays so on the way to h = 0; a distance bends near its centre, and has a normal where it closes.
-TEST(Flat, IsNotADistanceFarFromWhereItCloses) {
+TEST(DegenerateGap, IsNotADistanceFarFromWhereItCloses) {
     const auto with_gap = [](const std::string& gap) {
         return test::typed(
             "title = \"flat\"\n[[coordinate]]\nname = \"x\"\n[[coordinate]]\nname = \"y\"\nstart = -0.3\n"
@@ -39,10 +39,10 @@ TEST(Flat, IsNotADistanceFarFromWhereItCloses) {
     }
 }
 
-class Edges : public testing::TestWithParam<Edge> {};
+class DomainBoundaries : public testing::TestWithParam<BoundaryCase> {};
 
-TEST_P(Edges, EndTheRunWithAReason) {
-    const Edge& edge = GetParam();
+TEST_P(DomainBoundaries, EndTheRunWithAReason) {
+    const BoundaryCase& edge = GetParam();
     const auto model =
         test::typed("title = \"edge\"\n[[coordinate]]\nname = \"x\"\nstart = " + edge.start + "\nrate = " + edge.rate +
                     "\n[lagrangian]\nkinetic = \"" + edge.kinetic + "\"\npotential = \"" + edge.potential +
@@ -64,7 +64,7 @@ TEST_P(Edges, EndTheRunWithAReason) {
 constexpr auto left = Outcome::Kind::left_the_domain;
 const double pi = std::acos(-1.0);
 
-const Edge edges[] = {
+const BoundaryCase edges[] = {
     // x'' = -1/x from rest at 1: t = sqrt(pi/2)
     {"log", "1.0", "0.0", "x'^2/2", "log(x)", "x + 1", left,
      "log(x) in the potential becomes undefined, with x = ", std::sqrt(pi / 2)},
@@ -91,7 +91,8 @@ const Edge edges[] = {
      std::sqrt(2.0)},
 };
 
-INSTANTIATE_TEST_SUITE_P(Domain, Edges, testing::ValuesIn(edges), [](const auto& edge) { return edge.param.name; });
+INSTANTIATE_TEST_SUITE_P(Domain, DomainBoundaries, testing::ValuesIn(edges),
+                         [](const auto& edge) { return edge.param.name; });
 
 // What would be right is told where the run ends, too.
 TEST(Domain, AFlatGapIsToldWithAdvice) {

@@ -11,9 +11,9 @@
 namespace achilles {
 namespace {
 
-using test::Plane;
+using test::PlaneSystem;
 
-Trajectory run_of(const Plane& plane, double tolerance = 1e-10, Method method = Method::taylor) {
+Trajectory run_of(const PlaneSystem& plane, double tolerance = 1e-10, Method method = Method::taylor) {
     const auto model = test::model_of(plane);
     auto run = model->default_run();
     run.options.tolerance = tolerance;
@@ -28,7 +28,7 @@ using test::count;
 // V = b F(a) on the floor b = 0: the contact force is F, and a' stays what it is. Here F = (p - a)^3 or its square, and
 // a is so large that the neighbouring doubles of p lie 1e-7 from it: h''' = -F' a' is 0 as well as a computed state can
 // tell, and whether the force lets go is not known.
-TEST(Doubt, AReleaseIsOneOnlyWhereTheForceIsProvedToFall) {
+TEST(AmbiguousEvents, AReleaseIsOneOnlyWhereTheForceIsProvedToFall) {
     for (const char* force : {"(1000000001 - a)^3", "(1000000001 - a)^2"}) {
         const Trajectory touch = run_of({.potential = std::string("b*") + force, .a = 1e9, .a_rate = 1.0, .end = 2.0});
         EXPECT_EQ(touch.outcome.kind, Outcome::Kind::undecided) << force << ": " << touch.outcome.message;
@@ -45,10 +45,10 @@ TEST(Doubt, AReleaseIsOneOnlyWhereTheForceIsProvedToFall) {
 // that its rate decides.
 constexpr double below_pi = 3.141592653589793, above_pi = 3.1415926535897936;
 
-TEST(Doubt, ARoundingOfTheStateDoesNotDecideAStart) {
+TEST(AmbiguousEvents, ARoundingOfTheStateDoesNotDecideAStart) {
     for (const double a : {below_pi, above_pi}) {
         for (const Method method : {Method::taylor, Method::dopri5}) {
-            Plane plane{.potential = "b*sin(a)", .a = a, .end = 1.0};
+            PlaneSystem plane{.potential = "b*sin(a)", .a = a, .end = 1.0};
             plane.a_rate = 1.0;  // the force falls: the ball leaves
             const Trajectory leaves = run_of(plane, 1e-10, method);
             EXPECT_EQ(leaves.outcome.kind, Outcome::Kind::end_time) << leaves.outcome.message;
@@ -65,7 +65,7 @@ TEST(Doubt, ARoundingOfTheStateDoesNotDecideAStart) {
     }
 }
 
-TEST(Doubt, ARoundingOfTheStateDoesNotDecideAPlasticImpact) {
+TEST(AmbiguousEvents, ARoundingOfTheStateDoesNotDecideAPlasticImpact) {
     for (const double a : {below_pi, above_pi}) {
         const Trajectory trajectory = run_of({.potential = "b*sin(a)", .e = "0", .a = a, .b_rate = -1.0, .end = 1.0});
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::undecided) << a;
@@ -79,9 +79,9 @@ TEST(Doubt, ARoundingOfTheStateDoesNotDecideAPlasticImpact) {
 
 // The force, or the gap, is 2 (1 - cos(a - p)) + c with a' = 1: it dips to c at t = p. The series of the cosine does
 // not end, so it has a remainder.
-Plane dip(bool contact, double p, double c, double end) {
+PlaneSystem dip(bool contact, double p, double c, double end) {
     const std::string quantity = fmt::format("(2*(1 - cos(a - {:.17g})) + {:.17g})", p, c);
-    Plane plane{.potential = "0", .gap = "b + " + quantity, .a_rate = 1.0, .end = end};
+    PlaneSystem plane{.potential = "0", .gap = "b + " + quantity, .a_rate = 1.0, .end = end};
     if (contact) {
         plane.potential = "b*" + quantity;
         plane.gap = "b";
@@ -90,7 +90,7 @@ Plane dip(bool contact, double p, double c, double end) {
 }
 
 // 1e-16 is less than any integration knows. Where it is decided nevertheless, the other sign is decided the same way.
-TEST(Doubt, ADipWithinTheRemainderIsNotDecided) {
+TEST(AmbiguousEvents, ADipWithinTheRemainderIsNotDecided) {
     for (const bool contact : {false, true})
         for (const double c : {1e-16, 0.0, -1e-16})
             for (const double tolerance : {1e-6, 1e-10, 1e-14}) {
@@ -125,7 +125,7 @@ void expect_undecided_where_a_step_ends(bool contact, Method method, double low,
         }
 }
 
-TEST(Doubt, ADipThatHoldsTheEndOfAStepIsNotDecidedByTheNextOne) {
+TEST(AmbiguousEvents, ADipThatHoldsTheEndOfAStepIsNotDecidedByTheNextOne) {
     for (const bool contact : {false, true}) {
         SCOPED_TRACE(contact ? "force" : "gap");
         expect_undecided_where_a_step_ends(contact, Method::taylor, 4.7, 5.3);
@@ -135,10 +135,10 @@ TEST(Doubt, ADipThatHoldsTheEndOfAStepIsNotDecidedByTheNextOne) {
 
 // A start 0.1 of the tolerance above zero, 0.9 of it below soon afterwards, then high above: something happens. Whoever
 // takes the rise for the whole story sees nothing.
-TEST(Doubt, ADipThatBeginsInsideTheRemainderIsNotPassedOver) {
+TEST(AmbiguousEvents, ADipThatBeginsInsideTheRemainderIsNotPassedOver) {
     for (const bool contact : {false, true})
         for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
-            const Plane plane = dip(contact, std::sqrt(tolerance), -0.9 * tolerance, 0.5);
+            const PlaneSystem plane = dip(contact, std::sqrt(tolerance), -0.9 * tolerance, 0.5);
             const Trajectory trajectory = run_of(plane, tolerance);
             if (trajectory.outcome.kind == Outcome::Kind::undecided) continue;
             EXPECT_GE(count(trajectory, contact ? Event::Kind::release : Event::Kind::impact), 1u)
@@ -148,7 +148,7 @@ TEST(Doubt, ADipThatBeginsInsideTheRemainderIsNotPassedOver) {
 
 // A run that ends within the remainder of the ground: h = b - sin(a) is 10^-3 of the tolerance below zero at the end,
 // falling, so there is an impact before it; with the other sign there is none.
-TEST(Doubt, AnImpactJustBeforeTheEndIsOne) {
+TEST(AmbiguousEvents, AnImpactJustBeforeTheEndIsOne) {
     for (const double tolerance : {1e-6, 1e-8, 1e-10})
         for (const double sign : {1.0, -1.0}) {
             const double end = 1.25, above = sign * 1e-3 * tolerance;  // a = t, b = b0 - t^2/2
@@ -177,7 +177,7 @@ Trajectory past_the_post(double height, double tolerance) {
 
 // The bounce's state is wrong by more than the distance to the decision, so no exactness after it can decide: only the
 // whole run, made again. Nothing is decided wrongly, and nothing stays undecided that 1e-14 decides.
-TEST(Doubt, WhatEarlierStepsMadeWrongDecidesNothing) {
+TEST(AmbiguousEvents, WhatEarlierStepsMadeWrongDecidesNothing) {
     double clear = 0.1, touched = 0.7;
     ASSERT_EQ(past_the_post(clear, 1e-14).statistics.impacts, 1);
     ASSERT_GT(past_the_post(touched, 1e-14).statistics.impacts, 1);
@@ -194,9 +194,9 @@ TEST(Doubt, WhatEarlierStepsMadeWrongDecidesNothing) {
                     << tolerance << ", " << sign * off << ": " << trajectory.outcome.message;
                 EXPECT_EQ(trajectory.statistics.impacts > 1, sign > 0.0) << tolerance << ", " << sign * off;
                 EXPECT_EQ(trajectory.run.options.tolerance, tolerance);
-                if (!trajectory.made_again_by) continue;
+                if (!trajectory.rerun_options) continue;
                 ++made_again;
-                EXPECT_EQ(trajectory.made_again_by->tolerance, 1e-14);
+                EXPECT_EQ(trajectory.rerun_options->tolerance, 1e-14);
             }
     EXPECT_GT(made_again, 10);  // and it is said
 }
@@ -206,7 +206,7 @@ TEST(Doubt, WhatEarlierStepsMadeWrongDecidesNothing) {
 // Thrown up at 5e11 where g = 1e6, so that it lands at t = 1e6 and comes to rest at 2e6. Doubles resolve 2.3e-10 s
 // there: a flight of four of that is 1e-13 high, which is more than eps_q = 1e-15 allows to be cut. The height is a
 // coordinate, which rounding does not limit; time does.
-TEST(Doubt, FlightsShorterThanTheResolutionOfTimeEndTheBouncing) {
+TEST(AmbiguousEvents, FlightsShorterThanTheResolutionOfTimeEndTheBouncing) {
     for (const Method method : {Method::taylor, Method::dopri5}) {
         const auto model = test::drop();
         auto run = model->default_run();
@@ -219,7 +219,7 @@ TEST(Doubt, FlightsShorterThanTheResolutionOfTimeEndTheBouncing) {
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         const auto points = test::events_of(trajectory, Event::Kind::zeno);
         ASSERT_EQ(points.size(), 1u);
-        EXPECT_TRUE(points[0].certificate->below_rounding);
+        EXPECT_TRUE(points[0].certificate->cut_at_resolution);
         EXPECT_NEAR(points[0].t, 2e6, 1e-7);
         EXPECT_LT(trajectory.statistics.impacts, 60);  // the speed halves: 2^-50 of 5e11 is 4e-4
     }

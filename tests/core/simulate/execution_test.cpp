@@ -11,21 +11,21 @@
 namespace achilles {
 namespace {
 
-using End = StepResult::End;
-using InDoubt = Execution::InDoubt;
+using StepOutcome = StepResult::StepOutcome;
+using AmbiguityPolicy = ExecutionAutomaton::AmbiguityPolicy;
 
 // A throw from x = 0 upwards at speed 1: it lands at t = 2, with -1. Steps are told, not made.
-class Told : public testing::Test {
+class Automaton : public testing::Test {
  protected:
-    Told() {
+    Automaton() {
         run_.v << 1.0;
         run_.options.end_time = 10.0;
     }
-    Execution execution(InDoubt in_doubt = InDoubt::ask_exactly) {
-        return Execution(model_, run_, surfaces_, nullptr, Keep::end, in_doubt);
+    ExecutionAutomaton execution(AmbiguityPolicy ambiguity_policy = AmbiguityPolicy::retry_tight) {
+        return ExecutionAutomaton(model_, run_, surfaces_, nullptr, Recording::final_state, ambiguity_policy);
     }
     // The motion at t, as that of one step without an event; `end` and what it needs may be changed.
-    StepResult at(double t, End end = End::no_event) {
+    StepResult at(double t, StepOutcome end = StepOutcome::no_event) {
         state_.q.resize(1);
         state_.v.resize(1);
         state_.q << t - 0.5 * t * t;
@@ -44,11 +44,11 @@ class Told : public testing::Test {
 
     std::shared_ptr<const Model> model_ = test::drop();
     achilles::Run run_ = model_->default_run();
-    Surfaces surfaces_{*model_, run_};
+    ContactCache surfaces_{*model_, run_};
     State state_;
 };
 
-TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
+TEST_F(Automaton, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     auto execution = this->execution();
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
@@ -73,10 +73,10 @@ TEST_F(Told, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
 }
 
 // Newton's law; and where the next one is certified to be followed by a Zeno point, contact.
-TEST_F(Told, BouncesOrCompletes) {
+TEST_F(Automaton, BouncesOrCompletes) {
     auto bouncing = execution();
     ASSERT_NE(bouncing.next(), nullptr);
-    bouncing.accept(at(2.0, End::impact));
+    bouncing.accept(at(2.0, StepOutcome::impact));
     const StepRequest* request = bouncing.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->mode.held().empty());
@@ -89,7 +89,7 @@ TEST_F(Told, BouncesOrCompletes) {
     run_.options.truncation.eps_q = run_.options.truncation.eps_v = run_.options.truncation.eps_t = 10.0;
     auto completing = execution();
     ASSERT_NE(completing.next(), nullptr);
-    completing.accept(at(2.0, End::impact));
+    completing.accept(at(2.0, StepOutcome::impact));
     request = completing.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(completing.completing());
@@ -120,13 +120,13 @@ TEST_F(Told, BouncesOrCompletes) {
 }
 
 // On the floor, which does not let go: g = 1.
-TEST_F(Told, ReleasesOnlyWhereTheForceIsProvedToFall) {
+TEST_F(Automaton, ReleasesOnlyWhereTheForceIsProvedToFall) {
     run_.v << 0.0;
     auto execution = this->execution();
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_EQ(request->mode.held(), ContactSet::of(0));
-    StepResult result = at(0.5, End::force_vanishes);
+    StepResult result = at(0.5, StepOutcome::force_vanishes);
     state_.q << 0.0;
     state_.v << 0.0;
     execution.accept(result);
@@ -135,14 +135,14 @@ TEST_F(Told, ReleasesOnlyWhereTheForceIsProvedToFall) {
 }
 
 // The whole stretch, from its beginning, once.
-TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
+TEST_F(Automaton, AsksExactlyWhereAStepIsInDoubt) {
     auto execution = this->execution();
     for (const double t : {0.5, 1.0}) {
         ASSERT_NE(execution.next(), nullptr);
         execution.accept(at(t));
     }
     ASSERT_NE(execution.next(), nullptr);
-    execution.accept(at(1.5, End::doubt));
+    execution.accept(at(1.5, StepOutcome::ambiguous));
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->exactly && request->begins);
@@ -154,7 +154,7 @@ TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
     request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(request->exactly && !request->begins);
-    execution.accept(at(1.5, End::doubt));
+    execution.accept(at(1.5, StepOutcome::ambiguous));
     EXPECT_EQ(execution.next(), nullptr);
     const Trajectory trajectory = execution.finish();
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::undecided);
@@ -163,16 +163,16 @@ TEST_F(Told, AsksExactlyWhereAStepIsInDoubt) {
     EXPECT_EQ(trajectory.statistics.evaluations, 5);
 }
 
-TEST_F(Told, AsksExactlyForOneStretchOnly) {
+TEST_F(Automaton, AsksExactlyForOneStretchOnly) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
-    execution.accept(at(1.5, End::doubt));
+    execution.accept(at(1.5, StepOutcome::ambiguous));
     ASSERT_TRUE(execution.next()->exactly);
-    execution.accept(at(2.0, End::impact));
+    execution.accept(at(2.0, StepOutcome::impact));
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
     EXPECT_TRUE(!request->exactly && request->begins);
-    StepResult result = at(2.1, End::doubt);  // of another flight
+    StepResult result = at(2.1, StepOutcome::ambiguous);  // of another flight
     execution.accept(result);
     request = execution.next();
     ASSERT_NE(request, nullptr);
@@ -180,24 +180,24 @@ TEST_F(Told, AsksExactlyForOneStretchOnly) {
     EXPECT_EQ(request->state.t, 2.0);
 }
 
-TEST_F(Told, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
+TEST_F(Automaton, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
     for (const bool exact : {false, true}) {
         if (exact) run_.options.tolerance = exact_tolerance;
-        auto execution = this->execution(exact ? InDoubt::ask_exactly : InDoubt::end);
+        auto execution = this->execution(exact ? AmbiguityPolicy::retry_tight : AmbiguityPolicy::stop);
         ASSERT_NE(execution.next(), nullptr);
-        execution.accept(at(1.5, End::doubt));
+        execution.accept(at(1.5, StepOutcome::ambiguous));
         EXPECT_EQ(execution.next(), nullptr);
         EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::undecided);
     }
 }
 
 // An event that the step before had come to: no step is counted, and time stands; the state is moved to the surface.
-TEST_F(Told, LandsWithoutAStep) {
+TEST_F(Automaton, LandsWithoutAStep) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
     execution.accept(at(1.999999));
     ASSERT_NE(execution.next(), nullptr);
-    StepResult result = at(2.0, End::impact);
+    StepResult result = at(2.0, StepOutcome::impact);
     state_.t = 1.999999;
     result.steps = 0;
     execution.accept(result);
@@ -209,9 +209,9 @@ TEST_F(Told, LandsWithoutAStep) {
     EXPECT_EQ(request->most, run_.options.max_steps - 1);
 }
 
-TEST_F(Told, EndsWhereNoStepFollowsOrTheSurfaceIsNotReached) {
-    for (const auto& [end, kind] : {std::pair(End::no_step, Outcome::Kind::not_a_number),
-                                    std::pair(End::off_surface, Outcome::Kind::left_the_domain)}) {
+TEST_F(Automaton, EndsWhereNoStepFollowsOrTheSurfaceIsNotReached) {
+    for (const auto& [end, kind] : {std::pair(StepOutcome::step_failed, Outcome::Kind::not_a_number),
+                                    std::pair(StepOutcome::off_surface, Outcome::Kind::left_the_domain)}) {
         auto execution = this->execution();
         ASSERT_NE(execution.next(), nullptr);
         StepResult result = at(0.5, end);
@@ -222,7 +222,7 @@ TEST_F(Told, EndsWhereNoStepFollowsOrTheSurfaceIsNotReached) {
     }
 }
 
-TEST_F(Told, CountsStepsAgainstTheirBoundAndEndsAtTheEndTime) {
+TEST_F(Automaton, CountsStepsAgainstTheirBoundAndEndsAtTheEndTime) {
     run_.options.max_steps = 3;
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
@@ -245,7 +245,7 @@ TEST_F(Told, CountsStepsAgainstTheirBoundAndEndsAtTheEndTime) {
 }
 
 // Steps of the resolution of time: not for lanes, and not for ever.
-TEST_F(Told, GivesUpWhereTimeStandsStill) {
+TEST_F(Automaton, GivesUpWhereTimeStandsStill) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
     execution.accept(at(1.0));
@@ -259,7 +259,7 @@ TEST_F(Told, GivesUpWhereTimeStandsStill) {
     EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::step_too_small);
 }
 
-TEST_F(Told, StartsAgainOnlyForARunOfItsKind) {
+TEST_F(Automaton, StartsAgainOnlyForARunOfItsKind) {
     auto execution = this->execution();
     const auto refuses = [&](const auto& change) {
         auto other = run_;
@@ -281,8 +281,8 @@ TEST_F(Told, StartsAgainOnlyForARunOfItsKind) {
 TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
-    Surfaces surfaces(*model, run);
-    Execution execution(model, run, surfaces, nullptr, Keep::everything, InDoubt::ask_exactly);
+    ContactCache surfaces(*model, run);
+    ExecutionAutomaton execution(model, run, surfaces, nullptr, Recording::full, AmbiguityPolicy::retry_tight);
     EventStepper stepper(*model, run, surfaces);
     long stretches = 0;
     bool event = true, released = false;
@@ -302,9 +302,9 @@ TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
         const StepResult& result = stepper.step(*request);
         EXPECT_GT(result.state->t, t);
         EXPECT_LE(result.state->t, until);
-        event = result.end != End::no_event;
-        released = result.end == End::force_vanishes;
-        EXPECT_TRUE(!event || result.end == (held.empty() ? End::impact : End::force_vanishes));
+        event = result.end != StepOutcome::no_event;
+        released = result.end == StepOutcome::force_vanishes;
+        EXPECT_TRUE(!event || result.end == (held.empty() ? StepOutcome::impact : StepOutcome::force_vanishes));
         execution.accept(result);
     }
     const Trajectory trajectory = execution.finish(), alone = simulate(model, run);

@@ -5,7 +5,7 @@
 
 #include "core/systems.hpp"
 #include "output/output.hpp"
-#include "simulate/many.hpp"
+#include "simulate/batch.hpp"
 
 namespace achilles {
 namespace {
@@ -31,7 +31,7 @@ TEST(SmallTolerances, AreToldAndRaised) {
     EXPECT_EQ(to_text(raised), to_text(least));
     simulate_ends(
         model, 1, [&](std::size_t) { return run; },
-        [](std::size_t, Attempt&& attempt) { EXPECT_EQ(std::get<Trajectory>(attempt).run.options.tolerance, 1e-15); },
+        [](std::size_t, RunResult&& attempt) { EXPECT_EQ(std::get<Trajectory>(attempt).run.options.tolerance, 1e-15); },
         1);
     run.options.tolerance = -1e-30;
     EXPECT_THROW(simulate(model, run), InputError);

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/systems.hpp"
-#include "simulate/many.hpp"
+#include "simulate/batch.hpp"
 
 namespace achilles::test {
 namespace {
@@ -23,7 +23,7 @@ TEST_P(Floor, IsNeverPassedFromRandomStarts) {
     Starts starts(model, 7);
     std::vector<achilles::Run> runs;
     for (int i = 0; i < 100; ++i) runs.push_back(started(*model, starts.next()));
-    const auto faults = simulate_many(model, runs, [](std::size_t, Attempt&& attempt) {
+    const auto faults = simulate_many(model, runs, [](std::size_t, RunResult&& attempt) {
         if (std::holds_alternative<InputError>(attempt)) return std::string();  // not defined there
         const auto& trajectory = std::get<Trajectory>(attempt);
         // Between the ends of steps dense output is an interpolation, not better than the tolerance allows.
@@ -42,7 +42,7 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
     std::vector<std::string> faults(runs.size());
     simulate_ends(
         model, runs.size(), [&](std::size_t i) { return runs[i]; },
-        [&](std::size_t i, Attempt&& attempt) {
+        [&](std::size_t i, RunResult&& attempt) {
             if (std::holds_alternative<InputError>(attempt)) return;
             const auto& trajectory = std::get<Trajectory>(attempt);
             faults[i] = fault(trajectory, 0.0);
@@ -63,7 +63,7 @@ TEST_P(Floor, AndAllLawsStandAtRandom) {
             run.options.method = method;
             run.options.tolerance = 1e-12;
         }
-        const auto faults = simulate_many(model, runs, [](std::size_t, Attempt&& attempt) {
+        const auto faults = simulate_many(model, runs, [](std::size_t, RunResult&& attempt) {
             if (std::holds_alternative<InputError>(attempt)) return std::string();
             const auto& trajectory = std::get<Trajectory>(attempt);
             std::string wrong = fault(trajectory, 1e-8);
@@ -173,40 +173,40 @@ TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
 
 // Dips that later steps of a flight once decided as if the earlier ones had made no error, or none in the rate.
 TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
-    struct Known {
+    struct KnownDip {
         const char* system;
         double q[2], v[2], t, gap, tolerance;
     };
-    for (const Known& dip : {Known{"cart_pendulum",
-                                   {-3.191048979976677, 2.2773008319458494},
-                                   {2.5817853791625947, -4.869985999051176},
-                                   0.570540648,
-                                   1e-10,
-                                   1e-10},
-                             Known{"cart_pendulum",
-                                   {-0.9648433464781354, 0.9525713463017114},
-                                   {1.9053621296297845, 7.076267582465217},
-                                   0.828864869,
-                                   -1e-10,
-                                   1e-10},
-                             Known{"bead_in_ring",
-                                   {0.21661540591617764, 1.7879083218657499},
-                                   {-0.5069320739607583, 14.223896048396128},
-                                   0.342827484,
-                                   1e-13,
-                                   1e-10},
-                             Known{"double_pendulum",
-                                   {1.339918853161482, 0.055544840292523615},
-                                   {1.6533073264742093, -0.3729483604294108},
-                                   0.26692792,
-                                   9.999e-14,
-                                   1e-10},
-                             Known{"ball_on_sine",
-                                   {9.892436125524446, 3.3504934840822407},
-                                   {4.7934857386210155, -1.9906615167365507},
-                                   1.02761306,
-                                   1e-13,
-                                   1e-14}}) {
+    for (const KnownDip& dip : {KnownDip{"cart_pendulum",
+                                         {-3.191048979976677, 2.2773008319458494},
+                                         {2.5817853791625947, -4.869985999051176},
+                                         0.570540648,
+                                         1e-10,
+                                         1e-10},
+                                KnownDip{"cart_pendulum",
+                                         {-0.9648433464781354, 0.9525713463017114},
+                                         {1.9053621296297845, 7.076267582465217},
+                                         0.828864869,
+                                         -1e-10,
+                                         1e-10},
+                                KnownDip{"bead_in_ring",
+                                         {0.21661540591617764, 1.7879083218657499},
+                                         {-0.5069320739607583, 14.223896048396128},
+                                         0.342827484,
+                                         1e-13,
+                                         1e-10},
+                                KnownDip{"double_pendulum",
+                                         {1.339918853161482, 0.055544840292523615},
+                                         {1.6533073264742093, -0.3729483604294108},
+                                         0.26692792,
+                                         9.999e-14,
+                                         1e-10},
+                                KnownDip{"ball_on_sine",
+                                         {9.892436125524446, 3.3504934840822407},
+                                         {4.7934857386210155, -1.9906615167365507},
+                                         1.02761306,
+                                         1e-13,
+                                         1e-14}}) {
         const auto model = test::load(dip.system);
         auto run = model->default_run();
         run.options.method = Method::taylor;

@@ -25,7 +25,7 @@ end_time = {}
                              x, height, 4.0 * fall));
 }
 
-TEST(LandingsAtOnce, NeedNoOrderInACorner) {
+TEST(SimultaneousImpacts, NeedNoOrderInACorner) {
     for (const double height : {0.3, 1.0, 2.7})
         for (const double size : {0.0, 1e-17, 1e-16, 3e-16, 1e-15, 2e-15, 5e-15, 1e-14, 3e-14, 1e-13, 1e-12, 1e-10})
             for (const double apart : {size, -size})
@@ -36,7 +36,7 @@ TEST(LandingsAtOnce, NeedNoOrderInACorner) {
                     run.options.method = method;
                     const Trajectory trajectory = simulate(model, run);
                     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-                    EXPECT_EQ(trajectory.by_convention, 0);
+                    EXPECT_EQ(trajectory.ambiguous_impacts, 0);
                     EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
                     EXPECT_LT(trajectory.end.q.norm() + trajectory.end.v.norm(), 1e-12);
                     const double fall = std::sqrt(2.0 * height / 9.81);
@@ -52,7 +52,7 @@ TEST(LandingsAtOnce, NeedNoOrderInACorner) {
 }
 
 // On the axis of a V of half angle 0.6 from the vertical, turned by phi with its weight: both walls are reached at once.
-TEST(LandingsAtOnce, AreOneOnTheAxisOfATurnedV) {
+TEST(SimultaneousImpacts, AreOneOnTheAxisOfATurnedV) {
     for (int i = 0; i < 80; ++i) {
         const double phi = -0.4 + 0.01 * i;
         SCOPED_TRACE(phi);
@@ -70,7 +70,7 @@ end_time = 2
         const Trajectory trajectory = simulate(model, model->default_run());
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
-        EXPECT_GE(trajectory.by_convention, 1);
+        EXPECT_GE(trajectory.ambiguous_impacts, 1);
         EXPECT_EQ(trajectory.events[0].contacts.count(), 2);
         EXPECT_EQ(trajectory.events[1].contacts.count(), 2);
         EXPECT_NEAR(trajectory.events[1].t, 3.0 * std::sqrt(2.0 / 9.81) - std::sqrt(2.0 / 9.81), 1e-9);

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "certify/pair.hpp"
+#include "certify/two_contacts.hpp"
 #include "contacts/moreau.hpp"
 #include "core/systems.hpp"
 #include "floor/laws.hpp"
@@ -199,15 +199,15 @@ TEST(Pairs, WhatCollapsesWithoutAForceIsToldAsChatter) {
 
 // The formulas of theory-gaps.md 3 with r0 = 1 and Delta = omega = 0, evaluated by another program.
 TEST(Pairs, TheBoundIsThatOfTheTheory) {
-    struct Known {
+    struct PairReference {
         double a[2], W[3], e[2], T;
     };
-    const Known all[] = {{{1.0, 1.0}, {1.0, 0.5, 1.0}, {0.5, 0.5}, 78.044111382075},
-                         {{1.0, 1.3}, {1.0, -0.6, 2.0}, {0.5, 0.5}, 46.927026349887},
-                         {{1.0, 1.3}, {1.0, 0.4, 2.0}, {0.3, 0.6}, 88.202842317443},
-                         // nothing draws the second back while the first is open
-                         {{1.0, 0.0}, {1.0, -1.0, 1.5}, {0.5, 0.4}, 151.816179201},
-                         {{1.5, -0.02}, {2.0, -0.5, 1.0}, {0.3, 0.6}, 166.003114177}};
+    const PairReference all[] = {{{1.0, 1.0}, {1.0, 0.5, 1.0}, {0.5, 0.5}, 78.044111382075},
+                                 {{1.0, 1.3}, {1.0, -0.6, 2.0}, {0.5, 0.5}, 46.927026349887},
+                                 {{1.0, 1.3}, {1.0, 0.4, 2.0}, {0.3, 0.6}, 88.202842317443},
+                                 // nothing draws the second back while the first is open
+                                 {{1.0, 0.0}, {1.0, -1.0, 1.5}, {0.5, 0.4}, 151.816179201},
+                                 {{1.5, -0.02}, {2.0, -0.5, 1.0}, {0.3, 0.6}, 166.003114177}};
     for (const auto& [a, W, e, T] : all) {
         PairAtCollision pair;
         const double det = W[0] * W[2] - W[1] * W[1];
@@ -258,7 +258,7 @@ TEST(Pairs, RoundingsDoNotKeepBlocksBouncing) {
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     EXPECT_LT(trajectory.statistics.impacts, 100);
     ASSERT_TRUE(trajectory.events.back().certificate);
-    EXPECT_TRUE(trajectory.events.back().certificate->below_rounding);
+    EXPECT_TRUE(trajectory.events.back().certificate->cut_at_resolution);
 }
 
 TEST(Pairs, NothingIsClaimedOfElasticImpactsOrOfWhatIsNotPressed) {

@@ -88,7 +88,7 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
         for (const Event& event : test::events_of(tiny, Event::Kind::zeno)) {
             EXPECT_TRUE(event.certificate->certified);
             if (problem.key == "double_pendulum") continue;  // its gap is a coordinate, exact near 0: 1e-14 can be met
-            EXPECT_TRUE(event.certificate->below_rounding);
+            EXPECT_TRUE(event.certificate->cut_at_resolution);
             EXPECT_GT(event.certificate->velocity_bound, 1e-14);  // the bound it has, not the one that was asked for
             EXPECT_LT(event.certificate->velocity_bound, 1e-5);
         }
@@ -109,7 +109,7 @@ TEST(PaperProblems, BoundsThatNothingMeetsEndBelowRounding) {
     EXPECT_LT(trajectory.statistics.impacts, 150);
     const auto points = test::events_of(trajectory, Event::Kind::zeno);
     EXPECT_FALSE(points.empty());
-    for (const Event& event : points) EXPECT_TRUE(event.certificate->below_rounding);
+    for (const Event& event : points) EXPECT_TRUE(event.certificate->cut_at_resolution);
 }
 
 TEST(PaperProblems, SharpConditionsCutEarlierAndAreRight) {

@@ -53,7 +53,7 @@ Trajectory simulated(const std::shared_ptr<const Model>& model, Method method = 
     run.options.method = method;
     Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    EXPECT_FALSE(trajectory.made_again_by);
+    EXPECT_FALSE(trajectory.rerun_options);
     return trajectory;
 }
 
@@ -65,20 +65,20 @@ void expect_rest(const Plate& plate) {
         EXPECT_TRUE(trajectory.events.empty());
         ASSERT_EQ(trajectory.phases.size(), 1u);
         EXPECT_EQ(trajectory.phases[0].mode.held().count(), static_cast<int>(plate.supports.size()));
-        EXPECT_TRUE(trajectory.phases[0].not_unique());
+        EXPECT_TRUE(trajectory.phases[0].is_nonunique());
         EXPECT_NEAR(trajectory.end.q.tail(3).norm() + trajectory.end.v.tail(3).norm(), 0.0, 1e-12);
         expect_laws(trajectory);
     }
 }
 
-TEST(Redundant, WhoCarriesMayChangeWithoutAnEvent) {
+TEST(RedundantContacts, WhoCarriesMayChangeWithoutAnEvent) {
     for (const char* x : {"s/4 - 1/2", "0.6*cos(3*t)"})
         for (const char* y : {"0.2", "0", "s/4 - 1/2", "0.6*sin(2*t)"}) expect_rest({four_legs, "2", x, y});
     expect_rest({beam, "1", "s/4 - 0.6", "0"});
 }
 
 // Its force touches 0 and grows again: the load comes up to a diagonal, or to the middle, where that of any three does.
-TEST(Redundant, AForceThatOthersShareMayTouchZero) {
+TEST(RedundantContacts, AForceThatOthersShareMayTouchZero) {
     expect_rest({four_legs, "2", "0.3 + 0.2*cos(t)^2", "0.3"});
     expect_rest({four_legs, "2", "0.3*cos(t)^2", "0"});
     expect_rest({four_legs, "4*cos(t)^2", "0.4", "0.1"});
@@ -88,7 +88,7 @@ TEST(Redundant, AForceThatOthersShareMayTouchZero) {
 }
 
 // Where all forces vanish nobody is left to share, and what comes then cannot be told.
-TEST(Redundant, WhereEveryForceTouchesZeroNothingIsDecided) {
+TEST(RedundantContacts, WhereEveryForceTouchesZeroNothingIsDecided) {
     const auto model = Plate{four_legs, "4*cos(t)^2", "0.4", "0.1", 0.0}.model();
     const Trajectory trajectory = simulate(model, model->default_run());
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::undecided);
@@ -96,7 +96,7 @@ TEST(Redundant, WhereEveryForceTouchesZeroNothingIsDecided) {
 }
 
 // The load moves over the last support: that alone keeps its contact, from where the load and the weight are balanced on it.
-TEST(Redundant, OnlyThoseAreReleasedThatOpen) {
+TEST(RedundantContacts, OnlyThoseAreReleasedThatOpen) {
     for (const Method method : {Method::taylor, Method::dopri5}) {
         const Trajectory trajectory = simulated(Plate{beam, "2", "s", "0"}.model(), method);
         ASSERT_EQ(trajectory.events.size(), 1u);
@@ -105,13 +105,13 @@ TEST(Redundant, OnlyThoseAreReleasedThatOpen) {
         EXPECT_NEAR(release.t, 1.5, 1e-9);
         EXPECT_EQ(release.contacts, ContactSet::of(0).with(1));
         EXPECT_EQ(release.mode.held(), ContactSet::of(2));
-        EXPECT_FALSE(trajectory.phases[1].not_unique());
+        EXPECT_FALSE(trajectory.phases[1].is_nonunique());
         expect_laws(trajectory);
     }
 }
 
 // The forces that are shown: the load's share of each leg, of least norm, also where three legs would do.
-TEST(Redundant, ForcesAreOfLeastNorm) {
+TEST(RedundantContacts, ForcesAreOfLeastNorm) {
     const Trajectory trajectory = simulated(Plate{four_legs, "1", "s/4 - 1/2", "0.2"}.model());
     ContactForces forces(*trajectory.model, trajectory.run.parameters);
     Sampler sampler(trajectory);
@@ -123,7 +123,7 @@ TEST(Redundant, ForcesAreOfLeastNorm) {
     }
 }
 
-TEST(Redundant, IsTold) {
+TEST(RedundantContacts, IsTold) {
     const Trajectory trajectory = simulated(Plate{beam, "2", "s", "0"}.model());
     const auto json = nlohmann::json::parse(to_json(trajectory, {}));
     EXPECT_EQ(json["phases"][0]["not_unique"], true);
@@ -135,7 +135,7 @@ TEST(Redundant, IsTold) {
 }
 
 // A gap given twice is that gap: of a table that moves, which throws the ball and catches it.
-TEST(Redundant, AGapThatIsGivenTwiceIsThrownAndCaught) {
+TEST(RedundantContacts, AGapThatIsGivenTwiceIsThrownAndCaught) {
     const auto ball = [](const std::string& second) {
         return test::typed(fmt::format(R"toml(
 title = "Ball on a moving table"
@@ -161,7 +161,7 @@ end_time = 10
 }
 
 // Random supports and loads, some of which tip it over: laws, another method, and contacts in the other order.
-TEST(Redundant, AnyPlateObeysTheLaws) {
+TEST(RedundantContacts, AnyPlateObeysTheLaws) {
     std::mt19937 random(5);
     const auto number = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
     int rested = 0, released = 0;
@@ -202,7 +202,7 @@ TEST(Redundant, AnyPlateObeysTheLaws) {
 }
 
 // A list of contacts in a message names at least one: with gaps scaled by 1e8 'wall' touches while none is held.
-TEST(Redundant, NamesNoEmptySet) {
+TEST(RedundantContacts, NamesNoEmptySet) {
     const auto model = test::typed(R"toml(
 title = "ball between a moving floor, a wall and a disc"
 [[coordinate]]

@@ -232,7 +232,7 @@ TEST(Simulate, ARunEndsWhereItsMemoryDoes) {
         EXPECT_NE(trajectory.outcome.message.find(fmt::format("the {:.4g} MB", memory / 1e6)), std::string::npos)
             << trajectory.outcome.message;
         const double kept = static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
-                                                trajectory.pieces.size() * sizeof(Piece));
+                                                trajectory.pieces.size() * sizeof(DenseSegment));
         EXPECT_GT(kept, 0.8 * memory);
         EXPECT_LT(kept, memory + 4096.0);
         EXPECT_GT(trajectory.end_time, last);
@@ -250,11 +250,11 @@ Run endless(const Model& model) {
     return run;
 }
 
-TEST(Watched, ARunEndsWhereAnotherThreadStopsIt) {
+TEST(MonitoredRun, ARunEndsWhereAnotherThreadStopsIt) {
     const auto model = test::load("ball_on_sine");
     const auto run = endless(*model);
     std::stop_source source;
-    Watch watch;
+    RunMonitor watch;
     watch.stop = source.get_token();
     std::thread hand([&] {
         while (watch.impacts.load() < 20) std::this_thread::yield();
@@ -274,11 +274,11 @@ TEST(Watched, ARunEndsWhereAnotherThreadStopsIt) {
     EXPECT_EQ(whole.events.back().q, stopped.events.back().q);
 }
 
-TEST(Watched, ARunStoppedBeforehandIsItsStart) {
+TEST(MonitoredRun, ARunStoppedBeforehandIsItsStart) {
     const auto model = test::load("ball_on_sine");
     std::stop_source source;
     source.request_stop();
-    Watch watch;
+    RunMonitor watch;
     watch.stop = source.get_token();
     const Trajectory start = simulate(model, model->default_run(), &watch);
     EXPECT_EQ(start.outcome.kind, Outcome::Kind::cancelled);
@@ -288,9 +288,9 @@ TEST(Watched, ARunStoppedBeforehandIsItsStart) {
     EXPECT_EQ(Sampler(start).all(3).size(), 1U);
 }
 
-TEST(Watched, ARunThatIsOnlyWatchedIsTheSameRun) {
+TEST(MonitoredRun, ARunThatIsOnlyWatchedIsTheSameRun) {
     const auto model = test::load("ball_on_sine");
-    Watch watch;
+    RunMonitor watch;
     const Trajectory alone = simulate(model, model->default_run());
     EXPECT_EQ(simulate(model, model->default_run(), &watch).coefficients, alone.coefficients);
     EXPECT_EQ(watch.impacts.load(), alone.statistics.impacts);

@@ -44,8 +44,8 @@ TEST(SymmetricRuns, ARodDroppedFlatGoesOnAndTellsWhatEachOrderWouldGive) {
     EXPECT_EQ(landing.contacts, ContactSet::of(0).with(1));
     ASSERT_TRUE(landing.joint);
     EXPECT_TRUE(landing.joint->order_matters);
-    EXPECT_FALSE(landing.joint->not_unique);
-    EXPECT_EQ(trajectory.by_convention, 1);
+    EXPECT_FALSE(landing.joint->is_nonunique);
+    EXPECT_EQ(trajectory.ambiguous_impacts, 1);
     EXPECT_NEAR(landing.v_after[0], 0.5, 1e-12);
     EXPECT_NEAR(landing.v_after[1], 0.0, 1e-12);
     const auto& all = landing.joint->alternatives;
@@ -76,7 +76,7 @@ TEST(SymmetricRuns, ARodDroppedNearlyFlatDoesWhatAnAlternativeTells) {
         run.options.end_time = 1.01;
         const Trajectory trajectory = simulate(model, run);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-        EXPECT_EQ(trajectory.by_convention, 0);
+        EXPECT_EQ(trajectory.ambiguous_impacts, 0);
         const double left = left_first ? 0.40625 : 0.265625, right = left_first ? 0.265625 : 0.40625;
         EXPECT_EQ(trajectory.events.at(0).contacts, ContactSet::of(left_first ? 0 : 1));
         const double fall = trajectory.end_time - trajectory.events.back().t;
@@ -109,7 +109,7 @@ end_time = {}
         EXPECT_EQ(two.outcome.kind, Outcome::Kind::end_time) << two.outcome.message;
         ASSERT_FALSE(two.events.empty());
         ASSERT_TRUE(two.events[0].joint);
-        EXPECT_TRUE(two.events[0].joint->not_unique);
+        EXPECT_TRUE(two.events[0].joint->is_nonunique);
         EXPECT_NEAR(two.events[0].t, one.events[0].t, 1e-12);
         EXPECT_LT((two.end.q - one.end.q).norm(), 1e-12);
         EXPECT_LT((two.end.v - one.end.v).norm(), 1e-12);

@@ -10,7 +10,7 @@ namespace achilles {
 namespace {
 
 // Two thousand seconds of which the first twelve have all events: a straight line from start to end would be drawn there.
-TEST(Thinned, StepsAroundEventsStay) {
+TEST(ThinnedTrajectory, StepsAroundEventsStay) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
     run.options.end_time = 2000.0;
@@ -28,7 +28,7 @@ TEST(Thinned, StepsAroundEventsStay) {
 }
 
 // A run may end at an event before its first step.
-TEST(Thinned, ARunWithoutStepsHasItsEvents) {
+TEST(ThinnedTrajectory, ARunWithoutStepsHasItsEvents) {
     const auto floor = test::load("ball_on_floor");
     Trajectory trajectory = simulate(floor, floor->default_run());
     trajectory.pieces.clear();
@@ -36,7 +36,7 @@ TEST(Thinned, ARunWithoutStepsHasItsEvents) {
 }
 
 // Where everything is full of events the bound holds all the same.
-TEST(Thinned, ManyImpactsAreThinnedToo) {
+TEST(ThinnedTrajectory, ManyImpactsAreThinnedToo) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();
     assign(run, floor->description(), "e=1");

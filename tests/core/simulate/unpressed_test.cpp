@@ -6,8 +6,8 @@
 
 #include "core/systems.hpp"
 #include "enclose/enclosure.hpp"
+#include "simulate/batch.hpp"
 #include "simulate/contact_forces.hpp"
-#include "simulate/many.hpp"
 
 namespace achilles::test {
 namespace {
@@ -19,7 +19,7 @@ Trajectory to_its_end(const std::shared_ptr<const Model>& model, Method method =
     run.options.method = method;
     Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    EXPECT_FALSE(trajectory.made_again_by) << trajectory.undecided;
+    EXPECT_FALSE(trajectory.rerun_options) << trajectory.rerun_reason;
     return trajectory;
 }
 
@@ -111,7 +111,7 @@ TEST(UnpressedContacts, LetOthersCompleteBesideThem) {
                 SCOPED_TRACE(fmt::format("{} {} {}", factor, force, to_text(method)));
                 const Trajectory trajectory = to_its_end(wall_and_floor(factor, force), method);
                 EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
-                EXPECT_EQ(trajectory.by_convention, 0);
+                EXPECT_EQ(trajectory.ambiguous_impacts, 0);
                 const Event& rest = trajectory.events.back();
                 ASSERT_EQ(rest.kind, Event::Kind::zeno);
                 EXPECT_EQ(rest.contacts, ContactSet::of(1));
@@ -162,7 +162,7 @@ TEST(UnpressedContacts, AreTheSameSideBySide) {
         int ends = 0;
         simulate_ends(
             model, 9, [&](std::size_t) { return model->default_run(); },
-            [&](std::size_t, Attempt&& attempt) {
+            [&](std::size_t, RunResult&& attempt) {
                 const Trajectory& one = std::get<Trajectory>(attempt);
                 EXPECT_EQ(one.outcome.kind, Outcome::Kind::end_time) << one.outcome.message;
                 EXPECT_EQ(one.end_mode.held(), alone.end_mode.held());
@@ -179,21 +179,21 @@ TEST(UnpressedContacts, StayClosedInProofs) {
     for (const char* gap : {"x", "3*x", "1e-8*x"})
         for (const char* force : {"-0.2*x'", "0", "-4*x"}) {
             const auto model = stop(force, gap);
-            const Enclosure proof = prove(model, claim_as_written(model->default_run()));
+            const Enclosure proof = prove(model, problem_from_decimals(model->default_run()));
             ASSERT_TRUE(proof.end) << gap << " " << force << ": " << proof.outcome.message;
             ASSERT_EQ(proof.events.size(), 1u);
             EXPECT_TRUE(proof.end->q[0].contains(0.0));
             EXPECT_LT(width(proof.end->q[0]), 1e-12);
         }
     const auto model = wall_and_floor("3", "-0.2*x'");
-    const Enclosure proof = prove(model, claim_as_written(model->default_run()));
+    const Enclosure proof = prove(model, problem_from_decimals(model->default_run()));
     ASSERT_TRUE(proof.end) << proof.outcome.message;
     EXPECT_EQ(proof.events.back().kind, Event::Kind::zeno);
     EXPECT_TRUE(proof.events.back().t.contains(std::sqrt(2.0 * 5.0 / 9.81) * 3.0));
     EXPECT_EQ(proof.events.back().mode.held(), ContactSet::of(0).with(1));
     // A force that is 0 at an instant presses nothing, and holds nothing.
     const auto instant = stop("t^2", "x", "", "start = 0");
-    EXPECT_FALSE(prove(instant, claim_as_written(instant->default_run())).end);
+    EXPECT_FALSE(prove(instant, problem_from_decimals(instant->default_run())).end);
 }
 
 }  // namespace

@@ -7,17 +7,17 @@
 namespace achilles {
 namespace {
 
-using test::Change, test::changed, test::good, test::told;
+using test::FileEdit, test::changed, test::good, test::told;
 
-class Advice : public testing::TestWithParam<Change> {};
+class Advice : public testing::TestWithParam<FileEdit> {};
 
 TEST_P(Advice, IsGiven) {
-    const Change& change = GetParam();
+    const FileEdit& change = GetParam();
     EXPECT_EQ(told(changed(good, {{change.from, change.to}})), change.message);
 }
 
 // What would be right, in a line of its own.
-const Change with_advice[] = {
+const FileEdit with_advice[] = {
     {"\"m*x\"\n", "\"m*x\n",
      "f.toml:16:17: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly prohibited\n   "
      " potential = \"m*x\n                    ^\nput text in two quotes: potential = \"m*x\""},
@@ -94,7 +94,7 @@ const Change with_advice[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Lines, Advice, testing::ValuesIn(with_advice));
 
-const Change of_other_languages[] = {
+const FileEdit of_other_languages[] = {
     {"\"m*x\"", "\"m\u00b7x\"",
      "f.toml:16:15: unexpected '\u00b7'; write '*' for a product\n    potential = \"m\u00b7x\"\n                  "
      "^\nwrite m*x"},

@@ -18,7 +18,7 @@ std::string with_constraints(const std::string& constraints) {
     return changed(good, {{only_one, constraints}, {"gap'", "gap_knee'"}});
 }
 
-TEST(Constraints, one_needs_no_name) {
+TEST(Constraints, OneNeedsNoName) {
     const SystemDescription system = parse_system(good);
     ASSERT_EQ(system.constraints.size(), 1u);
     EXPECT_EQ(system.constraints[0].name, "contact");
@@ -26,7 +26,7 @@ TEST(Constraints, one_needs_no_name) {
     EXPECT_EQ(parse_system(changed(good, {{only_one, knee}})).constraints[0].name, "knee");
 }
 
-TEST(Constraints, several_are_read) {
+TEST(Constraints, SeveralAreRead) {
     const SystemDescription system = parse_system(with_constraints(knee + wall));
     ASSERT_EQ(system.constraints.size(), 2u);
     EXPECT_EQ(system.constraints[0].name, "knee");
@@ -37,7 +37,7 @@ TEST(Constraints, several_are_read) {
     EXPECT_EQ(system.parameters[1].range, (std::array{0.0, 1.0}));  // a restitution
 }
 
-TEST(Constraints, of_several_every_gap_is_plotted) {
+TEST(Constraints, OfSeveralEveryGapIsPlotted) {
     const std::string views = "[[view]]\nname = \"path\"\nx = \"x\"\ny = [\"gap_knee'\"]\n";
     const SystemDescription system = parse_system(changed(with_constraints(knee + wall), {{views, ""}}));
     ASSERT_EQ(system.views.size(), 5u);
@@ -48,7 +48,7 @@ TEST(Constraints, of_several_every_gap_is_plotted) {
               "");
 }
 
-TEST(Constraints, have_drawings_of_their_own) {
+TEST(Constraints, HaveDrawingsOfTheirOwn) {
     const std::string drawn =
         "[[constraint.drawing]]\nshape = \"segment\"\nfrom = [0, 0]\nto = [\"x\", 1]\n"
         "[[constraint.drawing]]\nshape = \"disc\"\nat = [0, 0]\nradius = \"m\"\n";
@@ -78,13 +78,13 @@ std::string sixteen_and(int more) {
     return with_constraints(all);
 }
 
-TEST(Constraints, are_at_most_sixteen) {
+TEST(Constraints, AreAtMostSixteen) {
     EXPECT_EQ(told_by_reading(sixteen_and(0)), "");
     EXPECT_EQ(parse_system(sixteen_and(0)).constraints.size(), 16u);
     EXPECT_EQ(told_by_reading(sixteen_and(2)), "f.toml:81:1: more than 16 [[constraint]]\n    [[constraint]]\n    ^");
 }
 
-TEST(Constraints, of_several_each_needs_a_name_of_its_own) {
+TEST(Constraints, OfSeveralEachNeedsANameOfItsOwn) {
     const std::string no_name = changed(wall, {{"name = \"wall\"\n", ""}});
     EXPECT_EQ(told_by_reading(with_constraints(knee + no_name)),
               "f.toml:21:1: missing key 'name' in [[constraint]]\n    [[constraint]]\n    ^\nwith several constraints "
@@ -99,7 +99,7 @@ TEST(Constraints, of_several_each_needs_a_name_of_its_own) {
               "f.toml:18:9: '2' is not a");
 }
 
-TEST(Constraints, of_several_a_plain_gap_is_of_none) {
+TEST(Constraints, OfSeveralAPlainGapIsOfNone) {
     EXPECT_EQ(told_by_reading(changed(with_constraints(knee + wall), {{"gap_knee'", "gap''"}})),
               "f.toml:36:7: gap'' is ambiguous with several constraints: gap_knee'', gap_wall''\n    y = [\"gap''\"]\n "
               "         ^");
@@ -110,7 +110,7 @@ TEST(Constraints, of_several_a_plain_gap_is_of_none) {
         "f.toml:16:16: 'gap_wall' is allowed only in a [[view]]\n    potential = \"m*gap_wall\"\n                   ^");
 }
 
-TEST(Constraints, of_several_have_names_for_their_gaps_and_forces) {
+TEST(Constraints, OfSeveralHaveNamesForTheirGapsAndForces) {
     const std::vector<std::pair<std::string, std::string>> renamed{
         {"name = \"m\"", "name = \"gap_m\""}, {"m/2", "gap_m/2"}, {"\"m*x\"", "\"gap_m*x\""}};
     EXPECT_EQ(told_by_reading(changed(good, renamed)), "") << "of one gap it is free";

@@ -30,7 +30,7 @@ const std::string constraint = "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n
 const std::string title = "title = \"drop\"\n";                // first line of what is accepted
 const std::string least = coordinate + energies + constraint;  // lines 1-4, 5-7, 8-10
 
-TEST(Description, a_view_may_have_a_label_and_a_unit) {
+TEST(Description, AViewMayHaveALabelAndAUnit) {
     const std::string view = "[[view]]\nname = \"v\"\nx = \"t\"\ny = \"2*x\"\n";
     const ViewDescription own =
         parse_system(title + least + view + "label = \"twice\"\nunit = \"km\"\n", "f.toml").views[0];
@@ -42,7 +42,7 @@ TEST(Description, a_view_may_have_a_label_and_a_unit) {
 }
 
 // A person writes "30 deg", not sixteen digits of it.
-TEST(Description, numbers_of_the_gallery_are_readable) {
+TEST(Description, NumbersOfTheGalleryAreReadable) {
     constexpr std::size_t longest = 10;
     for (const std::string& name : test::all_systems()) {
         std::ifstream stream(test::source_file("assets/systems/" + name + ".toml"));
@@ -61,7 +61,7 @@ TEST(Description, numbers_of_the_gallery_are_readable) {
     EXPECT_EQ(test::load("ball_on_egg_crate")->default_run().parameters[2], 6.283185307179586);
 }
 
-TEST(Description, reads_a_full_file) {
+TEST(Description, ReadsAFullFile) {
     const SystemDescription system = parse_system(R"toml(
 title  = "Ball"
 source = "somewhere"
@@ -195,7 +195,7 @@ anything = { goes = [1, "here"] }
     EXPECT_EQ(system.views[1].y[1].text, "gap'");
 }
 
-TEST(Description, fills_in_what_is_absent) {
+TEST(Description, FillsInWhatIsAbsent) {
     const SystemDescription system = parse_system(title + least, "dir/drop.toml");
     EXPECT_EQ(system.title, "drop");
     EXPECT_EQ(system.options.end_time, 10.0);
@@ -213,13 +213,13 @@ TEST(Description, fills_in_what_is_absent) {
     EXPECT_EQ(two.views[3].y[0].text, "y");
 }
 
-TEST(Description, columns_count_characters_not_bytes) {
+TEST(Description, ColumnsCountCharactersNotBytes) {
     EXPECT_EQ(message_of("title = \"Bäll\" x\r\n"),
               "f.toml:1:16: not valid TOML: expected a comment or whitespace, saw 'x'\n    title = \"Bäll\" x\n        "
               "           ^");
 }
 
-TEST(Description, columns_inside_an_expression_count_characters) {
+TEST(Description, ColumnsInsideAnExpressionCountCharacters) {
     std::string text = title + least;
     text.replace(text.find("\"x\"\n[[c"), 3, "\"x*\xC3\xA9 + # y\"");
     EXPECT_EQ(message_of(text).substr(0, 25), "f.toml:8:16: unexpected '");
@@ -228,7 +228,7 @@ TEST(Description, columns_inside_an_expression_count_characters) {
               "f.toml:11:18: unexpected '\xC3\xA9'\n    restitution = \"1 \xC3\xA9\"\n                     ^");
 }
 
-TEST(Description, expressions_know_where_they_start) {
+TEST(Description, ExpressionsKnowWhereTheyStart) {
     const SystemDescription one = parse_system(title + least);
     EXPECT_EQ(one.kinetic.at.line, 7);
     EXPECT_EQ(one.kinetic.at.column, 12);
@@ -243,13 +243,13 @@ TEST(Description, expressions_know_where_they_start) {
     EXPECT_STREQ(error.what(), "<text>:10:8: unknown name 'x'\n    gap = \"x\"\n           ^");
 }
 
-TEST(Description, at_most_eight_coordinates) {
+TEST(Description, AtMostEightCoordinates) {
     std::string text = title + least;
     for (int i = 0; i < 9; ++i) text += "[[coordinate]]\nname = \"q" + std::to_string(i) + "\"\nstart = 0\nrate = 0\n";
     EXPECT_EQ(message_of(text), "f.toml:41:9: more than 8 coordinates\n    name = \"q7\"\n            ^");
 }
 
-TEST(Description, hostile_files_end_in_a_message) {
+TEST(Description, HostileFilesEndInAMessage) {
     const std::string many(1 << 20, 'a');
     const std::string long_line = message_of("title = \"" + many + "\" x");
     EXPECT_EQ(long_line.rfind("f.toml:1:1048588: not valid TOML: expected a comment", 0), 0u);
@@ -308,7 +308,7 @@ std::string assignment_error(const std::string& text) {
     return "";
 }
 
-TEST(Description, assigns) {
+TEST(Description, Assigns) {
     const SystemDescription system = parse_system(title + least + "[[parameter]]\nname = \"mass\"\nvalue = 1\n");
     auto run = default_run(system);
     assign(run, system, "mass=2.5");
@@ -334,7 +334,7 @@ const std::string arm =
     "[lagrangian]\nkinetic = \"L^2*theta'^2/2\"\npotential = \"L*sin(theta - tilt)\"\n"
     "[[constraint]]\ngap = \"theta\"\nrestitution = 0.5\n[run]\nend_time = \"2*pi\"\n";
 
-TEST(Description, numbers_may_be_constant_expressions) {
+TEST(Description, NumbersMayBeConstantExpressions) {
     const SystemDescription system = parse_system(arm);
     const double degree = 0.017453292519943295;
     EXPECT_DOUBLE_EQ(system.coordinates[0].start, 30 * degree);
@@ -357,7 +357,7 @@ TEST(Description, numbers_may_be_constant_expressions) {
     EXPECT_EQ(run.parameters[1], 2.0 / 3.0);
 }
 
-TEST(Description, values_outside_a_range_of_the_file_are_told) {
+TEST(Description, ValuesOutsideARangeOfTheFileAreTold) {
     const SystemDescription system = parse_system(arm);
     auto run = default_run(system);
     EXPECT_TRUE(outside_ranges(system, run).empty());
@@ -371,7 +371,7 @@ TEST(Description, values_outside_a_range_of_the_file_are_told) {
                   "theta' = -6 rad/s is outside its range, -5 to 6.28319", "L = 2 m is outside its range, 0.1 to 1"}));
 }
 
-TEST(Description, lines_too_thin_to_be_seen_are_told) {
+TEST(Description, LinesTooThinToBeSeenAreTold) {
     std::string text = arm;
     text += "\n[[drawing]]\nshape = \"segment\"\nfrom = [\"0\", \"0\"]\nto = [\"1\", \"0\"]\nwidth = ";
     const auto line = std::count(text.begin(), text.end(), '\n') + 1;
@@ -394,7 +394,7 @@ std::string reading_error(const std::filesystem::path& file) {
     return "";
 }
 
-TEST(Description, unreadable_files_say_why) {
+TEST(Description, UnreadableFilesSayWhy) {
     EXPECT_EQ(reading_error("no/such.toml"), "no/such.toml: there is no folder no");
     EXPECT_EQ(reading_error("such.toml"), "such.toml: there is no such file");
     EXPECT_EQ(reading_error("/"), "/: cannot read the file: it is a directory");

@@ -52,10 +52,10 @@ inline std::string changed(std::string text, const std::vector<std::pair<std::st
 }
 
 // One change of the good text, and all that is told about it.
-struct Change {
+struct FileEdit {
     std::string from, to, message;
 };
 
-inline void PrintTo(const Change& change, std::ostream* out) { *out << change.to; }
+inline void PrintTo(const FileEdit& change, std::ostream* out) { *out << change.to; }
 
 }  // namespace achilles::test

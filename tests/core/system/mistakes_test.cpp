@@ -7,18 +7,18 @@
 namespace achilles {
 namespace {
 
-using test::Change, test::changed, test::good, test::told;
+using test::FileEdit, test::changed, test::good, test::told;
 
 TEST(GoodText, HasNoMistake) { EXPECT_EQ(told(good), ""); }
 
-class Mistakes : public testing::TestWithParam<Change> {};
+class Mistakes : public testing::TestWithParam<FileEdit> {};
 
 TEST_P(Mistakes, AreToldWithTheirPlace) {
-    const Change& change = GetParam();
+    const FileEdit& change = GetParam();
     EXPECT_EQ(told(changed(good, {{change.from, change.to}})), change.message);
 }
 
-const Change in_toml[] = {
+const FileEdit in_toml[] = {
     {"\"drop\"\n", "\n", "f.toml:1:9: not valid TOML: expected value, saw '\\n'\n    title = \n            ^"},
     {"start = 1\n", "start 1\n",
      "f.toml:4:7: not valid TOML: expected '=', saw '1'\n    start 1\n          ^\nwrite an equals sign: start = 1"},
@@ -32,7 +32,7 @@ const Change in_toml[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Toml, Mistakes, testing::ValuesIn(in_toml));
 
-const Change in_keys[] = {
+const FileEdit in_keys[] = {
     {"start = 1", "strat = 1",
      "f.toml:4:1: unknown key 'strat' in [[coordinate]]; did you mean 'start'?\n    strat = 1\n    ^\nknown keys: "
      "name, start, rate, force, unit, range, rate_range"},
@@ -64,7 +64,7 @@ const Change in_keys[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Keys, Mistakes, testing::ValuesIn(in_keys));
 
-const Change in_types[] = {
+const FileEdit in_types[] = {
     {"title = \"drop\"", "title = 1",
      "f.toml:1:9: 'title' in a system file must be a string, not a number\n    title = 1\n            ^"},
     {"start = 1", "start = \"2*fast\"",
@@ -133,7 +133,7 @@ const Change in_types[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Types, Mistakes, testing::ValuesIn(in_types));
 
-const Change in_values[] = {
+const FileEdit in_values[] = {
     {"start = 1", "start = nan",
      "f.toml:4:9: 'start' in [[coordinate]] must be finite, not nan\n    start = nan\n            ^"},
     {"rate = 0.5", "rate = -inf",
@@ -191,7 +191,7 @@ const Change in_values[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Values, Mistakes, testing::ValuesIn(in_values));
 
-const Change in_namesof[] = {
+const FileEdit in_namesof[] = {
     {"name = \"theta\"", "name = \"sin\"",
      "f.toml:7:9: the name 'sin' is reserved\n    name = \"sin\"\n            ^\nfunctions, t, pi, gap, lambda, "
      "energy, work, loss, power and deg are reserved: choose another name\n\nf.toml:15:24: unknown name theta'\n    "
@@ -225,7 +225,7 @@ const Change in_namesof[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Names, Mistakes, testing::ValuesIn(in_namesof));
 
-const Change in_expression[] = {
+const FileEdit in_expression[] = {
     {"\"m*x\"", "\"m*xx\"",
      "f.toml:16:16: unknown name 'xx'; did you mean 'x'?\n    potential = \"m*xx\"\n                   ^"},
     {"\"m*x\"", "\"mm*x + 2*mm\"",
@@ -311,7 +311,7 @@ const Change in_expression[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Expression, Mistakes, testing::ValuesIn(in_expression));
 
-const Change in_kinetic[] = {
+const FileEdit in_kinetic[] = {
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2) + x'",
      "f.toml:15:36: the term x' of the kinetic energy has degree 1 in the rates\n    kinetic = \"m/2*(x'^2 + theta'^2) "
      "+ x'\"\n                                       ^\nkinetic energy must be quadratic in the rates, as in m/2*x'^2"},
@@ -347,7 +347,7 @@ const Change in_kinetic[] = {
 };
 INSTANTIATE_TEST_SUITE_P(Kinetic, Mistakes, testing::ValuesIn(in_kinetic));
 
-const Change in_start[] = {
+const FileEdit in_start[] = {
     {"start = 1", "start = -1",
      "f.toml:18:8: the gap is negative at the start: h = -1\n    gap = \"x - sin(theta)/9\"\n           ^\nchoose a "
      "start with h(q) >= 0, or reverse its sign: the gap is positive where the system is free"},

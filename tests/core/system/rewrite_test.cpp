@@ -23,7 +23,7 @@ std::string with_parameters(const std::string& parameters, const std::string& po
     return changed(good, {{"[lagrangian]", parameters + "[lagrangian]"}, {"\"m*x\"", "\"" + potential + "\""}});
 }
 
-TEST(Derived, are_no_parameters_of_a_run) {
+TEST(DerivedParameters, AreNoParametersOfARun) {
     const SystemDescription system =
         parse_system(with_parameters(parameter("J", "m*L^2/12", "unit = \"kg*m^2\"\nabout = \"inertia\"\n") +
                                      parameter("L", "3/2") + parameter("tilt", "30 deg", "unit = \"rad\"\n")));
@@ -44,7 +44,7 @@ TEST(Derived, are_no_parameters_of_a_run) {
 }
 
 // They stand for their expression wherever they stand, in any order, and follow the parameters.
-TEST(Derived, follow_from_others_in_any_order) {
+TEST(DerivedParameters, FollowFromOthersInAnyOrder) {
     const std::string text =
         with_parameters(parameter("k", "2*J + sqrt(e)") + parameter("J", "m*half^2") + parameter("half", "m/2"), "k*x");
     const auto model = test::typed(text);
@@ -61,7 +61,7 @@ TEST(Derived, follow_from_others_in_any_order) {
 }
 
 // What stands in their place moves the same, to the last bit.
-TEST(Derived, are_their_expressions) {
+TEST(DerivedParameters, AreTheirExpressions) {
     const auto end = [](const std::string& text) {
         const auto model = test::typed(text);
         const Trajectory run = simulate(model, model->default_run());
@@ -73,7 +73,7 @@ TEST(Derived, are_their_expressions) {
     EXPECT_EQ(named.first, written.first);
 }
 
-TEST(Derived, may_be_a_restitution_or_stand_in_views_and_drawings) {
+TEST(DerivedParameters, MayBeARestitutionOrStandInViewsAndDrawings) {
     EXPECT_EQ(
         told(changed(with_parameters(parameter("half", "e/2")), {{"restitution = \"e\"", "restitution = \"half\""},
                                                                  {"\"s^2\"", "\"half*s^2\""},
@@ -88,7 +88,7 @@ TEST(Derived, may_be_a_restitution_or_stand_in_views_and_drawings) {
         "      ^\n0 is plastic, 1 is elastic");
 }
 
-TEST(Derived, have_units) {
+TEST(DerivedParameters, HaveUnits) {
     const SystemDescription system = parse_system(
         changed(with_parameters(parameter("J", "m*L^2/12") + "[[parameter]]\nname = \"L\"\nvalue = 1\nunit = \"m\"\n" +
                                 parameter("w", "2*m", "unit = \"N\"\n") +
@@ -102,7 +102,7 @@ TEST(Derived, have_units) {
     EXPECT_NEAR(derived_values(model, model.default_run().parameters)[2], 1.5707963267948966, 1e-15);
 }
 
-TEST(Derived, are_told_in_json_with_the_values_of_the_run) {
+TEST(DerivedParameters, AreToldInJsonWithTheValuesOfTheRun) {
     const auto model = test::typed(with_parameters(parameter("J", "m/8", "unit = \"kg*m^2\"\n")));
     achilles::Run run = model->default_run();
     assign(run, model->description(), "m=4");
@@ -111,7 +111,7 @@ TEST(Derived, are_told_in_json_with_the_values_of_the_run) {
     EXPECT_EQ(json["units"]["J"], "kg*m^2");
 }
 
-TEST(Derived, are_not_set) {
+TEST(DerivedParameters, AreNotSet) {
     const SystemDescription system = parse_system(with_parameters(parameter("J", "m/8")));
     achilles::Run run = default_run(system);
     const achilles::Run before = run;
@@ -131,9 +131,9 @@ struct WrongParameters {
 
 void PrintTo(const WrongParameters& one, std::ostream* out) { *out << one.parameters; }
 
-class WrongDerived : public testing::TestWithParam<WrongParameters> {};
+class WrongDerivedParameters : public testing::TestWithParam<WrongParameters> {};
 
-TEST_P(WrongDerived, IsToldWithItsPlace) {
+TEST_P(WrongDerivedParameters, IsToldWithItsPlace) {
     EXPECT_EQ(told(with_parameters(GetParam().parameters)), GetParam().message);
 }
 
@@ -170,9 +170,9 @@ const WrongParameters wrong_parameters[] = {
     {parameter("J", "log(e - 1)"),
      "f.toml:16:10: the derived parameter 'J' is not finite\n    value = \"log(e - 1)\"\n             ^"},
 };
-INSTANTIATE_TEST_SUITE_P(Reading, WrongDerived, testing::ValuesIn(wrong_parameters));
+INSTANTIATE_TEST_SUITE_P(Reading, WrongDerivedParameters, testing::ValuesIn(wrong_parameters));
 
-TEST(Degrees, may_stand_wherever_the_unit_is_rad) {
+TEST(Degrees, MayStandWhereverTheUnitIsRad) {
     const std::string rad =
         "unit = \"rad\"\nstart = \"10 deg\"\nrate = \"-90 deg\"\nrange = [\"-30 deg\", \"30 deg\"]\n"
         "rate_range = [\"-180 deg\", 4]\n";
@@ -206,9 +206,9 @@ TEST(Degrees, may_stand_wherever_the_unit_is_rad) {
 }
 
 // A text that the reader makes has no place of its own: what is wrong in it is told at the place of what it was made from.
-TEST(Rewriting, tells_mistakes_of_a_made_text_where_its_origin_stands) {
+TEST(Rewriting, TellsMistakesOfAMadeTextWhereItsOriginStands) {
     for (const bool is_written : {true, false}) {
-        FileReading reading = read_tables(good, "<text>");
+        ParsedFile reading = read_tables(good, "<text>");
         Text& gap = reading.system.constraints[0].gap;
         gap = {"x - sin(theta)*nothing", gap.at, is_written};
         EXPECT_FALSE(check_expressions(reading.system, reading.names, reading.mistakes));

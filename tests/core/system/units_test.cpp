@@ -13,7 +13,7 @@ std::string unit(const std::string& system, const std::string& expression) {
     return unit_of_expression(test::load(system)->description(), expression);
 }
 
-TEST(Units, follow_from_those_of_the_file) {
+TEST(Units, FollowFromThoseOfTheFile) {
     EXPECT_EQ(unit("ball_on_sine", "t"), "s");
     EXPECT_EQ(unit("ball_on_sine", "gap"), "m");
     EXPECT_EQ(unit("ball_on_sine", "gap'"), "m/s");
@@ -32,7 +32,7 @@ TEST(Units, follow_from_those_of_the_file) {
     EXPECT_EQ(unit("swinging_leg", "c"), "J");         // "N m", which a product does not tell from work
 }
 
-TEST(Units, of_angles) {
+TEST(Units, OfAngles) {
     EXPECT_EQ(unit("double_pendulum", "gap"), "rad");
     EXPECT_EQ(unit("double_pendulum", "theta1 + theta2"), "rad");
     EXPECT_EQ(unit("double_pendulum", "gap''"), "rad/s^2");
@@ -44,7 +44,7 @@ TEST(Units, of_angles) {
 }
 
 // Half of a sum is not known, nor is what two terms that disagree may be.
-TEST(Units, are_nothing_where_they_are_not_known) {
+TEST(Units, AreNothingWhereTheyAreNotKnown) {
     const std::string head =
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"y\"\n"
         "[[coordinate]]\nname = \"z\"\nunit = \"inch\"\n[[parameter]]\nname = \"k\"\nvalue = 1\n";
@@ -59,7 +59,7 @@ TEST(Units, are_nothing_where_they_are_not_known) {
 }
 
 // Of several constraints each has a gap and a force.
-TEST(Units, of_several_gaps) {
+TEST(Units, OfSeveralGaps) {
     const SystemDescription system = parse_system(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"a\"\nunit = "
         "\"rad\"\n"

@@ -1,0 +1,197 @@
+// Parses and solves orbit requests.
+#include "analysis/orbit.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "analysis/return_map.hpp"
+#include "analysis/sweep.hpp"
+#include "expression/name_suggestions.hpp"
+#include "expression/parse.hpp"
+#include "model/option_expressions.hpp"
+#include "sensitivity/chain.hpp"
+#include "simulate/simulate.hpp"
+
+namespace achilles {
+
+namespace {
+
+// Splits NAME=REST. Throws InputError about the flag.
+std::pair<std::string, std::string> named(const std::string& where, const std::string& text, const char* example) {
+    const std::size_t equals = text.find('=');
+    if (equals == text.npos || equals == 0) throw InputError(where, {}, "a name and a value are expected", example);
+    std::string name = text.substr(0, equals);
+    std::erase(name, ' ');
+    return {name, text.substr(equals + 1)};
+}
+
+// The index of a name in a list. Throws InputError if it is not there.
+template <class Named>
+std::size_t place_of(const std::string& where, const std::string& name, const std::vector<Named>& all,
+                     const char* what) {
+    std::vector<std::string> names;
+    for (const Named& one : all) names.push_back(one.name);
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+        throw InputError(where, {}, fmt::format("there is no {} '{}'{}", what, shown(name), did_you_mean(name, names)),
+                         fmt::format("the {}s are: {}", what, fmt::join(names, ", ")));
+    return static_cast<std::size_t>(found - names.begin());
+}
+
+double limit(const std::string& where, const std::string& text) {
+    try {
+        return read_number(text).value;
+    } catch (const ParseError& error) {
+        throw InputError(where, {}, error.what());
+    }
+}
+
+OrbitRequest::ContinuationRange read_along(const std::string& text, const SystemDescription& description,
+                                           const Run& run) {
+    const std::string where = "--continue " + shown(text);
+    const auto [name, range] = named(where, text, "write --continue e=0.1:0.9");
+    OrbitRequest::ContinuationRange along;
+    along.parameter = place_of(where, name, description.parameters, "parameter");
+    const std::size_t colon = range.find(':');
+    if (colon == range.npos)
+        throw InputError(where, {}, "a range is expected", fmt::format("write --continue {}=LOW:HIGH", name));
+    along.low = limit(where, range.substr(0, colon));
+    along.high = limit(where, range.substr(colon + 1));
+    if (!(along.low < along.high)) throw InputError(where, {}, "the range must have LOW below HIGH");
+    const double value = run.parameters[along.parameter];
+    if (!(value >= along.low && value <= along.high))
+        throw InputError(
+            where, {}, fmt::format("the search starts at {} = {}, outside this range", name, value),
+            fmt::format("start inside it, for example with --set {}={}", name, 0.5 * (along.low + along.high)));
+    return along;
+}
+
+// Starts the run at this state, with the same duration.
+void begin_at(Run& run, const State& state, bool with_time) {
+    run.q = state.q;
+    run.v = state.v;
+    if (!with_time) return;
+    run.options.end_time += state.t - run.options.start_time;
+    run.options.start_time = state.t;
+}
+
+// Tightens the tolerances that were not set explicitly to those of tightest_options(), because they determine the
+// accuracy of the orbit.
+void make_exact(Options& options, const std::set<std::string_view>& said) {
+    const Options exact = tightest_options();
+    for (const Option& option : all_options())
+        if (option.is_tolerance && !said.contains(option.key))
+            option.set(options, std::min(std::get<double>(option.get(options)), std::get<double>(option.get(exact))));
+}
+
+void read_closing(const OrbitOptions& asked, const Model& model, ReturnCondition& closing) {
+    const auto check = [&](const char* flag, const std::string& text) {
+        behind(flag, text, [&](std::span<const Text> one) { return model.compile_of_parameters(one); });
+    };
+    if (!asked.period.empty()) {
+        check("--period", asked.period);
+        closing.period = {asked.period, {}};
+    }
+    for (const std::string& shift : asked.shifts) {
+        const std::string where = "--shift " + shown(shift);
+        const auto [name, text] = named(where, shift, "write --shift x=2*pi");
+        const std::size_t place = place_of(where, name, model.description().coordinates, "coordinate");
+        check("--shift", text);
+        closing.shift[place] = {text, {}};
+    }
+}
+
+}  // namespace
+
+std::string to_text(const OrbitOptions& asked) {
+    std::vector<Flag> flags;
+    const auto add = [&](const char* flag, const std::string& value) {
+        if (!value.empty()) flags.push_back({flag, value});
+    };
+    add("--from", asked.from);
+    add("--period", asked.period);
+    for (const std::string& shift : asked.shifts) add("--shift", shift);
+    add("--continue", asked.along);
+    return to_text(flags);
+}
+
+OrbitOptions read_orbit(std::string_view text) {
+    OrbitOptions asked;
+    const std::vector<std::string> known{"--from", "--period", "--shift", "--continue"};
+    for (const Flag& flag : read_flags(text, "orbit")) {
+        std::string* const place = flag.name == "--from"       ? &asked.from
+                                   : flag.name == "--period"   ? &asked.period
+                                   : flag.name == "--continue" ? &asked.along
+                                   : flag.name == "--shift"    ? &asked.shifts.emplace_back()
+                                                               : nullptr;
+        if (place == nullptr)
+            throw InputError(
+                "orbit", {},
+                fmt::format("'{}' is not expected here{}", shown(flag.name), did_you_mean(flag.name, known)));
+        if (!place->empty()) throw InputError(shown(flag.name), {}, "it is given twice");
+        *place = flag.value;
+    }
+    return asked;
+}
+
+OrbitRequest parse_orbit_request(const OrbitOptions& asked, const Run& run, const std::shared_ptr<const Model>& model) {
+    const SystemDescription& description = model->description();
+    OrbitRequest question;
+    OrbitProblem& whole = question.asked;
+    whole.run = run;
+    make_exact(whole.run.options, asked.options);
+    whole.closing.shift.resize(description.coordinates.size());
+    const bool has_clock = !model->equations().autonomous && !asked.options.contains("start_time");
+    const auto& orbit = description.orbit;
+    if (orbit) {
+        whole.closing.period = orbit->period;
+        if (!orbit->shift.empty()) whole.closing.shift = orbit->shift;
+    }
+    if (!asked.guess && !asked.from.empty() && asked.from != "start" && asked.from != "end")
+        throw InputError("--from " + shown(asked.from), {}, "start or end is expected");
+    question.from_end = !asked.guess && asked.from == "end";
+    if (asked.guess) {
+        begin_at(whole.run, asked.guess->state, has_clock);
+        if (asked.guess->period && asked.period.empty() && whole.closing.period.text.empty())
+            whole.closing.period = {fmt::format("{}", *asked.guess->period), {}};
+    } else if (orbit && asked.from.empty()) {
+        State guess = run.start();
+        for (std::size_t i = 0; i < orbit->q.size(); ++i) {
+            guess.q[static_cast<Eigen::Index>(i)] = orbit->q[i];
+            guess.v[static_cast<Eigen::Index>(i)] = orbit->v[i];
+        }
+        guess.t = orbit->t.value_or(guess.t);
+        begin_at(whole.run, guess, has_clock);
+        // Explicit settings take precedence over the guess.
+        for (const std::string& setting : asked.settings) assign(whole.run, description, setting);
+    }
+    whole.is_guess = asked.guess || question.from_end || (orbit && asked.from.empty());
+    read_closing(asked, *model, whole.closing);
+    if (!asked.along.empty()) question.along = read_along(asked.along, description, whole.run);
+    Chain::check(whole.run);
+    // Reports errors in the request before the search.
+    [[maybe_unused]] const ReturnMap possible(model, whole.run, whole.closing);
+    return question;
+}
+
+OrbitResult solve_orbit_request(OrbitRequest question, const std::shared_ptr<const Model>& model, OrbitMonitor* watch) {
+    OrbitProblem& asked = question.asked;
+    asked.watch = watch;
+    OrbitResult answer;
+    if (question.from_end) {
+        RunMonitor first;
+        if (watch != nullptr) first.stop = watch->stop;
+        const Trajectory run = simulate(model, asked.run, &first, Recording::final_state);
+        State end = run.end;
+        end.t = run.end_time;
+        begin_at(asked.run, end, !model->equations().autonomous);
+    }
+    static_cast<OrbitSearchResult&>(answer) = find_orbit(model, asked);
+    if (const auto& along = question.along; along && answer.orbit)
+        answer.branch = follow(model, asked, *answer.orbit, along->parameter, along->low, along->high);
+    return answer;
+}
+
+}  // namespace achilles

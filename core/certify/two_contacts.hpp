@@ -1,0 +1,69 @@
+// Proves how long two contacts that chatter together bounce on until both rest, and how far the motion that holds both
+// is from theirs (theory-gaps.md 3).
+#pragma once
+
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "certify/truncation.hpp"
+#include "model/model.hpp"
+
+namespace achilles {
+
+// Bounds on the pair at a collision, in units of its energy E = sigma' W^-1 sigma/2 + lambda' h, r0 = sqrt(2 E).
+struct PairAtCollision {
+    std::array<Interval, 2> a, lambda, e;  // -hddot, the forces that hold both, the restitutions
+    std::array<std::array<Interval, 2>, 2> W;
+    Interval r0;
+    // Upper bounds over the neighborhood: Delta of |W^-1/2 (hddot + a)|, omega of |W^-1/2 (W(q) - W) W^-1/2|.
+    Interval Delta, omega;
+};
+// Bounds until both contacts rest: tau_inf - tau_k <= T, integral of h_i <= J/lambda_i, of |sigma_i sigma_j| <= 2 d_i
+// d_j J, with d_i = sqrt(W_ii). sqrt(2 E) grows at most by the factor m.
+struct PairBound {
+    Interval T, J, m;
+};
+// Returns nullopt if no eta is admissible, for example if a restitution is 1.
+std::optional<PairBound> pair_bound(const PairAtCollision& pair);
+
+// A collision of the pair: the state before it, and the gaps h and gap rates sigma = hdot of the two contacts.
+struct PairCollision {
+    State before;
+    std::array<double, 2> h, sigma;
+};
+
+class PairConditions : protected ConditionsBase {
+ public:
+    // For two contacts while others are held; those in `unpressed` need no contact force.
+    PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
+                   std::size_t second, Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground);
+
+    struct PairCompletion {
+        Certificate certificate;
+        State restart;  // (q - N h, s - B h), to be projected onto all contact surfaces
+    };
+    // The certificate, if it is within the tolerances of the run; with `cut_at_resolution` (the flights can no longer
+    // be resolved) whatever the tolerances.
+    std::optional<PairCompletion> certify(const PairCollision& collision, bool cut_at_resolution);
+
+ private:
+    // Neighborhood: `duration` and `growth` are assumed values of T and m.
+    struct PairBox : CollisionBox {
+        double growth = 1.0;
+        std::vector<Interval> all;  // q, s, the two sigma, t
+        explicit PairBox(std::size_t dof) : CollisionBox(dof), all(2 * dof + 3) {}
+    };
+    bool look(const std::vector<Interval>& box);
+    std::optional<PairAtCollision> at_collision(const PairCollision& collision, const State& shifted);
+    bool contain(PairBox& box, const PairBound& bound, const PairAtCollision& pair);
+    Certificate certificate_of(const PairBox& box, const PairBound& bound, const PairAtCollision& pair,
+                               const PairCollision& collision) const;
+
+    Layout layout_;
+    std::array<Interval, 2> e_;
+    PairTerms<Evaluator<Interval>> terms_;
+    PairTerms<Evaluator<double>> point_;
+};
+
+}  // namespace achilles

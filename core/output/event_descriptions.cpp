@@ -1,0 +1,222 @@
+#include "output/event_descriptions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/model.hpp"
+#include "number/angle.hpp"
+#include "output/contacts.hpp"
+#include "output/precision.hpp"
+#include "system/units.hpp"
+
+namespace achilles {
+
+namespace {
+
+std::string value_with_unit(const std::string& value, const std::string& unit) {
+    return unit.empty() ? value : value + " " + unit;
+}
+
+// "9 impacts before the cut": infinitely many follow a cut.
+std::string counted(long impacts, int cuts) {
+    return fmt::format("{} {}{}", impacts, impacts == 1 ? "impact" : "impacts",
+                       cuts == 0   ? ""
+                       : cuts == 1 ? " before the cut"
+                                   : " before the cuts");
+}
+
+std::string seconds(double t, double error) { return known_digits(t, error, 6) + " s"; }
+
+}  // namespace
+
+std::optional<double> proved_time(const Event& event) {
+    if (!event.certificate || !event.certificate->certified || is_plastic_landing(event)) return std::nullopt;
+    return std::max(event.certificate->zeno_high - event.t, event.t - event.certificate->zeno_low);
+}
+
+EventDescriptions::EventDescriptions(const Trajectory& trajectory, const ErrorEstimate* estimate, Angles angles)
+    : trajectory_(trajectory), precision_(trajectory, estimate) {
+    const Model& model = *trajectory.model;
+    is_of_several_ = model.contacts() > 1;
+    energy_unit_ = unit_of_expression(model.description(), "energy");
+    for (const std::string& rate : output_names(model.description(), "gap'")) {
+        RateUnit unit{unit_of_expression(model.description(), rate), 1.0};
+        if (angles == Angles::degrees && unit.text.starts_with("rad/"))
+            unit = {"deg" + unit.text.substr(3), degrees(1.0)};
+        rate_units_.push_back(std::move(unit));
+    }
+    EnergyBalance balance(model, trajectory.run);
+    Sample start, end;
+    start.t = trajectory.run.options.start_time, start.state = trajectory.run.start();
+    end.t = trajectory.end_time, end.state = trajectory.end;
+    for (const Sample* sample : {&start, &end}) {
+        const Energies energies = balance.at(*sample);
+        energy_scale_ = std::max({energy_scale_, std::abs(energies.kinetic), std::abs(energies.potential)});
+    }
+    for (std::size_t i = 0; i < trajectory.events.size() && !by_convention_; ++i)
+        if (trajectory.events[i].joint && trajectory.events[i].joint->order_matters) by_convention_ = i;
+}
+
+std::string EventDescriptions::energy(double value, double error) const {
+    const double shown = flush_noise_to_zero(value, 10.0 * std::max(energy_scale_, std::abs(trajectory_.loss)));
+    const std::string digits = shown == 0.0 ? "0" : known_digits(shown, error, 3);
+    return digits == "0" ? "" : value_with_unit(digits, energy_unit_);
+}
+
+// The same for an energy that changes at this event.
+std::string EventDescriptions::energy(double value, const Event& event) const {
+    Sample before;
+    before.t = event.t;
+    before.state = {event.q, event.v_before, event.t};
+    return energy(value, precision_.of_energy(before));
+}
+
+// ", 0.4 J lost"; empty for an elastic impact.
+std::string EventDescriptions::lost(double energy, const Event& event) const {
+    const std::string text = this->energy(energy, event);
+    if (text.empty()) return "";
+    return energy_unit_.empty() ? ", energy lost " + text : ", " + text + " lost";
+}
+
+std::string EventDescriptions::of(std::size_t event) const {
+    switch (trajectory_.events[event].kind) {
+        case Event::Kind::zeno:
+            return zeno(event);
+        case Event::Kind::release:
+            return release(trajectory_.events[event]);
+        case Event::Kind::impact:
+            break;
+    }
+    return impact(event);
+}
+
+std::string EventDescriptions::impact(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    std::size_t first = 0;
+    while (first + 1 < rate_units_.size() && !event.contacts.contains(first)) ++first;
+    std::string text = "impact";
+    if (is_of_several_) text += " of " + joined_names(*trajectory_.model, event.contacts, " and ");
+    if (event.contacts.count() > 1) text += " at once";
+    const RateUnit& unit = rate_units_[first];
+    text += " at gap speed " + value_with_unit(known_digits(event.impact_speed * unit.factor,
+                                                            precision_.of_gap_speed(index) * unit.factor, 4),
+                                               unit.text);
+    const Event* next = index + 1 < trajectory_.events.size() ? &trajectory_.events[index + 1] : nullptr;
+    const bool is_cut =
+        next != nullptr && next->truncation && next->truncation->t == event.t && !is_plastic_landing(*next);
+    const std::string loss = lost(energy_lost(trajectory_, index), event);
+    text += loss;
+    if (is_cut && !loss.empty()) text += " by it and the restart";
+    if (!event.opened.empty()) text += "; it opens " + joined_names(*trajectory_.model, event.opened, " and ");
+    if (event.joint && event.joint->order_matters)
+        text += "; order-dependent outcome: resolved together by Moreau's law";
+    if (event.joint && event.joint->is_nonunique) text += "; impulses not unique";
+    if (is_cut) text += "; the impact sequence is cut here";
+    return text;
+}
+
+// The words of the file for the start of this contact, else "contact begins" or "knee is held".
+std::string EventDescriptions::beginning(const Event& event) const {
+    const bool is_one = event.contacts.count() == 1;
+    const std::string words = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
+    if (!words.empty()) return words;
+    if (!is_of_several_) return "contact begins";
+    return joined_names(*trajectory_.model, event.contacts, " and ") + (is_one ? " is held" : " are held");
+}
+
+std::string EventDescriptions::change(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    if (event.is_impact())
+        return fmt::format("impact of {} opens {}", joined_names(*trajectory_.model, event.contacts, " and "),
+                           joined_names(*trajectory_.model, event.opened, " and "));
+    if (event.is_release()) {
+        const bool is_one = event.contacts.count() == 1;
+        const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";
+        if (!ends.empty()) return ends + ": its contact force reached zero";
+        return is_of_several_
+                   ? "force of " + joined_names(*trajectory_.model, event.contacts, " and ") + " reached zero"
+                   : "contact force reached zero";
+    }
+    if (is_plastic_landing(event)) return beginning(event) + "; plastic impact";
+    const BounceSequence pile = bounce_sequence_of(trajectory_, index);
+    std::string text = beginning(event);
+    if (pile.impacts == 0) return text;
+    text += fmt::format("; impacts since {} s",
+                        known_digits(trajectory_.events[pile.first].t, precision_.of_event(pile.first), 4));
+    const std::string loss = energy(pile.loss, event);
+    if (loss.empty()) return text;
+    return text + (energy_unit_.empty() ? " dissipated the energy " : " dissipated ") + loss;
+}
+
+std::string EventDescriptions::holding(Mode mode, const char* flight) const {
+    if (mode.is_free()) return flight;
+    return is_of_several_ ? "held by " + joined_names(*trajectory_.model, mode.held(), " and ") : "in contact";
+}
+
+std::string EventDescriptions::state_at_start() const {
+    return holding(trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode, "free flight");
+}
+
+std::string EventDescriptions::state_at_end() const { return holding(trajectory_.end_mode, "in flight"); }
+
+std::string EventDescriptions::zeno(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    const std::string begins = beginning(event);
+    // The loss is in the sentence of its impact.
+    if (is_plastic_landing(event)) return begins + ": plastic impact";
+    const BounceSequence pile = bounce_sequence_of(trajectory_, index);
+    std::string text = fmt::format("{}: {}", begins, counted(pile.impacts, event.truncation ? 1 : 0));
+    text += lost(pile.loss, event);
+    if (precision_.is_beyond(event.t)) return text;  // a certificate holds for the computed motion only
+    const std::optional<double> bound = proved_time(event);
+    text += !bound         ? ", not certified"
+            : *bound > 0.0 ? fmt::format(", certified to {} s from the cut", rounded_up(*bound))
+                           : ", certified from the cut";
+    if (by_convention_ && *by_convention_ < index)
+        text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
+    return text;
+}
+
+std::string EventDescriptions::impacts() const {
+    const auto cuts = std::count_if(trajectory_.events.begin(), trajectory_.events.end(),
+                                    [](const Event& event) { return event.truncation && !is_plastic_landing(event); });
+    return counted(trajectory_.statistics.impacts, static_cast<int>(std::min<std::ptrdiff_t>(cuts, 2)));
+}
+
+std::string EventDescriptions::own_words(ContactSet contact, std::string ConstraintDescription::*words) const {
+    std::size_t which = 0;
+    while (!contact.contains(which)) ++which;
+    return trajectory_.model->description().constraints[which].*words;
+}
+
+std::string EventDescriptions::release(const Event& event) const {
+    const bool is_one = event.contacts.count() == 1;
+    if (const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : ""; !ends.empty())
+        return ends + ": its contact force reaches zero";
+    if (!is_of_several_) return "contact ends: the contact force reaches zero";
+    return joined_names(*trajectory_.model, event.contacts, " and ") +
+           (is_one ? " is released: its force reaches zero" : " are released: their forces reach zero");
+}
+
+std::string EventDescriptions::state(Mode mode) const {
+    if (mode.is_free()) return "in free flight";
+    if (!is_of_several_) return "in contact";
+    return joined_names(*trajectory_.model, mode.held(), " and ") +
+           (mode.held().count() == 1 ? " is held" : " are held");
+}
+
+std::string EventDescriptions::start() const {
+    const Mode mode = trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode;
+    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0), state(mode));
+}
+
+std::string EventDescriptions::end() const {
+    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_mode));
+    if (trajectory_.outcome.kind != Outcome::Kind::end_time)
+        text += fmt::format("; the run ends early: {}", to_text(trajectory_.outcome.kind));
+    return text;
+}
+
+}  // namespace achilles

@@ -1,0 +1,96 @@
+// Batch simulation: eight runs at a time in the lanes of a vector, for final states.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <map>
+
+#include "series/lane_stepper.hpp"
+#include "simulate/batch.hpp"
+#include "simulate/event_stepper.hpp"
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+// The runs of one thread. A few dozen runs are in progress. Their requests wait in three queues: free flight, brief
+// flight and contact. The longest queue supplies eight requests to one vector step. A request that is not plain is
+// served by the stepper of its own run.
+class BatchSimulator {
+ public:
+    // The results do not depend on `vectors`.
+    explicit BatchSimulator(const std::shared_ptr<const Model>& model, Vectors vectors = possible_vectors().front());
+
+    // A source of runs: for every i < count from next.fetch_add(1), the result of run_of(i) is passed to take(i,
+    // result).
+    struct BatchSlice {
+        std::size_t count;
+        std::atomic<std::size_t>& next;
+        const std::function<Run(std::size_t)>& run_of;
+        const std::function<void(std::size_t, RunResult&&)>& take;
+    };
+    // Works until no run is left, in progress or to start. After an exception from run_of or take, this object must not
+    // be used again.
+    void work(const BatchSlice& share);
+
+ private:
+    struct BatchRun {
+        BatchRun(std::size_t number, const std::shared_ptr<const Model>& model, const Run& run);
+        std::size_t index;
+        std::size_t set = 0;  // number of its parameter set: members with equal numbers have equal motions
+        ContactCache surfaces;
+        ExecutionAutomaton execution;
+        EventStepper stepper;
+        const StepRequest* request = nullptr;  // waiting in a queue
+        StepRequest own;                       // the request for its own stepper
+        bool alone = false;                    // the rest of this segment is left to its own stepper
+        bool leaves = false;                   // its own stepper serves it until the gap is known to be open
+        // The last bounce, made in one step: its duration, its initial gap rate, and the length that a brief step could
+        // have had.
+        struct BounceTiming {
+            double duration = 0.0, hdot = 0.0, brief = 0.0;
+        } before;
+        bool is_brief() const;
+    };
+    enum class Kind { flight, brief_flight, contact };
+    using RunGroup = std::vector<BatchRun*>;
+
+    void begin(std::size_t index);
+    BatchRun& member_for(std::size_t index, const Run& run);
+    std::size_t set_of(const std::vector<double>& parameters);
+    bool move_alike(const std::vector<double>& some, const std::vector<double>& others) const;
+    void go_on(BatchRun& member, bool refused);
+    void finish(BatchRun& member);
+    void step(Kind kind);
+    void choose(RunGroup& line);
+    // The run in a lane; unused lanes repeat the first.
+    BatchRun& member_in(std::size_t lane) const { return *members_[lane < members_.size() ? lane : 0]; }
+    LaneStepper& prepare();
+    void gather(bool flying);
+    long most_steps() const;
+    bool read(std::size_t lane, bool flying);
+    void read_contact(std::size_t lane);
+    void read_gap(std::size_t lane);
+
+    LaneStep step_;
+    // The result for one lane.
+    State end_;
+    StepResult result_;
+    RunGroup members_;  // the runs in the lanes of the current step
+    std::shared_ptr<const Model> model_;
+    bool has_lanes_;                     // the model can be stepped in lanes
+    Vectors vectors_;                    // of the lanes
+    const BatchSlice* share_ = nullptr;  // set during work()
+    std::vector<std::unique_ptr<BatchRun>> all_;
+    std::array<RunGroup, 3> lines_;  // queues, by Kind
+    RunGroup spare_;
+    std::vector<std::size_t> moving_;  // indices of the parameters that the motion depends on
+    std::size_t sets_ = 0;
+    std::vector<double> last_parameters_;  // of the last parameter set
+    struct StepperSlot {
+        std::unique_ptr<LaneStepper> stepper;
+        std::array<std::size_t, Double8::count> sets{};  // parameter sets in its lanes
+    };
+    std::map<double, StepperSlot> steppers_;  // by tolerance
+};
+
+}  // namespace achilles

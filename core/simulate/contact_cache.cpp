@@ -1,0 +1,191 @@
+#include "simulate/contact_cache.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "number/dense.hpp"
+
+namespace achilles {
+
+namespace {
+
+// W^-1 b; the solution of least norm if gradients are linearly dependent.
+ContactVector<double> solve(const ContactMatrix<double>& W, const ContactVector<double>& b) {
+    ContactSet all;
+    for (Eigen::Index i = 0; i < W.rows(); ++i) all = with(all, i);
+    if (const auto block = HeldBlock<double>::of(W, all)) return block->solve(b);
+    return least_solution(W, Eigen::VectorXd(b));
+}
+
+// v -= M^-1 G' W^-1 b
+void move_along(Vector& v, const ClosedContacts& closed, const ContactVector<double>& b) {
+    v = closed.after(v, -solve(closed.W, b));
+}
+
+}  // namespace
+
+ContactSet ClosedContacts::places_of(ContactSet set) const {
+    ContactSet places;
+    for (std::size_t i = 0; i < which.size(); ++i)
+        if (set.contains(which[i])) places = places.with(i);
+    return places;
+}
+
+ContactSet ClosedContacts::contacts_at(ContactSet places) const {
+    ContactSet set;
+    for (std::size_t i = 0; i < which.size(); ++i)
+        if (places.contains(i)) set = set.with(which[i]);
+    return set;
+}
+
+ContactVector<double> ClosedContacts::rates() const {
+    ContactVector<double> hdot(W.rows());
+    for (std::size_t i = 0; i < contacts.size(); ++i) hdot[static_cast<Eigen::Index>(i)] = contacts[i].hdot;
+    return hdot;
+}
+
+Vector ClosedContacts::after(const Vector& v, const ContactVector<double>& impulses) const {
+    Vector result = v;
+    for (std::size_t i = 0; i < contacts.size(); ++i)
+        result += impulses[static_cast<Eigen::Index>(i)] * contacts[i].W * contacts[i].impulse_direction;
+    return result;
+}
+
+ContactCache::ContactCache(const Model& model, const Run& run)
+    : model_(&model), run_(run), restitutions_(model.restitutions(run.parameters)) {
+    free_.reserve(model.contacts());
+    for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
+}
+
+ContactKinematics& ContactCache::of(std::size_t contact, Mode mode) {
+    if (mode.is_free()) return free_[contact];
+    const ContactInMode key(mode, contact);
+    const auto known = in_modes_.find(key);
+    if (known != in_modes_.end()) return known->second;
+    return in_modes_.emplace(key, ContactKinematics(*model_, run_, contact, mode)).first->second;
+}
+
+ClosedContacts ContactCache::at(const State& state, ContactSet contacts) {
+    ClosedContacts closed;
+    for (std::size_t i = 0; i < count(); ++i) {
+        if (!contacts.contains(i)) continue;
+        closed.which.push_back(i);
+        closed.contacts.push_back(free_[i].at(state));
+    }
+    const auto n = static_cast<Eigen::Index>(closed.which.size());
+    closed.W.resize(n, n);
+    for (Eigen::Index i = 0; i < n; ++i)
+        for (Eigen::Index j = 0; j <= i; ++j) {
+            const Contact &a = closed.contacts[static_cast<std::size_t>(i)],
+                          &b = closed.contacts[static_cast<std::size_t>(j)];
+            closed.W(i, j) = closed.W(j, i) = i == j ? a.W : a.g.dot(b.impulse_direction) * b.W;
+        }
+    return closed;
+}
+
+bool ContactCache::is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale) {
+    constexpr double roundings = 0x1p-26;  // far more than the errors that a projection leaves
+    const State distances{roundings * scale.q, roundings * scale.v, roundings * scale.t};
+    const Interval hddot = of(contact, mode).hddot_within(distances, state);
+    return !certainly_positive(hddot) && !certainly_negative(hddot);
+}
+
+bool ContactCache::needs_no_force(std::size_t contact, Mode mode, const State& state, const State& scale) {
+    if (!is_nearly_free(contact, mode, state, scale)) return false;
+    if (!mode.is_free()) {
+        const ContactSet all = mode.held().with(contact);
+        const ClosedContacts closed = at(state, all);
+        if (!HeldBlock<double>::of(closed.W, closed.places_of(all))) return false;
+    }
+    return unpressed().needs_no_force(contact, mode) || unpressed().needs_no_force_from(state, contact, mode);
+}
+
+UnpressedContacts& ContactCache::unpressed() {
+    if (!unpressed_) unpressed_ = std::make_unique<UnpressedContacts>(*model_, run_.parameters);
+    return *unpressed_;
+}
+
+// Newton's method, as in ContactKinematics::project().
+std::optional<double> ContactCache::project_several(State& state, ContactSet onto, ContactSet still) {
+    if (onto.count() > most_contacts) return std::nullopt;
+    constexpr int rounds = 8;
+    double before = std::numeric_limits<double>::infinity();
+    ContactVector<double> p = ContactVector<double>::Zero(onto.count());  // of the last correction
+    for (int round = 0;; ++round) {
+        const ClosedContacts closed = at(state, onto);
+        double largest = 0.0, least = std::numeric_limits<double>::infinity();
+        bool near = true, regular = true;
+        ContactVector<double> h(closed.W.rows());
+        for (std::size_t i = 0; i < closed.contacts.size(); ++i) {
+            const Contact& c = closed.contacts[i];
+            regular = regular && c.W > 0.0 && std::isfinite(c.h);
+            h[static_cast<Eigen::Index>(i)] = c.h;
+            largest = std::max(largest, std::abs(c.h));
+            least = std::min(least, c.h);
+            // A correction required by other gaps has its own rounding, which may be large for this gap.
+            const double left = 0x1p-50 * closed.W.row(static_cast<Eigen::Index>(i)).cwiseAbs().dot(p.cwiseAbs());
+            near = near && regular &&
+                   (std::abs(c.h) <= left ||
+                    free_[closed.which[i]].within_gap_error(c.h, round < rounds ? 1.0 : 4.0, c, state));
+        }
+        if (!regular) return std::nullopt;
+        if (near || (round > 0 && largest <= 0x1p-40 * before)) {
+            if (still.empty()) return least;
+            const ClosedContacts held = still == onto ? closed : at(state, still);
+            move_along(state.v, held, held.rates());
+            return least;
+        }
+        if (round == rounds) return std::nullopt;
+        before = largest;
+        p = solve(closed.W, h);
+        state.q = closed.after(state.q, -p);
+    }
+}
+
+bool ContactCache::land_beside(State& state, std::size_t contact, Mode mode, Contact& landed) {
+    if (!project(state, mode.held().with(contact), mode.held())) return false;
+    landed = of(contact, mode).at(state);
+    return true;
+}
+
+namespace {
+
+// |dh|, or the change of h per unit length along dh if that is much smaller, as for sin(1e9 x).
+double size_of(ContactKinematics& surface, const State& start) {
+    constexpr double much = 16.0;
+    const Contact contact = surface.at(start);
+    const double slope = contact.g.norm();
+    double change = 0.0;
+    for (const double way : {-1.0, 1.0}) {
+        State beside = start;
+        beside.q += way / slope * contact.g;
+        const double h = surface.at(beside).h;
+        change = std::max(change, std::isfinite(h) ? std::abs(h - contact.h) : slope);
+    }
+    return slope > much * change ? change : slope;
+}
+
+}  // namespace
+
+GapUnits::GapUnits(const Model& model, const Run& run) : units_(model.contacts(), 1.0) {
+    for (std::size_t i = 0; i < model.contacts(); ++i) surfaces_.emplace_back(model, run, i);
+    find(run.start());
+}
+
+void GapUnits::find(const State& state) {
+    constexpr double step = 8.0;  // of the exponent, so that sizes around 1 give the unit 1
+    place_ = state.q;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
+        const double size = size_of(surfaces_[i], state);
+        const bool is_usable = size > 0.0 && std::isfinite(size);
+        units_[i] = is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0;
+    }
+}
+
+const std::vector<double>& GapUnits::at(const State& state) {
+    constexpr double far = 1.0;
+    if ((state.q - place_).cwiseAbs().maxCoeff() > far) find(state);
+    return units_;
+}
+
+}  // namespace achilles

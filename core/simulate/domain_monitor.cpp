@@ -1,0 +1,179 @@
+#include "simulate/domain_monitor.hpp"
+
+#include <fmt/format.h>
+#include <algorithm>
+#include <cmath>
+
+#include "model/domain_boundaries.hpp"
+#include "model/undefined_term.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr int counted = 4;  // last terms of a series that are used: symmetry may make three in a row 0
+constexpr int lowest = 8;
+constexpr int highest = SeriesEvaluator<double>::highest_order;
+static_assert(highest < Polynomial::capacity);
+
+// Sum of the absolute values of the last terms.
+double tail(const Polynomial& p) {
+    double sum = 0.0;
+    for (int k = p.degree; k > p.degree - counted; --k) sum += std::abs(p.c[static_cast<std::size_t>(k)]);
+    return sum;
+}
+
+}  // namespace
+
+DomainMonitor::DomainMonitor(const Model& model, const Run& run)
+    : edges_(model.edges()),
+      block_(2 * static_cast<std::size_t>(model.dof())),
+      series_(model.edge_series(), run.parameters),
+      distances_(edges_.size()),
+      signs_(edges_.size()) {}
+
+// An exponential or hyperbolic function has a distance, too (model/domain_boundaries.hpp): `growth` minus the rise of
+// u, or minus twice the fall of |u|. Returns the factor of the series of u in that distance; 0 if |u| is too small for
+// the function to be missed.
+double DomainMonitor::sign_of(const DomainBoundary& edge, double start) const {
+    if (edge.kind == DomainBoundary::Kind::edge) return 1.0;
+    if (edge.kind == DomainBoundary::Kind::exponential) return -1.0;
+    return std::abs(start) < DomainBoundary::growth ? 0.0 : std::copysign(2.0, start);
+}
+
+// The motion in a step is a polynomial in theta, whatever the method, so the distances are series in theta. They are
+// expanded until their last terms are small.
+double DomainMonitor::safe_part(const Stepper& stepper, double time) {
+    motion_.clear();
+    const std::size_t degree = stepper.coefficients(motion_);
+    motion_.resize(motion_.size() + block_, 0.0);
+    series_.begin(motion_.data(), time, stepper.current_time());
+    for (std::size_t i = 0; i < distances_.size(); ++i) {
+        const double start = series_.start(i);
+        signs_[i] = sign_of(edges_[i], start);
+        distances_[i].c[0] = edges_[i].kind == DomainBoundary::Kind::edge ? start : DomainBoundary::growth;
+    }
+    bool known = false;
+    for (int k = 1; k <= highest && !known; ++k) {
+        series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree + 1) * block_);
+        known = k >= lowest;
+        for (std::size_t i = 0; i < distances_.size(); ++i) {
+            Polynomial& distance = distances_[i];
+            distance.c[static_cast<std::size_t>(k)] = signs_[i] * series_.output(i);
+            distance.degree = k;
+            known = known && tail(distance) < 0x1p-10 * distance.c[0];
+        }
+    }
+    double theta = 1.0;
+    for (Polynomial& distance : distances_) theta = std::min(theta, safe_part(distance));
+    return theta;
+}
+
+double DomainMonitor::safe_part(Polynomial& distance) const {
+    const double start = distance.c[0], allowed = 0x1p-6 * start;
+    if (!(start > 0.0)) return 0.0;
+    // The series is accurate as far as its last terms are small. If the step is far too long, the last terms may have
+    // overflowed; they are dropped.
+    while (distance.degree > lowest && !std::isfinite(tail(distance))) --distance.degree;
+    double known = 1.0;
+    for (int k = distance.degree; k > distance.degree - counted; --k) {
+        const double c = std::abs(distance.c[static_cast<std::size_t>(k)]);
+        if (!(c <= allowed)) known = std::min(known, std::isfinite(c) ? std::pow(allowed / c, 1.0 / k) : 0.0);
+    }
+    double power = known;
+    for (int k = 1; known < 1.0 && k <= distance.degree; ++k, power *= known)
+        distance.c[static_cast<std::size_t>(k)] *= power;
+    // Subtract an eighth of the start, and the last terms as an estimate of the omitted ones. As long as the rest is
+    // positive, which it is at the start, the distance is above an eighth of its start value.
+    distance.c[0] -= 0.125 * start + tail(distance);
+    const FirstCrossing descent = first_descent(distance, 0, 0.0);
+    if (descent.kind == FirstCrossing::Kind::none) return known;
+    return known * (descent.theta > 0.0 ? descent.theta : 0.5);
+}
+
+namespace {
+
+using Values = std::vector<Interval>;  // q, v, t
+
+// The first undefined part of the expressions over a box, with the value of its operand at the state; empty if there is
+// none.
+std::string undefined_among(const Model& model, const Run& run, std::span<const Expression> expressions,
+                            const State& state, const Values& box, const char* name) {
+    const auto found = first_undefined(model, run.parameters, expressions, state, box);
+    if (!found) return "";
+    return fmt::format("{} in {} becomes undefined, with {} = {:.3g}", found->part, name, found->operand, found->value);
+}
+
+// The first function that may reach its edge in the box, where it has a value but is not smooth; empty if there is
+// none.
+std::string first_edge(const Model& model, const Run& run, const State& state, const Values& box) {
+    for (const DomainBoundary& edge : model.edges()) {
+        if (edge.kind != DomainBoundary::Kind::edge) continue;
+        const Program program(std::span(&edge.event_function, 1), model.layout().slots());
+        auto distance = model.evaluator<Interval>(program, run.parameters);
+        set_box(distance, box);
+        distance.run();
+        if (certainly_positive(distance.output(0))) continue;
+        return fmt::format("{} in {} reaches a point where it is not smooth, with {} = {:.3g}",
+                           shortened(model, edge.function), edge.place, shortened(model, edge.argument),
+                           value_at(model, run.parameters, edge.argument, state));
+    }
+    return "";
+}
+
+// The first pivot of M that is not positive on the whole box, with its value at the state; empty if there is none.
+std::string first_bad_pivot(const Model& model, const Run& run, const State& state, const Values& box) {
+    const Program program(model.equations().pivots, model.layout().slots());
+    auto enclosure = model.evaluator<Interval>(program, run.parameters);
+    auto value = model.evaluator(program, run.parameters);
+    set_box(enclosure, box);
+    enclosure.run();
+    set_state(value, state);
+    value.run();
+    for (std::size_t i = 0; i < program.output_count(); ++i) {
+        const Interval pivot = enclosure.output(i);
+        if (!pivot.is_defined() || certainly_positive(pivot)) continue;
+        return fmt::format("the mass matrix is no longer positive definite: the pivot of '{}' is {:.3g}",
+                           model.description().coordinates[i].name, value.output(i));
+    }
+    return "";
+}
+
+// Checks the user's expressions first: a message about the derivative 1/x of log(x) would not help.
+std::string undefined_in(const Model& model, const Run& run, const State& state, const Values& box) {
+    const Equations& e = model.equations();
+    const auto look = [&](const std::vector<Expression>& expressions, const char* name) {
+        return undefined_among(model, run, expressions, state, box, name);
+    };
+    std::string found = look({e.kinetic}, "the kinetic energy");
+    if (found.empty()) found = look({e.potential}, "the potential");
+    if (found.empty()) found = look(e.gaps, "the gap");
+    if (found.empty()) found = look(e.Q, "the forces");
+    if (found.empty()) found = first_edge(model, run, state, box);
+    if (found.empty()) found = first_bad_pivot(model, run, state, box);
+    if (found.empty()) found = look(e.free.f, "the equations of motion");
+    return found;
+}
+
+}  // namespace
+
+std::string edge_of_domain(const Model& model, const Run& run, const State& state) {
+    const double scale = std::max(1e-3, std::abs(state.t));
+    for (const double reach : {1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 1e-9}) {
+        Values box = box_of(state);
+        for (Eigen::Index i = 0; i < state.q.size(); ++i) {
+            const double ahead = state.q[i] + reach * scale * state.v[i];
+            box[static_cast<std::size_t>(i)] = hull(Interval(state.q[i]), Interval(ahead));
+        }
+        box.back() = Interval(state.t, state.t + reach * scale);
+        const std::string found = undefined_in(model, run, state, box);
+        if (!found.empty()) return found;
+    }
+    return "";
+}
+
+std::string edge_of_contact(const Model& model, const Run& run, const State& state) {
+    return undefined_in(model, run, state, box_of(state));
+}
+
+}  // namespace achilles

@@ -1,0 +1,181 @@
+#include "simulate/taylor_stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace achilles {
+
+namespace {
+
+constexpr double longest_near = 0x1p29;  // s; up to here no power overflows
+
+// The sums of the even and the odd terms.
+TermSizes<double> sizes_of(const Polynomial& p) {
+    double even = 0.0, odd = 0.0;
+    const auto last = static_cast<std::size_t>(p.degree);
+    for (std::size_t k = 1; k <= last; k += 2) {
+        even += std::abs(p.c[k - 1]);
+        odd += std::abs(p.c[k]);
+    }
+    if (last % 2 == 0) even += std::abs(p.c[last]);
+    return {even + odd, std::abs(p.c[last]) + std::abs(p.c[last - 1])};
+}
+
+}  // namespace
+
+TaylorStepper::TaylorStepper(const Model& model, const Run& run)
+    : dof_(static_cast<std::size_t>(model.dof())),
+      tolerance_(std::max(run.options.tolerance, unit_roundoff)),
+      model_(&model),
+      parameters_(run.parameters),
+      step_(dof_, model.contacts(), tolerance_),
+      gap_units_(model, run) {}
+
+void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
+    if (motion_ == nullptr || mode != mode_) {
+        auto known = motions_.find(mode);
+        if (known == motions_.end()) {
+            const SeriesProgram& series = model_->motion(mode).series;
+            known = motions_.emplace(mode, MotionExpansion{{series, parameters_}, {series, tolerance_}}).first;
+        }
+        motion_ = &known->second;
+        mode_ = mode;
+    }
+    const std::vector<double>& units = gap_units_.at(state);
+    for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
+    for (std::size_t i = 0; i < gaps.size(); ++i) step_.gap(i) = gaps[i];
+    to_ = state;
+    evaluated_ = true;
+}
+
+// Expands the series at the current state to the required order.
+StepFailure TaylorStepper::expand(double longest) {
+    ++evaluations_;
+    current_state();
+    double* const from = step_.row(0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        from[i] = to_.q.data()[i];
+        from[dof_ + i] = to_.v.data()[i];
+    }
+    const auto start = step_.expand(motion_->series, motion_->order, mode_, longest);
+    if (!start.numbers) return StepFailure::not_a_number;
+    return start.regular && step_.order() > 0 ? StepFailure::none : StepFailure::left_the_domain;
+}
+
+void TaylorStepper::evaluate(double duration) {
+    span_ = duration;
+    evaluated_ = true;
+    if (duration > longest_near) return evaluate_far(duration);
+    std::array<double, 2 * max_coordinates> reached;
+    step_.evaluate(duration, reached.data());
+    std::copy_n(reached.data(), dof_, to_.q.data());
+    std::copy_n(reached.data() + dof_, dof_, to_.v.data());
+}
+
+StepFailure TaylorStepper::do_step(double time, double longest, double, double least) {
+    step_.time() = time;
+    if (const StepFailure failure = expand(longest); failure != StepFailure::none) return failure;
+    const double step = std::min(longest, motion_->order.natural_step(step_));
+    if (!(step > least)) return StepFailure::step_too_small;
+    span_ = step > longest_near ? within_numbers(step) : step;
+    if (span_ == 0.0) return StepFailure::not_a_number;
+    evaluated_ = false;
+    return StepFailure::none;
+}
+
+// The end of a step is evaluated on demand, because the step may be repeated with another length.
+const State& TaylorStepper::current_state() {
+    if (!evaluated_) evaluate(span_);
+    return to_;
+}
+
+// Row k times t^k if the power may overflow: 0 times infinity must give 0.
+double TaylorStepper::far_term(int k, std::size_t component, double t) const {
+    const double c = step_.row(k)[component];
+    return c == 0.0 ? 0.0 : c * std::pow(t, k);
+}
+
+void TaylorStepper::evaluate_far(double duration) {
+    const auto sum = [&](std::size_t component) {
+        double value = 0.0;
+        for (int k = step_.order(); k >= 0; --k) value += far_term(k, component, duration);
+        return value;
+    };
+    for (std::size_t i = 0; i < dof_; ++i) {
+        to_.q.data()[i] = sum(i);
+        to_.v.data()[i] = sum(dof_ + i);
+    }
+}
+
+// Limits the length of a very long step, which only a nearly straight motion has, so that the state stays in the range
+// that expand() accepts. Returns 0 if almost nothing of the step does.
+double TaylorStepper::within_numbers(double step) {
+    constexpr double shorter = 0x1p-8;
+    const auto size_at = [&](double t) {
+        double sum = 0.0;
+        for (int k = 0; k <= step_.order(); ++k)
+            for (std::size_t i = 0; i < step_.width(); ++i) sum += std::abs(far_term(k, i, t));
+        return sum;
+    };
+    const bool is_at_the_end = size_at(0.0) > 0.5 * shorter * largest_state;
+    while (step > longest_near && !(size_at(step) < largest_state)) step = is_at_the_end ? 0.0 : shorter * step;
+    return step;
+}
+
+StepFailure TaylorStepper::redo_step(double duration, double least) {
+    if (!(duration > least)) return StepFailure::step_too_small;
+    evaluate(duration);
+    return StepFailure::none;
+}
+
+void TaylorStepper::event_function(std::size_t contact, Polynomial& p) const {
+    p.degree = step_.order();
+    if (span_ > longest_near) {
+        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] = far_term(k, 2 * dof_ + contact, span_);
+    } else {
+        step_.event_terms(contact, span_, p.c.data());
+    }
+}
+
+std::uint32_t TaylorStepper::coefficients(std::vector<double>& coefficients) const {
+    const std::size_t block = 2 * dof_;
+    int degree = step_.order();
+    while (degree > 1 && std::all_of(step_.row(degree), step_.row(degree) + block, [](double x) { return x == 0.0; }))
+        --degree;
+    const std::size_t first = coefficients.size();
+    coefficients.resize(first + static_cast<std::size_t>(degree + 1) * block);
+    double* to = coefficients.data() + first;
+    const double* c = step_.row(0);
+    double power = 1.0;
+    for (int k = 0; k <= degree; ++k, c += step_.width(), to += block, power *= span_)
+        for (std::size_t i = 0; i < block; i += 2) {
+            const double even = c[i] * power, odd = c[i + 1] * power;
+            to[i] = even;
+            to[i + 1] = odd;
+        }
+    return static_cast<std::uint32_t>(degree);
+}
+
+double TaylorStepper::remainder(std::size_t contact, const Polynomial& p) const {
+    return step_.doubt(contact, span_, sizes_of(p)).remainder();
+}
+
+void TaylorStepper::add_error(std::size_t contact, const Polynomial& p, Gap& end) const {
+    const TermSizes<double> sizes = sizes_of(p);
+    step_.add_error(contact, span_, sizes, step_.doubt(contact, span_, sizes), end);
+}
+
+// Evaluated without forming the polynomial.
+bool TaylorStepper::stays_negative(std::size_t contact) const {
+    double power = 1.0;
+    return step_.stays_negative(contact, span_, [&](int k) {
+        if (k > 0) power *= span_;
+        return step_.event(contact, k) * power;
+    });
+}
+
+std::unique_ptr<Stepper> make_taylor(const Model& model, const Run& run) {
+    return std::make_unique<TaylorStepper>(model, run);
+}
+
+}  // namespace achilles

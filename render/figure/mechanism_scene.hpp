@@ -1,0 +1,98 @@
+// The scene of one run of a mechanism: solid ground, trail of the body, poses at events, camera. What depends on the
+// run only is computed once.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "figure/body.hpp"
+#include "figure/camera.hpp"
+#include "figure/contact_geometry.hpp"
+#include "figure/field.hpp"
+
+namespace achilles {
+
+// What is drawn besides the mechanism.
+struct Layers {
+    bool way = true;      // trail of the body: past, and faintly future
+    bool strobe = false;  // poses at past events, as far as they can be distinguished
+};
+
+// Color and text of the phase at an instant, for a line beside the picture. Between a cut and its Zeno point the hybrid
+// phase continues, but the motion is the restarted one in contact, and the picture shows that.
+struct PhaseLabel {
+    Phase::Kind color = Phase::Kind::hybrid;
+    std::string text;
+};
+PhaseLabel phase_label(const Sample& now);
+
+class MechanismScene {
+ public:
+    // Keeps references to its arguments.
+    MechanismScene(const Mechanism& mechanism, const Trajectory& trajectory, std::span<const Sample> samples);
+    MechanismScene(const MechanismScene&) = delete;
+    MechanismScene& operator=(const MechanismScene&) = delete;
+
+    // The part of the world that the run needs (Mechanism::limits).
+    const Drawing& limits() const { return limits_; }
+    const Trail& trail() const { return trail_; }
+    const Camera& camera() const { return camera_; }
+    const ContactGeometry& touch() const { return touch_; }
+    const std::string& unit() const { return unit_; }  // of length
+
+    // The mechanism at an instant of the run with the requested layers, in the visible part of the world.
+    Drawing draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers);
+    // Times of the strobe poses, s.
+    std::vector<double> poses() const;
+
+ private:
+    void find_poses();
+    std::vector<WayPoint> way(const Sample& now, const Drawing& seen);
+    std::optional<std::pair<double, double>> close_part(const Sample& now, const Drawing& seen,
+                                                        const std::optional<Body>& body) const;
+    Point rest_below(const Sample& now, const Drawing& seen, AnchorPoint& grip, const std::optional<Body>& body) const;
+
+    const Mechanism& mechanism_;
+    const Trajectory& trajectory_;
+    Sampler sampler_;
+    Drawing limits_;
+    Trail trail_;
+    ContactGeometry touch_;
+    Camera camera_;
+    std::vector<Sample> poses_;
+    std::string unit_;
+};
+
+// A system with coordinates x, y and z in two views: the planes x-z and y-z, cut at the point.
+//
+// A [[drawing]] has two coordinates; for a system in space it is a picture that its file made up. These views show any
+// system of three Cartesian coordinates as it is. The solid is the side h < 0 of its gaps in the plane through the
+// point; the trail is projected as a whole.
+
+class TwoViews {
+ public:
+    // Keeps references to its arguments.
+    TwoViews(const Trajectory& trajectory, std::span<const Sample> samples);
+    // Whether the coordinates of the system are x, y and z.
+    bool exist() const { return exist_; }
+    struct Side {
+        std::string name;  // names of the horizontal and the vertical axis, such as "x", "z"
+        std::array<std::size_t, 2> pair;
+    };
+    static std::array<Side, 2> all();
+    // Limits that the whole run needs in both views, of equal size.
+    std::array<Drawing, 2> limits() const;
+    // One of the views, in the visible part of its plane.
+    Drawing draw(std::size_t side, const Sample& now, const Drawing& seen, const Theme& theme, bool with_way) const;
+
+ private:
+    const Trajectory& trajectory_;
+    std::span<const Sample> samples_;
+    bool exist_ = false;
+};
+
+}  // namespace achilles
