@@ -10,7 +10,7 @@
 //     sweep_columns(model, sweep)             many runs, on all cores           SweepColumns
 //     simulate_many(), simulate_ends()        many runs, each reduced to what is wanted of it
 //     parse_orbit_request({.along = ...}, run, model)                           OrbitRequest: of a periodic run
-//     solve_orbit_request(question, model)          the run, its multipliers, branch  OrbitResult, or why there is none
+//     solve_orbit_request(request, model)     the run, its multipliers, branch  OrbitResult, or why there is none
 //
 // A Model never changes and may be used by several threads. What is wrong with a file, a name or an expression is thrown as an
 // InputError, which says where it stands and what would be right; what ends a run early is the trajectory's `outcome`.

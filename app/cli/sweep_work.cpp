@@ -98,7 +98,7 @@ RankTask sweep_share(std::string_view order) {
     std::sscanf(take_line().c_str(), "%d %d %d %d", &text, &rows, &in_log, &threads);
     kept = {text != 0, rows != 0, in_log != 0};
     const std::string sweep = take_line();
-    const SystemDescription description = parse_system(std::string(order), "the system of rank 0");
+    const SystemDescription description = parse_system(std::string(order), "the system file sent by MPI rank 0");
     const auto table =
         std::make_shared<const SweepTable>(std::make_shared<const Model>(description), read_sweep(sweep, description));
     return {threads, [table, kept](Chunk chunk) { return sweep_chunk(*table, kept, chunk); }};

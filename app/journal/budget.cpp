@@ -66,7 +66,10 @@ void Budget::check(const SweepSpec& sweep) const {
 
 void Budget::check_rows(std::uint64_t rows) const {
     if (is_limited_ && rows > max_points)
-        throw FileAccessDenied({}, {}, fmt::format("the sections of the sweep have more than {} rows", max_points),
+        throw FileAccessDenied({}, {},
+                               fmt::format("the table of the sweep has more than {} rows; a sweep of a journal or a "
+                                           "picture may have at most that many",
+                                           max_points),
                                how_to_allow_);
 }
 

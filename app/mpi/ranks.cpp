@@ -82,8 +82,9 @@ Ranks::Ranks(const Launch& launch) {
         mpi_->end();
         cannot_share(
             launch,
-            fmt::format("each reaches {} through MPI; mpirun may belong to a different MPI than libachilles_mpi.so",
-                        size_));
+            fmt::format(
+                "each process finds {} through MPI; use the mpirun of the MPI that ldd libachilles_mpi.so names",
+                size_));
     }
 }
 

@@ -167,7 +167,8 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
     remember(state, "prove");
     tooltip(is_under_way ? "stop the proof"
             : is_there   ? "remove the proof from the plots and the events"
-                         : "enclose the whole exact motion: integration, rounding, every impact and every Zeno point");
+                         : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "
+                         "integration and rounding errors");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {

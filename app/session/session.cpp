@@ -357,7 +357,7 @@ void Session::receive(Timeout patience) {
         if (simulated_ == nullptr) throw;
         watch_.reset();
         asked_ = simulated_->trajectory.run;
-        error_ = "there is not enough memory for this run; the previous one is kept";
+        error_ = "there is not enough memory for this run; the previous run is kept. Use an earlier end time";
     }
     if (!motion) return;
     simulated_ = *motion;
@@ -433,7 +433,7 @@ void Session::perform(const command::Pause&) { playing_ = false; }
 void Session::perform(const command::Select& command) {
     const auto& events = trajectory().events;
     if (command.event < 0 || static_cast<std::size_t>(command.event) > events.size())
-        throw refusal(fmt::format("there is no event {}: this run has {}", command.event, events.size()));
+        throw refusal(fmt::format("there is no event {}: this run has events 1 to {}", command.event, events.size()));
     selected_ = command.event;
     if (selected_ > 0) move_to(events[static_cast<std::size_t>(selected_ - 1)].t);
     place(command);

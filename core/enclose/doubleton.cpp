@@ -67,7 +67,7 @@ NearOrthogonalSolver::NearOrthogonalSolver(const Matrix& matrix) : matrix_(matri
         largest = max(largest, row);
     }
     const Interval eps(largest.hi());
-    if (!(eps.hi() < 0.5)) throw ProofStopped{"no invertible basis of the set was found"};
+    if (!(eps.hi() < 0.5)) throw ProofStopped{"the enclosure of the state became numerically singular"};
     delta_ = eps / (Interval(1.0) - eps);
 }
 

@@ -153,7 +153,9 @@ Enclosure prove_in_parts(const std::shared_ptr<const Model>& model, const Enclos
     const double count = std::pow(parts, static_cast<double>(sides_of(whole).size()));
     if (!(parts >= 1 && count <= 1e6))
         throw InputError(fmt::format("--split {}", parts), {},
-                         fmt::format("the initial box can be cut into 1 to 1000000 parts, not {:.0f}", count));
+                         fmt::format("this divides the initial box into {:.0f} parts, a factor {} for each of its {} "
+                                     "sides; 1 to 1000000 parts are possible",
+                                     count, parts, sides_of(whole).size()));
     const auto clock = std::chrono::steady_clock::now();
     std::vector<Enclosure> all(static_cast<std::size_t>(count));
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {

@@ -138,7 +138,7 @@ void SweepLog::go_on(const SweepKey& key, bool resume, std::uint64_t points) {
         throw InputError(path_, {}, "the sweep stores its progress here, but this file is not an unfinished sweep",
                          "choose another name");
     find_end();
-    const std::string different = difference(known, key), anew = "remove it to start over";
+    const std::string different = difference(known, key), anew = "delete this file to start over";
     if (done_ == 0 && !different.empty()) return begin(key);
     if (done_ >= points && different.empty()) return;
     if (!resume && done_ > 0)

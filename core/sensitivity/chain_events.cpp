@@ -14,6 +14,9 @@ using Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
+constexpr const char* several_at_zeno_point =
+    "several contacts reach a Zeno point together: no derivatives are computed past this point";
+
 // A number and its derivatives by the components of a change, for the impact law.
 struct ValueWithGradient {
     double value;
@@ -167,7 +170,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
         if (piece.start == now.t && (event + 1 == events.size() || events[event + 1].t > now.t))
             joins = piece.mode.held().without(now.mode.held());
     }
-    if (joins.count() > 1) return "two contacts reach a Zeno point together: the derivative of this point is not known";
+    if (joins.count() > 1) return several_at_zeno_point;
     return std::nullopt;
 }
 
@@ -195,8 +198,7 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others
 
 void Chain::reach_zeno_point(std::size_t event) {
     const Event& now = trajectory_->events[event];
-    if (!waiting_ || now.contacts.count() != 1)
-        return break_off("two contacts reach a Zeno point together: the derivative of this point is not known");
+    if (!waiting_ || now.contacts.count() != 1) return break_off(several_at_zeno_point);
     waiting_ = false;
     set_gaps();
     const std::size_t i = now.contacts.only();

@@ -160,7 +160,9 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 2> own_names
     {{"Software", "Creator"}, {"Title", "Title"}}};
 constexpr std::string_view utf16_mark = "\xFE\xFF";  // byte order mark
 
-std::runtime_error damaged() { return std::runtime_error("its notes are damaged"); }
+std::runtime_error damaged() {
+    return std::runtime_error("the PDF file is damaged: the command and parameters stored in it cannot be read");
+}
 
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
@@ -362,7 +364,8 @@ std::string unescaped(std::string_view text) {
         if (c == '&') {
             for (const auto& [plain, entity] : entities)
                 if (text.substr(0, entity.size()) == entity) c = plain, taken = entity;
-            if (taken.size() == 1) throw std::runtime_error("its notes are damaged: an unknown entity");
+            if (taken.size() == 1)
+                throw std::runtime_error("the SVG file is damaged: an unknown entity in what is stored in it");
         }
         result += c;
         text.remove_prefix(taken.size());

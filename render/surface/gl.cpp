@@ -55,7 +55,7 @@ GLuint Gl::framebuffer(GLuint target) const {
     BindFramebuffer(GL_FRAMEBUFFER, made);
     FramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, target, 0);
     if (CheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)
-        throw std::runtime_error("OpenGL cannot draw into a texture of this size");
+        throw std::runtime_error("OpenGL cannot create an image of this size: use a smaller window or picture");
     return made;
 }
 

@@ -152,7 +152,7 @@ TEST_F(SweepRanks, RefuseWhatTheyCannotShare) {
     EXPECT_EQ(script(assets + "ACHILLES_MPI=0 " + mpirun + "-n 1 ./achilles " + sweep), 0);
     const Answer other = folder_.run(sweep, with_mpi + "PMI_RANK=0 PMI_SIZE=3");
     EXPECT_EQ(other.status, 2);
-    EXPECT_NE(other.err.find("3 processes were started, but they cannot share a sweep: each reaches 1"),
+    EXPECT_NE(other.err.find("3 processes were started, but they cannot share a sweep: each process finds 1"),
               other.err.npos);
 }
 

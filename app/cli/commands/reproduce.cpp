@@ -48,7 +48,8 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
         throw InputError(picture, {}, fmt::format("its command cannot be run here: {}", error.what()), origin.command);
     }
     if (!job.made())
-        throw InputError(picture, {}, fmt::format("its command does not make the picture '{}'", origin.picture),
+        throw InputError(picture, {},
+                         fmt::format("the command stored in this file makes no picture named '{}'", origin.picture),
                          origin.command);
     return status;
 }
