@@ -5,16 +5,17 @@
 //     NamedRun(description).set("e", 0.3)     parameters, start and options     Run
 //     simulate(model, run)                    the completed execution           Trajectory: phases, events, certificates
 //     trajectory(t)                           q and v at a time                 Sample
-//     estimate_error(trajectory)              how wrong it has become, roughly  ErrorEstimate
-//     make_sweep({.over = ..., .prints = ...}, run, description)                Sweep
+//     estimate_error(trajectory)              an estimate of its error          ErrorEstimate
+//     make_sweep({.over = ..., .prints = ...}, run, description)                SweepSpec
 //     sweep_columns(model, sweep)             many runs, on all cores           SweepColumns
-//     simulate_many(), simulate_ends()        many runs, each reduced to what is wanted of it
-//     parse_orbit_request({.along = ...}, run, model)                           OrbitRequest: of a periodic run
-//     solve_orbit_request(request, model)     the run, its multipliers, branch  OrbitResult, or why there is none
+//     simulate_many(), simulate_ends()        many runs, each reduced by a function of the caller
+//     parse_orbit_request({.along = ...}, run, model)                           OrbitRequest
+//     solve_orbit_request(request, model)     a periodic orbit, its multipliers and its branch, or the reason why none
+//                                             was found                         OrbitResult
 //
-// A Model never changes and may be used by several threads. What is wrong with a file, a name or an expression is thrown as an
-// InputError, which says where it stands and what would be right; what ends a run early is the trajectory's `outcome`.
-// Numbers are in the file's units, angles in rad.
+// A Model never changes and may be used by several threads. A mistake in a file, a name or an expression is thrown as
+// an InputError, which has its place and a correction. A run that ends early reports the reason in the trajectory's
+// `outcome`. Numbers are in the file's units, angles in rad.
 #pragma once
 
 #include "analysis/orbit.hpp"

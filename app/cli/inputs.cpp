@@ -158,7 +158,7 @@ struct DroppedCommands {
 };
 
 // Whether the file of that name still has the same text. The name comes from an untrusted picture, so a path is read
-// only with permission. Throws Forbidden if the user must be asked.
+// only with permission. Throws FileAccessDenied if the user must be asked.
 bool is_held(const Source& source, const DroppedCommands& opening) {
     std::error_code problem;
     if (is_system_path(source.name)) {

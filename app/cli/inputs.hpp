@@ -47,8 +47,8 @@ class Inputs {
     SystemDescription system(const std::string& name);
     // The text of a data file, by its path.
     std::string data(const std::string& path);
-    // The commands of a journal. Throws Forbidden if it does what it may not, or if all journals together have too many
-    // commands.
+    // The commands of a journal. Throws FileAccessDenied if it does something without permission, or if all journals
+    // together have too many commands.
     std::vector<Command> journal(const std::string& path);
     // Commands from a command line; for a picture they count toward the limits, too.
     std::vector<Command> steps(const std::vector<std::string>& lines);
@@ -79,8 +79,8 @@ bool is_picture(const std::string& path);
 
 // Commands that restore the session shown in a picture, from what is stored in it. Its system is opened from the file
 // of that name if the file may be read and still has the same text, else as an unsaved new text. File output of its
-// journal is left out. Throws Forbidden, with the questions to ask, before it reads a file that the user has not named.
-// Throws InputError if the file is not a picture of Achilles, or shows no session.
+// journal is left out. Throws FileAccessDenied, with the questions to ask, before it reads a file that the user has not
+// named. Throws InputError if the file is not a picture of Achilles, or shows no session.
 std::vector<Command> session_in(const std::string& picture, const FilePolicy& trust);
 
 }  // namespace achilles

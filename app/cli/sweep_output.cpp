@@ -60,13 +60,14 @@ bool is_stream(const std::string& path) {
     return path == "-" || (fs::exists(there) && !fs::is_regular_file(there));
 }
 
-// The two parts of a chunk's stored form: the length and text of its rows, then the binary rows.
+// The text of a stored chunk, which has the length of the text (8 bytes), the rows as text, and the binary rows.
 std::string_view text_in(std::string_view bytes) {
     std::uint64_t size = 0;
     std::memcpy(&size, bytes.data(), sizeof size);
     return bytes.substr(sizeof size, size);
 }
 
+// The binary rows of a stored chunk.
 std::string_view rows_in(std::string_view bytes) { return bytes.substr(sizeof(std::uint64_t) + text_in(bytes).size()); }
 
 }  // namespace

@@ -66,7 +66,7 @@ bool would_overwrite(const FileUse& use, const FilePolicy& trust) {
     return use.writes && trust.files != FilePolicy::Files::virtual_only && fs::exists(use.path, problem);
 }
 
-// Throws Forbidden if the command sets an option beyond the budget.
+// Throws FileAccessDenied if the command sets an option beyond the budget.
 void check_work(const Command& command, const Budget* budget) {
     const auto* use = std::get_if<command::SetOption>(&command);
     if (use == nullptr || budget == nullptr) return;

@@ -32,7 +32,8 @@ void add_steps(Words& words, const std::vector<Command>& steps) {
     for (const Command& step : steps) words.insert(words.end(), {"--do", to_text(step)});
 }
 
-// The plots expressed as views of the system's file. Empty if that is not possible, e.g. with pinned runs or a proof.
+// The options --view NAME that reproduce the plots, if every plot is an unchanged view of the system file. nullopt
+// otherwise, and with pinned runs or a proof.
 std::optional<Words> views_of(const Session& session, const Plots& plots) {
     if (!session.pinned().empty() || session.proof() != nullptr) return std::nullopt;
     const auto& views = session.description().views;

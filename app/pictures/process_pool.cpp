@@ -148,7 +148,7 @@ std::size_t listen_to(std::vector<Process>& processes, const std::function<void(
     return done;
 }
 
-// Waits for all workers. Returns the signal that killed one of them, or 0.
+// Closes the pipes and waits until all workers have ended. Returns a signal that killed one of them, or 0.
 int wait_for(const std::vector<Process>& processes) {
     int signal = 0;
     for (const Process& process : processes) {

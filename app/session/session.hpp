@@ -71,8 +71,8 @@ class Session {
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Performs a command. On failure everything stays as it was, except error() or, for a text that is not a valid
-    // system, problems(); returns false then, but true for a text. Throws Forbidden if a journal tries to do what its
-    // policy does not allow, or exceeds its budget.
+    // system, problems(); returns false then, but true for a text. Throws FileAccessDenied if a journal does
+    // something that its policy does not allow, or exceeds its budget.
     bool apply(const Command& command);
 
     // Reports an error that does not come from a command. error() returns it until the next command.

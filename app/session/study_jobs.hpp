@@ -152,7 +152,7 @@ struct OrbitJobResult {
     std::size_t first() const;
 };
 
-// `run` on this periodic orbit: with its start and parameters, and at least one period long.
+// A copy of `run` that starts on this periodic orbit, has its parameters, and lasts at least one period.
 Run run_on(const OrbitPoint& point, Run run);
 
 class OrbitJob : public Job<OrbitJobResult, OrbitMonitor> {

@@ -72,8 +72,9 @@ class MeasureEvaluator {
 
     // Appends the numbers of a run at its end.
     void at_end(const Trajectory& trajectory, std::vector<double>& numbers);
-    // The same at the points of a section; counts and times of events are those up to the point.
+    // The points of a run in a section, in order of time.
     std::vector<SectionPoint> moments(const Trajectory& trajectory, const Section& section);
+    // Appends the numbers at one of these points. Counts and times of events are those up to the point.
     void at(const Trajectory& trajectory, const SectionPoint& moment, std::vector<double>& numbers);
 
  private:
@@ -92,12 +93,9 @@ class MeasureEvaluator {
     double least_gap_ = 0.0;
 };
 
-// ---- signature: the sequence of events of a run as one number, which differs between qualitatively different runs
-// ----
+// ---- event signature: a hash of the event sequence of a run; runs with different sequences differ in it ----
 
-// Hash function for random points and signatures.
-
-// One step of splitmix64.
+// One step of splitmix64: a hash function for random points and event signatures.
 constexpr std::uint64_t mixed(std::uint64_t x) {
     x += 0x9E3779B97F4A7C15u;
     x = (x ^ (x >> 30)) * 0xBF58476D1CE4E5B9u;

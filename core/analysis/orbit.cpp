@@ -15,8 +15,8 @@ namespace achilles {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 double loss_exponent(double e) {
-    // The first flight theta in units of the time to sigma: e (3 - 2 theta) = (3 - theta) (1 - theta)^2. The difference
-    // falls from 3 (1 - e) to -e.
+    // Bisection for theta, the duration of a flight in units of the time to the release: e (3 - 2 theta) =
+    // (3 - theta) (1 - theta)^2. Right minus left side falls from 3 (1 - e) at theta = 0 to -e at theta = 1.
     double low = 0.0, high = 1.0;
     for (int round = 0; round < 100; ++round) {
         const double theta = 0.5 * (low + high), rho = 1.0 - theta;

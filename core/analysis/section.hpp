@@ -14,8 +14,9 @@
 
 namespace achilles {
 
-// Bounds of an expression and its rate over a part of a run, from dense output. They show a root search where it need
-// not look. The projection of states in contact is not included. Requires a Ground (number/float_environment.hpp).
+// Bounds of an expression and its rate over a part of a run, from dense output. A root search skips the parts where
+// they exclude a root. The projection of states in contact is not included. Requires a FloatEnvironmentGuard
+// (number/float_environment.hpp).
 class PathBounds {
  public:
     // `section` is a result of Model::compile_section(). Returns nullopt if it depends on forces or accelerations of
@@ -24,7 +25,7 @@ class PathBounds {
 
     // Bounds for times in [from, to] within a step; undefined if the expression may be undefined there.
     Interval value(const Trajectory& trajectory, const DenseSegment& piece, double from, double to);
-    // Bounds of the rate (1/s) over the interval of the last value().
+    // Bounds of the rate, per s, over the interval of the last value().
     Interval rate();
 
  private:

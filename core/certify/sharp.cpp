@@ -86,9 +86,9 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
 }
 
-// Intersects the enclosure of the accumulation time with the one of third order in w (truncation.hpp). Call
-// time_over_box() first: this uses the slopes of hddot over the box X, and encloses hddot at the collision and
-// sigma = 0.
+// Intersects the enclosure of the accumulation time with the one of third order in the impact speed w (truncation.hpp).
+// Call time_over_box() first: it evaluates the derivatives of hddot over the box X that are used here. hddot itself is
+// enclosed at the collision with sigma = 0.
 void SharpConditions::sharpen(Time& time, const AccelerationTrend& trend) {
     for (std::size_t i = 0; i < dof_; ++i) {
         variables_[i] = box_.q0[i];

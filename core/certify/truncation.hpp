@@ -90,8 +90,8 @@ struct CollisionBox {
 
 // Base of the conditions for truncating the bouncing of one contact or the chatter of a pair. It holds the tolerances
 // of the run, the proof for the other contacts, and the common part of all certificates. Certificates need the
-// floating-point environment of a Ground. Constructors take one as evidence; certify() and prove_any() create their
-// own.
+// floating-point environment of a FloatEnvironmentGuard. Constructors take one as evidence; certify() and prove_any()
+// create their own.
 class ConditionsBase {
  protected:
     // A box has one interval for each of the variables. `others` is null if there are no other contacts. Those in

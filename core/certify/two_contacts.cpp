@@ -20,7 +20,7 @@ std::vector<std::uint32_t> variables_of_pair(const Layout& layout) {
     return variables;
 }
 
-// x' W^-1 y for 2-vectors.
+// x' W^-1 y for 2-vectors and a symmetric W.
 Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
                     const std::array<Interval, 2>& y) {
     const Interval det = W[0][0] * W[1][1] - square(W[0][1]);

@@ -43,8 +43,9 @@ class PairConditions : protected ConditionsBase {
         Certificate certificate;
         State restart;  // (q - N h, s - B h), to be projected onto all contact surfaces
     };
-    // The certificate, if it is within the tolerances of the run; with `cut_at_resolution` (the flights can no longer
-    // be resolved) whatever the tolerances.
+    // The certificate for a truncation at this collision, and the state after it. nullopt if the proof fails or its
+    // bounds exceed the tolerances of the run. With `cut_at_resolution` the tolerances do not matter: time cannot
+    // resolve the flights any more.
     std::optional<PairCompletion> certify(const PairCollision& collision, bool cut_at_resolution);
 
  private:
@@ -54,6 +55,7 @@ class PairConditions : protected ConditionsBase {
         std::vector<Interval> all;  // q, s, the two sigma, t
         explicit PairBox(std::size_t dof) : CollisionBox(dof), all(2 * dof + 3) {}
     };
+    // Evaluates the terms of the pair over a box. Returns whether both W_ii are proved positive.
     bool look(const std::vector<Interval>& box);
     std::optional<PairAtCollision> at_collision(const PairCollision& collision, const State& shifted);
     bool contain(PairBox& box, const PairBound& bound, const PairAtCollision& pair);

@@ -30,7 +30,7 @@ class EquationsOnPage {
     std::string words(const std::string& plain) const { return is_text() ? plain : Page::escaped(plain); }
 
     bool is_one() const { return model_.contacts() == 1; }
-    // Inserts the name of the contact into `words` if there are several contacts; else "".
+    // A phrase that names the contact: `words` with its name in place of {}. "" if the system has only one contact.
     std::string of(const char* words, std::size_t contact) const {
         if (is_one()) return "";
         return fmt::format(fmt::runtime(words), model_.description().constraints[contact].name);

@@ -25,7 +25,8 @@ Index lonely_landing(const Vector& hdot, ContactSet colliding) {
     return landing;
 }
 
-// The impulses if contact i impacts and all others stay held; nullopt if they do not.
+// The impulses if contact i impacts and `others` stay closed: p_i by Newton's law with W_i^A, and kappa_j p_i. nullopt
+// if a kappa_j is negative, so that a contact would open, or W is nearly singular.
 std::optional<Vector> passed_on(const Matrix& W, double e, double hdot, Index i, ContactSet others) {
     const auto block = HeldBlock<double>::of(W, others);
     if (!block) return std::nullopt;
@@ -63,6 +64,7 @@ std::optional<Complementarity> solve_among(const Matrix& W, const Vector& b, Con
     return result;
 }
 
+// The impulses p of Moreau's law, and y = hdot+ + e hdot-. nullopt if no solution is found.
 std::optional<Complementarity> solve_impact(const Matrix& W, const Vector& hdot, const Vector& e,
                                             ContactSet colliding) {
     if (const Index i = lonely_landing(hdot, colliding); i >= 0)

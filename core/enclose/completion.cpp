@@ -51,7 +51,7 @@ Completion::Completion(const Model& model, const Coordinates& coordinates, std::
     neighbours_variables_ = bouncing.variables;
 }
 
-// Evaluates neighbours_program_ over a box of the variables of Bouncing.
+// Evaluates neighbours_program_ over a box of the variables of BouncingModel.
 void Completion::look(const Intervals& box) {
     for (std::size_t i = 0; i < box.size(); ++i) neighbours_program_.input(neighbours_variables_[i]) = box[i];
     neighbours_program_.run();

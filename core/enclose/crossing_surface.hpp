@@ -23,7 +23,7 @@ struct CrossingSurface {
     static CrossingSurface of_time(const Coordinates& coordinates, double time);
 };
 
-// Maps the set to the surface. Every member must be known to cross it in tau, which is narrowed. Throws Undecided if
+// Maps the set to the surface. Every member must be known to cross it in tau, which is narrowed. Throws ProofStopped if
 // the crossing is not transversal.
 void cross(Doubleton& set, const Step& step, const CrossingSurface& section, Interval& tau);
 

@@ -49,7 +49,7 @@ class Doubleton {
     Interval along(const Interval* row) const;
 
     // The image of the set under a map with F(z) in at_centre + slope (z - c). at_centre must contain F(c), and slope
-    // the derivatives over the hull; both may include an error of F. Throws Undecided if an entry is undefined or
+    // the derivatives over the hull; both may include an error of F. Throws ProofStopped if an entry is undefined or
     // unbounded.
     void map(const Intervals& at_centre, const IntervalMatrix& slope);
     // Sets coordinate i to exactly this value in every member.
@@ -66,7 +66,7 @@ class Doubleton {
 // eps >= |B'B - 1|.
 class NearOrthogonalSolver {
  public:
-    // Throws Undecided if eps is not below 1/2.
+    // Throws ProofStopped if eps is not below 1/2.
     explicit NearOrthogonalSolver(const Eigen::MatrixXd& matrix);
     Intervals solve(const Intervals& x) const;
 
@@ -74,9 +74,6 @@ class NearOrthogonalSolver {
     Eigen::MatrixXd matrix_;
     Interval delta_;
 };
-
-// Layout of the coordinates of a set of states (theory-enclosure.md 1): the time of the member, q, v, the gap h and gap
-// rate u of every contact as independent coordinates, and the interval parameters.
 
 // Whether a number has derivatives in at least one direction; Jet<Number, 0> has none.
 template <class Number>
@@ -87,6 +84,8 @@ inline constexpr bool has_directions = [] {
         return false;
 }();
 
+// Layout of the coordinates of a set of states (theory-enclosure.md 1): the time of the member, q, v, the gap h and gap
+// rate u of every contact as independent coordinates, and the interval parameters.
 struct Coordinates {
     std::size_t dof = 0;
     bool autonomous = true;
@@ -102,7 +101,7 @@ struct Coordinates {
     std::size_t parameter(std::size_t k) const { return 1 + 2 * dof + 2 * contacts + k; }
     std::size_t size() const { return parameter(varied.size()); }
 
-    // The coordinates on which the accelerations depend. Maps depend on h and u as well (of_maps).
+    // Indices of the coordinates on which the accelerations depend.
     std::vector<std::size_t> of_motion() const {
         std::vector<std::size_t> result;
         for (std::size_t i = 0; i < 2 * dof; ++i) result.push_back(q(i));
@@ -110,6 +109,7 @@ struct Coordinates {
         for (std::size_t k = 0; k < varied.size(); ++k) result.push_back(parameter(k));
         return result;
     }
+    // Indices of the coordinates on which the maps at events depend: those of the accelerations, h and u.
     std::vector<std::size_t> of_maps() const {
         std::vector<std::size_t> result = of_motion();
         for (std::size_t i = 0; i < contacts; ++i) result.insert(result.end(), {h(i), u(i)});
@@ -141,7 +141,7 @@ struct Coordinates {
     }
 };
 
-// Calls maker.template operator()<N>() for the smallest supported N >= count. Throws Undecided if there are too many
+// Calls maker.template operator()<N>() for the smallest supported N >= count. Throws ProofStopped if there are too many
 // directions.
 template <class Maker>
 auto with_directions(std::size_t count, const Maker& maker) {

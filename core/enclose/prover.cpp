@@ -181,7 +181,7 @@ const char* doubt_of(Transition transition) {
 
 }  // namespace
 
-// The event that precedes all others in every member, if there is one.
+// The event of this step that precedes all others in every member, if there is one.
 Prover::NextEvent Prover::next_in(const Step& step) const {
     std::vector<FirstRoot> roots;
     NextEvent next{{}, {}, step.length(), {}};

@@ -1,5 +1,5 @@
 // Proves the completed execution of all members of a set at once: like simulate/execution.hpp, with proofs in place of
-// decisions. Throws Undecided if members would behave differently, or if nothing can be proved.
+// decisions. Throws ProofStopped if members would behave differently, or if nothing can be proved.
 #pragma once
 
 #include <map>
@@ -27,12 +27,12 @@ class Prover {
         std::optional<EnclosedState> state;
         bool is_known = false;
     };
-    // The next event, and the elapsed time until which there is none.
+    // The next event of all members of the set. Times are elapsed since the start of the step, in s.
     struct NextEvent {
-        std::optional<std::size_t> contact;
-        Interval elapsed;
-        double clear;
-        std::string doubt;
+        std::optional<std::size_t> contact;  // nullopt if no event is proved to come first
+        Interval elapsed;                    // time of the event
+        double clear;                        // until then no member has an event
+        std::string doubt;                   // why the step cannot decide; "" if it can
     };
     void begin();
     void begin_on_surface(const Intervals& start, std::size_t contact);

@@ -79,17 +79,19 @@ class EnclosureStepper {
  public:
     static constexpr int order = 20;  // K
 
-    // Of the motion in this mode.
+    // A stepper for the motion in this mode.
     EnclosureStepper(const Model& model, const Coordinates& coordinates, Mode mode);
 
-    // Makes a step of at most `longest` (s); `openings` has an entry for each contact. Throws Undecided if no a-priori
-    // box is found.
+    // Makes a step of at most `longest` (s); `openings` has an entry for each contact. Throws ProofStopped if no
+    // a-priori box is found.
     Step make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings);
     // Removes the limit that the last step sets to the length of the next.
     void forget() { last_ = 0.0; }
 
  private:
     void tabulate(Step& step, const Doubleton& set, const std::vector<OpenGapBound>& openings);
+    // Enclosures of the coefficients in time of the function whose zero is the event of this contact: the gap if it is
+    // open, -hddot of the mode without it if it is held.
     Intervals watch(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
     Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
     Intervals watch_force(const Doubleton& set, std::size_t contact) const;

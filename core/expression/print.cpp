@@ -139,8 +139,8 @@ FormattedTerm write_function(Operation function, const FormattedTerm& argument, 
 
 namespace {
 
-// A product whose first factor may be an exact number. Text writes x/2 for (1/2)*x, if it is read back unchanged. LaTeX
-// puts a minus sign in front of the product.
+// The product a b, where a may be an exact number, which is then `first`. Text writes p*b/q for a positive fraction
+// p/q, and keeps a negative number as a factor: (-1/2)*x. LaTeX puts a minus sign in front of the product.
 FormattedTerm multiplied(Expression first, const FormattedTerm& a, const FormattedTerm& b, Notation notation) {
     if (!first.is_number()) return write_product(a, b, notation);
     const boost::multiprecision::cpp_rational& value = Builder::value(first);

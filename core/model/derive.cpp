@@ -235,7 +235,8 @@ ModeEquations ContactModes::derive(Mode mode) {
 
 namespace {
 
-// The acceleration of a mode as derived and, if exactly one contact is held, as f + impulse lambda.
+// Two expressions of the acceleration in a mode: first as derived, second as f + impulse lambda. The second is empty
+// unless exactly one contact is held.
 std::pair<Expressions, Expressions> accelerations(const ModeEquations& motion) {
     for (std::size_t i = 0; i < motion.contacts.size(); ++i)
         if (motion.mode.held() == ContactSet::of(i)) return {motion.f, motion.contacts[i].f_by_force};

@@ -7,13 +7,14 @@ namespace achilles {
 
 using Row = Expressions;
 
+// The same expressions in another graph.
 inline Row adopt(Graph& graph, const Row& row) {
     Row result;
     for (const Expression e : row) result.push_back(graph.adopt(e));
     return result;
 }
 
-// The directional derivative dx_i/d(slots) . direction, for each entry.
+// The derivative of each entry x_i along a direction: the sum of dx_i/d(slots[k]) direction[k].
 inline Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Row& direction) {
     Row sums(x.size(), x.front().graph().number(0));
     for (std::size_t k = 0; k < slots.size(); ++k) {
@@ -23,12 +24,14 @@ inline Row along(const Row& x, const std::vector<std::uint32_t>& slots, const Ro
     return sums;
 }
 
+// The dot product a . b.
 inline Expression product(const Row& a, const Row& b) {
     Expression sum = a.front().graph().number(0);
     for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
     return sum;
 }
 
+// x with the expressions `velocity` in place of the velocities, whose slots are v.
 inline Row at_velocity(const Row& x, const std::vector<std::uint32_t>& v, const Row& velocity) {
     Row result;
     for (const Expression e : x) result.push_back(substitute(e, v, velocity));
@@ -41,7 +44,7 @@ inline Row sum(const Row& a, const Row& b) {
     return result;
 }
 
-// dx_i/d(slots), row by row.
+// The Jacobian dx_i/d(slots[k]), stored row by row.
 inline Row row_by_row(const Row& x, const std::vector<std::uint32_t>& slots) {
     Row slopes;
     for (const Row& row : jacobian(x, slots)) slopes.insert(slopes.end(), row.begin(), row.end());

@@ -131,7 +131,8 @@ void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
     }
 }
 
-// Checks that the acceleration is finite. If it is not, the cause is a derivative of V, h or T.
+// Checks that the acceleration is finite. If it is not, the error names the cause: a force, or a derivative of V, h
+// or T.
 void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const {
     bool finite = std::isfinite(start.hddot(0));
     for (std::size_t i = 0; i < layout_.dof; ++i) finite = finite && std::isfinite(start.acceleration(i));

@@ -3,8 +3,8 @@
 // number/interval.hpp widens every result by the error bound of such arithmetic. A thread may have another environment:
 // loading a shared library that was linked with -ffast-math flushes denormals to zero (FTZ for results, DAZ for
 // operands), and then 1e-300 * 1e-10 is in [0, 0]. A program may also have set another rounding mode. Every proof
-// therefore creates a Ground, which sets the required environment on its thread and restores the previous one in its
-// destructor.
+// therefore creates a FloatEnvironmentGuard, which sets the required environment on its thread and restores the
+// previous one in its destructor.
 //
 // It is cheap if nothing has to change (it reads two registers), but meant for a certificate or a run, not for one
 // operation. Its calls are not inlined, so the compiler cannot move arithmetic across them.

@@ -286,7 +286,7 @@ struct PiMultiples {
 // For larger |x| multiples of pi are not distinguished. Far below 2^52, where doubles lose their last fractional bit.
 inline constexpr double largest_angle = 0x1p40;
 
-// Finds every multiple inside the interval. May also include one that is outside by a rounding error.
+// All multiples (k + shift) pi inside the interval. May also include one that is outside by a rounding error.
 inline PiMultiples multiples_of_pi(const Interval& a, double shift) {
     const Interval turns = a / Interval::pi() - shift;
     return {std::ceil(turns.lo()), std::floor(turns.hi())};

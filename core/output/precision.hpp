@@ -46,7 +46,7 @@ inline constexpr const char* unknown_number = "?";
 // The number with at most `digits` significant digits, cut after the first digit that the error changes. "0" if the
 // error exceeds the number; unknown_number if the error is infinite.
 std::string known_digits(double value, double error, int digits);
-// The number of these digits: 0 if the number is 0 within its error.
+// The number of significant digits that known_digits() prints: 0 if the value is 0 within its error.
 int count_of_known_digits(double value, double error, int digits);
 // The number of decimals that such an error leaves, at most `decimals`.
 int known_decimals(double error, int decimals);

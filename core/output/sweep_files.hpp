@@ -73,7 +73,7 @@ class SweepLog {
     std::uint64_t done() const { return done_; }
     // Appends a chunk. Throws std::system_error; earlier chunks are not affected.
     void append(Chunk chunk, const std::string& bytes);
-    // Calls take() for all chunks in order.
+    // Calls take(chunk, bytes) for all stored chunks, in the order in which they were appended.
     void each(const std::function<void(Chunk, std::string_view)>& take) const;
     // Deletes the log.
     void remove();

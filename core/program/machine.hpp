@@ -49,7 +49,7 @@ void ask_environment_for_code();
 struct Instruction;
 
 // Code for these instructions of a program; the first writes register `first`. Its type is void(double* registers), or
-// void(Eight* registers) for numbers of eight doubles with vectors of four or eight. May be null.
+// void(Double8* registers) for numbers of eight doubles with vectors of four or eight. May be null.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
                                                 Width of_number = Width::one, Width of_vector = Width::one);
 

@@ -155,7 +155,7 @@ void call_on_lanes(Assembler& code, const void* function, std::uint32_t a, std::
     code.call(function);
 }
 
-// Returns false if there is no code for the operation.
+// Emits a call that applies a function to every lane of a vector. Returns false if there is no code for the operation.
 bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
         code.mov(code.edx, static_cast<std::uint32_t>(in.exponent));
@@ -173,7 +173,7 @@ bool write_for_lanes(Assembler& code, const Instruction& in, std::uint32_t resul
     return true;
 }
 
-// Returns false if there is no code for the operation.
+// The same for a single number.
 bool write_for_one(Assembler& code, const Instruction& in, std::uint32_t result) {
     if (in.operation == Operation::power) {
         code.mov(code.edi, static_cast<std::uint32_t>(in.exponent));
@@ -207,7 +207,7 @@ std::map<std::uint32_t, Waves> waves_of(std::span<const Instruction> instruction
     return waves;
 }
 
-// Emits one call for both, at the first of the two instructions.
+// Emits one call that computes sine and cosine of an operand. Does nothing at the second of the two instructions.
 void call_both(Assembler& code, std::uint32_t operand, Waves& waves) {
     if (waves.written) return;
     waves.written = true;

@@ -3,8 +3,8 @@
 // run.
 //
 //     Chain chain(trajectory);
-//     RowMatrix Z = ...;  chain.complete(Z);               one column for each change, rows as in Tangent
-//     while (const Link* link = chain.next()) link->apply(Z);
+//     RowMatrix Z = ...;  chain.complete(Z);               one column for each change, rows as in TangentLayout
+//     while (const ChainLink* link = chain.next()) link->apply(Z);
 //
 // After a link, Z is the change (t', X') that follows the event: each perturbed run reaches this point at its own time.
 // The change at a fixed time is X' - F t', with F = chain.rate().

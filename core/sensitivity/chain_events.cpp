@@ -157,7 +157,8 @@ void Chain::land(std::size_t event) {
     }
 }
 
-// The contacts that come to rest after an impact by a truncation there. Returns a reason if that has no derivative.
+// Sets `joins` to the contacts that become held because the impact sequence is cut at this impact; leaves it empty
+// without a cut. Returns why the derivative is not known, nullopt if it is.
 std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet& joins) const {
     const auto& events = trajectory_->events;
     const Event& now = events[event];

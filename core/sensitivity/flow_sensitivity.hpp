@@ -27,7 +27,7 @@ class FlowSensitivity {
     virtual void slope_after(double span, Mode mode, RowMatrix& S) = 0;
 };
 
-// Computes derivatives from the Taylor series of the motion over numbers with slopes (theory-derivatives.md 2).
+// Computes derivatives from the Taylor series of the motion over numbers with derivatives (theory-derivatives.md 2).
 // `varied` marks the parameters that may vary; if it is empty, all may.
 std::unique_ptr<FlowSensitivity> make_flow_slope(const Model& model, Mode mode, const TangentLayout& tangent,
                                                  std::span<const double> parameters, const std::vector<bool>& varied,
@@ -54,14 +54,14 @@ class MotionSeries : public SeriesOver<double> {
 };
 
 // Derivatives accurate to a few digits, from differences of series that start nearby. They use the machine code of
-// runs, at a fifth of the cost of numbers with slopes. Columns of parameters are 0.
+// runs, at a fifth of the cost of numbers with derivatives. Columns of parameters are 0.
 class FlowDifference : public FlowSensitivity {
  public:
     FlowDifference(const Model& model, Mode mode, const TangentLayout& tangent, std::span<const double> parameters);
 
     double expand(const State& state, double length, int least_order) override;
     int order() const override { return order_; }
-    // Of the motion itself.
+    // Coefficients of the motion itself, not of a neighboring one.
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }
     void slope_after(double span, Mode mode, RowMatrix& S) override;
 
@@ -72,11 +72,13 @@ class FlowDifference : public FlowSensitivity {
     static constexpr int more_orders = 8;  // orders beyond `degree` to which the motion must be expanded
 
  private:
+    // The motion from a start that differs in one coordinate.
     struct NearbyMotion {
-        Eigen::Index column;
-        double distance;
+        Eigen::Index column;  // the coordinate: an entry of q or v, or t
+        double distance;      // its change, in its unit
         MotionSeries motion;
     };
+    // Expands the neighboring motions, each with one coordinate x of this state changed by about 2^-20 (1 + |x|).
     void expand_beside(const State& state);
     bool by_halves(int degree, double span, RowMatrix& delta);
     void by_parts(int degree, double span, RowMatrix& delta);
@@ -84,6 +86,7 @@ class FlowDifference : public FlowSensitivity {
     static double reach(const MotionSeries& motion, int order, std::size_t rows, double size);
     double last_terms(double length) const;
     int finite_order() const;
+    // Difference quotient of coefficient k.
     double slope(const NearbyMotion& beside, int k, std::size_t i) const {
         return (beside.motion.coefficient(k, i) - motion_.coefficient(k, i)) / beside.distance;
     }

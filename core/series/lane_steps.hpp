@@ -17,7 +17,8 @@
 
 namespace achilles {
 
-// As in Execution, relative to the time: a step too short to advance it, and a remaining time that counts as none.
+// As in ExecutionAutomaton, both relative to the time t: a step shorter than stall |t| does not advance it, and a
+// remaining time below end_of_time |t| counts as 0.
 inline constexpr double stall = 0x1p-51, end_of_time = 1e-15;
 
 // Order of flights. The work between two steps costs as much as a step, which favors a higher order than the step alone
@@ -267,6 +268,7 @@ class LaneStepperOver final : public LaneStepper {
         falls &= (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
     }
 
+    // Sets the outcome of every lane: an impact where `falls`, no event where `none`, else needs_scalar_step.
     static void say(LaneStep& step, const Mask& none, const Mask& falls) {
         for (std::size_t i = 0; i < Double8::count; ++i)
             step.end[i] = falls[i]  ? LaneStep::LaneOutcome::impact

@@ -115,13 +115,12 @@ class OrderCode {
     std::vector<double> weights_;
 };
 
-// The orders of all series for eight runs at once, as in recurrence.hpp with a vector for every number.
+// The inner sums when eight runs are computed at once: what is stored of each order for the inner sums of later orders,
+// and which stored numbers each sum multiplies.
 //
 // For one run, several inner sums share a vector. For eight runs each number is a vector: no number changes its lane,
 // each row is loaded once for all sums with one factor, and there is more independent work to overlap with waiting
 // rules.
-
-// What is stored of each order for the inner sums of later orders, and which stored numbers each sum multiplies.
 struct LanePlan {
     struct StoredSums {
         std::uint32_t series;
@@ -136,10 +135,11 @@ struct LanePlan {
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);
 };
 
-// Machine code for the orders: the same bits as recurrence.hpp.
+// Machine code for the orders of all series of eight runs at once. Its results have the same bits as recurrence.hpp.
 class LaneOrderCode {
  public:
-    // With vectors of four or eight. Returns null if machine code is not available.
+    // Generates code for vectors of four or eight doubles. Returns null if machine code is switched off or not
+    // available for such vectors, or if the plan has too many rules.
     static std::shared_ptr<const LaneOrderCode> of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors);
 
     // Computes orders 1 .. last, last >= 4. On entry `now` holds order 1 of q and v, and inner sums of zero. All

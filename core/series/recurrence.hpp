@@ -136,8 +136,8 @@ void SeriesProgram::start(Scalar* z, const Scalar* coefficients, std::array<Scal
     }
 }
 
-// One order of all series of a program, over any number type. All machine code must give the same results to the last
-// bit.
+// This part computes one order of all series of a program, over any number type. All machine code must give the same
+// results to the last bit.
 //
 // On entry, `now` holds order k >= 1 of the inputs and the inner sums of order k. Computes order k of all series, then
 // the inner sums of order k + 1: sum_{0<j<=k} x_j y_{k+1-j}, or the sum of j x_j y_{k+1-j}/(k+1) for a weighted one. No
@@ -182,6 +182,7 @@ struct InnerSums<double> {
     explicit InnerSums(const SeriesPlan& series, std::size_t = 0) : plan(series) {}
     std::size_t count() const { return plan.lanes; }
     std::size_t row() const { return plan.row(); }
+    // The series whose coefficients are entry i of the stored rows: the left factors of all sums, then the right ones.
     LanePlan::StoredSums kept(std::size_t i) const {
         if (i < plan.lanes) return {plan.left[i], i < plan.weighted};
         return {plan.right[i - plan.lanes], false};

@@ -50,7 +50,7 @@ class RuleWriter {
         return {Sum::Kind::in_register, to, 0};
     }
 
-    // sum + term, in the result's register
+    // Writes code for sum + term. The result is in register `result`.
     Sum total(const Sum& sum, const Sum& term, const Xbyak::Xmm& result) {
         using Kind = Sum::Kind;
         constexpr auto vadd = Assembler::vadd, vsub = Assembler::vsub;

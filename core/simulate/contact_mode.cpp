@@ -71,8 +71,9 @@ ContactSet ExecutionAutomaton::pressed_by_rates(ContactSet doubtful, Mode mode) 
     return pressed;
 }
 
-// Proves for each contact what the forces suggest: `active` are held, the others leave. If the sign of hddot is
-// uncertain, its rate along the motion decides, for one contact or for several that are not coupled.
+// Proves the mode that the contact forces in double precision suggest: contacts in `active` are held, other closed
+// contacts leave. Where the sign of hddot is uncertain, its rate h''' along the motion decides. Returns true, with
+// the mode in next_, if every contact is decided.
 bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet vanishing) {
     const ContactSet unpressed = unpressed_among(closed, active);
     return judge(closed, active, vanishing, unpressed) ||
@@ -89,7 +90,7 @@ bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet 
         if (unpressed.contains(i)) next_.starts[i] = {};
         if (!closed.without(unpressed).contains(i)) continue;
         const auto [hddot, jerk] = surfaces_->of(i, Mode::holding(active.without(i))).normal(next_.state);
-        // Known to be 0, or 0 within the resolution of time.
+        // True if hddot is known to be 0, or vanishes at a time that equals t within rounding.
         const bool is_zero = vanishing.contains(i) || mag(hddot) <= resolved * mag(jerk);
         if (!is_zero && certainly_negative(hddot)) {
             mode = mode.with(i, ContactState::held);
@@ -101,8 +102,8 @@ bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet 
         }
     }
     if (!doubtful.empty()) {
-        // The rates of hddot decide, as far as proved: 0 <= mu perpendicular h''' + W mu >= 0 over the doubtful
-        // contacts.
+        // The rates mu of the contact forces suggest which doubtful contacts are pressed: 0 <= mu perpendicular h''' +
+        // W mu >= 0. The signs of h''' prove it, each with the other pressed contacts held.
         ContactSet pressed = doubtful.count() == 1 ? doubtful : pressed_by_rates(doubtful, mode);
         const bool alone = doubtful.count() == 1;
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {

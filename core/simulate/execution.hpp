@@ -159,7 +159,7 @@ class ExecutionAutomaton {
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {
-        ContactSet places, opening;  // places in a Closed; other contacts that leave at once
+        ContactSet places, opening;  // indices in ClosedContacts; other contacts that leave at once
         double least = 0.0;          // smallest force, as a fraction of the largest
         double most = 0.0;           // largest force
     };

@@ -60,6 +60,7 @@ class ContactKinematics {
     double jerk(const State& state);
 
  private:
+    // Evaluates the terms of the contact at a state and stores them in `contact`.
     void look(const State& state, Contact& contact);
     const Model* model_;
     const Model::ContactPrograms* programs_;

@@ -32,6 +32,7 @@ class Recorder {
                 trajectory_.work,
                 any_gap_};
     }
+    // Discards everything recorded since the checkpoint.
     void go_back(const Checkpoint& mark);
 
     // Begins a phase. If not all held contacts are carriers, its forces are not unique.

@@ -108,7 +108,7 @@ void TaylorStepper::evaluate_far(double duration) {
 }
 
 // Limits the length of a very long step, which only a nearly straight motion has, so that the state stays in the range
-// that expand() accepts. Returns 0 if almost nothing of the step does.
+// that expand() accepts. Returns 0 if the state is near the end of that range already at the start of the step.
 double TaylorStepper::within_numbers(double step) {
     constexpr double shorter = 0x1p-8;
     const auto size_at = [&](double t) {
@@ -165,7 +165,7 @@ void TaylorStepper::add_error(std::size_t contact, const Polynomial& p, Gap& end
     step_.add_error(contact, span_, sizes, step_.doubt(contact, span_, sizes), end);
 }
 
-// Evaluated without forming the polynomial.
+// Evaluates the terms of the event function at the step's length, without forming its polynomial (Stepper).
 bool TaylorStepper::stays_negative(std::size_t contact) const {
     double power = 1.0;
     return step_.stays_negative(contact, span_, [&](int k) {

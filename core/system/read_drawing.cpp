@@ -79,7 +79,8 @@ void read_points(const Fields& fields, DrawingDescription& drawing, ErrorCollect
         mistakes.attempt([&] { drawing.points.push_back(fields.point("points", item)); });
 }
 
-// The sizes of a shape besides its points. 0 means as large as fits: a shape with a default size need not give it.
+// Reads the sizes of a shape besides its points. An omitted size is stored as 0: angle 0 for a box, and the default
+// size for `coils` and `across`.
 void read_sizes(const Fields& fields, DrawingDescription& drawing, ErrorCollector& mistakes) {
     const auto size = [&](const char* key) {
         mistakes.attempt([&] { drawing.sizes.push_back(fields.find(key) ? fields.expression(key) : Text{"0", {}}); });

@@ -28,8 +28,9 @@ class Grid {
     using LegendRoom = std::function<float(const Panel& panel, float width)>;
     Grid(const Figure& figure, Rectangle area, const Metrics& metrics, const LegendRoom& legend_room);
 
-    // Plot area of a panel before it is shrunk to equal axes, and its margins.
+    // Area inside the axes of a panel, before it is shrunk so that both axes have one scale.
     Rectangle plot(std::size_t i) const;
+    // The margins around that area, for ticks, labels and a color scale.
     Margins room(std::size_t i) const;
     float least_side() const;  // smallest width of a column or height of a row
 

@@ -50,8 +50,8 @@ class Mechanism {
 
     // The body. nullopt if no shape moves except texts, curves and connecting parts.
     std::optional<AnchorPoint> grip(std::span<const double> parameters) const;
-    // The body, then every other point that the mouse can drag: centers, and both ends of lines. Some of them may be
-    // static.
+    // The body, then every point that the mouse can drag: centers and both ends of lines that move. One end of such a
+    // line may be fixed.
     std::vector<AnchorPoint> grips(std::span<const double> parameters) const;
     // Index among the file's drawings, center and radius of every moving disc that is not itself a contact surface.
     std::vector<std::pair<std::size_t, AnchorPoint>> discs(std::span<const double> parameters) const;

@@ -130,7 +130,7 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
 }
 
 Color run_color(const Theme& theme, int place) {
-    // Runs: none has the hue of a phase, an event marker or an error.
+    // None of these colors has the hue of a phase, an event marker or an error.
     const std::array<Color, most_pinned> light{{{118, 52, 200, 255},
                                                 {140, 84, 12, 255},
                                                 {225, 30, 180, 255},

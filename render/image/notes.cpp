@@ -194,7 +194,7 @@ std::string utf16(std::string_view text) {
     return bytes;
 }
 
-// Inverse of utf16(). Throws for invalid UTF-16.
+// Inverse of utf16(), without the byte order mark. Throws for an incomplete code unit or surrogate pair.
 std::string utf8_of_utf16(std::string_view bytes) {
     std::string text;
     const auto next = [&] {

@@ -1,5 +1,5 @@
-// The theory has chapters, the Markdown files of core, with numbered sections. Comments, README, the manual and the chapters
-// cite them by the file's name and the section's number: every citation is followed here.
+// Follows the citations of the theory: comments, README, the manual and the chapters themselves cite numbered sections
+// of the Markdown files of core, by file name and number.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Texts by the path of their files.
+// Texts by file path.
 using Texts = std::map<std::string, std::string>;
 
 bool ends_with(std::string_view text, std::string_view end) {
@@ -29,7 +29,8 @@ bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_space(char c) { return c == ' ' || c == '\n'; }
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; }
 
-// Where the comment of a line of code begins; its size if there is none. Quotes of one line are respected.
+// Position of the comment in a line of code; the line's size if there is none. String literals within the line are
+// respected.
 std::size_t comment_in(std::string_view line) {
     bool in_string = false;
     for (std::size_t i = 0; i < line.size(); ++i) {
@@ -44,8 +45,8 @@ std::size_t comment_in(std::string_view line) {
     return line.size();
 }
 
-// The comments of some code, every character in its place: code becomes ';' and a comment's slashes become spaces, so
-// that a sentence goes on from one line to the next.
+// The comments of a code text, at unchanged positions. Code becomes ';' and the slashes of comments become spaces, so
+// that a sentence may continue on the next line.
 std::string comments_of(const std::string& code) {
     std::string comments;
     std::istringstream lines(code);
@@ -58,7 +59,7 @@ std::string comments_of(const std::string& code) {
     return comments;
 }
 
-// The number of a section at this place, such as 4 or 3.2, moved past; "" where there is none.
+// Parses a section number such as 4 or 3.2 and moves `at` past it; "" if there is none.
 std::string number_at(std::string_view text, std::size_t& at) {
     const std::size_t begin = at;
     while (at < text.size() && is_digit(text[at])) ++at;
@@ -67,7 +68,7 @@ std::string number_at(std::string_view text, std::size_t& at) {
     return std::string(text.substr(begin, at - begin));
 }
 
-// The numbers of a list after some space: "4", "1, 2 and 7", "4 to 6".
+// Parses a list of numbers after white space: "4", "1, 2 and 7", "4 to 6".
 std::vector<std::string> numbers_after(std::string_view text, std::size_t at) {
     const auto skip_space = [&] {
         const std::size_t begin = at;
@@ -90,7 +91,7 @@ std::vector<std::string> numbers_after(std::string_view text, std::size_t at) {
     return numbers;
 }
 
-// The numbered headings of a chapter, in order: "## 3. The name" and "### 3.2 The name".
+// The numbers of a chapter's headings, in order: "## 3. The name" and "### 3.2 The name".
 std::vector<std::string> sections_of(const std::string& chapter) {
     std::vector<std::string> sections;
     std::istringstream lines(chapter);
@@ -103,12 +104,13 @@ std::vector<std::string> sections_of(const std::string& chapter) {
     return sections;
 }
 
-// Follows the citations of all texts, those of the chapters included.
+// Checks the citations in all texts, including the chapters themselves.
 class Citations {
  public:
     explicit Citations(const Texts& texts) {
         for (const auto& [path, text] : texts)
-            if (fs::path(path).parent_path() == "core" && path != "core/README.md" && ends_with(path, ".md")) read_chapter(path, text);
+            if (fs::path(path).parent_path() == "core" && path != "core/README.md" && ends_with(path, ".md"))
+                read_chapter(path, text);
         for (const auto& [path, text] : texts) {
             path_ = path;
             is_code_ = !ends_with(path, ".md");
@@ -133,7 +135,7 @@ class Citations {
         faults_.push_back(path_ + ":" + std::to_string(line) + ": " + what);
     }
 
-    // Word by word; a point belongs to a word where letters follow, as in a file's name.
+    // Word by word. A period belongs to a word if letters follow, as in a file name.
     void look() {
         for (std::size_t at = 0, end = 0; at < text_.size(); at = std::max(end, at + 1)) {
             end = at;
@@ -157,7 +159,7 @@ class Citations {
             blame(at, "a section of no file");
     }
 
-    // A text may mean the whole file; a comment says where in it.
+    // Documents may cite a whole file; comments must name a section.
     void follow(const std::string& file, std::size_t at, std::size_t end) {
         if (chapters_.count(file) == 0) return blame(at, "there is no " + file);
         const auto numbers = numbers_after(text_, end);
@@ -171,8 +173,8 @@ class Citations {
             if (chapters_[file].count(number) == 0) blame(at, file + " has no section " + number);
     }
 
-    std::map<std::string, std::set<std::string>> chapters_;  // the sections, by the file's name
-    std::string path_, text_;                                // that is looked at
+    std::map<std::string, std::set<std::string>> chapters_;  // sections by file name
+    std::string path_, text_;                                // the text under examination
     bool is_code_ = false;
     int count_ = 0;
     std::vector<std::string> faults_;
@@ -205,11 +207,11 @@ TEST(Citations, EveryOneLeadsToASection) {
     for (const std::string& fault : citations.faults()) ADD_FAILURE() << fault;
 }
 
-// ---- mistakes that are planted ----
+// ---- planted mistakes ----
 
 const std::string chapter = "# Title\n\n## 1. One\n\n### 1.1 Of one\n\n## 2. Two\n\nAs in section 1.1.\n";
 
-// What is wrong with a text beside two chapters.
+// The errors in a text next to two chapters.
 std::vector<std::string> faults_of(const std::string& text, const std::string& path = "core/a.cpp") {
     return Citations({{"core/theory.md", chapter}, {"core/theory-truncation.md", chapter}, {path, text}}).faults();
 }

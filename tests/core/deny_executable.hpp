@@ -1,4 +1,4 @@
-// A system that makes no memory executable, as a hardened one does.
+// Simulates a hardened system that denies executable memory.
 #pragma once
 
 #include <linux/filter.h>
@@ -13,7 +13,8 @@
 
 namespace achilles::test {
 
-// From here on the system makes no memory executable for this thread and what it starts; false if it lets nobody ask for that.
+// Denies executable memory to this thread and its children from now on. Returns false if the system does not allow
+// this.
 inline bool deny_executable_memory() {
     sock_filter filter[] = {
         BPF_STMT(BPF_LD | BPF_W | BPF_ABS, offsetof(seccomp_data, nr)),

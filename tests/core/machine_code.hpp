@@ -1,4 +1,4 @@
-// The switch of machine code, for the tests.
+// Switches machine code on or off in tests.
 #pragma once
 
 #include <cstdlib>
@@ -9,7 +9,7 @@
 
 namespace achilles::test {
 
-// The environment variable ACHILLES_MACHINE_CODE as it is given, or unset; as before when this ends.
+// Sets or unsets the environment variable ACHILLES_MACHINE_CODE; the destructor restores it.
 class MachineCodeSwitch {
  public:
     explicit MachineCodeSwitch(const char* value) {

@@ -1,4 +1,4 @@
-// Runs with forces, moving and several gaps, for the tests of what is told about them.
+// Runs with forces, moving gaps and several gaps, for tests of their output.
 #pragma once
 
 #include "core/systems.hpp"
@@ -46,7 +46,7 @@ end_time = 1.5
 )toml");
 }
 
-// The event that is nearest to a time.
+// Index of the event nearest to time t.
 inline std::size_t event_near(const Trajectory& trajectory, double t) {
     std::size_t nearest = 0;
     for (std::size_t i = 0; i < trajectory.events.size(); ++i)

@@ -21,7 +21,7 @@ inline std::filesystem::path source_file(const std::string& relative) {
     return std::filesystem::path(ACHILLES_SOURCE_DIR) / relative;
 }
 
-// The gallery's, by name.
+// Names of the gallery's systems, sorted.
 inline std::vector<std::string> all_systems() {
     std::vector<std::string> names;
     for (const auto& entry : std::filesystem::directory_iterator(source_file("assets/systems")))
@@ -30,26 +30,27 @@ inline std::vector<std::string> all_systems() {
     return names;
 }
 
-// The reference systems with forces, moving and several gaps (tests/reference/gaps.json); those with one gap and time.
+// The reference systems with forces, moving or several gaps (tests/reference/gaps.json), then those of them with one
+// gap and explicit time.
 inline const char* const reference_systems[] = {"driven_damped_pendulum", "travelling_wave",    "vibrating_table",
                                                 "bowl_and_post",          "pendulum_two_stops", "ball_in_box"};
 inline const char* const timed_systems[] = {"driven_damped_pendulum", "travelling_wave", "vibrating_table"};
 
-// Of the gallery, or a reference system.
+// Loads a system of the gallery, or else a reference system.
 inline std::shared_ptr<const Model> load(const std::string& name) {
     std::filesystem::path path = source_file("assets/systems/" + name + ".toml");
     if (!std::filesystem::exists(path)) path = source_file("tests/reference/gaps/" + name + ".toml");
     return std::make_shared<const Model>(read_system(path));
 }
 
-// Of the gallery, those with one gap.
+// The gallery's systems with one gap.
 inline std::vector<std::string> systems_of_one_gap() {
     std::vector<std::string> names = all_systems();
     std::erase_if(names, [](const std::string& name) { return load(name)->contacts() > 1; });
     return names;
 }
 
-// A system whose restitutions all are a parameter, e.
+// The same system with the parameter e as the restitution of every contact.
 inline std::shared_ptr<const Model> with_one_restitution(const Model& model) {
     SystemDescription system = model.description();
     for (ConstraintDescription& constraint : system.constraints) constraint.restitution.text = "e";
@@ -63,7 +64,7 @@ inline std::shared_ptr<const Model> typed(const std::string& text) {
     return std::make_shared<const Model>(parse_system(text, "typed.toml"));
 }
 
-// What is told about a text, from the reading to the start of a run; "" if nothing is wrong.
+// The error message for a text, from reading to the start of a run; "" if it is valid.
 inline std::string told(const std::string& text) {
     try {
         const Model model(parse_system(text, "f.toml"));
@@ -74,7 +75,7 @@ inline std::string told(const std::string& text) {
     return "";
 }
 
-// What is told about a text by its reading alone; "" if nothing is wrong.
+// The error message of reading a text; "" if it is valid.
 inline std::string told_by_reading(const std::string& text) {
     try {
         parse_system(text, "f.toml");
@@ -92,7 +93,7 @@ inline std::shared_ptr<const Model> drop() {
         "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n");
 }
 
-// A system of two coordinates, its parts as text.
+// A system of two coordinates, its terms as text.
 struct PlaneSystem {
     std::string kinetic = "1/2*(a'^2 + b'^2)", potential = "b", gap = "b", e = "0.5";
     double a = 0.0, b = 0.0, a_rate = 0.0, b_rate = 0.0, end = 10.0;

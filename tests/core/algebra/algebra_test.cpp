@@ -1,5 +1,4 @@
-// Simplification: greatest common divisors, quotients of polynomials, factors, proofs of positivity, and how they are
-// written.
+// Simplification: greatest common divisors, quotients of polynomials, factors, proofs of positivity, and printed forms.
 #include "algebra/algebra.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +16,7 @@ Multinomial x() { return Multinomial::atom(0); }
 Multinomial y() { return Multinomial::atom(1); }
 Multinomial n(long value) { return Multinomial(value); }
 
-// Up to five terms of degree <= 2 in each of three atoms, coefficients up to 5.
+// Up to five terms of degree <= 2 in each of three atoms, with coefficients up to 5.
 Multinomial random_polynomial(std::mt19937& random) {
     std::vector<Multinomial::Term> terms;
     for (unsigned i = 0; i < 1 + random() % 5; ++i) {
@@ -177,7 +176,7 @@ TEST_F(Simplification, TellsWhatIsZeroWhereOthersAre) {
     EXPECT_TRUE(zero("a*sqrt(x^2 + y^2) - 2*a", {"sqrt(x^2 + y^2)/2 - 1"}));
     EXPECT_FALSE(zero("a*x", {"y"}));
     EXPECT_FALSE(zero("a*x + b", {"x"}));
-    EXPECT_FALSE(zero("y*(x - 1)", {"y*(x - a)"}));  // where y is 0 alone
+    EXPECT_FALSE(zero("y*(x - 1)", {"y*(x - a)"}));  // y = 0 is excluded
     EXPECT_FALSE(zero("x - a", {"a*x - a^2"}));      // a may be 0
     EXPECT_FALSE(zero("y - a", {"x + sin(x) - y"}));
     EXPECT_FALSE(zero("x - sin(y)", {"x + sin(x) - 2*sin(y)"}));

@@ -1,4 +1,4 @@
-// Chunks shared by ranks: the messages between them, with threads for processes.
+// Chunks shared by ranks: the messages between them, with threads in place of processes.
 #include "analysis/distributed_chunks.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace achilles {
 namespace {
 
-// Ranks in one process, each with a box of what was sent to it.
+// Ranks in one process. Each has a mailbox.
 class Boxes {
  public:
     explicit Boxes(int size) : boxes_(static_cast<std::size_t>(size)) {}
@@ -52,7 +52,7 @@ std::string squares_of(Chunk chunk) {
     return text;
 }
 
-// The same, which takes its time.
+// The same, but slow.
 std::string squares(Chunk chunk) {
     std::this_thread::sleep_for(std::chrono::microseconds(20 * chunk.count));
     return squares_of(chunk);
@@ -63,7 +63,7 @@ struct Shared {
     bool is_done = false;
 };
 
-// The work of rank 0, with others that do what `begin` of their rank says.
+// Runs rank 0 in this thread, and the other ranks in threads with the task that `begin` returns for their rank.
 using Begin = std::function<RankTask(int rank, std::string_view order)>;
 Shared share(int size, std::uint64_t count, const Begin& begin, const std::atomic<bool>& stop = false,
              const ChunkWriter& also = {}) {
@@ -142,7 +142,7 @@ TEST(DistributedChunks, EndWhereTheDiskIsFull) {
     EXPECT_TRUE(squares_of({0, 100000}).starts_with(outcome.written));
 }
 
-// One that has been killed answers no more. Nobody waits for it once all are asked to stop.
+// A killed rank no longer answers. Once all are told to stop, nothing waits for it.
 TEST(DistributedChunks, AreNotWaitedForWhenTheyAreMute) {
     Boxes boxes(2);
     std::atomic<bool> stop{false};

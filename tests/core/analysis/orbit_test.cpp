@@ -1,4 +1,4 @@
-// Periodic runs and their branches against pinned numbers (theory-derivatives.md 11) and closed forms.
+// Periodic orbits and their branches against pinned numbers (theory-derivatives.md 11) and closed forms.
 #include "analysis/orbit.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace {
 
 using std::numbers::pi;
 
-// Of a system, as its [orbit] or its start says, with settings over it.
+// An orbit problem of a system: from its [orbit] table or its start, with these settings.
 OrbitProblem asked(const Model& model, const std::vector<std::string>& settings, const std::string& period = "",
                    double start_time = 0.0) {
     const SystemDescription& system = model.description();
@@ -55,7 +55,7 @@ double time_of(const Orbit& orbit, Event::Kind kind) {
     return -1.0;
 }
 
-// By parameter name.
+// Derivative with respect to the parameter of this name.
 double slope(const Orbit& orbit, Eigen::Index row, const std::string& name) {
     const auto& parameters = orbit.run.model->description().parameters;
     for (std::size_t k = 0; k < parameters.size(); ++k)
@@ -95,7 +95,7 @@ TEST(Orbit, OfTheBallDownAWaveIsThePinnedOne) {
     EXPECT_NEAR(slope(orbit, 4, "e"), -0.00642568784374441, of_slope);
 }
 
-// Nothing bounces: a landing forgets two dimensions as well, and e matters in third order only.
+// With e = 0 nothing bounces. A plastic impact also makes two multipliers zero, and e enters only in third order.
 TEST(Orbit, OfTheBallDownAWaveThatLandsPlasticallyIsThePinnedOne) {
     const auto model = load("ball_down_a_wave");
     const Orbit orbit = found(model, asked(*model, {"e=0"}));
@@ -106,7 +106,7 @@ TEST(Orbit, OfTheBallDownAWaveThatLandsPlasticallyIsThePinnedOne) {
     EXPECT_NEAR(slope(orbit, 0, "e"), 0.0, of_slope);
 }
 
-// Whatever start of the gallery's file it is asked from: no guess is needed where it attracts.
+// From the default start of the file: an attracting orbit needs no guess.
 TEST(Orbit, IsFoundFromTheStartOfARun) {
     const auto model = load("ball_down_a_wave");
     OrbitProblem from_start;
@@ -119,7 +119,7 @@ TEST(Orbit, IsFoundFromTheStartOfARun) {
     EXPECT_NEAR(std::remainder(orbit.state.q[0] - 0.8593599338715186, 2 * pi), 0.0, of_orbit);
 }
 
-// A shorter wave, a shorter shift. The mass, on which nothing else depends, is its number here.
+// A shorter wave, hence a shorter shift. The mass m is used as the wave number, because nothing else depends on it.
 TEST(Orbit, MovesWithAShiftThatDependsOnAParameter) {
     SystemDescription system = load("ball_down_a_wave")->description();
     system.constraints[0].gap.text = "y - A*sin(m*x)";
@@ -151,8 +151,8 @@ TEST(Branch, OfTheBallDownAWaveFlipsWhereItIsPinned) {
         EXPECT_LT(branch.value(branch.points[i - 1]), branch.value(branch.points[i]));
 }
 
-// x'' + c x' + x = F cos(om t) above a floor that it never reaches. The multipliers are exp((-c/2 +- i w) T) with
-// w^2 = 1 - c^2/4 and T = 2 pi/om: at c = 0 both are on the unit circle, at the angle T.
+// x'' + c x' + x = F cos(om t) above a floor that it never reaches. The multipliers are exp((-c/2 +- i w) T) with w^2 =
+// 1 - c^2/4 and T = 2 pi/om. At c = 0 both are on the unit circle, with arguments +- T.
 TEST(Branch, OfADrivenOscillatorCrossesTheUnitCircleWithoutDamping) {
     const auto model = typed(R"toml(
 title = "A driven oscillator above a floor"
@@ -181,11 +181,11 @@ TEST(Branch, OfTheBallDownAWaveLosesItsZenoPointWhereItIsPinned) {
     EXPECT_NE(branch.ends[1].find("lost"), std::string::npos) << branch.ends[1];
 }
 
-// All ones: theory-derivatives.md 11.
+// All parameters 1, as in theory-derivatives.md 11.
 const std::vector<std::string> ones{"L1=1",   "L2=1",        "g=1",         "d=0",          "tau=0.2",
                                     "om=0.8", "theta1=0.98", "theta2=0.08", "theta1'=0.64", "theta2'=0.3"};
 
-// At b = 0 nothing drives the ball: its flights become lower and lower on the way there, and the branch ends for that reason.
+// At b = 0 the ball has no drive. Its flights become lower towards that value, and the branch ends for that reason.
 TEST(Branch, SaysThatTheFlightsVanish) {
     const auto model = load("ball_down_a_wave");
     const Branch branch = followed(model, asked(*model, {}), "b", 0.0, 0.06);
@@ -209,7 +209,7 @@ TEST(Orbit, OfTheDrivenPendulumIsThePinnedOne) {
     EXPECT_NEAR((orbit.multipliers[0] + orbit.multipliers[1]).real(), 0.6076423983354976202, of_multiplier);
     EXPECT_NEAR((orbit.multipliers[0] * orbit.multipliers[1]).real(), 0.0616532246843024767, of_multiplier);
     EXPECT_EQ(orbit.zero_multipliers, 2u);
-    // That a parameter moves it by so much, the orbit beside it says.
+    // The derivative with respect to a parameter, against orbits at neighboring values.
     const double h = 1e-4;
     const auto beside = [&](double e) {
         std::vector<std::string> settings = ones;
@@ -229,7 +229,7 @@ TEST(Branch, OfTheDrivenPendulumLosesItsZenoPointWhereItIsPinned) {
     EXPECT_NEAR(branch.zeno_lost[0].multipliers[1].real(), 0.144902433, 1e-8);
 }
 
-// One degree of freedom and a clock: everything is forgotten.
+// One degree of freedom and a clock: all multipliers are zero.
 TEST(Orbit, ThatSticksInOneDegreeOfFreedomForgetsEverything) {
     const auto table = load("ball_on_vibrating_table");
     const Orbit ball = found(table, asked(*table, {"a=1.25", "om=1", "g=1", "e=0.5", "m=1", "y=1.5"}, "2*pi/om"));
@@ -249,8 +249,8 @@ TEST(Orbit, ThatSticksInOneDegreeOfFreedomForgetsEverything) {
     EXPECT_EQ(stuck.zero_multipliers, 2u);
 }
 
-// A ball that strikes a table once a cycle, always as fast: gT/2 - u = e (gT/2 + u), u = a cos(phi) the table's speed.
-// Nothing comes to rest, so that nothing is forgotten: the product of the multipliers is e^2. In a the orbits are born in a
+// A ball hits a table once per cycle at the same speed: gT/2 - u = e (gT/2 + u), where u = a cos(phi) is the speed of
+// the table. Nothing comes to rest, so the product of the multipliers is e^2. As a increases, the orbits appear in a
 // fold, at the phase where the table is fastest.
 TEST(Branch, OfABallThatStrikesOnceACycleFoldsWhereItsClosedFormDoes) {
     const auto model = load("ball_on_vibrating_table");
@@ -268,7 +268,7 @@ TEST(Branch, OfABallThatStrikesOnceACycleFoldsWhereItsClosedFormDoes) {
     EXPECT_NEAR(branch.value(branch.folds[0]), u, 1e-10);
     const auto& at_fold = branch.folds[0].multipliers;
     EXPECT_LT(std::min(std::abs(at_fold[0] - 1.0), std::abs(at_fold[1] - 1.0)), 1e-6);
-    // Both ends are at the end of the range: there, and back past the fold, where no orbit is stable.
+    // The branch has two ends at the limit of the range: one directly, one past the fold with the opposite stability.
     EXPECT_EQ(branch.value(branch.points.front()), 0.45);
     EXPECT_EQ(branch.value(branch.points.back()), 0.45);
     EXPECT_NE(branch.points.front().stable, branch.points.back().stable);
@@ -290,7 +290,7 @@ TEST(Orbit, IsRefusedWhereTheQuestionIsNone) {
     EXPECT_NE(told("1.3*pi/om").find("do not repeat"), std::string::npos) << told("1.3*pi/om");
     EXPECT_NE(told("-2*pi/om").find("must be positive"), std::string::npos) << told("-2*pi/om");
     EXPECT_NE(told("2*pi/on").find("did you mean 'om'"), std::string::npos) << told("2*pi/on");
-    // The force on this ball is constant: the gap alone has a period.
+    // The force on this ball is constant; only the gap is periodic.
     const auto table = load("ball_on_vibrating_table");
     EXPECT_THROW(find_orbit(table, asked(*table, {}, "1.3*pi/om")), InputError);
 }

@@ -1,4 +1,4 @@
-// Which sequences of events have one signature, and which have not.
+// Which event sequences have the same signature, and which have not.
 #include "analysis/measures.hpp"
 
 #include <gtest/gtest.h>
@@ -46,14 +46,14 @@ TEST(Signature, KeepsAllElse) {
         of({{release, left}}),
         of({{zeno, left}, {release, left}}),
         of({{release, left}, {zeno, left}}),
-        of({{impact, right}, {zeno, left}}),                  // another contact's
-        of({{impact, left}, {impact, right}, {zeno, left}}),  // and what was before it
+        of({{impact, right}, {zeno, left}}),                  // an impact of another contact
+        of({{impact, left}, {impact, right}, {zeno, left}}),  // and an impact of the same one before
         of({{impact, left}, {zeno, left}, {release, left}}, Outcome::Kind::undecided),
     };
     EXPECT_EQ(all.size(), 15u);
 }
 
-// The same motion by eight at a time and by whole runs, whatever the cut.
+// The signature is the same for runs in lanes and for single runs, whatever the cut.
 TEST(Signature, IsOfTheMotion) {
     const auto model = test::load("ball_on_sine");
     const std::string sweep = "--over e=0.1:0.8:40 --print x --end 6";

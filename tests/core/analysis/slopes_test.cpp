@@ -1,4 +1,4 @@
-// d(QUANTITY, NAME) over a sweep: the numbers of `simulate --derivatives`, and of differences of runs.
+// d(QUANTITY, NAME) in a sweep, against `simulate --derivatives` and against differences of runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 
 std::string quoted_print(const std::string& print) { return " --print \"" + print + "\""; }
 
-// One row of a sweep over one axis whose prints are these, and its runs.
+// One row of a sweep over one axis with these prints, and its runs.
 struct SweepFixture {
     SweepFixture(const std::string& system, const std::string& over, const std::vector<std::string>& prints,
                  const std::string& more = {})
@@ -41,7 +41,7 @@ std::size_t direction_of(const Derivatives& derivatives, const std::string& name
     return static_cast<std::size_t>(std::find(all.begin(), all.end(), name) - all.begin());
 }
 
-// The quantity itself, of a run with one value changed.
+// The quantity in a run with one value changed.
 double value_of(const std::shared_ptr<const Model>& model, Run run, const std::string& quantity,
                 const std::string& name, double change) {
     *find_value(model->description(), run, name) += change;
@@ -55,7 +55,7 @@ struct SlopeCase {
     std::string print() const { return "d(" + quantity + ", " + name + ")"; }
 };
 
-// Bit for bit what differentiate() says, and what differences of runs say.
+// Bit-identical to differentiate(), and equal to differences of runs.
 void check(const std::string& system, const std::string& over, const std::vector<SlopeCase>& asked) {
     std::vector<std::string> prints;
     for (const SlopeCase& one : asked) prints.push_back(one.print());
@@ -81,7 +81,8 @@ void check(const std::string& system, const std::string& over, const std::vector
                 return value_of(swept.model, run, asked[i].quantity, asked[i].name, change);
             };
             const double difference = (8.0 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12.0 * h);
-            // The differences lose 1e-11 to the tolerance of cuts (eps_t is 1e-6, but alike on both sides).
+            // The differences have an error of 1e-11 from the tolerance of cuts: eps_t is 1e-6, but its effect is alike
+            // on both sides.
             EXPECT_NEAR(printed, difference, 1e-5 * std::max(1.0, std::abs(difference))) << system << " " << prints[i];
         }
     }
@@ -126,7 +127,7 @@ TEST(SweepSlopes, FollowTheEventsOfSections) {
     EXPECT_EQ(row, swept.rows.count());
 }
 
-// A quantity that does not exist, one that nothing is known of, and the end of a run that stopped early.
+// NaN for a quantity that does not exist, for the end of a run that stopped early, and for a run that cannot start.
 TEST(SweepSlopes, AreNothingWhereTheyDoNotExist) {
     const std::vector<std::string> prints{"d(zeno_time(9), e)", "d(impact_time(1), e)", "d(impact_time(1), y)",
                                           "d(x, e)"};
@@ -187,7 +188,7 @@ TEST(SweepSlopes, HaveAUnitAndAHeading) {
     EXPECT_EQ(sweep_csv_heading(*swept.table, true),
               "e,\"d(zeno_time(1), e)\",x,\"d(zeno_time(1), g)\",\"d(x, x')\",\"d(y', x)\",outcome\n"
               ",s,m,s^3/m,s,1/s,\n");
-    // The other numbers are where they belong.
+    // The other numbers are in their columns.
     EXPECT_NEAR(swept.number(1, 1), simulate(swept.model, swept.run(1)).end.q[0], 1e-12);
     EXPECT_EQ(read_sweep(to_text(swept.sweep, swept.model->description()), swept.model->description()), swept.sweep);
 }

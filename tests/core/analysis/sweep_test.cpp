@@ -1,4 +1,4 @@
-// A sweep is a value: its points, its text, and what cannot be one.
+// A sweep: its points, its text form, and invalid ones.
 #include "analysis/sweep.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The rows of a sweep: what single runs give, by closed forms, at sections, whatever the chunks and threads.
+// The rows of a sweep, against single runs, closed forms and sections, for any chunks and threads.
 #include "analysis/table.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ SweepTable table_of(const std::string& system, const std::string& text) {
 
 bool is_nan(double x) { return std::isnan(x); }
 
-// The second time of Zeno is none of a flat floor's, whose first is t1 + 2 e v1/(g (1 - e)).
+// On a flat floor the first Zeno time is t1 + 2 e v1/(g (1 - e)), and there is no second one.
 TEST(SweepTable, KnowsTheFlatFloor) {
     const SweepTable table = table_of("ball_on_floor",
                                       "--over e=0:0.9:31 --print \"zeno_time(1)\" --print \"zeno_time(2)\" --print "
@@ -78,14 +78,14 @@ constexpr const char* six =
     " --print x --print \"x'\" --print impacts --print zeno_points --print releases --print "
     "zeno_time";
 
-// Which valley has the ball at t = 20, at random points; more of them in bench_sweep.
+// The valley that contains the ball at t = 20, at random points. bench_sweep tests more of them.
 TEST(SweepTable, HoldsWhatSingleRunsGive) {
     expect_single_runs(
         table_of("ball_on_sine", std::string("--over x=-3:3 --over \"x'=-2:2\" --random 60 --tolerance 1e-12") + six),
         1e-8);
 }
 
-// Nothing in rows depends on how many are asked for at once.
+// Rows do not depend on how many are computed at once.
 TEST(SweepTable, IsTheSameInAnyChunks) {
     for (const char* text : {"--over x=-3:3:9 --over y=-2:2:7 --print x --print \"zeno_time(2)\" --print held --end 9",
                              "--over x=-3:3:5 --over y=1:2:2 --print x --print least_gap --end 6",
@@ -109,7 +109,7 @@ TEST(SweepTable, IsTheSameInAnyChunks) {
     }
 }
 
-// Data filled by chunks or row by row is that of the whole table.
+// Filling the data by chunks or row by row gives the same as the whole table.
 TEST(SweepData, IsFilledByAndBy) {
     for (const char* text : {"--over x=-3:3:5 --over y=-2:2:3 --print \"x'\" --print held --end 3",
                              "--over x=-3:3:5 --over y=1:2:2 --print \"x'\" --print y --at impact --end 3"}) {
@@ -144,7 +144,7 @@ TEST(SweepTable, KeepsRunsThatCannotStart) {
     EXPECT_NEAR(rows.numbers[2], 2.5, 1e-12);
 }
 
-// What ends alone do not tell comes from whole runs.
+// Quantities that the final state does not determine come from recorded runs.
 TEST(SweepTable, TellsTheLeastGapAndTheWork) {
     const SweepTable gaps = table_of("ball_on_sine", "--over y=1.5:2:2 --print least_gap --end 1");
     const Rows rows = gaps.rows(0, 2);
@@ -213,8 +213,8 @@ TEST(SweepSections, AreNotAllBehindTheEnd) {
 }
 
 TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
-    // x = x'(0) t in flight: it passes pi/7 once, by a known time; sin(4*t) so often; a gap never, as it only touches zero; and y'
-    // jumps at impacts, which is no passage.
+    // x = x'(0) t in flight passes pi/7 once, at a known time. sin(40*t) has 12 upward zeros. The gap only touches
+    // zero. y' jumps at impacts, which does not count as a zero.
     const auto times = [](const std::string& zero, const std::string& after = "") {
         const SweepTable table =
             table_of("ball_on_floor", "--over \"x'=0.5:1:2\" --end 2 --print t --at \"" + zero + "\"" + after);
@@ -241,7 +241,7 @@ TEST(SweepSections, AreZerosOfAnExpressionUpwards) {
     }
 }
 
-// A step may take seconds: a ball in flight or at rest has nothing that would end it.
+// A step may take seconds: no event ends it while a ball is in flight or at rest.
 TEST(SweepSections, MissNoZeroOfLongSteps) {
     const auto count = [](const std::string& system, const std::string& zero, double end,
                           const std::string& more = "") {
@@ -249,7 +249,7 @@ TEST(SweepSections, MissNoZeroOfLongSteps) {
             table_of(system, "--over e=0.3:0.5:2 --print t --at \"" + zero + "\" --end " + std::to_string(end) + more);
         return table.rows(0, 1).times.size();
     };
-    EXPECT_EQ(count("ball_on_incline", "sin(x)", 8.0), 16u);  // it slides by 100.7
+    EXPECT_EQ(count("ball_on_incline", "sin(x)", 8.0), 16u);  // x increases by 100.7
     EXPECT_EQ(count("ball_on_floor", "sin(t)", 100.0, " --after 50"), 8u);
     EXPECT_EQ(count("ball_on_floor", "sin(30*t)", 3.2), 15u);
     EXPECT_EQ(count("ball_on_sine", "sin(50*t)", 200.0), 1591u);
@@ -259,7 +259,7 @@ TEST(SweepSections, MissNoZeroOfLongSteps) {
         table_of("ball_on_floor", "--over e=0.3:0.5:2 --set g=1 --print t --at \"t*(t - 1)*(0.5 - t)\" --end 1");
     ASSERT_EQ(fall.rows(0, 1).times.size(), 1u);
     EXPECT_NEAR(fall.rows(0, 1).times[0], 0.5, 1e-12);
-    // What only touches zero, or stays there to rounding, ends the search.
+    // The search terminates for expressions that only touch zero, or stay at zero within rounding.
     EXPECT_EQ(count("ball_on_floor", "sin(t)^2 + cos(t)^2 - 1 + gap", 20.0), 1u);
     EXPECT_EQ(count("ball_on_floor", "sin(5*t) - 1", 20.0), 1u);
     EXPECT_EQ(count("double_pendulum", "sin(theta1)^2 + cos(theta1)^2 - 1", 20.0), 1u);

@@ -1,4 +1,4 @@
-// How tight the enclosures are, what the certificates claim, and the order of the two restarts.
+// Tightness of the enclosures, the bounds in certificates, and the orders of the two restarts.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,8 +14,8 @@
 namespace achilles {
 namespace {
 
-// Enclosed width over true width of hddot in a box of this radius around the first Zeno point. The true range is
-// sampled at the corners and inside, which can only make the ratio larger.
+// Ratio of the enclosed width to the true width of hddot in a box of this radius around the first Zeno point. The true
+// range is sampled at the corners and inside, which can only make the ratio larger.
 double excess(const std::string& system, double radius) {
     const auto model = test::load(system);
     const auto run = model->default_run();
@@ -56,9 +56,9 @@ TEST(Ranges, AreNearlyExactOverSmallBoxesAndUsableOverLargeOnes) {
     }
 }
 
-// An expression that turns back just before the end of a box is not monotone on it, however little it turns: x^2 - 2 d
-// x has its least value -d^2 at x = d, inside [0, 1], where its slope at the end is only -2 d. The same upside down and
-// mirrored. Around 0 the value changes by more than itself, so no mean-value form takes a short way.
+// A function with an extremum just inside the end of a box is not monotone there, however weak the extremum. x^2 - 2 d
+// x has its minimum -d^2 at x = d, inside [0, 1]; its slope at x = 0 is only -2 d. The test also mirrors it and changes
+// its sign. Around 0 the value changes by more than itself, so the mean-value form gives no shortcut.
 TEST(Ranges, KnowAnExtremumCloseToTheEndOfTheBox) {
     Graph graph;
     const Expression x = graph.symbol(0), d = graph.symbol(1);
@@ -84,8 +84,8 @@ TEST(Ranges, KnowAnExtremumCloseToTheEndOfTheBox) {
             }
 }
 
-// Slope of log(error of the state at a fixed later time) against log(w), truncating at each impact of the first phase
-// in turn.
+// Slope of log(state error at a fixed later time) against log(w), for truncation at each impact of the first phase in
+// turn.
 double order(const std::string& system, Reinitialization kind, double later, double least_speed) {
     const auto model = test::load(system);
     auto run = model->default_run();
@@ -117,15 +117,15 @@ double order(const std::string& system, Reinitialization kind, double later, dou
 
 TEST(Restarts, KineticIsOfThirdOrderEuclideanOfFirst) {
     EXPECT_NEAR(order("ball_on_sine", Reinitialization::kinetic, 3.5, 1e-3), 3.0, 0.05);
-    EXPECT_NEAR(order("ball_on_sine", Reinitialization::euclidean, 3.5, 1e-3), 3.0, 0.05);  // M = m I: the same
+    EXPECT_NEAR(order("ball_on_sine", Reinitialization::euclidean, 3.5, 1e-3), 3.0, 0.05);  // M = m I: same order
     EXPECT_NEAR(order("double_pendulum", Reinitialization::kinetic, 5.0, 1e-3), 3.0, 0.05);
     EXPECT_NEAR(order("double_pendulum", Reinitialization::euclidean, 5.0, 1e-6), 1.0, 0.05);
 }
 
-// What is certified of a Zeno point, to six digits, as it was when the numbers of the truth tests were found to lie
-// within: a term left out, or with the other sign, is seen here where another one outweighs it there.
+// The certificate of a Zeno point, to six digits, pinned when the truth tests confirmed its numbers. A missing term or
+// a wrong sign shows up here even where another term outweighs it in the truth tests.
 std::vector<double> certificate_of(const std::string& system, Conditions conditions, double eps, std::size_t zeno) {
-    test::PlaneSystem cubic;  // whose forces are of the third degree in the rates
+    test::PlaneSystem cubic;  // forces of third degree in the rates
     cubic.gap = "b - 0.3*sin(a)";
     cubic.a = 0.3;
     cubic.b = 1.0;
@@ -187,7 +187,7 @@ TEST(Certificates, OfTheGalleryAreWhatTheyWere) {
         {"ball_in_bowl",
          Conditions::paper,
          {0.001839355, 2.471257e-06, 0.001039423, 0.00294202, 0, 0, 21.98577, 22.08812}},
-        // With forces and time; the post is reached while the bowl is held.
+        // With forces and time. The post is reached while the bowl is held.
         {"travelling_wave",
          Conditions::sharp,
          {0.06033386, 0.01241333, 0.04115762, 0.03730053, 9.065332e-06, 1.192526e-05, 1.179299, 1.271628}},
@@ -220,14 +220,16 @@ TEST(Certificates, OfTheGalleryAreWhatTheyWere) {
     }
 }
 
-// Cuts of a trajectory, and those that could have been proved at the impact before it: the quick look put them off.
+// Number of cuts of a trajectory, and of those that the previous impact could already have certified. The quick check
+// had postponed them.
 struct Cuts {
     int all = 0, late = 0;
     void count(const Trajectory& trajectory) {
         for (std::size_t i = 2; i < trajectory.events.size(); ++i) {
             const Event &zeno = trajectory.events[i], &cut = trajectory.events[i - 1], &last = trajectory.events[i - 2];
             if (zeno.kind != Event::Kind::zeno || zeno.contacts.count() > 1 || is_plastic_landing(zeno)) continue;
-            // Of the same contact, while the same are held, with no event of another one between.
+            // Only pairs of impacts of one contact, with the same held contacts and no event of another contact between
+            // them.
             if (cut.kind != Event::Kind::impact || last.kind != Event::Kind::impact) continue;
             const Mode mode = mode_before(trajectory, i);
             if (cut.contacts != zeno.contacts || last.contacts != zeno.contacts || last.mode != mode) continue;
@@ -260,8 +262,8 @@ TEST(SharpCertificates, AreNotPutOff) {
     }
 }
 
-// It is a guess: of 192 000 cuts of random runs through the gallery's systems without drives and of one gap, 8 came an impact
-// late. Drives, and contacts that are held meanwhile, change more until the Zeno point than one look tells: 14 of 11 000.
+// The quick check is heuristic. Of 192 000 cuts of random runs of the gallery's systems with one gap and no drive, 8
+// came one impact late. With drives or held contacts more changes until the Zeno point: 14 of 11 000.
 TEST(SharpCertificates, AreNotPutOffInTheGallery) {
     Cuts cuts;
     for (const std::string& system : test::all_systems()) {
@@ -280,7 +282,7 @@ TEST(SharpCertificates, AreNotPutOffInTheGallery) {
     EXPECT_LE(cuts.late, cuts.all / 500);
 }
 
-// theory.md 3.1 and 3.2: w < min(c1, c2, c3) is what held, and what the certificate says follows from its own numbers.
+// theory.md 3.1 and 3.2: w < min(c1, c2, c3) holds, and the bounds in the certificate follow from its own numbers.
 TEST(PaperCertificates, RestOnTheirOwnNumbers) {
     for (const auto& problem : test::problems) {
         const auto model = test::load(problem.asset);
@@ -311,7 +313,7 @@ TEST(PaperCertificates, RestOnTheirOwnNumbers) {
     }
 }
 
-// Loose tolerances: eps' = eps is infeasible there (V would reach where hddot > 0), a smaller V is not.
+// At loose tolerances eps' = eps is infeasible: V would reach states with hddot > 0. A smaller V is feasible.
 TEST(PaperCertificates, LooseTolerancesFindASmallerNeighborhood) {
     const auto model = test::load("double_pendulum");
     auto run = model->default_run();

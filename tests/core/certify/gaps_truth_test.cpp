@@ -1,5 +1,5 @@
-// What is said of forces, time and held contacts (theory-gaps.md 1, 2.3), against the truth: the order of the
-// restart, certificates, the terms of the shifted variables. bench_truth does the certificates at length.
+// The results on forces, time and held contacts (theory-gaps.md 1, 2.3) against 34-digit references: the order of the
+// restart, certificates, and the terms of the shifted variables. bench_truth tests the certificates on large samples.
 #include <gtest/gtest.h>
 
 #include <boost/multiprecision/cpp_bin_float.hpp>
@@ -14,7 +14,7 @@ namespace achilles::test {
 
 namespace {
 
-// A ball in wind on a sine, with a force against its motion in each direction.
+// A ball in wind over a sine-shaped floor, with a drag force in each direction.
 PlaneSystem windy_ball(const std::string& drag_a, const std::string& drag_b) {
     PlaneSystem ball;
     ball.gap = "b - 0.3*sin(a)";
@@ -41,8 +41,7 @@ const Drag drags[] = {
 
 }  // namespace
 
-// theory-gaps.md 6; the factors, error/w^3 at w = 1e-4, are what they were: a term of third order that changes is
-// seen there.
+// theory-gaps.md 6. The factors error/w^3 at w = 1e-4 are pinned, so that a change in a third-order term shows.
 TEST(Restarts, StayOfThirdOrderWithForcesTimeAndHeldContacts) {
     const std::vector<double> speeds{1e-2, 1e-3, 1e-4};
     struct Case {
@@ -50,7 +49,7 @@ TEST(Restarts, StayOfThirdOrderWithForcesTimeAndHeldContacts) {
         std::shared_ptr<const Model> model;
         std::size_t zeno;
         double factor;
-        bool is_euclidean_other;  // than kinetic
+        bool is_euclidean_other;  // differs from the kinetic restart
     };
     std::vector<Case> cases{{"pendulum", load("driven_damped_pendulum"), 0, 0.001968, true},
                             {"wave", load("travelling_wave"), 0, 0.05484, false},
@@ -82,15 +81,15 @@ std::vector<std::pair<std::string, std::shared_ptr<const Model>>> attacked() {
 
 }  // namespace
 
-// A sample: whatever is certified is true, also of the contacts that are held or open meanwhile; and the
-// bound is not far from the error, of the reference systems, whose impacts change something.
+// On a sample, every bound in a certificate is true, also for contacts that are held or open meanwhile. For the
+// reference systems, where impacts couple to other contacts, the bound is also not far from the error.
 TEST(Truth, CertificatesWithForcesTimeAndHeldContactsAreTrue) {
     int with_held = 0;
     for (const auto& [name, model] : attacked()) {
         Trials trials(model, 4, Trials::Vary::everything);
         Tallies tallies;
         int certified = 0;
-        const int trials_of = name == "bowl_and_post" ? 120 : 40;  // where the bowl may be held
+        const int trials_of = name == "bowl_and_post" ? 120 : 40;  // the bowl may be held
         for (int i = 0; i < trials_of; ++i) {
             const Trial trial = trials.next();
             if (trial.certified.empty()) continue;
@@ -112,7 +111,7 @@ TEST(Truth, CertificatesWithForcesTimeAndHeldContactsAreTrue) {
     EXPECT_GE(with_held, 3);
 }
 
-// The same of the certificates that whole runs leave behind, with the contacts that they hold.
+// The same for the certificates that whole runs produce, with the contacts that they hold.
 TEST(Truth, CertificatesOfRunsWithSeveralContactsAreTrue) {
     int certified = 0, with_held = 0;
     for (const auto& [name, model] : attacked()) {
@@ -139,7 +138,7 @@ namespace {
 using Real50 = boost::multiprecision::cpp_bin_float_50;
 using Reals50 = std::vector<Real50>;
 
-// s' along free flight from its definition, s = v - n hdot: f - n hddot - ndot hdot, ndot by differences.
+// s' along free flight from the definition s = v - n hdot: s' = f - n hddot - ndot hdot, with ndot by differences.
 class TangentialRate {
  public:
     TangentialRate(const Model& model, const Run& run)
@@ -169,7 +168,7 @@ class TangentialRate {
             rate.push_back(motion_.acceleration(i) - n[i] * motion_.hddot(0) - (n1[i] - n0[i]) / (2 * step) * hdot);
         return rate;
     }
-    // s from any velocity.
+    // s as a function of an arbitrary velocity.
     Reals50 tangential(const Reals50& q, const Reals50& v, const Real50& t) {
         const Reals50 n = direction(q, t);
         set(contact_, q, v, t);
@@ -195,8 +194,8 @@ class TangentialRate {
 
 }  // namespace
 
-// T5: s' = A + B sigma + D(xi) sigma^2 with some xi between 0 and sigma, for a force of the third degree and a moving
-// gap, in which every term of B counts. The derivatives by sigma are central differences.
+// T5: s' = A + B sigma + D(xi) sigma^2 for some xi between 0 and sigma, for a force of third degree and a moving gap in
+// which every term of B matters. Derivatives with respect to sigma are central differences.
 TEST(ShiftedVariables, AreThoseOfTheMotion) {
     PlaneSystem plane = windy_ball(drags[3].a, drags[3].b);
     plane.kinetic = "1/2*(a'^2 + (2 + sin(a))*b'^2 + 0.6*a'*b')";
@@ -210,7 +209,7 @@ TEST(ShiftedVariables, AreThoseOfTheMotion) {
     const Reals50 q{Real50(7) / 10, Real50(3) / 10};
     const Real50 t = Real50(13) / 10, step("1e-10");
     const Reals50 s = exact.tangential(q, {Real50(4) / 5, -Real50(3) / 7}, t);
-    // Row k of the two coordinates, at this sigma: 0 is A, 1 is n, 2 is B, 3 is D.
+    // Term k of coordinate i at this sigma: k = 0 is A, 1 is n, 2 is B, 3 is D.
     const auto term = [&](std::size_t k, std::size_t i, const Real50& sigma) {
         for (std::size_t j = 0; j < 2; ++j) {
             shadow.input(layout.q(j)) = q[j];
@@ -246,17 +245,17 @@ TEST(ShiftedVariables, AreThoseOfTheMotion) {
             const Real50 D = (exact.at(q, s, sigma, t)[i] - term(0, i, 0) - term(2, i, 0) * sigma) / (sigma * sigma);
             const Real50 a = term(3, i, 0), b = term(3, i, sigma);
             EXPECT_LT((D - a) * (D - b), 0) << "D = " << D << " is not between " << a << " and " << b;
-            EXPECT_GT(abs(a - b), 1e-3);  // or another D would do as well
+            EXPECT_GT(abs(a - b), 1e-3);  // the bounds differ, so the test is not void
         }
     }
 }
 
-// T6: the certificate of a table that vibrates holds while it moves on. Of a bouncing that takes a quarter of its
-// period the acceleration changes so much that a certificate of the collision's instant alone would be false.
+// T6: the certificate of a vibrating table accounts for the motion of the table. The bouncing lasts a quarter of its
+// period, and the acceleration changes so much that a certificate for the instant of the impact alone would be false.
 TEST(Truth, TheTimeIsACoordinateOfTheNeighborhood) {
     const auto model = load("vibrating_table");
     auto run = model->default_run();
-    run.parameters = {0.2, 2.0};  // a om^2 = 0.8 of gravity
+    run.parameters = {0.2, 2.0};  // a om^2 = 0.8 times gravity
     State state = run.start();
     state.t = 0.1;
     state.q[0] = 0.2 * std::sin(0.2);
@@ -282,8 +281,8 @@ TEST(Truth, TheTimeIsACoordinateOfTheNeighborhood) {
     EXPECT_GE(certificate->zeno_high, static_cast<double>(zeno->point.t));
 }
 
-// 2.3: b bounces until T = 2 e w/(1 - e) = 0.6 while a is held by a force of 1 - t. Impacts on b do not disturb a;
-// but the force must last.
+// theory-gaps.md 2.3: b bounces until T = 2 e w/(1 - e) = 0.6 while the force 1 - t holds a. Impacts of b do not affect
+// a, but the force on a must stay positive until T.
 TEST(Truth, WhatIsHeldMustBePressedUntilTheZenoPoint) {
     const auto model = typed(R"toml(
 title = "One is held, one bounces"

@@ -1,5 +1,5 @@
-// What is drawn is true at every instant: the uniform bound of the sharp conditions, the impact at which a bouncing is
-// cut, and the Zeno time to third order (theory-truncation.md 2 to 4).
+// The displayed motion is within its bounds at every instant: the uniform bound of the sharp conditions, the impact at
+// which bouncing is cut, and the Zeno time to third order (theory-truncation.md 2 to 4).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -32,10 +32,10 @@ restitution = "e"
 )");
 }
 
-// The true height of that ball, flight by flight.
+// Exact height of that ball.
 double true_height(double t, double e) {
     constexpr double g = 9.81;
-    double start = -std::sqrt(2.0 / g), up = std::sqrt(2.0 * g);  // as if it had been thrown up before
+    double start = -std::sqrt(2.0 / g), up = std::sqrt(2.0 * g);  // the start as the top of an earlier bounce
     while (up > 1e-12) {
         const double length = 2.0 * up / g;
         if (t < start + length) return up * (t - start) - 0.5 * g * (t - start) * (t - start);
@@ -45,8 +45,8 @@ double true_height(double t, double e) {
     return 0.0;
 }
 
-// Of a flat floor every bound is attained, so that time, position and velocity at tau_inf hold at the first impact
-// already. What is seen does not.
+// On a flat floor every bound is attained, so time, position and velocity at tau_inf meet their tolerances at the first
+// impact. The uniform bound does not, and determines the cut.
 TEST(Truncation, ATextbookBallBounces) {
     const auto model = falling_ball();
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -63,7 +63,7 @@ TEST(Truncation, ATextbookBallBounces) {
     ASSERT_EQ(zenos.size(), 1u);
     const Certificate& c = *zenos[0].certificate;
     EXPECT_LE(furthest, *c.uniform_position);
-    EXPECT_GE(furthest, 0.99 * *c.uniform_position);  // the first bounce that is not drawn is that high
+    EXPECT_GE(furthest, 0.99 * *c.uniform_position);  // the height of the first bounce that is left out
     EXPECT_NEAR(zenos[0].t, std::sqrt(2.0 / 9.81) * (1.0 + 2.0 * 0.8 / 0.2), 1e-9);
 }
 
@@ -104,7 +104,7 @@ struct CutError {
     double w, estimate_error, half_width, first_order_half_width;
 };
 
-// The wait for the first Zeno point as it is seen from each impact before it.
+// Enclosures of the first Zeno time from each impact before it.
 std::vector<CutError> cuts_of(const std::string& system) {
     const auto model = test::load(system);
     auto run = model->default_run();
@@ -150,13 +150,13 @@ TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
         EXPECT_GT(slope(*large, *small, &CutError::estimate_error), 2.8) << problem.key;
         EXPECT_NEAR(slope(*large, *small, &CutError::first_order_half_width), 2.0, 0.5) << problem.key;
         EXPECT_LT(small->half_width, 0.1 * small->first_order_half_width) << problem.key;
-        // The estimate is not an end of the interval but far inside.
+        // The estimate is not an endpoint of the interval but well inside.
         EXPECT_LT(small->estimate_error, 0.1 * small->half_width) << problem.key;
     }
 }
 
-// So small in its units that a_min^2 is nothing: the time and the place of the Zeno point are bounded, the shadowing is
-// not, and then nothing is claimed of it and nothing is cut for it.
+// With units so small that a_min^2 underflows, time and position of the Zeno point are bounded but the shadowing error
+// is not. Then no shadowing bound is reported, and none may cause a cut.
 TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
     const auto model = test::drop();
     auto run = model->default_run();
@@ -171,7 +171,7 @@ TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
     EXPECT_FALSE(widest->shadowing_position || widest->shadowing_velocity || widest->uniform_position);
 }
 
-// (E) is what the exact identity gives: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
+// Term (E) follows from the exact identity: -T0^2 (b/(3a) + c/6) = w^2 (cC - cD - cF + cG).
 TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     const AccelerationTrend trend{2.0, 0.3, 0.7};
     const double e = 0.5, w = 1e-2, a = trend.a, b = trend.b, c = trend.c, K = (1 + e) / (1 - e);
@@ -181,8 +181,8 @@ TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
 }
 
-// The enclosure of third order is that of theory-truncation.md 4, evaluated here from what is printed there: with none
-// of the six terms of rho (0), with each of them alone, so that no other hides it, and with all of them (7).
+// Compares the third-order enclosure with the formulas of theory-truncation.md 4, evaluated here independently: with
+// none of the six terms of rho (0), with each alone, so that no other hides it (1 to 6), and with all (7).
 void expect_third_order(double a_min, double a_max) {
     const AccelerationTrend trend{2.0, 0.3, 0.7};
     const double e = 0.5, w = 1e-2, T = 0.03, a = trend.a, b = trend.b, c = trend.c;
@@ -206,7 +206,8 @@ void expect_third_order(double a_min, double a_max) {
         const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), centre = estimated_wait(trend, e, w);
         const Interval wait = third_order_wait(trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w),
                                                Interval(0.0, T));
-        // 1e-3 for 1.09, which is rounded up. Terms that are less than that beside S are seen where b, c and d_m are 0.
+        // Tolerance 1e-3, because the factor 1.09 of the theory is rounded up. Terms smaller than that beside S are
+        // checked below, with b = c = d_m = 0.
         EXPECT_LE(wait.lo(), centre - off) << term;
         EXPECT_GE(wait.hi(), centre + off) << term;
         EXPECT_NEAR(wait.hi() - centre, off, 1e-3 * off) << term;
@@ -220,8 +221,8 @@ void expect_third_order(double a_min, double a_max) {
 }
 
 TEST(Truncation, TheThirdOrderIntervalIsThatOfTheTheory) {
-    expect_third_order(1.9, 2.2);  // a = 2 is nearer to the least
-    expect_third_order(1.7, 2.1);  // and to the largest
+    expect_third_order(1.9, 2.2);  // a = 2 is nearer to a_min
+    expect_third_order(1.7, 2.1);  // and here to a_max
 }
 
 }  // namespace

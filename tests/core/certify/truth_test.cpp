@@ -1,4 +1,4 @@
-// Certificates against the truth on a sample; bench_truth does the same at length.
+// Certificates against 34-digit references on a sample. bench_truth runs large samples.
 #include <gtest/gtest.h>
 
 #include "certify/definition7.hpp"
@@ -13,7 +13,7 @@ namespace achilles::test {
 
 namespace {
 
-constexpr int sample = 120;  // trials a system
+constexpr int sample = 120;  // trials per system
 const char* const systems[] = {"ball_on_sine", "double_pendulum", "falling_rod"};
 
 State state_of(std::initializer_list<double> q, std::initializer_list<double> v) {
@@ -33,7 +33,7 @@ constraint = [{ gap = "y", restitution = "e" }]
 
 }  // namespace
 
-// Both problems of the paper's Fig. 4, whose 40 digits another program computed.
+// Both problems of the paper's Fig. 4, against 40-digit results of another program.
 TEST(Truth, IsTheReferenceOfBothProblemsTo20Digits) {
     const auto to_real = [](const nlohmann::json& text) { return Real(text.get<std::string>()); };
     for (const Problem& problem : problems) {
@@ -41,7 +41,7 @@ TEST(Truth, IsTheReferenceOfBothProblemsTo20Digits) {
         const auto model = load(problem.asset);
         const auto run = model->default_run();
         Point start = point_of({run.q, run.v});
-        if (problem.key == "double_pendulum") {  // whose angles are no doubles
+        if (problem.key == "double_pendulum") {  // its angles are not doubles
             start.q = {scalar_pi<Real>() / 6, scalar_pi<Real>() * 25 / 180};
         }
         const TrueExecution truth = TrueRuns(*model, run).run(start, 20.0);
@@ -73,7 +73,7 @@ TEST(Truth, IsTheReferenceOfBothProblemsTo20Digits) {
     }
 }
 
-// Law: on a flat floor the times between impacts are a geometric series, and nothing else changes.
+// On a flat floor the times between impacts form a geometric series, and nothing else changes.
 TEST(Truth, KnowsTheGeometricSeries) {
     const auto model = typed(flat_floor);
     const auto run = model->default_run();
@@ -87,7 +87,7 @@ TEST(Truth, KnowsTheGeometricSeries) {
     EXPECT_GT(zeno->impacts, 20);
 }
 
-// The rest of the bouncing is replaced by its estimate at a speed where that no longer matters.
+// The reference replaces the last bounces by an estimate, at a speed where it no longer matters.
 TEST(Truth, DoesNotDependOnWhereItStops) {
     const auto model = load("falling_rod");
     const auto run = model->default_run();
@@ -112,7 +112,7 @@ TEST(Truth, TheKineticRestartIsOfThirdOrderOverFourDecades) {
     EXPECT_NEAR(order_of("double_pendulum", Reinitialization::euclidean), 1.0, 0.05);
 }
 
-// Law: contact forces of a constrained motion do no work, and it stays on the surface.
+// Contact forces of a constrained motion do no work, and the motion stays on the surface.
 TEST(Truth, ConstrainedMotionKeepsEnergyAndContact) {
     const auto model = load("double_pendulum");
     const auto run = model->default_run();
@@ -133,7 +133,8 @@ TEST(Truth, ConstrainedMotionKeepsEnergyAndContact) {
     EXPECT_LT(abs(end.q[1]), 1e-20);
 }
 
-// Law: whatever is certified is true.  Bars: the sharp time bound within 2 percent, the shadowing of the ball within 5.
+// Every certified bound is true. Sharpness: the sharp time bound is within 2 percent, the ball's shadowing bound within
+// 5.
 TEST(Truth, CertificatesAreTrue) {
     for (const std::string system : systems) {
         Trials trials(load(system), 1);
@@ -146,7 +147,7 @@ TEST(Truth, CertificatesAreTrue) {
             EXPECT_EQ(tally.unknown, 0);
             EXPECT_GT(tally.certificates, 0);
             if (conditions == Conditions::paper) {
-                // The bar of the paper's conditions, for each bound; the neighbourhood costs almost nothing.
+                // Sharpness of each bound of the paper's conditions: the neighborhood costs almost nothing.
                 for (const auto bound : {Tally::latest, Tally::position, Tally::velocity})
                     EXPECT_LT(tally.median(bound), 4.5) << bound;
                 EXPECT_LT(tally.median(Tally::formula), 1.1);
@@ -160,8 +161,8 @@ TEST(Truth, CertificatesAreTrue) {
     }
 }
 
-// theory.md 3.3: with the least V that proves itself, the conditions hold wherever they do with any eps' <= eps of a
-// logarithmic grid, and never with a worse bound than eps' = eps gives.
+// theory.md 3.3: the conditions hold with the least self-consistent V wherever they hold with an eps' <= eps of a
+// logarithmic grid. The bound is never worse than with eps' = eps.
 TEST(Truth, NoNeighborhoodOfAGridDoesBetter) {
     constexpr int points = 13;  // over four decades
     int feasible = 0, only_smaller = 0;
@@ -204,8 +205,8 @@ TEST(Truth, NoNeighborhoodOfAGridDoesBetter) {
     EXPECT_GT(only_smaller, 5);
 }
 
-// Law: on a flat floor the drawn motion slides below the true one, which is farthest at the top of its first flight,
-// (e w)^2/(2 g) up. A uniform bound of that holds, and any lower one is found out.
+// On a flat floor the displayed motion slides below the true one. The largest difference is (e w)^2/(2 g), at the top
+// of the first flight. A uniform bound of that size is true; any lower one is rejected.
 TEST(Truth, KnowsTheTopOfTheFirstFlight) {
     const auto model = typed(flat_floor);
     Trials trials(model, 5);
@@ -230,7 +231,7 @@ TEST(Truth, KnowsTheTopOfTheFirstFlight) {
     EXPECT_GT(seen, 10);
 }
 
-// A comparison that lets false certificates pass would prove nothing.
+// The comparison must reject false certificates.
 TEST(Truth, EveryLieIsCaught) {
     std::map<std::pair<FalseCertificate, Conditions>, int> caught;
     int uniform = 0;
@@ -264,10 +265,9 @@ TEST(Truth, EveryLieIsCaught) {
     }
 }
 
-// ---- what a certificate holds for ----
+// ---- the states that a certificate covers ----
 
-// A collision at rest on the floor b = 0 of a system of two coordinates, but for the speed w, and what the sharp
-// conditions prove of it.
+// A two-coordinate system at an impact on the floor b = 0, at rest but for the speed w, and its sharp certificate.
 struct FloorCollision {
     FloorCollision(const PlaneSystem& plane, double w) : model(model_of(plane)), run(model->default_run()) {
         state = run.start();
@@ -282,10 +282,10 @@ struct FloorCollision {
     std::optional<Certificate> certificate;
 };
 
-// theory.md 6.3: the certificate holds for every exact state that the computed one may stand for. Its box
-// reaches 2^-50 of a number to either side: four ulps of 1. Here hddot = -1 - 1e6 (a - 1): an ulp of a changes the Zeno
-// time by 2e-10 of itself, and a certificate of the computed state alone, whose difference a - 1 is exact, would be
-// 1e-14 of it wide.
+// theory.md 6.3: the certificate holds for every exact state that rounds to the computed one. Its box extends 2^-50 of
+// each number to either side: four ulps of 1. Here hddot = -1 - 1e6 (a - 1), so an ulp of a changes the Zeno time by a
+// relative 2e-10. A certificate of the computed state alone, where a - 1 is exact, would have a relative width of
+// 1e-14.
 TEST(Truth, HoldsForEveryStateThatTheComputedOneMayStandFor) {
     const FloorCollision floor({.potential = "b*(1 + 1000000*(a - 1))", .a = 1.0}, 1e-9);
     ASSERT_TRUE(floor.certificate);
@@ -301,10 +301,10 @@ TEST(Truth, HoldsForEveryStateThatTheComputedOneMayStandFor) {
     }
 }
 
-// theory.md 5.2 in closed form. Of V = b + k a b - 25 a^2 with the gap b at a = a' = 0, and k so small that hddot is
-// -1: I_h = 2 e^3 w^3/(3 (1 - e^3)), c = (0, k I_h), kap = 50, T = 2 e w/(1 - e), and so E_q = K k I_h (1, 1) and
-// E_s = E_q + k I_h (1, 0) with K = exp(kap T) - 1. T = 0.12 makes K 402; to first order it would be 6. Gronwall gives
-// so much away that no motion comes near, so it is the number that is asked for, and the truth that it is not below.
+// theory.md 5.2 in closed form. V = b + k a b - 25 a^2 with the gap b at a = a' = 0, and k so small that hddot is -1.
+// Then I_h = 2 e^3 w^3/(3 (1 - e^3)), c = (0, k I_h), kap = 50, T = 2 e w/(1 - e), so that E_q = K k I_h (1, 1) and E_s
+// = E_q + k I_h (1, 0) with K = exp(kap T) - 1. T = 0.12 gives K = 402; to first order K would be 6. Gronwall's bound
+// is so pessimistic that no motion attains it, so the test checks its value, and that the truth does not exceed it.
 TEST(Truth, TheShadowingBoundIsGronwalls) {
     constexpr double k = 1e-6, w = 0.06, e = 0.5, kap = 50.0;
     const FloorCollision floor({.potential = "b + 0.000001*a*b - 25*a^2"}, w);
@@ -321,7 +321,7 @@ TEST(Truth, TheShadowingBoundIsGronwalls) {
     const Point shadow = motion.constrained(motion.restart(collision, Reinitialization::kinetic), zeno->time, 1e-25);
     EXPECT_LE(distance(zeno->point.q, shadow.q), *floor.certificate->shadowing_position);
     EXPECT_LE(distance(zeno->point.v, shadow.v), *floor.certificate->shadowing_velocity);
-    EXPECT_GE(distance(zeno->point.v, shadow.v), c);  // it is no less than what starts it
+    EXPECT_GE(distance(zeno->point.v, shadow.v), c);  // at least the initial term
 }
 
 }  // namespace achilles::test

@@ -1,4 +1,5 @@
-// The bound on the time until two contacts that chatter together rest, against what they do (theory-gaps.md 3).
+// The bound on the time until two chattering contacts come to rest, against computed impact sequences (theory-gaps.md
+// 3).
 #include <gtest/gtest.h>
 
 #include <array>
@@ -11,8 +12,8 @@
 namespace achilles {
 namespace {
 
-// The impacts of such a pair until both rest, in numbers alone: constant W and a, Newton's law; who bounces alone for ever
-// is held. The time, and the integral of lambda_i h_i.
+// Impacts of two contacts until both rest, with constant W and a and Newton's law. A contact that bounces alone forever
+// is held. Returns the time and the integral of lambda_i h_i.
 struct Rest {
     double t = 0.0;
     std::array<double, 2> integral{};
@@ -101,7 +102,7 @@ TEST(PairBound, NoPairRestsLaterThanIsClaimed) {
         latest = std::max(latest, rest.t / bound->T.hi());
     }
     EXPECT_GT(claimed, 300);
-    EXPECT_GT(latest, 0.1);  // and not much too late either
+    EXPECT_GT(latest, 0.1);  // and the bound is not much too large
 }
 
 }  // namespace

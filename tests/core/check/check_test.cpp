@@ -1,4 +1,4 @@
-// The Zeno condition as a person reads it, and the report of `achilles check` (theory.md 1, 2 and 7).
+// The Zeno condition in readable form, and the report of `achilles check` (theory.md 1, 2 and 7).
 #include "check/check.hpp"
 
 #include <gtest/gtest.h>
@@ -43,8 +43,8 @@ Condition condition(const std::string& asset) { return condition(*test::load(ass
 
 using Verdict = ZenoCondition::Verdict;
 
-// Four links, the first with an inertia that is a quotient: what the contact force takes to simplify left nothing for M to be
-// written with, and there was no report at all.
+// Four links, the first with a quotient as its inertia. Regression: simplifying the contact force used up the budget,
+// so M could not be printed and there was no report.
 TEST(Check, WritesWhatItCannotSimplify) {
     std::string text = "title = \"four links\"\n", kinetic = "a1'^2/(2 + cos(a2))", potential = "0", gap = "1/2", x, y;
     for (int i = 1; i <= 4; ++i) {
@@ -86,8 +86,8 @@ TEST(ZenoCondition, OfTheDoublePendulumIsThePapers) {
     EXPECT_FALSE(pendulum.definite);
 }
 
-// The same machine in other names, other coordinates (both angles from the vertical, in other units) and other
-// parameters (densities, half lengths): nothing may be recognised.
+// The same mechanism with other names, other coordinates (both angles from the vertical, in other units) and other
+// parameters (densities, half lengths). Nothing may be recognized by name.
 const char* const other_pendulum = R"toml(
 title = "Two rods, absolute angles"
 [[coordinate]]
@@ -126,7 +126,7 @@ restitution = 0.5
 
 TEST(ZenoCondition, OfARenamedAndRescaledPendulumIsTheSame) {
     const Condition other = condition(*test::typed(other_pendulum));
-    // m1 = 2 r a, m2 = 2 s b, L1 = 2 a, L2 = 2 b put into the paper's, times 7 for the gap's scale:
+    // The paper's condition with m1 = 2 r a, m2 = 2 s b, L1 = 2 a, L2 = 2 b, times 7 for the scale of the gap:
     // 7 * 3 (2ra(2a + 4b) + 4 s b^2)/(4ab(8ra + 6sb)) = 21 (ra(a + 2b) + s b^2)/(2ab(4ra + 3sb))
     EXPECT_EQ(other.verdict, Verdict::depends);
     EXPECT_TRUE(other.decisive == "G*sin(alpha)" || other.decisive == "G*sin(beta/3)") << other.decisive;
@@ -158,7 +158,7 @@ restitution = 0.5
     EXPECT_EQ(condition(*up).verdict, Verdict::never);
 }
 
-// A parameter set to a value outside its range is not taken to be positive.
+// A parameter whose value lies outside its range is not assumed positive.
 TEST(ZenoCondition, BelievesValuesOverRanges) {
     const auto model = test::load("ball_on_floor");
     auto run = model->default_run();
@@ -166,7 +166,7 @@ TEST(ZenoCondition, BelievesValuesOverRanges) {
     EXPECT_EQ(condition(*model, run).verdict, Verdict::depends);
 }
 
-// A range that reaches past zero, below the value or above it: the sign is not the same for all that a slider offers.
+// If the range includes zero, the sign is not the same for all values that a slider offers.
 TEST(ZenoCondition, LooksAtTheWholeRange) {
     const std::string text = R"toml(
 title = "Pulled either way"
@@ -191,7 +191,7 @@ restitution = 0.5
     }
 }
 
-// Denominators that only the definiteness of M shows to be positive.
+// Denominators that are positive only because M is positive definite.
 TEST(ZenoCondition, UsesThatTheMassMatrixIsPositiveDefinite) {
     const auto model = test::typed(R"toml(
 title = "A mass that depends on where it is"
@@ -214,7 +214,7 @@ restitution = 0.5
     EXPECT_TRUE(found.definite);
 }
 
-// Every system of the gallery: derived in time, equal to differences of L, printed and in balance.
+// For every system of the gallery: equations derived in time, equal to differences of L, printed, and in power balance.
 TEST(CheckReport, HoldsForEverySystem) {
     for (const auto& file : std::filesystem::directory_iterator(test::source_file("assets/systems"))) {
         SCOPED_TRACE(file.path().stem().string());
@@ -225,7 +225,7 @@ TEST(CheckReport, HoldsForEverySystem) {
             const std::string report = check_report(model, run, 0.001, notation, disagreement);
             EXPECT_LT(disagreement,
                       1e-15);  // steps of 1e-11: truncation 1e-22 times fourth derivatives, rounding 1e-28
-            if (file.path().stem() == "kneed_leg") {  // the same seed, the same bytes: of the one with the most words
+            if (file.path().stem() == "kneed_leg") {  // same seed, same bytes; checked for the longest report
                 EXPECT_EQ(report, check_report(model, run, 0.001, notation, disagreement));
             }
             if (notation == Notation::text) {
@@ -252,8 +252,8 @@ TEST(CheckReport, HoldsForEverySystem) {
     }
 }
 
-// Forces, time and several gaps: equal to differences, with a Zeno condition for each contact, free and while another is
-// held.
+// With forces, time and several gaps: equal to differences, and a Zeno condition for each contact, both free and with
+// another contact held.
 TEST(CheckReport, HoldsForForcesMovingAndSeveralGaps) {
     for (const char* name : test::gap_systems) {
         SCOPED_TRACE(name);
@@ -290,7 +290,7 @@ TEST(CheckReport, TellsForcesAndEveryContact) {
               std::string::npos);
 }
 
-// Whether bounces pile up is a question of the restitution, too.
+// Whether bounces accumulate also depends on the restitution.
 TEST(CheckReport, SaysWhatTheRestitutionDoes) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
@@ -304,7 +304,7 @@ TEST(CheckReport, SaysWhatTheRestitutionDoes) {
     }
 }
 
-// Where the inequality has parameters alone, it is decided for those of the run.
+// A condition on parameters alone is decided for the parameters of the run.
 TEST(CheckReport, DecidesAConditionOnParameters) {
     const auto report = [](double k) {
         const auto spring = test::typed(fmt::format(R"toml(
@@ -324,7 +324,7 @@ constraint = [{{gap = "x", restitution = 0.8}}]
     EXPECT_NE(report(-4.0).find("it holds with these parameters: -4 < 0"), std::string::npos) << report(-4.0);
 }
 
-// What a gap was solved for may name what hddot does not.
+// The gap is solved for a coordinate; the solution may contain names that hddot does not.
 TEST(CheckReport, TellsWhereTheSurfacesAre) {
     const auto legs = test::typed(R"toml(
 title = "Two legs"
@@ -350,7 +350,7 @@ restitution = 0.5
     EXPECT_EQ(report.find("1 - 1"), std::string::npos);
 }
 
-// A range from 0 on proves no sign where its end is meant, too.
+// A range that starts at 0 includes 0, so it proves no strict sign.
 TEST(CheckReport, TellsWhereARangeHasAZero) {
     const auto told = [](const std::string& range) {
         const auto model = test::typed(
@@ -365,7 +365,7 @@ TEST(CheckReport, TellsWhereARangeHasAZero) {
     EXPECT_EQ(told("range = [0.1, 2]\n").find("where not 0"), std::string::npos) << told("range = [0.1, 2]\n");
 }
 
-// Where dh = 0 with h = 0 no impact can be computed; a gap that is only steep or bent, or that never closes, is none of these.
+// If dh = 0 at h = 0, no impact can be computed. A gap that is only steep or curved, or that never closes, is accepted.
 TEST(CheckReport, TellsOfAGapWhoseNormalVanishes) {
     const auto told = [](const std::string& gap, const std::string& near = {}) {
         const auto model = test::typed(
@@ -383,14 +383,14 @@ TEST(CheckReport, TellsOfAGapWhoseNormalVanishes) {
     for (const char* flat :
          {"y^2", "(y - x)^2", "y^3", "1 - cos(y - 1)", "x^2 + y^2", "1e-6*y^4", "1 + y^2 - sqrt(1 + y^4)"})
         EXPECT_TRUE(told(flat)) << flat;
-    // Though steps towards it shorten slowly.
+    // Newton steps to these zeros converge slowly.
     for (const char* flat : {"(y - 0.1)^3", "(y - 0.1)^2"}) EXPECT_TRUE(told(flat, "x = 0.5, y = 0.1")) << flat;
     for (const char* steep : {"y", "y - sin(x)", "x^2 + y^2 - 1", "1 + y^2", "y*(1 + y^2)", "1e-9*y", "exp(y) - 1",
                               "exp(y)", "y + 100*x^2", "1 - x^2/9 - y^2/9"})
         EXPECT_FALSE(told(steep)) << steep;
 }
 
-// A lie: forces that are not those of the file must show, and so must a wrong condition while another is held.
+// Mutation: wrong contact forces must be detected, and a wrong condition with another contact held.
 TEST(CheckReport, SeesWrongForces) {
     const auto model = test::load_gaps("pendulum_two_stops");
     const auto run = model->default_run();
@@ -404,7 +404,7 @@ TEST(CheckReport, SeesWrongForces) {
     EXPECT_GT(compare_with_differences(*model, run, held).largest(), 1e-3);
 }
 
-// The answer first: verdict, Zeno condition, equations of motion; the rest is for --verbose.
+// The answer comes first: verdict, Zeno condition, equations of motion. The rest requires --verbose.
 TEST(CheckAnswer, BeginsWithTheVerdict) {
     const auto model = test::load("double_pendulum");
     auto run = model->default_run();
@@ -456,7 +456,7 @@ TEST(CheckAnswer, SaysThatTheCheckFailed) {
     EXPECT_NE(answer.find("\n  Equations wrong: "), std::string::npos) << answer;
 }
 
-// A lie: a mass matrix that is not that of L must show.
+// Mutation: a mass matrix that is not that of L must be detected.
 TEST(CheckReport, SeesWrongEquations) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();

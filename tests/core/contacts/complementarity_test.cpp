@@ -1,4 +1,4 @@
-// 0 <= p perpendicular b + W p >= 0: answers known by hand, and at random.
+// Complementarity problem 0 <= p perpendicular b + W p >= 0: problems with known answers, and random ones.
 #include "contacts/complementarity.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ using Matrix = ContactMatrix<double>;
 using Vector = ContactVector<double>;
 using Eigen::Index;
 
-// The worst of complementarity and of signs, relative to the summands of each row.
+// Largest violation of complementarity and of the signs, relative to the summands of each row.
 double fault(const Matrix& W, const Vector& b, const Complementarity& answer) {
     double worst = 0.0;
     for (Index j = 0; j < b.size(); ++j) {
@@ -40,7 +40,7 @@ TEST(Complementarity, OfOneContact) {
     EXPECT_TRUE(solve_complementarity(Matrix(0, 0), Vector(0)));
 }
 
-// Alone the second would leave (theory-gaps.md 8): the first, which is held, holds it too.
+// Taken alone, the second contact would open (theory-gaps.md 8). The first contact, which is held, keeps it closed.
 TEST(Complementarity, JudgesNoContactAlone) {
     const auto answer = solve_complementarity(pair_with(-0.8), numbers({-1.0, 0.5}));
     EXPECT_EQ(answer->active, contacts({0, 1}));
@@ -58,7 +58,7 @@ TEST(Complementarity, HasNoAnswerInASlotWithoutPlay) {
     EXPECT_EQ(squeezed->p, numbers({1.0, 0.0}));
 }
 
-// Height, pitch and roll of a unit inertia; the weight acts at (x, y), the legs stand at (+-1, +-1).
+// Height, pitch and roll of a table of unit inertia. The weight acts at (x, y); the legs stand at (+-1, +-1).
 TEST(Complementarity, OfATableOnFourLegs) {
     Matrix G(4, 3);
     G << 1, 1, 1, 1, -1, 1, 1, -1, -1, 1, 1, -1;
@@ -73,7 +73,7 @@ TEST(Complementarity, OfATableOnFourLegs) {
         EXPECT_NEAR(middle.p[j], 2.0, 1e-14);
         EXPECT_EQ(middle.y[j], 0.0);
     }
-    // Near one leg the least norm of any sign would pull at the opposite one.
+    // Load near one leg: the least-norm solution without sign constraints would pull at the opposite leg.
     const Complementarity aside = table(0.75, 0.625);
     EXPECT_FALSE(aside.unique);
     EXPECT_NEAR(aside.p[0], 5.5, 1e-14);
@@ -88,7 +88,7 @@ TEST(Complementarity, SharesTheForceOfAGapThatIsGivenTwice) {
     EXPECT_FALSE(twice->unique);
     EXPECT_NEAR(twice->p[0], 0.5, 1e-15);
     EXPECT_NEAR(twice->p[1], 0.5, 1e-15);
-    Matrix W(2, 2);  // h and 3 h
+    Matrix W(2, 2);  // gaps h and 3 h
     W << 1.0, 3.0, 3.0, 9.0;
     const auto tripled = solve_complementarity(W, numbers({-1.0, -3.0}));
     EXPECT_FALSE(tripled->unique);
@@ -96,7 +96,8 @@ TEST(Complementarity, SharesTheForceOfAGapThatIsGivenTwice) {
     EXPECT_NEAR(3.0 * tripled->p[1], 0.5, 1e-15);
 }
 
-// Two contacts meet 1e-14 of the speed of a third, and through W not at all: its rounding is not theirs.
+// Two contacts approach at 1e-14 times the speed of a third, uncoupled contact. Its rounding error must not decide
+// them.
 TEST(Complementarity, OfContactsFarApart) {
     Matrix W = Matrix::Identity(3, 3);
     W(0, 1) = W(1, 0) = -0.25;
@@ -113,7 +114,7 @@ TEST(Complementarity, TakesAnEntryOfRoundingSizeForZero) {
     EXPECT_GT(solve_complementarity(pair_with(1e-13), numbers({-1.0, 0.0}))->y[1], 0.0);
 }
 
-// Gaps in units of their own, one to eight, of as many coordinates or more.
+// One to eight gaps in random units, with at least as many coordinates as gaps.
 void regular_problems(int count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> exponent(-3.0, 3.0);
@@ -136,7 +137,7 @@ void regular_problems(int count, unsigned seed) {
         const Vector p = renumbered(answer->p, order), y = renumbered(answer->y, order);
         const Vector weight = renumbered(W, order).diagonal().cwiseSqrt();
         const double size = p.cwiseProduct(weight).maxCoeff() + 1e-300;
-        // A condition of 1e9 is clear, and takes nine digits of p; y is (b + W p) to rounding all the same.
+        // A condition number of 1e9 is accepted and costs nine digits of p. y still equals b + W p to rounding.
         ASSERT_LE((other->y - y).cwiseQuotient(weight).cwiseAbs().maxCoeff(), 1e-11 * (size + b.cwiseAbs().maxCoeff()));
         const double distance = (other->p - p).cwiseProduct(weight).cwiseAbs().maxCoeff();
         ASSERT_TRUE(!answer->unique || distance <= 1e-6 * size) << run;
@@ -146,7 +147,7 @@ void regular_problems(int count, unsigned seed) {
 TEST(Complementarity, HoldsAtRandom) { regular_problems(10'000, 1); }
 TEST(Complementarity, DISABLED_HoldsAtRandomAtLength) { regular_problems(1'000'000, 2); }
 
-// More contacts than coordinates, and contacts that stand twice: an answer, checked; of least norm.
+// More contacts than coordinates, and duplicated contacts: the answer is a solution, of least norm.
 TEST(Complementarity, OfDependentGradientsAtRandom) {
     std::mt19937 random(3);
     int several = 0;
@@ -161,7 +162,7 @@ TEST(Complementarity, OfDependentGradientsAtRandom) {
         ASSERT_LE(fault(W, b, *answer), 1e-12) << run;
         if (answer->unique) continue;
         ++several;
-        // Other answers come of giving one contact some force beforehand, and having its y = 0 all the same.
+        // Other solutions: give one contact a force beforehand and require y = 0 there all the same.
         const auto norm = [&](const Vector& p) { return W.diagonal().dot(p.cwiseAbs2()); };
         for (Index j = 0; j < m; ++j) {
             Vector given = Vector::Zero(m);

@@ -31,7 +31,7 @@ TEST(ContactLaw, HasOneRowForEachState) {
     EXPECT_EQ(law_of(ContactState::held).transition, Transition::release);
 }
 
-// What is kept at zero cannot be what falls to zero next.
+// A quantity that is kept at zero cannot be the next one to reach zero.
 TEST(ContactLaw, WatchesNothingThatItKeeps) {
     for (const ContactLaw& law : contact_laws)
         EXPECT_EQ(law.kept == Constraint::gap, law.watched != WatchedFunction::gap);
@@ -50,7 +50,7 @@ TEST(ContactLaw, SortsTheContactsOfAMode) {
     }
 }
 
-// A system at a state that is no special one.
+// A system at a generic state.
 class AtState {
  public:
     explicit AtState(const std::string& name) : model_(test::load(name)), run_(model_->default_run()) {
@@ -78,7 +78,7 @@ class AtState {
         for (std::size_t i = 0; i < dof(); ++i) a.push_back(terms.acceleration(i));
         return a;
     }
-    // hddot of a contact in a mode, from the accelerations: that of free flight and dh times what the forces add.
+    // hddot of a contact in a mode: free-flight acceleration plus dh times what the contact forces add.
     double normal_acceleration(std::size_t contact, Mode mode) const {
         auto surface = model_->evaluator(model_->programs_of(contact).contact_terms, run_.parameters);
         set_state(surface, state_);
@@ -88,7 +88,7 @@ class AtState {
         for (std::size_t k = 0; k < dof(); ++k) hddot += surface.gradient(k) * (a[k] - f[k]);
         return hddot;
     }
-    // Of a contact's event function along the motion in a mode.
+    // Value of the contact's event function along the motion in this mode.
     double event_function(std::size_t contact, Mode mode) const {
         SeriesEvaluator<double> series(model_->motion(mode).series, run_.parameters);
         std::vector<double> inputs(state_.q.begin(), state_.q.end());
@@ -109,7 +109,7 @@ TEST(ContactLaw, DecidesWhatAMotionKeepsAndWatches) {
         const AtState at(name);
         const Model& model = at.model();
         for (const Mode mode : modes_of(model.contacts())) {
-            if (static_cast<std::size_t>(mode.held().count()) > at.dof()) continue;  // no motion is left
+            if (static_cast<std::size_t>(mode.held().count()) > at.dof()) continue;  // no degree of freedom is left
             SCOPED_TRACE(std::string(name) + " holds " + std::to_string(mode.held().count()));
             for (std::size_t i = 0; i < model.contacts(); ++i) {
                 const ContactLaw& law = law_of(mode.state(i));

@@ -1,4 +1,4 @@
-// Newton's impact law over doubles, intervals and jets, and Moreau's beside it: numbers known by hand.
+// Newton's impact law over doubles, intervals and jets, and Moreau's law: examples with known results.
 #include "contacts/impact_law.hpp"
 
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 namespace achilles {
 namespace {
 
-// A frictionless ball of mass 2 falls at 3 beside its slide at 5; a floor, e = 1/2, comes up at 1/4: hdot = -3 - 1/4.
-// Where it stands still: v+ = -e v-, p = m (1 + e) |v-|, and 1 - e^2 of the energy m v^2/2 = 9 is lost.
+// A frictionless ball of mass 2 moves at 5 sideways and 3 downwards. The floor (e = 1/2) rises at 1/4, so hdot = -3 -
+// 1/4. On a fixed floor v+ = -e v-, p = m (1 + e) |v-|, and the loss is (1 - e^2) m v^2/2 = (1 - e^2) 9.
 template <class Number>
 struct Ball {
     Number e, hdot, W = Number(0.5);
@@ -36,7 +36,7 @@ TEST(ImpactLaw, OfABallOnAFloorThatStands) {
     EXPECT_EQ(newton::work(ball.p, 0.0), 0.0);
 }
 
-// T goes from 9 to m (2.125)^2/2: by the work of the floor, less the loss.
+// T changes from 9 to m (2.125)^2/2: the work of the floor minus the loss.
 TEST(ImpactLaw, OfABallOnAFloorThatRises) {
     Ball<double> ball{0.5, -3.25};
     ball.strike();
@@ -60,7 +60,7 @@ TEST(ImpactLaw, OfIntervalsHoldsTheNumbers) {
     expect_hull(ball.p, 7.5, 9.0);
 }
 
-// By e and by hdot.
+// Derivatives with respect to e and hdot.
 TEST(ImpactLaw, OfJetsHasTheDerivatives) {
     using Number = Jet<double, 2>;
     Ball<Number> ball{Number::variable(0.5, 0), Number::variable(-3.0, 1)};
@@ -73,7 +73,7 @@ TEST(ImpactLaw, OfJetsHasTheDerivatives) {
     EXPECT_EQ(newton::loss(ball.p, ball.e, ball.hdot).slope, (Slope{-9.0, -4.5}));  // m/2 hdot^2 (1 - e^2)
 }
 
-// The ball comes into a right corner of a floor, e = 1/2, and a wall, e = 1/4, which do not feel each other.
+// The ball hits a right-angled corner of a floor (e = 1/2) and a wall (e = 1/4). The two contacts are uncoupled.
 TEST(ImpactLaw, InARightCornerIsOneForEachContact) {
     ContactMatrix<double> W(2, 2);
     W << 0.5, 0.0, 0.0, 0.5;
@@ -88,12 +88,13 @@ TEST(ImpactLaw, InARightCornerIsOneForEachContact) {
     }
 }
 
-// It slides along a wall in a corner of 60 degrees, g1 g2' = -1/2, and lands on the other one: kappa = 1/2, W_2^{1} = 3/8.
+// The ball slides along a wall of a 60-degree corner, g1 g2' = -1/2, and hits the other wall: kappa = 1/2, W_2^{1} =
+// 3/8.
 TEST(ImpactLaw, InASharpCornerPassesHalfOn) {
     const auto impact = moreau_impact(0.5 * pair_with(-0.5), numbers({0.0, -3.0}), numbers({0.25, 0.5}), contacts({0}));
     EXPECT_EQ(impact->impulses, numbers({6.0, 12.0}));
     EXPECT_EQ(impact->hdot_after, numbers({0.0, 1.5}));
-    EXPECT_EQ(impact->loss, 9.0);  // T along the wall: (m/2)(3/sin 60)^2 = 12, of which 1/4 is left
+    EXPECT_EQ(impact->loss, 9.0);  // T along the wall: (m/2)(3/sin 60)^2 = 12; 1/4 of it remains
     EXPECT_TRUE(impact->opened.empty());
 }
 

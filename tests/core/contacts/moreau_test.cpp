@@ -1,4 +1,4 @@
-// Impacts of several contacts, together and in turn: numbers known by hand, and laws at random.
+// Impacts of several contacts, simultaneous and sequential: examples with known results, and laws on random systems.
 #include "contacts/moreau.hpp"
 
 #include <gtest/gtest.h>
@@ -62,7 +62,7 @@ TEST(Moreau, LandingBesideAContactThatIsHeldOrNearlyHeld) {
     expect_near(impacts_in_turn(W, before, e, contacts({0}), 1)->hdot_after, numbers({0.0, 0.5}));
 }
 
-// Three equal balls; the gaps are x2 - x1 and x3 - x2, the first ball comes with velocity 1.
+// Three equal balls with gaps x2 - x1 and x3 - x2. The first ball arrives with velocity 1.
 TEST(Moreau, CradleOfThree) {
     Matrix W(2, 2);
     W << 2.0, -1.0, -1.0, 2.0;
@@ -85,7 +85,7 @@ TEST(Moreau, OpensWhatALandingPullsAt) {
     EXPECT_EQ(impact->loss, 0.5 * 1.5 * 0.5);
 }
 
-// Rounding of hdot, or of W, opens nothing.
+// Rounding errors of hdot or W open no held contact.
 TEST(Moreau, HoldsWhatIsHeldExactly) {
     const auto impact = moreau_impact(pair_with(1e-16), numbers({1e-17, -1.0}), numbers({0.5, 0.5}), contacts({0}));
     EXPECT_EQ(impact->hdot_after, numbers({0.0, 0.5}));
@@ -98,7 +98,7 @@ TEST(Moreau, LeavesOutWhoMovesAway) {
     EXPECT_EQ(impact->hdot_after, numbers({-0.8, 1.0}));  // a further impact follows
 }
 
-// A gap given twice shares the impulse; in a slot without play nothing obeys the law.
+// A duplicated gap shares the impulse. In a slot without clearance no impulse satisfies the law.
 TEST(Moreau, DependentGradients) {
     const auto twice = moreau_impact(pair_with(1.0), numbers({-1.0, -1.0}), numbers({0.5, 0.5}), nobody);
     EXPECT_FALSE(twice->unique);
@@ -109,7 +109,8 @@ TEST(Moreau, DependentGradients) {
     EXPECT_FALSE(moreau_impact(pair_with(-1.0), numbers({-1.0, -0.5}), numbers({1.0, 1.0}), nobody));
 }
 
-// Three equal balls collapse without any force where e <= 7 - 4 sqrt 3 = 0.0718 (theory-gaps.md 2.6).
+// Three equal balls: the impact sequence is infinite, without any force, if e <= 7 - 4 sqrt 3 = 0.0718 (theory-gaps.md
+// 2.6).
 TEST(Moreau, EndlessImpactsAreTakenToTheirLimit) {
     Matrix W(2, 2);
     W << 2.0, -1.0, -1.0, 2.0;
@@ -120,14 +121,14 @@ TEST(Moreau, EndlessImpactsAreTakenToTheirLimit) {
     EXPECT_GE(collapse->hdot_after.minCoeff(), 0.0);
     const auto separate = impacts_in_turn(W, numbers({-1.0, 0.0}), numbers({0.08, 0.08}), nobody, 0);
     EXPECT_EQ(separate->end, SequenceEnd::finite);
-    // Elastic ones in a narrow wedge: pi over its angle.
+    // Elastic impacts in a narrow wedge: their number is about pi divided by the wedge angle.
     const auto wedge =
         impacts_in_turn(pair_with(-std::cos(0.001)), numbers({-1.0, 0.0}), numbers({1.0, 1.0}), nobody, 0);
     EXPECT_EQ(wedge->end, SequenceEnd::cut);
     EXPECT_EQ(wedge->impacts, ImpactSequence::most_impacts);
 }
 
-// After the first the other two tie, and their numbers decide nothing.
+// After the first impact the other two contacts tie; their numbering must not decide the order.
 TEST(Moreau, ThoseWhoTieCollideTogether) {
     Matrix W = Matrix::Constant(3, 3, -0.3);
     W.diagonal().setOnes();
@@ -136,9 +137,9 @@ TEST(Moreau, ThoseWhoTieCollideTogether) {
     EXPECT_NE(turns->hdot_after[0], turns->hdot_after[1]);
 }
 
-// ---- at random ----
+// ---- random systems ----
 
-// Contacts of some system: M = 1 in the coordinates, v- such that held ones are at rest.
+// Contacts of a random system with M = 1. v- is such that held contacts have hdot = 0.
 struct Scene {
     Matrix G, W;
     Vector before, e;
@@ -161,7 +162,7 @@ Scene random_scene(std::mt19937& random) {
     return scene;
 }
 
-// By impulses p, v+ = v- + G' p.
+// Change of energy by the impulses p, where v+ = v- + G' p.
 double change_of_energy(const Scene& scene, const Vector& p) { return p.dot(scene.before + 0.5 * scene.W * p); }
 
 TEST(Moreau, LawsAtRandom) {
@@ -194,7 +195,7 @@ TEST(Moreau, LawsAtRandom) {
     EXPECT_GT(unopened, 1000);
 }
 
-// g_i n_i^A = 1, g_j n_i^A = 0; and where no kappa is negative, v+ = v- - (1 + e_i) hdot_i n_i^A.
+// g_i n_i^A = 1 and g_j n_i^A = 0. If no kappa is negative, v+ = v- - (1 + e_i) hdot_i n_i^A.
 TEST(Moreau, TransmissionAtRandom) {
     std::mt19937 random(6);
     int stays = 0;
@@ -225,7 +226,7 @@ TEST(Moreau, TransmissionAtRandom) {
     EXPECT_GT(stays, 200);
 }
 
-// Where the order is proved not to matter, every first contact leads to what Moreau's law gives.
+// If the order is proved not to matter, every choice of the first contact gives the result of Moreau's law.
 TEST(Moreau, IndependentLandingsEndAlikeInAnyOrder) {
     std::mt19937 random(7);
     int independent = 0, dependent = 0;
@@ -233,7 +234,7 @@ TEST(Moreau, IndependentLandingsEndAlikeInAnyOrder) {
         Scene s = random_scene(random);
         const Index m = s.e.size();
         if (s.landing.count() < 2) continue;
-        if (random() % 2 == 0) {  // landings that do not meet but by what is held
+        if (random() % 2 == 0) {  // impacting contacts coupled only through held contacts
             for (Index i = 0; i < m; ++i)
                 for (Index k = 0; k < m; ++k)
                     if (i != k && contains(s.landing, i) != contains(s.held, k)) s.W(i, k) = s.W(k, i) = 0.0;
@@ -256,7 +257,7 @@ TEST(Moreau, IndependentLandingsEndAlikeInAnyOrder) {
     EXPECT_GT(dependent, 1200);
 }
 
-// Energy never rises, whoever comes first.
+// Energy never increases, whichever contact comes first.
 TEST(Moreau, SequencesLoseEnergy) {
     std::mt19937 random(8);
     int finite = 0;
@@ -274,7 +275,7 @@ TEST(Moreau, SequencesLoseEnergy) {
     EXPECT_GT(finite, 1000);
 }
 
-// Whose turn it is depends neither on the numbering of contacts nor on the units of their gaps.
+// The order of the impacts depends neither on the numbering of the contacts nor on the units of their gaps.
 TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
     std::mt19937 random(10);
     int compared = 0;
@@ -301,7 +302,7 @@ TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
     EXPECT_GT(compared, 500);
 }
 
-// ---- when order matters ----
+// ---- dependence on the order of impacts ----
 
 TEST(ImpactOrder, BySignsOfWhatMeets) {
     const Matrix exact = Matrix::Zero(2, 2);
@@ -311,10 +312,10 @@ TEST(ImpactOrder, BySignsOfWhatMeets) {
     EXPECT_TRUE(order_matters(pair_with(-0.3), exact, elastic, nobody, both));
     EXPECT_FALSE(order_matters(pair_with(-0.3), exact, plastic, nobody, both));
     EXPECT_TRUE(order_matters(pair_with(0.3), exact, plastic, nobody, both));
-    // One lands, the other is held: kappa = -W12.
+    // One contact impacts, the other is held: kappa = -W12.
     EXPECT_FALSE(order_matters(pair_with(-0.3), exact, elastic, contacts({0}), contacts({1})));
     EXPECT_TRUE(order_matters(pair_with(0.3), exact, elastic, contacts({0}), contacts({1})));
-    // A held contact between them: W12^A = W12 - W1A WA2/WAA.
+    // Coupling through a held contact A: W12^A = W12 - W1A WA2/WAA.
     Matrix W = Matrix::Identity(3, 3);
     W(0, 1) = W(1, 0) = 0.0625;
     W(0, 2) = W(2, 0) = W(1, 2) = W(2, 1) = -0.25;
@@ -335,15 +336,15 @@ TEST(ImpactOrder, CountsRoundingAsZeroAndSaysSo) {
     EXPECT_TRUE(with_radius(1e-16, 1e-15).rounded_zero);
     EXPECT_FALSE(with_radius(0.0, 0.0).rounded_zero);
     EXPECT_FALSE(with_radius(0.0, 0.0).matters());
-    EXPECT_TRUE(with_radius(1e-15, 1e-16).matters());  // not 0
-    EXPECT_TRUE(with_radius(0.0, 1e-12).matters());    // perhaps not 0
+    EXPECT_TRUE(with_radius(1e-15, 1e-16).matters());  // proved nonzero
+    EXPECT_TRUE(with_radius(0.0, 1e-12).matters());    // possibly nonzero
     EXPECT_FALSE(with_radius(0.0, 1e-12).rounded_zero);
-    // Nothing is proved over held contacts that depend on each other.
+    // With linearly dependent held contacts nothing is proved.
     const auto twice = order_dependence(enclosure(pair_with(1.0), Matrix::Zero(2, 2)), e, both, nobody);
     EXPECT_TRUE(twice.by_transmission);
 }
 
-// Equal elastic balls in a row exchange velocities until these are in order, and who approaches most is next.
+// Equal elastic balls in a row exchange velocities until these are in order. The fastest approach is resolved next.
 TEST(Moreau, InTurnTheFastestIsNext) {
     ContactMatrix<double> W(3, 3);
     W << 2, -1, 0, -1, 2, -1, 0, -1, 2;

@@ -1,4 +1,4 @@
-// Contacts for tests: as numbers, and at random with their gradients.
+// Contacts for tests: given by numbers, or random with random gradients.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline ContactVector<double> numbers(std::initializer_list<double> values) {
     return x;
 }
 
-// Two contacts with W_11 = W_22 = 1.
+// Delassus matrix of two contacts with W_11 = W_22 = 1.
 inline ContactMatrix<double> pair_with(double W12) {
     ContactMatrix<double> W(2, 2);
     W << 1.0, W12, W12, 1.0;
@@ -36,7 +36,7 @@ inline ContactSet all_contacts(Eigen::Index size) {
     return set;
 }
 
-// Some of them, at random.
+// A random subset of the contacts.
 inline ContactSet some_of(Eigen::Index size, std::mt19937& random) {
     ContactSet set;
     for (Eigen::Index j = 0; j < size; ++j)
@@ -52,7 +52,7 @@ inline ContactMatrix<double> random_matrix(Eigen::Index rows, Eigen::Index colum
     return result;
 }
 
-// A sequence of rows: renumbered[i] is what was row order[i].
+// A permutation of rows: row i of the result is row order[i] of the original.
 using Order = std::array<Eigen::Index, 8>;
 inline Order random_order(Eigen::Index size, std::mt19937& random) {
     Order order;

@@ -1,4 +1,4 @@
-// What one step and one completion claim, taken by themselves.
+// The claims of one step and of one completion.
 #include "enclose/completion.hpp"
 
 #include "certify/truth.hpp"
@@ -17,7 +17,7 @@ Coordinates coordinates_of(const Model& model, const achilles::EnclosureProblem&
     return z;
 }
 
-// The ball on the surface at x, sliding with that rate along x, about to land with speed w.
+// The ball on the surface at x, sliding at this rate, just before an impact of speed w.
 Doubleton landing(double x, double rate, double w) {
     const Interval at(x), slope = cos(at);
     return Doubleton({Interval(3.0), at, sin(at), Interval(rate), slope * Interval(rate), Interval(0.0), Interval(-w)});
@@ -25,7 +25,8 @@ Doubleton landing(double x, double rate, double w) {
 
 }  // namespace
 
-// a = sin(t): what is left behind order 20 is its tail, which the remainder holds and half of it does not.
+// a = sin(t): the truncation error after order 20 is the tail of the series. The remainder contains it; half of the
+// remainder does not.
 TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
     const auto model = model_of({.potential = "a^2/2 + b", .b = 1.0, .a_rate = 1.0});
     const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
@@ -47,7 +48,7 @@ TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
     EXPECT_TRUE(contains(step.box_over(start, Interval(0.0, step.length()))[z.q(0)], sin(length)));
 }
 
-// Signed bounds gain an order: the middle of the error falls with w^3, its radius with w^4.
+// Signed bounds gain an order: the center of the error decreases with w^3, its radius with w^4.
 TEST(Completion, ItsErrorIsOfFourthOrder) {
     const auto model = load("ball_on_sine");
     const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
@@ -71,8 +72,8 @@ TEST(Completion, ItsErrorIsOfFourthOrder) {
     }
 }
 
-// b falls with 1 + a, which changes quickly, and pushes a by 2 b': so a is behind by 2 int h, and that is near the greatest or the
-// least integral, as the bounces begin with the least acceleration or the greatest.
+// b falls with acceleration 1 + a, which changes fast, and pushes a by 2 b', so that a lags by 2 int h. This is near
+// the largest or the smallest possible integral, as the bounces begin with the smallest or the largest acceleration.
 TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
     const auto model =
         model_of({.potential = "0*a", .a = 3.0, .a_rate = 50.0, .a_force = "2*b'", .b_force = "-(1 + a)"});
@@ -99,7 +100,8 @@ TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
     }
 }
 
-// Against the truth of single completions: the wait, and the difference from the constrained motion at its end.
+// Against 34-digit references of single completions: the accumulation time, and the difference from the constrained
+// motion at its end.
 TEST(Completion, HoldsTheWaitAndTheShadow) {
     const auto model = load("ball_on_sine");
     const achilles::Run run = model->default_run();
@@ -132,10 +134,10 @@ TEST(Completion, HoldsTheWaitAndTheShadow) {
         }
 }
 
-// The same at random collisions of three systems, with M(q) and curved gaps among them.
+// The same at random impacts of three systems, with configuration-dependent M(q) and curved gaps.
 TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
     int proved = 0;
-    double closest = 0.0;  // share of the error's radius that a difference takes
+    double closest = 0.0;  // largest distance from the center of the error, relative to its radius
     for (const char* name : {"ball_on_sine", "double_pendulum", "falling_rod"}) {
         const auto model = load(name);
         Trials trials(model, 17);
@@ -148,8 +150,7 @@ TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
             const auto maps = make_maps(*model, z);
             Intervals box(z.size());
             box[0] = Interval(collision.before.t);
-            for (std::size_t k = 0; k < z.dof;
-                 ++k) {  // the truth is moved to the surface from what rounding made of it
+            for (std::size_t k = 0; k < z.dof; ++k) {  // the reference moves the rounded state onto the surface
                 const double q = collision.before.q[static_cast<Eigen::Index>(k)];
                 box[z.q(k)] = Interval(q) + Interval(-1.0, 1.0) * Interval(1e-14 * (std::abs(q) + 1.0));
                 box[z.v(k)] = Interval(collision.before.v[static_cast<Eigen::Index>(k)]);
@@ -177,7 +178,7 @@ TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
         }
     }
     EXPECT_GT(proved, 60);
-    EXPECT_GT(closest, 0.5);  // the bound is near to being attained: what it leaves out would be noticed
+    EXPECT_GT(closest, 0.5);  // the bound is nearly attained, so a missing term would show
 }
 
 }  // namespace achilles::test

@@ -1,4 +1,4 @@
-// The set, and what maps make of it, with members in 34 digits.
+// Sets of states and their images, checked with members in 34 digits.
 #include <Eigen/QR>
 #include <array>
 #include <random>
@@ -10,7 +10,7 @@ namespace achilles::test {
 
 namespace {
 
-// A map that bends, over any number.
+// A nonlinear map, over any number type.
 template <class Number>
 std::array<Number, 3> bent(const std::array<Number, 3>& z, double turn) {
     using std::cos, std::sin;
@@ -55,7 +55,7 @@ TEST(Doubleton, HoldsTheImagesOfItsMembersUnderMapsThatBend) {
                 const double turn = uniform(random);
                 apply_bent(set, turn);
                 for (auto& member : members) member = bent(member, turn);
-                if (round == 5) {  // one coordinate becomes the same for all
+                if (round == 5) {  // one coordinate becomes the same for all members
                     set.set(1, 0.5);
                     for (auto& member : members) member[1] = 0.5;
                 }
@@ -67,7 +67,7 @@ TEST(Doubleton, HoldsTheImagesOfItsMembersUnderMapsThatBend) {
     }
 }
 
-// A box would grow by a factor of 1.4 at each eighth of a turn.
+// A box would grow by a factor of 1.4 at each rotation by an eighth of a turn.
 TEST(Doubleton, DoesNotGrowByTurning) {
     Doubleton set({Interval(-1e-3, 1e-3), Interval(1.0 - 1e-3, 1.0 + 1e-3)});
     const double c = std::sqrt(0.5);

@@ -1,4 +1,4 @@
-// What is claimed, its parts, and how a proof is written.
+// The statement that a proof makes: its parts, and its printed form.
 #include "core/enclose/truth.hpp"
 #include "output/proof.hpp"
 
@@ -60,11 +60,11 @@ TEST(EnclosureProblem, PartsSayWhatTheirBoxSaysAndMore) {
     }
     ASSERT_EQ(parts.samples.size(), 2u);
     for (std::size_t i = 0; i < 2; ++i) EXPECT_TRUE(whole.samples[0].q[i].contains(parts.samples[0].q[i]));
-    // A box that is undecided as a whole may be proved in parts.
+    // A box that cannot be proved as a whole may be proved in parts.
     EXPECT_THROW(prove_in_parts(model, claim, 1000), InputError);
 }
 
-// Parts cut one bouncing after different numbers of impacts, and have its Zeno point and the release all the same.
+// Parts that cut the bouncing after different numbers of impacts still share its Zeno point and the release.
 TEST(EnclosureProblem, PartsMeetAtZenoPointsAndReleases) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
@@ -103,7 +103,8 @@ TEST(EnclosureProblem, PartsMeetAtZenoPointsAndReleases) {
     }
 }
 
-// What one part proves the absence of, and another has, is a difference also where the first goes no further.
+// If one part proves that an event is absent and another part has it, the events differ, even if the first part stops
+// early.
 TEST(EnclosureProblem, PartsThatMissWhatOthersHitDiffer) {
     const auto model = typed(R"toml(
 title = "A ball flies over a hump, or hits it"

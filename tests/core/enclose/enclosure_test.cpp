@@ -1,4 +1,4 @@
-// Whole runs as theorems, beside the truth.
+// Enclosures of whole runs against 34-digit references.
 #include "core/enclose/truth.hpp"
 
 #include <cfenv>
@@ -21,7 +21,7 @@ Reals reals(const nlohmann::json& texts, std::size_t first, std::size_t count) {
     return result;
 }
 
-// All numbers of fig4.json that the enclosure speaks of: how many, and how many are inside.
+// Numbers of fig4.json that have an enclosure: their count, and how many are inside.
 struct ComparisonCount {
     int all = 0, inside = 0;
     void add(bool is_inside) {
@@ -67,7 +67,7 @@ ComparisonCount with_reference(const Enclosure& enclosure, const std::string& ke
 
 }  // namespace
 
-// The widths are those of the theory's table, within a factor of 3.
+// The widths agree with the table of the theory within a factor of 3.
 TEST(Enclosure, HoldsAllDigitsOfThePapersTwoProblems) {
     const std::vector<double> zeno_widths[] = {{3.5e-12, 2.8e-11}, {9.6e-11, 3.1e-10, 1.2e-9}};
     const double end_widths[] = {1.9e-11, 7.2e-10};
@@ -90,7 +90,7 @@ TEST(Enclosure, HoldsAllDigitsOfThePapersTwoProblems) {
     }
 }
 
-// Cut early, what the completion is wrong by is most of what is reported: without its middle half of this fails.
+// With an early cut, the error of the completion dominates the width. Without its nonzero center half of this fails.
 TEST(Enclosure, HoldsThemWhereverTheBouncingIsCut) {
     for (const double eps_t : {1e-3, 1e-4, 1e-5, 1e-6, 1e-7})
         for (const Problem& problem : problems) {
@@ -106,7 +106,7 @@ TEST(Enclosure, HoldsThemWhereverTheBouncingIsCut) {
         }
 }
 
-// The restitutions that once broke careful code, and the ends of their range.
+// Restitutions of past regressions, and the ends of the range.
 TEST(Enclosure, RunsTheBallAtAnyRestitution) {
     const auto model = load("ball_on_sine");
     const nlohmann::json expected = reference("ball_restitution");
@@ -130,7 +130,7 @@ TEST(Enclosure, RunsTheBallAtAnyRestitution) {
     }
 }
 
-// Every one-gap system's own run against 34 digits, but for those that the truth has no series for.
+// The default run of every system with one gap against 34 digits, except where the reference has no Taylor series.
 TEST(Enclosure, HoldsTheTruthOfEveryGallerySystemOfOneGap) {
     int proved_ones = 0;
     for (const std::string& name : systems_of_one_gap()) {
@@ -148,7 +148,7 @@ TEST(Enclosure, HoldsTheTruthOfEveryGallerySystemOfOneGap) {
             set_state(gap, start);
             gap.run();
             const bool is_open = std::abs(gap.h()) > 1e-12;
-            if (!is_open && std::abs(gap.hdot()) > 1e-12) continue;  // it takes off, which the truth cannot begin with
+            if (!is_open && std::abs(gap.hdot()) > 1e-12) continue;  // takes off: no reference
             TrueRuns runs(*model, run);
             const TrueExecution truth = is_open ? runs.run(point_of(start), run.options.end_time, 1e-10)
                                                 : runs.run_from_contact(point_of(start), run.options.end_time, 1e-10);
@@ -169,14 +169,14 @@ TEST(Enclosure, HoldsTheTruthOfEveryGallerySystemOfOneGap) {
             }
             EXPECT_TRUE(contains(proved.end->q, truth.end.q));
             EXPECT_TRUE(contains(proved.end->v, truth.end.v));
-        } catch (const std::invalid_argument&) {  // a function that the truth has no series for
-        } catch (const std::runtime_error&) {     // bouncing that the truth does not see settle
+        } catch (const std::invalid_argument&) {  // a function without a series in the reference
+        } catch (const std::runtime_error&) {     // bouncing that the reference does not follow to the end
         }
     }
     EXPECT_GE(proved_ones, 15);
 }
 
-// In the air at times between the start and the first impact, where all comes from steps alone.
+// In flight, at times between the start and the first impact: the enclosure comes from steps alone.
 TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
     const auto model = load("double_pendulum");
     achilles::Run run = model->default_run();
@@ -197,7 +197,8 @@ TEST(Enclosure, HoldsFreeFlightAtFixedTimes) {
     }
 }
 
-// On an impact both sides are in the box; in the window of a completion all of it; and after an early stop nothing.
+// At an impact the box contains both sides, and within a completion the whole interval. After an early stop there is no
+// box.
 TEST(Enclosure, AtTheTimeOfAnEventHoldsBothSides) {
     const auto model = load("ball_on_sine");
     achilles::EnclosureProblem claim = problem_of(problems[0], *model);
@@ -236,7 +237,7 @@ TEST(Enclosure, PrintsNoStateAfterAnEarlyStop) {
     for (const EnclosedEvent& event : proved.events) EXPECT_LE(event.t.lo(), proved.proved_until);
 }
 
-// The ball that touches a crest with v_x = 5.64340560783886...; the pendulum whose contact force touches zero at sqrt 5.
+// The ball touches a crest at v_x = 5.64340560783886...; the pendulum's contact force touches zero at sqrt 5.
 TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
     const auto model = load("ball_on_sine");
     achilles::Run run = model->default_run();
@@ -253,7 +254,7 @@ TEST(Enclosure, IsUndecidedWhereAMemberGrazesOrTouches) {
     }
 }
 
-// In contact from the trough; with sqrt 5 the contact force touches zero on the way up.
+// In contact from the trough. With rate sqrt 5 the contact force touches zero on the way up.
 TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
     const auto model = load("ball_on_sine");
     achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
@@ -273,7 +274,7 @@ TEST(Enclosure, IsUndecidedWhereTheContactForceOfAMemberTouchesZero) {
     }
 }
 
-// A run stays where it is on its thread: another rounding, denormals as zero.
+// Another rounding mode and denormals as zero on the calling thread do not change the enclosure.
 TEST(Enclosure, StandsOnItsOwnGround) {
     const auto model = load("ball_on_floor");
     const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());

@@ -1,4 +1,4 @@
-// What happens to sets between steps, with members in 34 digits.
+// The maps between steps (impact, retraction onto the surface), checked with members in 34 digits.
 #include "enclose/event_maps.hpp"
 
 #include <random>
@@ -7,7 +7,7 @@
 
 namespace achilles::test {
 
-// The ball about a point of the surface, at a velocity; and members of that which are on it.
+// The ball near a point of the surface, with members of the set that lie on the surface.
 class SurfaceMaps : public testing::Test {
  protected:
     static constexpr double half = 1e-4;
@@ -21,7 +21,7 @@ class SurfaceMaps : public testing::Test {
         if (!at_rest) box[z_.v(1)] = box[z_.v(1)] + Interval(-0.5);
         return Doubleton(box);
     }
-    // A member with h = 0, and hdot = u: the others are nobody's.
+    // A random member with h = 0 and hdot = u; nullopt if the draw is outside the set.
     std::optional<Point> member(const Doubleton& set, bool at_rest, Real& u) {
         Point point;
         point.q = {any_of(set.hull(z_.q(0))), 0};
@@ -43,7 +43,7 @@ class SurfaceMaps : public testing::Test {
         std::uniform_real_distribution<double> uniform(0.0, 1.0);
         return Real(x.lo()) + uniform(random_) * (Real(x.hi()) - Real(x.lo()));
     }
-    // How wide the set is across the surface.
+    // Width of the set in the direction of the gap's gradient.
     double across(const Doubleton& set) const {
         Intervals row(z_.size());
         const EventMaps::GapValues surface = maps_->surface(set.centre());
@@ -59,7 +59,7 @@ class SurfaceMaps : public testing::Test {
     std::mt19937_64 random_{5};
 };
 
-// The identity on members, and what lies across the surface goes to second order.
+// Retraction is the identity on members on the surface, and reduces the width across the surface to second order.
 TEST_F(SurfaceMaps, RetractionsLeaveMembersAndTakeTheRest) {
     for (const bool at_rest : {true, false}) {
         const Doubleton before = set(at_rest);
@@ -100,7 +100,7 @@ TEST_F(SurfaceMaps, ImpactsAreNewtonsLawForAllMembers) {
         ASSERT_TRUE(holds(tangential, slid, u));
     }
     EXPECT_GT(members, 50);
-    // No wider than the spread of the members needs, to first order.
+    // No wider than the members require, to first order.
     EXPECT_LT(rad(after.hull(z_.u())), 0.5001 * half);
 }
 

@@ -20,17 +20,17 @@ TEST(FirstRoot, ProvesThatThereIsNoneOrOneOrSaysNothing) {
     EXPECT_EQ(doubt.kind, FirstRoot::Kind::undecided);
     EXPECT_GT(doubt.at.lo(), 0.9);
     EXPECT_LT(doubt.at.lo(), 1.0);
-    // Two roots in one step, and members of which some have them.
+    // Two roots in one step; then sets in which only some members have them.
     EXPECT_EQ(first_root({Interval(0.99), Interval(-2.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::one);
     EXPECT_EQ(first_root({Interval(0.99, 1.01), Interval(-2.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::undecided);
     EXPECT_EQ(first_root({Interval(-0.1, 1.0), Interval(1.0)}, 2.0).kind, FirstRoot::Kind::undecided);
-    // One that the length cuts in two.
+    // A root that the end of the interval cuts.
     EXPECT_EQ(first_root({Interval(0.9, 1.1), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::undecided);
     EXPECT_EQ(first_root({Interval::undefined(), Interval(-1.0)}, 1.0).kind, FirstRoot::Kind::undecided);
 }
 
-// The lemma: h/t^m and its derivative lie in those of the sum with the remainder's coefficient as a constant interval.
-// Here h = sum of a_j exp(b_j t) less its first m orders; orders are counted from 0.
+// Lemma: h/t^m and its derivative lie in those of the series with the remainder as a constant interval coefficient.
+// Here h = sum of a_j exp(b_j t), without its first m orders. Orders are counted from 0.
 TEST(FirstRoot, ARemainderMayBeDifferentiated) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> uniform(-1.0, 1.0);

@@ -1,4 +1,4 @@
-// What becomes of a proof of every system's own run, the numbers as they are written.
+// Results of proofs of every gallery system's default run, with its numbers as typed.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -9,13 +9,13 @@
 
 namespace achilles::test {
 
-// A system that is not named here is proved to its end time. bench_enclose has the widths.
+// Systems that are not listed are proved to their end time. bench_enclose measures the widths.
 TEST(Gallery, IsProvedOrUndecided) {
     const std::map<std::string, double> undecided_after{
         {"triple_pendulum", 2.5},   // of 5 s
         {"kneed_leg", 1.5},         // of 3 s
         {"newtons_cradle", 5.0},    // of 12 s
-        {"box_dropped_flat", 0.3},  // both edges land at once
+        {"box_dropped_flat", 0.3},  // both edges impact at once
         {"table_on_legs", -1.0},    // starts on all four legs
     };
     const std::vector<std::string> names = all_systems();

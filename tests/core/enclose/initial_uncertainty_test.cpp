@@ -1,4 +1,4 @@
-// What a person writes around a run, and the boxes that it means.
+// Uncertainties as typed around a run, and the boxes that they define.
 #include "enclose/initial_uncertainty.hpp"
 
 #include <gtest/gtest.h>
@@ -34,10 +34,10 @@ TEST(InitialUncertainty, MakesBoxes) {
     EXPECT_TRUE(claim.parameters.back().contains(0.4) && claim.parameters.back().contains(0.6));
     EXPECT_LT(width(claim.parameters.back()), 0.2000001);
     EXPECT_EQ(claim.parameters.front().lo(), run.parameters.front());
-    EXPECT_LE(claim.v[0].lo(), 1.0 - 1e-6);  // around the interval, too
+    EXPECT_LE(claim.v[0].lo(), 1.0 - 1e-6);  // also around the interval
     EXPECT_GE(claim.v[0].hi(), 2.0 + 1e-6);
     EXPECT_NEAR(width(claim.q[1]), 2e-6, 1e-12);
-    // The double nearest to 0.3 is below it, and what was typed is not.
+    // The double nearest to 0.3 is below 0.3; the box contains the decimal.
     const achilles::EnclosureProblem wide = problem_of(model->description(), run, {0.3, {}});
     EXPECT_LT(wide.q[0].lo(), -0.3);
     EXPECT_GT(wide.q[0].hi(), 0.3);

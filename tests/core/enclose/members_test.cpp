@@ -1,4 +1,4 @@
-// Random members of boxes are in the boxes' enclosures; bench_enclose asks a thousand of each.
+// Random members of boxes are inside the enclosures; bench_enclose tests a thousand of each.
 #include "certify/members.hpp"
 
 #include "core/enclose/truth.hpp"
@@ -18,7 +18,7 @@ TEST(Members, OfABoxAreInItsEnclosure) {
     EXPECT_GT(compared, 20000);
 }
 
-// An enclosure that holds much more than its members would be no use, and hide mistakes.
+// The enclosure must not be much larger than the set of its members. Otherwise it would be useless and hide errors.
 TEST(Members, OfABoxAreNotMuchFewerThanItsEnclosureHolds) {
     for (const Problem& problem : problems) {
         const auto model = load(problem.asset);
@@ -29,7 +29,7 @@ TEST(Members, OfABoxAreNotMuchFewerThanItsEnclosureHolds) {
     }
 }
 
-// e and g included; the oscillator is driven, and all that it forgets each cycle its box must forget, too.
+// With intervals for e and g. The driven oscillator forgets its initial state each cycle; so must its box.
 TEST(Members, OfABoxWithParametersAreInItsEnclosure) {
     for (const std::string name : {"ball_on_sine", "double_pendulum", "impact_oscillator"}) {
         SCOPED_TRACE(name);

@@ -1,4 +1,4 @@
-// Enclosures beside numbers of more digits than a double has.
+// Enclosures compared with multiprecision references.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ inline double widest(const Intervals& box) {
     return result;
 }
 
-// The paper's problem as fig4.json starts it: the pendulum's angles are no doubles.
+// The paper's problem as in fig4.json: the pendulum's angles are not doubles.
 inline achilles::EnclosureProblem problem_of(const Problem& problem, const Model& model) {
     achilles::EnclosureProblem claim = achilles::problem_of(model.default_run());
     claim.run.options.end_time = 20.0;
@@ -30,7 +30,7 @@ inline achilles::EnclosureProblem problem_of(const Problem& problem, const Model
     return claim;
 }
 
-// Of a run's numbers those around them.
+// The run's numbers, each with an interval of this half-width around it.
 inline achilles::EnclosureProblem widened(const Run& run, double half) {
     achilles::EnclosureProblem claim = achilles::problem_of(run);
     inflate(claim, half);

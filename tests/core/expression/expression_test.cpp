@@ -65,7 +65,7 @@ TEST_F(Expressions, WithoutNamesAreNumbers) {
     EXPECT_EQ(value_of_constant(read("3 - pi")), 3.0 - std::numbers::pi);
     EXPECT_EQ(value_of_constant(read("pi/4 - sqrt(2)")), std::numbers::pi / 4.0 - std::sqrt(2.0));
     EXPECT_NEAR(value("x^(4 - pi)", 2), std::pow(2.0, 4.0 - std::numbers::pi), 1e-15);
-    EXPECT_NE(error("(3 - pi)^x"), "no error");  // its base is negative
+    EXPECT_NE(error("(3 - pi)^x"), "no error");  // negative base
     EXPECT_EQ(error("(pi - 3)^x"), "no error");
 }
 
@@ -99,7 +99,7 @@ TEST_F(Expressions, ConstantsAreExactUntilEvaluation) {
     EXPECT_EQ(half.low, half.high);
 }
 
-// Numerators and denominators on both sides of 2^53, where another way to divide takes over.
+// Numerators and denominators on both sides of 2^53, where the division algorithm changes.
 TEST_F(Expressions, AConstantIsEnclosedByNeighbors) {
     std::mt19937_64 random(11);
     for (int trial = 0; trial < 2000; ++trial) {
@@ -185,7 +185,7 @@ TEST_F(Expressions, HugeNumbersEndAtOnce) {
     EXPECT_EQ(value("x^-2147483648", 1.0), 1.0);
 }
 
-// Exact arithmetic on fractions without common factors doubles their length: it must not go on for ever.
+// Exact arithmetic on fractions without common factors doubles their length, so it must be bounded.
 TEST_F(Expressions, SizesHaveStatedLimits) {
     std::string fractions = "1/3";
     for (int i = 2; i < 20000; ++i) fractions += " + 1/" + std::to_string(2 * i + 1);
@@ -197,7 +197,7 @@ TEST_F(Expressions, SizesHaveStatedLimits) {
     std::string sum = "x";
     for (int i = 0; i < 100000; ++i) sum += " + sin(x + " + std::to_string(i) + ")";
     EXPECT_EQ(reason(sum), ": this expression is too large: more than 200000 operations");
-    std::string digits = "0";  // each within the limits: 1300 bits
+    std::string digits = "0";  // each within the limit of 1300 bits
     for (int i = 0; i < 60000; ++i) digits += " + " + std::string(i % 2 == 0 ? "1e400" : "1/3e400");
     Graph fresh;
     EXPECT_THROW(parse(digits, Scope{}, fresh), ParseError);
@@ -254,7 +254,7 @@ TEST_F(Expressions, AProgramEvaluatesTheParametersOnceAndIntervalsEnclose) {
     EXPECT_LT(run.output(0).hi() - run.output(0).lo(), 0.0480);
 }
 
-// The same bits as from the library, asked for the first time and again.
+// Bit-identical to the math library, at the first evaluation and at later ones.
 TEST(SineCosine, AreThoseOfTheLibrary) {
     std::mt19937_64 random(3);
     std::uniform_real_distribution<double> exponent(-330.0, 300.0), angle(-10.0, 10.0);
@@ -270,14 +270,14 @@ TEST(SineCosine, AreThoseOfTheLibrary) {
     for (std::size_t i = 0; i < angles.size(); ++i) {
         for (const double x : {angles[i], angles[i - i % 3], angles[i]}) {
             const SineCosine value = sine_and_cosine(x);
-            volatile double alone = x;  // so that the compiler does not ask for both at once
+            volatile double alone = x;  // keeps the compiler from computing both at once
             expect_bits(value.sine, std::sin(alone), x);
             expect_bits(value.cosine, std::cos(alone), x);
         }
     }
 }
 
-// Machine code gives the bits of the loop: more operations than there are registers, every function, odd powers.
+// Machine code gives the same bits as the loop: more operations than registers, every function, odd powers.
 TEST(Program, GivesTheSameBitsAsMachineCode) {
     Graph graph;
     Scope scope;

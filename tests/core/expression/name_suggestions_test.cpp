@@ -1,4 +1,4 @@
-// A misspelt name is recognised, a different one is not.
+// Name suggestions: a misspelled name is recognized, a different one is not.
 #include "expression/name_suggestions.hpp"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,9 @@ namespace {
 const std::vector<std::string> names{"start", "rate", "range", "theta1", "theta2", "sin", "m", "e"};
 
 TEST(NameSuggestions, RecognizesMisspellings) {
-    EXPECT_EQ(nearest("strat", names), "start");   // neighbours swapped
-    EXPECT_EQ(nearest("rates", names), "rate");    // one too many
-    EXPECT_EQ(nearest("theta", names), "theta1");  // the first of equals
+    EXPECT_EQ(nearest("strat", names), "start");   // two neighboring letters swapped
+    EXPECT_EQ(nearest("rates", names), "rate");    // one letter too many
+    EXPECT_EQ(nearest("theta", names), "theta1");  // the first of equally near names
     EXPECT_EQ(nearest("si", names), "sin");
     EXPECT_EQ(nearest("mm", names), "m");
 }
@@ -22,8 +22,8 @@ TEST(NameSuggestions, KnowsCapitalsAndBeginnings) {
     EXPECT_EQ(nearest("M", names), "m");
     EXPECT_EQ(nearest("param", keys), "parameter");
     EXPECT_EQ(nearest("Coord", keys), "coordinate");
-    EXPECT_EQ(nearest("pa", keys), "");   // could be anything
-    EXPECT_EQ(nearest("eps", keys), "");  // two begin so
+    EXPECT_EQ(nearest("pa", keys), "");   // too short to guess
+    EXPECT_EQ(nearest("eps", keys), "");  // two keys begin with it
     EXPECT_EQ(nearest("epsq", keys), "eps_q");
 }
 
@@ -36,7 +36,7 @@ TEST(NameSuggestions, TakesTheNearestOfSeveral) {
 }
 
 TEST(NameSuggestions, OffersNothingFarAway) {
-    EXPECT_EQ(nearest("q", names), "");  // as far from "m" as from anything
+    EXPECT_EQ(nearest("q", names), "");  // equally far from all names
     EXPECT_EQ(nearest("velocity", names), "");
     EXPECT_EQ(nearest("cos", names), "");
     EXPECT_EQ(nearest("", names), "");

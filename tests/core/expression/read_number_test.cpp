@@ -1,4 +1,4 @@
-// A number as a person gives it: all of the text is read, or it is told why not.
+// Numbers as typed by a user: the whole text is read, or an error says why not.
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(ReadNumber, DegreesAreAFactorWhereTheUnitIsRad) {
     EXPECT_FALSE(read_number("1/3", "rad").has_pi);
 }
 
-// Of a rate.
+// Degrees per second, for a rate.
 TEST(ReadNumber, DegreesASecondAreAFactorWhereTheUnitIsRadPerSecond) {
     for (const char* text : {"20 deg/s", "20\u00b0/s", "20 deg", "20 rad/s*pi/180", "40 deg/s/2"}) {
         EXPECT_NEAR(read_number(text, "rad/s").value, pi / 9.0, 1e-16) << text;
@@ -52,7 +52,7 @@ TEST(ReadNumber, DegreesASecondAreAFactorWhereTheUnitIsRadPerSecond) {
     }
     EXPECT_THROW(read_number("20 deg/s", "rad"), ParseError);
     EXPECT_THROW(read_number("20 deg/sec", "rad/s"), ParseError);
-    // Where s has a value it is that.
+    // If the name s has a value, it means that value.
     Graph graph;
     Scope scope{{{"s", graph.number(4)}}, {}};
     allow_units(scope, "rad/s", graph);
@@ -103,7 +103,7 @@ TEST(ReadNumber, TellsWhatIsWrongWithTheText) {
     EXPECT_NE(told("9^9^9^9^9").find("is not a finite number"), std::string::npos);
 }
 
-// Degrees in an equation are told what to write instead.
+// Degrees in an equation give an error that says what to write instead.
 TEST(ReadNumber, AnExpressionOfAFileHasNoDegrees) {
     Graph graph;
     try {

@@ -1,4 +1,4 @@
-// Expressions in the notation of other languages, and what they are in ours.
+// Suggestions for expressions in the syntax of other languages.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -18,7 +18,7 @@ class SyntaxRepair : public testing::Test {
             scope_.allowed.emplace(name, graph_.symbol(slot++));
         scope_.listed.emplace("zeno_time", [this](int) { return graph_.number(1); });
     }
-    // What parse() suggests; "" where it takes the text, or knows nothing better.
+    // The correction that parse() suggests; "" if it accepts the text or has no suggestion.
     std::string suggested(const std::string& text) {
         try {
             parse(text, scope_, graph_);
@@ -85,7 +85,7 @@ TEST_F(SyntaxRepair, WritesOtherNotationsInTheLanguage) {
     }
 }
 
-// What is right stays, letter by letter; what cannot be guessed gets no suggestion.
+// Correct parts of the text stay unchanged, letter by letter. Without a safe guess there is no suggestion.
 TEST_F(SyntaxRepair, LeavesTheRestAlone) {
     for (const char* text :
          {"m/2*(x'^2 + y'^2)", "2.*x", "1e-3*x", "zeno_time(1) + 2", "sqrt(x^2 + y^2)", "-x^2", "pi*x"}) {

@@ -1,4 +1,4 @@
-// Names as people write them elsewhere: what to write here.
+// Suggestions for function names of other languages.
 #include <gtest/gtest.h>
 
 #include "expression/name_suggestions.hpp"

@@ -1,5 +1,5 @@
-// A root (a logarithm, an arcsine) that comes to where it is not smooth ends the run there; one that only comes near is
-// passed.
+// A root, logarithm or arcsine whose argument reaches a nonsmooth point ends the run there. Approaching that point does
+// not.
 #include "model/domain_boundaries.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace achilles {
 namespace {
 
-// A ball thrown from x = -1, y = 1.5 with x' = 1; what stands in T, V and h.
+// A ball thrown from x = -1, y = 1.5 with x' = 1, with these T, V and h.
 std::shared_ptr<const Model> ball(const std::string& kinetic, const std::string& potential, const std::string& gap) {
     return test::typed(
         "title = \"edge\"\n[[coordinate]]\nname = \"x\"\nstart = -1.0\nrate = 1.0\n[[coordinate]]\nname = \"y\"\nstart "
@@ -28,8 +28,8 @@ const double pi = std::acos(-1.0);
 
 struct Kink {
     std::string name, kinetic, potential, gap;
-    std::string part;  // that is named
-    double t, error;   // the instant, in closed form; what rounding of the argument does to it
+    std::string part;  // named in the message
+    double t, error;   // the instant in closed form; effect of the argument's rounding on it
 };
 void PrintTo(const Kink& kink, std::ostream* out) { *out << kink.name; }
 
@@ -79,8 +79,8 @@ TEST_P(Kinks, EndManyRuns) {
         [&](std::size_t, RunResult&& attempt) { expect_to_end(kink, std::get<Trajectory>(attempt)); }, 1);
 }
 
-// Poles whose coefficient is below the tolerance, in time, place and rate, in forces, the potential and the gap: both methods
-// stepped over them in silence.
+// Poles with coefficients below the tolerance, in time, position and rate, in forces, potential and gap. Regression:
+// both methods stepped over them silently.
 TEST(Poles, EndTheRunHoweverWeakTheyAre) {
     struct Pole {
         std::string force, potential, gap, part;
@@ -109,7 +109,7 @@ TEST(Poles, EndTheRunHoweverWeakTheyAre) {
     }
 }
 
-// A wall of the potential, however thin, turns the motion round: it was stepped over, too.
+// A thin repulsive wall of the potential reverses the motion. Regression: it was stepped over.
 TEST(Poles, TurnTheMotionWhereTheyRepelIt) {
     const auto model = test::typed(
         "title = \"wall\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
@@ -149,8 +149,8 @@ TEST(KinksInContact, EndTheRun) {
     }
 }
 
-// sqrt(x^2 + d^2) along y = 0: the series at x = -1 does not see d, but a step over x = 0 would turn the sign. In the
-// limit the ball bounces off a V: the floors y = -x and y = x, one after the other.
+// sqrt(x^2 + d^2) along y = 0. The series at x = -1 does not resolve d, but a step over x = 0 would have the wrong
+// sign. In the limit the ball bounces off a V: the floors y = -x and y = x, one after the other.
 TEST(NarrowBends, ArePassedAsTheyAre) {
     for (const Method method : {Method::taylor, Method::dopri5}) {
         std::vector<double> last;
@@ -172,19 +172,19 @@ TEST(NarrowBends, ArePassedAsTheyAre) {
     }
 }
 
-// What cannot come to its edge is as ever, and parameters have none.
+// Only expressions that can reach their domain boundary during the motion are monitored; parameters alone cannot.
 TEST(DomainBoundaries, AreThoseThatMove) {
     EXPECT_EQ(test::load("ball_on_sine")->edges().size(), 0u);
     EXPECT_EQ(test::load("bead_in_ring")->edges().size(), 0u);
     EXPECT_EQ(ball(plain, "y*sqrt(p^2)", "y")->edges().size(), 0u);
     EXPECT_EQ(ball(plain, "2^1.5 + sqrt(2)*y", "y")->edges().size(), 0u);
-    EXPECT_EQ(ball(plain, "2^y + exp(x) + 2*exp(x)", "y")->edges().size(), 2u);                  // which may hide
-    EXPECT_EQ(ball(plain, "y + sqrt(x^2)", "y - sqrt(x^2) + (x^2)^(1/3)")->edges().size(), 1u);  // one distance
+    EXPECT_EQ(ball(plain, "2^y + exp(x) + 2*exp(x)", "y")->edges().size(), 2u);                  // narrow features
+    EXPECT_EQ(ball(plain, "y + sqrt(x^2)", "y - sqrt(x^2) + (x^2)^(1/3)")->edges().size(), 1u);  // same argument
     EXPECT_EQ(ball(plain, "asin(x/3) + acos(x/3) + log(y)", "y")->edges().size(), 2u);
 }
 
-// A ball that flies at a post which is nothing where it starts, and stands in the way: the series of a flight far from
-// it is that of a flat floor. By energy in its closed form the impact is where the parabola meets the post.
+// A ball flies towards a post whose height is negligible at the start. Far from the post the series of the flight is
+// that of a flat floor. The impact is where the parabola meets the post, known in closed form.
 TEST(DomainBoundaries, WhatHidesIsFound) {
     for (const std::string post :
          {"exp(-400*(x - 1)^2)", "2^(-577*(x - 1)^2)", "1/cosh(30*(x - 1))^2", "(1 - tanh(30*(x - 1))^2)"}) {
@@ -205,7 +205,7 @@ TEST(DomainBoundaries, WhatHidesIsFound) {
     }
 }
 
-// A circle in Cartesian coordinates is as good as in polar ones: the ball is thrown about inside it and comes to rest.
+// A circle in Cartesian coordinates works as well as in polar ones: the ball bounces inside it and comes to rest.
 TEST(DomainBoundaries, LeaveALegitimateRootAlone) {
     const auto model = ball(plain, "y", "2 - sqrt(x^2 + y^2)");
     auto run = model->default_run();

@@ -1,4 +1,4 @@
-// Forces, dissipation and time as a file has them: the equations' ingredients, and what is wrong with them.
+// Forces, dissipation and time in a system file: the terms of the equations, and errors.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
@@ -14,7 +14,7 @@ const std::string x_name = "name = \"x\"\n", theta_name = "name = \"theta\"\n",
                   potential_line = "potential = \"m*x\"\n", kinetic_text = "m/2*(x'^2 + theta'^2)",
                   gap_text = "x - sin(theta)/9";
 
-// The ingredients of a file, and their values at x = 0.7, theta = -0.4, x' = 1.5, theta' = 2.5, m = 3, e = 0.5, t = 6.
+// Terms of a file's equations at x = 0.7, theta = -0.4, x' = 1.5, theta' = 2.5, m = 3, e = 0.5, t = 6.
 class Ingredients {
  public:
     explicit Ingredients(const std::string& text) : system_(parse_system(text)) {
@@ -70,7 +70,7 @@ TEST(Time, MayStandInThePotentialAndTheGap) {
     EXPECT_NEAR(moving.value(moving.equations.gaps[0]), 0.7 - 0.1 * std::sin(6.0), 1e-12);
 }
 
-// One change of the good text, and all that is told about it.
+// One change of the valid text, and the whole message for it.
 struct WrongForce {
     std::string from, to, message;
 };

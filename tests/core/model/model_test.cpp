@@ -12,7 +12,7 @@
 namespace achilles {
 namespace {
 
-// Evaluates any expression of a model at a state.
+// Evaluates an expression of a model at a state.
 double value(const Model& model, Expression e, const Run& run, const State& state) {
     const Program program(std::span(&e, 1),
                           {model.layout().count(), 2 * model.layout().dof, 2 * model.layout().dof + model.layout().p});
@@ -49,7 +49,7 @@ TEST(Model, TheBallHasItsClosedForm) {
     }
 }
 
-// theory.md 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. For all ones the
+// theory.md 7: hddot = g sin(theta1)/L~ at theta2 = 0, with 3(m1(L1 + 2 L2) + m2 L2) in L~. With all parameters 1, the
 // paper's condition is g sin(theta1)/L~ < 0, whatever the rates.
 TEST(Model, ThePendulumLocksWhereSinTheta1IsNegative) {
     const auto model = test::load("double_pendulum");
@@ -127,8 +127,8 @@ TEST(Model, EulerLagrangeHoldsOnEverySystem) {
     check_lagrange(*test::typed(odd_system), random);
 }
 
-// hddot is the second derivative of h along free motion, the jerk the rate of hddot along constrained motion; W, n, s,
-// f_c satisfy their definitions.
+// hddot is the second derivative of h along free motion; the jerk is the rate of hddot along constrained motion. W, n,
+// s and f_c satisfy their definitions.
 TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
     std::mt19937 random(4);
     for (const auto& model : {test::load("ball_on_sine"), test::load("double_pendulum"), test::typed(odd_system)}) {
@@ -178,7 +178,8 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
     }
 }
 
-// (4): the normal velocity is reversed and scaled, s is kept; R* is the Euclidean projection onto g v = 0.
+// Equation (4): the normal velocity is reversed and scaled, s is unchanged. R* is the Euclidean projection onto g v =
+// 0.
 TEST(Impacts, NewtonsLawAndBothReinitialisations) {
     std::mt19937 random(5);
     const auto model = test::typed(odd_system);
@@ -199,7 +200,7 @@ TEST(Impacts, NewtonsLawAndBothReinitialisations) {
     }
 }
 
-// For M = m I both are the same projection.
+// For M = m I both reinitializations are the same projection.
 TEST(Impacts, ReinitialisationsAgreeOnTheBall) {
     const auto model = test::load("ball_on_sine");
     ContactKinematics surface(*model, model->default_run());

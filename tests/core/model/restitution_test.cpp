@@ -1,4 +1,4 @@
-// Restitutions: what counts as rounding at the ends of [0, 1], for doubles and intervals alike.
+// Restitutions: the allowed rounding at the ends of [0, 1], alike for doubles and intervals.
 #include "model/restitution.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a run cannot start from: parameters that have lost digits, energies and gaps without a value.
+// Invalid starts: parameters that have lost digits, and energies or gaps without a value.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -49,17 +49,17 @@ TEST(SubnormalParameters, AreRefusedWhereTheyAreSet) {
                   "--set m=-1e-310: the parameter 'm' is -1e-310: such a small number is not represented with full "
                   "precision\nuse 0, or choose units in which it is at least 2.3e-308 in size");
     }
-    assign(set, description, "x=5e-324");  // a start is what it is
+    assign(set, description, "x=5e-324");  // start values may be subnormal
     const auto model = test::typed(text_with("1", "m*x'^2/2", "m*x", "x"));
     auto run = model->default_run();
     run.parameters[0] = 5e-324;
     EXPECT_THROW(model->check(run), InputError);
 }
 
-// ---- what has no value at the start ----
+// ---- terms without a value at the start ----
 
 TEST(StartsWithoutAValue, NeedAPotential) {
-    // Its force has a value, 1/(x - 2) = -1: only the potential tells.
+    // The force has a value, 1/(x - 2) = -1; only the potential has none.
     EXPECT_EQ(told(text_with("1", "x'^2/2", "log(x - 2)", "x")),
               "f.toml:10:14: the potential is not defined at the start: log(x - 2), with x - 2 = -1\n"
               "    potential = \"log(x - 2)\"\n                 ^");
@@ -69,7 +69,7 @@ TEST(StartsWithoutAValue, NeedAPotential) {
     EXPECT_EQ(told(text_with("1", "x'^2/2", "exp(1000*x)", "x")),
               "f.toml:10:14: the potential is not finite at the start\n"
               "    potential = \"exp(1000*x)\"\n                 ^");
-    // It has a value, its derivative has none.
+    // The value exists, its derivative does not.
     EXPECT_EQ(told(text_with("1", "x'^2/2", "sqrt(x - 1)", "x")),
               "f.toml:10:14: a derivative of the potential is not defined at the start: 1/2/sqrt(x - 1), with "
               "sqrt(x - 1) = 0\n    potential = \"sqrt(x - 1)\"\n                 ^");
@@ -88,7 +88,7 @@ TEST(StartsWithoutAValue, NeedAGap) {
     EXPECT_EQ(told(text_with("1", "x'^2/2", "x", "5 + log(x - 2)")),
               "f.toml:12:8: the gap is not defined at the start: log(x - 2), with x - 2 = -1\n"
               "    gap = \"5 + log(x - 2)\"\n           ^");
-    // A kink where it starts.
+    // A kink at the start.
     const std::string message = told(text_with("1", "x'^2/2", "x", "x - sqrt((x - 1)^2)"));
     EXPECT_EQ(message.substr(0, 57), "f.toml:12:8: a derivative of the gap is not defined at th") << message;
     const std::string infinite = told(text_with("1", "x'^2/2", "x", "exp(1000*x)"));

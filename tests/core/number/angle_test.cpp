@@ -7,14 +7,14 @@
 namespace achilles {
 namespace {
 
-// Bit by bit: figures and tables are compared so.
+// Bit by bit, because figures and tables are compared bit by bit.
 TEST(Angle, DegreesAreRadiansBy180OverPi) {
     EXPECT_EQ(degrees(1.0), 57.29577951308232);
     EXPECT_EQ(degrees(1.0), 180.0 / std::numbers::pi);
     EXPECT_EQ(degrees(std::numbers::pi), 180.0);
     EXPECT_EQ(degrees(-std::numbers::pi / 2.0), -90.0);
     EXPECT_EQ(degrees(0.1), 0.1 * 180.0 / std::numbers::pi);  // in this order
-    EXPECT_NE(degrees(0.1), 0.1 * degrees(1.0));              // rounded otherwise
+    EXPECT_NE(degrees(0.1), 0.1 * degrees(1.0));              // rounded differently
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Fine contains the exact value, always, and is fine: compared with 100 digits.
+// Fine always contains the exact value, and is precise: compared with 100 digits.
 #include "number/double_double.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 using cases::Draw;
 using cases::Exact;
 
-// A number and what it stands for.
+// A Fine number and the exact value that it represents.
 struct BallAndExact {
     DoubleDoubleBall fine;
     Exact exact;
@@ -21,12 +21,12 @@ Exact error_of(const BallAndExact& x) { return abs(x.exact - Exact(x.fine.high()
 
 void expect_contained(const BallAndExact& x, const char* what) {
     if (!x.fine.is_defined()) return;
-    const Exact own = abs(x.exact) * Exact("1e-98");  // the 100 digits' own
+    const Exact own = abs(x.exact) * Exact("1e-98");  // error of the 100 digits
     EXPECT_LE(error_of(x), Exact(x.fine.radius()) + own) << what << " " << x.fine.high();
     EXPECT_TRUE(cases::encloses(x.fine.range(), x.exact)) << what << " " << x.fine.high();
 }
 
-// A sum of three doubles, of which one is a bound.
+// A random sum of two doubles, or an interval with a random value inside.
 BallAndExact drawn(Draw& draw, double size) {
     const double a = draw.uniform(-size, size), b = draw.uniform(-0x1p-55, 0x1p-55) * a;
     BallAndExact result{DoubleDoubleBall(a) + DoubleDoubleBall(b), Exact(a) + Exact(b)};
@@ -60,7 +60,7 @@ TEST(DoubleDouble, ContainsTheExactResult) {
     }
 }
 
-// Results of points, and of their results, to 96 bits.
+// Results of point arguments to 96 bits, and operations on these results to 72.
 TEST(DoubleDouble, IsFine) {
     Draw draw;
     for (int i = 0; i < 4000; ++i) {
@@ -72,14 +72,14 @@ TEST(DoubleDouble, IsFine) {
             EXPECT_LT(result.fine.radius(), 0x1p-96 * std::abs(result.fine.high()) + 0x1p-100) << what;
             visit(result, a, [&](const char* then, const BallAndExact& after) {
                 expect_contained(after, then);
-                if (std::abs(result.fine.high()) < 0x1p-20) return;  // a root or a quotient of that is less well known
+                if (std::abs(result.fine.high()) < 0x1p-20) return;  // roots and quotients of it are less precise
                 EXPECT_LT(after.fine.radius(), 0x1p-72 * std::abs(after.fine.high()) + 0x1p-90) << what << ", " << then;
             });
         });
     }
 }
 
-// What an error does is known, too: a wide number's sine is as wide as its angle, and no narrower.
+// Errors propagate: the error of a function of a wide number is as large as its argument's error, and not much larger.
 TEST(DoubleDouble, CarriesItsError) {
     const DoubleDoubleBall wide(Interval(0.9999, 1.0001));
     for (const DoubleDoubleBall& x :
@@ -103,7 +103,7 @@ TEST(DoubleDouble, HasNoValueWhereThereIsNone) {
     EXPECT_FALSE(log(DoubleDoubleBall(-1.0)).is_defined());
 }
 
-// What programs need besides.
+// The operations and constants that programs need besides.
 TEST(DoubleDouble, IsAScalarOfPrograms) {
     EXPECT_EQ((DoubleDoubleBall(0.0) + DoubleDoubleBall(0.0)).range().hi(), 0.0);
     EXPECT_EQ((DoubleDoubleBall(3.0) * DoubleDoubleBall(0.0)).radius(), 0.0);

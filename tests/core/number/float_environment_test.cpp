@@ -1,5 +1,5 @@
-// Proofs do not depend on how the caller's thread computes: rounding and the treatment of denormals are set and put
-// back.
+// Proofs do not depend on the floating-point mode of the caller's thread: rounding and denormals are set, then
+// restored.
 #include "number/float_environment.hpp"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ const Mode modes[] = {{"upward", 0, FE_UPWARD},
                       {"denormals_are_zero", denormals_are_zero, FE_TONEAREST},
                       {"all", flush_to_zero | denormals_are_zero, FE_UPWARD}};
 
-// The thread computes in that way as long as this lives; `untouched` tells whether it still does.
+// Sets this floating-point mode for its lifetime; `untouched` tells whether the mode is still set.
 class Computing {
  public:
     explicit Computing(const Mode& mode) : before_(_mm_getcsr()) {
@@ -62,7 +62,7 @@ class FloatEnvironments : public testing::TestWithParam<Mode> {};
 INSTANTIATE_TEST_SUITE_P(Modes, FloatEnvironments, testing::ValuesIn(modes),
                          [](const auto& mode) { return mode.param.name; });
 
-// Out of the compiler's sight: what is computed, it computes here and now.
+// Not inlined, so that the product is computed here, at run time.
 [[gnu::noinline]] Interval product(double a, double b) { return Interval(a) * Interval(b); }
 
 TEST_P(FloatEnvironments, HoldAProductOfSmallNumbers) {
@@ -79,7 +79,7 @@ TEST_P(FloatEnvironments, HoldAProductOfSmallNumbers) {
     EXPECT_LT(on_the_ground.lo(), 1e-310);
 }
 
-// Why there is a ground.
+// Without Ground the product is lost: flush-to-zero breaks the enclosure.
 TEST(FloatEnvironmentGuard, IsMissedWhereDenormalsVanish) {
     volatile double a = 1e-300, b = 1e-10;
     Interval lost;
@@ -177,7 +177,7 @@ TEST_P(FloatEnvironments, GiveTheSameEndsOfManyRuns) {
         EXPECT_EQ(std::memcmp(usual[i].data(), now[i].data(), sizeof(double) * 2), 0) << i;
 }
 
-// The conditions by themselves, as the explanation of an impact asks them.
+// The conditions alone, as the explanation of an impact evaluates them.
 TEST_P(FloatEnvironments, GiveTheSameCertificate) {
     for (const auto& [model, run] : some_runs()) {
         const Trajectory trajectory = simulate(model, run);
@@ -204,8 +204,7 @@ TEST_P(FloatEnvironments, GiveTheSameCertificate) {
     }
 }
 
-// A certificate of a gap so small in its units that its bounds are denormal numbers is the same, too; without a ground
-// they would be zero.
+// Certificates with denormal bounds, of a gap with tiny units, are the same as well. Without Ground they would be zero.
 TEST_P(FloatEnvironments, HoldCertificatesOfDenormalSize) {
     const auto model = test::drop();
     auto run = model->default_run();

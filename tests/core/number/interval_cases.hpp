@@ -1,4 +1,4 @@
-// Hostile arguments for Interval and the table of everything it computes: shared by the unit test and the benchmark.
+// Hostile arguments for Interval, and the table of all its operations. Shared by the unit test and the benchmark.
 #pragma once
 
 #include <boost/math/constants/constants.hpp>
@@ -24,7 +24,8 @@ inline bool encloses(const Interval& interval, const Exact& x) {
     return interval.is_defined() && above && below;
 }
 
-// Doubles that break naive rounding: powers of two and their neighbours, denormals, huge, next to multiples of pi/2.
+// Doubles that break naive rounding: powers of two and their neighbors, denormals, huge ones, neighbors of multiples of
+// pi/2.
 inline std::vector<double> hostile() {
     std::vector<double> list{0.0,
                              0x1p-1074,
@@ -58,7 +59,7 @@ struct Draw {
     std::vector<double> corners = hostile();
 
     double uniform(double lo, double hi) { return std::uniform_real_distribution<double>(lo, hi)(engine); }
-    // Next to x, up to two doubles away.
+    // Up to two doubles away from x.
     double nudged(double x) {
         const double direction = engine() % 2 == 0 ? -rounding::infinity : rounding::infinity;
         for (std::uint64_t steps = engine() % 3; steps != 0; --steps) x = std::nextafter(x, direction);
@@ -79,7 +80,8 @@ struct Draw {
                 return uniform(-1000.0, 1000.0);
         }
     }
-    // A partner that makes x + y, x - y, x y or x / y hard: next to a power of two, half an ulp off, or cancelling.
+    // A partner that makes x + y, x - y, x y or x/y hard to round: next to a power of two, half an ulp off, or
+    // cancelling.
     double partner(double x) {
         int exponent = 0;
         std::frexp(x, &exponent);
@@ -99,7 +101,7 @@ struct Draw {
         }
         return std::isfinite(y) ? y : 1.0;
     }
-    // x inside: a point, a few ulps wide, wide, or unbounded.
+    // An interval around x: a point, a few ulps wide, wide, or unbounded.
     Argument around(double x) {
         const std::uint64_t kind = engine() % 32;
         if (kind == 0) return {Interval(x, rounding::infinity), x};
@@ -111,13 +113,14 @@ struct Draw {
     }
 };
 
-// Where an operation has a value, as its Interval must know; both arguments, the second unused by functions of one.
+// Where an operation is defined, as its Interval must know. Operations have two arguments; functions of one ignore the
+// second.
 enum class Domain { everywhere, not_negative, positive, unit, divisor, reciprocal, no_pole };
 
 inline bool has_pole(const Interval& a) {
     if (mag(a) > rounding::largest) return true;
     const auto turn = [](double x) { return Exact(floor(Exact(x) / boost::math::constants::pi<Exact>() - 0.5)); };
-    return mag(a) < 1e60 && turn(a.lo()) != turn(a.hi());  // beyond, tan refuses without looking
+    return mag(a) < 1e60 && turn(a.lo()) != turn(a.hi());  // beyond that, tan gives up at once
 }
 inline bool is_inside(Domain domain, const Interval& a, const Interval& b) {
     switch (domain) {
@@ -137,18 +140,18 @@ inline bool is_inside(Domain domain, const Interval& a, const Interval& b) {
             return true;
     }
 }
-// Undefined is right within rounding of a pole, and where x^n underflows before it is inverted.
+// Undefined is allowed within rounding of a pole, and where x^n underflows before its reciprocal is taken.
 inline bool may_refuse(Domain domain) { return domain == Domain::no_pole || domain == Domain::reciprocal; }
 
 struct TestOperation {
     const char* name;
-    double low, high;  // most arguments are taken from here, the others from anywhere
+    double low, high;  // most arguments are drawn from here, the others from anywhere
     Domain domain = Domain::everywhere;
     bool binary = false, trigonometric = false;
-    bool selects = false;  // the value is 1 or one of the arguments, but for the sign: nothing is rounded
+    bool selects = false;  // the value is 1 or plus or minus an argument: nothing is rounded
 };
 
-// x^n of any number, by Interval's own function for intervals.
+// x^n for any number type; Interval has its own function.
 template <class Number>
 Number raised(const Number& x, int n) {
     if constexpr (std::is_same_v<Number, Interval>) {
@@ -160,7 +163,7 @@ Number raised(const Number& x, int n) {
     }
 }
 
-// Questions of an interval as sets: mag is an upper bound of |x|, mig a lower one, a hull contains both its parts.
+// Bounds on intervals as sets: mag is an upper bound of |x|, mig a lower one, and a hull contains both parts.
 template <class Number, class Ours>
 Number as_set(const Number& exact, Ours ours, const Number& x, const Number& y) {
     if constexpr (std::is_same_v<Number, Interval>) {
@@ -170,7 +173,7 @@ Number as_set(const Number& exact, Ours ours, const Number& x, const Number& y) 
     }
 }
 
-// visit(operation, f) for each; f takes two numbers of any one type, doubles, intervals or multiprecision.
+// Calls visit(operation, f) for each. f takes two numbers of one type: doubles, intervals or multiprecision.
 template <class Visit>
 void visit_arithmetic(Visit&& visit) {
     constexpr double all = 1e3;
@@ -256,7 +259,7 @@ void visit_everything(Visit&& visit) {
     visit_functions(visit);
 }
 
-// Arguments for an operation: mostly where it has something to say, now and then (one in eight) anywhere.
+// Arguments for an operation: mostly in its domain, one in eight anywhere.
 inline std::pair<Argument, Argument> arguments(Draw& draw, const TestOperation& operation) {
     double x = draw.number();
     const bool anywhere = draw.engine() % 8 == 0;
@@ -272,7 +275,7 @@ inline std::pair<Argument, Argument> arguments(Draw& draw, const TestOperation& 
     return {a, draw.around(draw.partner(x))};
 }
 
-// mid and rad are one promise: |x - mid| <= rad for every x inside; and width is no less than hi - lo.
+// |x - mid| <= rad holds for every x inside, and width >= hi - lo.
 inline bool sizes_hold(const Interval& a, double x) {
     if (!(rad(a) < rounding::infinity)) return true;
     return abs(Exact(x) - Exact(mid(a))) <= Exact(rad(a)) && Exact(a.hi()) - Exact(a.lo()) <= Exact(width(a)) &&

@@ -1,4 +1,4 @@
-// Interval contains the exact value, always: compared with 100 digits on random and on hostile endpoints.
+// Interval always contains the exact value: compared with 100 digits on random and hostile endpoints.
 #include "number/interval.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using cases::encloses;
 using cases::Exact;
 using cases::TestOperation;
 
-// Of points: undefined exactly where there is no value, and otherwise around the exact one.
+// Point arguments: undefined exactly where the function is undefined, otherwise around the exact value.
 TEST(Interval, ContainsTheExactResult) {
     Draw draw;
     cases::visit_everything([&](const TestOperation& operation, auto function) {
@@ -38,7 +38,7 @@ TEST(Interval, ContainsTheExactResult) {
     });
 }
 
-// Tight at points, too: a handful of ulps.
+// At point arguments the result is a few ulps wide.
 TEST(Interval, FunctionsOfPointsAreNarrow) {
     Draw draw;
     cases::visit_functions([&](const TestOperation& operation, auto function) {
@@ -52,10 +52,9 @@ TEST(Interval, FunctionsOfPointsAreNarrow) {
     });
 }
 
-// The same arguments would catch a smaller widening w of the rounded result r, to r -+ w |r|.
-//
-// At w = 2^-53 it is lost where r is a power of two below the exact value. Quotients alone are safe: if x > y then
-// x / y >= 1 + ulp(y) / y > 1 + 2^-53, which is not rounded to 1.
+// With a smaller widening w, from r to r -+ w |r|, the same arguments would find errors. With w = 2^-53 they do if r is
+// a power of two below the exact value. Only quotients are safe: if x > y then x/y >= 1 + ulp(y)/y > 1 + 2^-53, which
+// does not round to 1.
 TEST(Interval, LessWideningWouldBeCaught) {
     Draw draw;
     cases::visit_everything([&](const TestOperation& operation, auto function) {
@@ -111,7 +110,7 @@ TEST(Interval, Powers) {
         if (std::abs(x) > 1e30 || mag(a) > 1e30) continue;
         for (int n : {-3, -2, -1, 0, 1, 2, 3, 4, 7}) {
             const Interval ours = integer_power(a, n);
-            if (n < 0 && (a.contains(0.0) || mig(a) < 1e-60)) continue;  // may underflow on the way: undefined is right
+            if (n < 0 && (a.contains(0.0) || mig(a) < 1e-60)) continue;  // may underflow: undefined is allowed
             EXPECT_TRUE(encloses(ours, n >= 0 ? Exact(pow(Exact(x), n)) : 1 / Exact(pow(Exact(x), -n)))) << x << n;
         }
         const double base = std::abs(x) + 1e-10, exponent = draw.uniform(-5.0, 5.0);

@@ -1,4 +1,4 @@
-// Derivatives against differences, and over intervals against derivatives at points.
+// Derivatives against differences; derivatives over intervals against those at points.
 #include "number/jet.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Jet, OverABoxContainsThePoints) {
     EXPECT_FALSE((TwoDirections(1.0) / TwoDirections::variable({-1.0, 1.0}, 0)).slope[0].is_defined());
 }
 
-// Constants as the number sees them: 1/3 is no double, and has no derivative.
+// Constants have the precision of the number type: 1/3 is not a double. Their derivative is zero.
 TEST(Jet, HasTheConstantsOfItsNumber) {
     Constant third{1.0 / 3.0, std::nextafter(1.0 / 3.0, 0.0), std::nextafter(1.0 / 3.0, 1.0), "1", "3"};
     const auto constant = scalar_from<Jet<Interval, 2>>(third);
@@ -64,7 +64,7 @@ TEST(Jet, HasTheConstantsOfItsNumber) {
     EXPECT_EQ(mag(pi.slope[0]), 0.0);
 }
 
-// Exactly 0: what is widened to the least denormal makes all that follows slow.
+// Exactly 0: widening it to the smallest denormal would slow down everything that follows.
 TEST(Jet, ZeroTimesAnythingIsZero) {
     const Interval product = times(Interval(0.0), Interval(-3.0, 1e300));
     EXPECT_EQ(product.lo(), 0.0);

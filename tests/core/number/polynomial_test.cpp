@@ -36,7 +36,7 @@ double root_of(const Polynomial& polynomial, int known) {
     return descent.theta;
 }
 
-// What stands above the degree is anything.
+// Coefficients above the degree are ignored, whatever they are.
 TEST(Polynomials, WhatStandsAboveTheDegreeHasNoMeaning) {
     std::mt19937_64 random(5);
     std::uniform_real_distribution<double> number(0.05, 0.95);
@@ -63,17 +63,17 @@ TEST(Polynomials, TwoRootsInOneStepLeaveNoSignChangeAtItsEndsAndAreSeen) {
     for (const double width : {1e-1, 1e-3, 1e-6}) {
         EXPECT_NEAR(root_of(from_roots({0.4, 0.4 + width}, 1.0), 0), 0.4, 1e-9);
     }
-    EXPECT_NE(first_descent(from_roots({0.4, 0.4}, 1.0), 0, 0.0).kind, Kind::root);  // a touch
+    EXPECT_NE(first_descent(from_roots({0.4, 0.4}, 1.0), 0, 0.0).kind, Kind::root);  // touches zero
 }
 
 TEST(Polynomials, KnownRootsAreDividedOut) {
     EXPECT_NEAR(root_of(from_roots({0.0, 0.6}, -1.0), 1), 0.6, 1e-15);
     EXPECT_NEAR(root_of(from_roots({0.0, 0.0, 0.0, 0.25}, -1.0), 3), 0.25, 1e-15);
     EXPECT_EQ(first_descent(from_roots({0.0, 0.0, 0.0, 1.25}, -1.0), 3, 0.0).kind, Kind::none);
-    EXPECT_EQ(first_descent(from_roots({0.0, 1.0}, -1.0), 1, 0.0).kind, Kind::open);  // at the end: the next step tells
+    EXPECT_EQ(first_descent(from_roots({0.0, 1.0}, -1.0), 1, 0.0).kind, Kind::open);  // at the end: for the next step
 }
 
-// (theta - 0.4)^2 + c: a dip to c, known to within 1e-6.
+// (theta - 0.4)^2 + c: a minimum of c, with remainder 1e-6.
 TEST(Polynomials, WhatLiesInsideTheRemainderIsUndecided) {
     const auto dip = [](double least) {
         Polynomial p = from_roots({0.4, 0.4}, 1.0);
@@ -86,9 +86,9 @@ TEST(Polynomials, WhatLiesInsideTheRemainderIsUndecided) {
     EXPECT_EQ(dip(-1.1e-6).kind, Kind::root);
     for (const double least : {0.9e-6, 1e-9, 0.0, -1e-9, -0.9e-6}) {
         EXPECT_EQ(dip(least).kind, Kind::undecided) << least;
-        EXPECT_NEAR(dip(least).theta, 0.4 - std::sqrt(1e-6 - least), 1e-12) << least;  // where it enters
+        EXPECT_NEAR(dip(least).theta, 0.4 - std::sqrt(1e-6 - least), 1e-12) << least;  // where it enters the remainder
     }
-    // It ends inside: open. It starts inside and rises: rose. It starts inside and falls: a root.
+    // Ends within the remainder: open. Starts within it and increases: rose. Starts within it and decreases: a root.
     EXPECT_EQ(first_descent(from_roots({1.0000001}, -1.0), 0, 1e-6).kind, Kind::open);
     EXPECT_EQ(first_descent(from_roots({-1e-7}, 1.0), 0, 1e-6).kind, Kind::increasing);
     const FirstCrossing falls = first_descent(from_roots({1e-7}, -1.0), 0, 1e-6);

@@ -1,4 +1,4 @@
-// Decimals claim no more than the numbers that they print.
+// Printed bounds claim no more than the numbers behind them.
 #include "output/precision.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ namespace achilles::test {
 
 namespace {
 
-// Of all sizes, some of them the doubles nearest to decimals of few digits, which lie above or below these.
+// Doubles of all sizes. Some are the nearest doubles to short decimals, which lie above or below these.
 std::vector<double> numbers() {
     std::vector<double> all{0.1, 0.3, 0.7, 1.0, 0.5, 1e-7, 9.999e-5, 1e23, 123456.0, 2.53e-9, 0x1p-60, 9.81};
     std::mt19937 random(7);
@@ -67,7 +67,7 @@ TEST(Bounds, OfIntervalsHoldThem) {
     }
 }
 
-// Both ends lie in what the digits and the number behind them say, and the number has two digits.
+// Both ends lie within the printed digits and uncertainty, and the uncertainty has two digits.
 TEST(ShortText, HoldsBothEnds) {
     EXPECT_EQ(short_text(Interval(2.5)), "2.5");
     EXPECT_EQ(short_text(Interval(2.72514212, 2.72514432)), "2.7251432(12)");
@@ -106,7 +106,7 @@ TEST(OuterText, HoldsBothEnds) {
     }
 }
 
-// What a person wrote, or inside it.
+// The decimal as typed, or an interval inside it.
 TEST(InnerText, LiesInside) {
     EXPECT_EQ(inner_text(interval_of_decimal(0.1)), "= 0.1");
     EXPECT_EQ(inner_text(interval_of_decimal(-9.81)), "= -9.81");

@@ -1,4 +1,4 @@
-// What is told of forces, time and several contacts: JSON, CSV, summary, text.
+// Output for forces, time and several contacts: JSON, CSV, summary, text.
 #include "output/contacts.hpp"
 
 #include <gtest/gtest.h>
@@ -23,7 +23,7 @@ std::vector<std::string> parts_of(const std::string& line, char by) {
     return parts;
 }
 
-// Columns of a CSV by name; cells stay text.
+// Columns of a CSV by name, with cells as text.
 struct Table {
     explicit Table(const std::string& csv) : lines(parts_of(csv, '\n')), names(parts_of(lines[0], ',')) {
         if (lines.back().empty()) lines.pop_back();
@@ -108,7 +108,7 @@ TEST(SeveralContacts, WhatIsPassedOnToHeldOnesIsToldInJson) {
     EXPECT_GT(with_held, 5);
 }
 
-// The coupling is 0, but not to a computer; and what is 0 beside masses that are 1e12 apart is 0 beside their ratio.
+// The coupling is 0 exactly, but not in floating point. With masses 1e12 apart, zero is relative to their ratio.
 TEST(SeveralContacts, WhatIsZeroWithinItsRoundingIsFlagged) {
     const auto model = test::typed(R"(
 title = "A bead beside a block"
@@ -144,7 +144,8 @@ end_time = 4.0
     EXPECT_FALSE(certificate.contains("given"));
 }
 
-// A ball strikes the first of two that touch: the impact pushes the contact of these two, which nothing presses and which is held.
+// A ball hits the first of two touching balls. The impact presses the contact of these two, which is held without a
+// contact force.
 TEST(SeveralContacts, HaveTheImpulseOfAnImpactThatPushesThem) {
     const auto balls = test::typed(
         "title = \"balls\"\n[[coordinate]]\nname = \"a\"\nstart = -1\nrate = 1\n[[coordinate]]\nname = \"b\"\n"
@@ -160,7 +161,7 @@ TEST(SeveralContacts, HaveTheImpulseOfAnImpactThatPushesThem) {
 TEST(SeveralContacts, LandingsWhoseOrderMattersHaveAlternatives) {
     const auto rod = test::flat_rod();
     auto long_enough = rod->default_run();
-    long_enough.options.end_time = 6.0;  // to come to rest
+    long_enough.options.end_time = 6.0;  // long enough to come to rest
     const Trajectory trajectory = simulate(rod, long_enough);
     const Json json = Json::parse(to_json(trajectory));
     const Json& first = json["events"][0];
@@ -297,7 +298,7 @@ TEST(SeveralContacts, TheTextForGoldensNamesThem) {
     EXPECT_NE(text.find("zeno of floor held floor t 7.8116"), std::string::npos) << text;
 }
 
-// In a wide V one contact comes to rest, the other's landing opens it, again and again.
+// In a wide V one contact comes to rest and the other's impact opens it, again and again.
 TEST(SeveralContacts, ManyOpenedAndCompletedAreOneLine) {
     const auto model = test::typed(R"toml(
 title = "Ball in a wide V"

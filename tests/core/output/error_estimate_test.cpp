@@ -1,4 +1,4 @@
-// What is told of estimated errors: as JSON and in the summary.
+// Output of estimated errors: JSON and summary.
 #include <gtest/gtest.h>
 
 #include "core/sensitivity/estimates.hpp"

@@ -24,7 +24,8 @@ bool holds(const std::string& text, const std::string& part) { return text.find(
 
 class GalleryDescriptions : public testing::TestWithParam<std::string> {};
 
-// "Proved" is said where the certificate is, of a bound that its interval of time keeps, and nowhere else.
+// A sentence says "certified" exactly for certified events, with a bound that the certificate's time interval
+// satisfies.
 TEST_P(GalleryDescriptions, ProveNoMoreThanTheCertificate) {
     const Trajectory trajectory = run_of(GetParam());
     const EventDescriptions sentences(trajectory);
@@ -44,7 +45,7 @@ TEST_P(GalleryDescriptions, ProveNoMoreThanTheCertificate) {
     }
 }
 
-// The contacts by name where there are several, and how many impacts a bouncing had.
+// Contacts are named if there are several, and the impacts of a bounce sequence are counted.
 TEST_P(GalleryDescriptions, NameContactsAndCountImpacts) {
     const Trajectory trajectory = run_of(GetParam());
     const Model& model = *trajectory.model;
@@ -62,7 +63,7 @@ TEST_P(GalleryDescriptions, NameContactsAndCountImpacts) {
     }
 }
 
-// What is lost, event by event, is what the run lost; and a pile has what its impacts have.
+// The losses of all events sum to the loss of the run. The loss of a bounce sequence is that of its impacts.
 TEST_P(GalleryDescriptions, LeaveNoEnergyOut) {
     const Trajectory trajectory = run_of(GetParam());
     double all = 0.0;
@@ -112,7 +113,7 @@ TEST(Sentences, SayWhatAPersonWould) {
     EXPECT_TRUE(holds(summary(trajectory), "\n21 impacts before the cuts, ")) << summary(trajectory);
 }
 
-// What is not certified is not said to be; what stands on a convention says so.
+// Uncertified events are not called certified, and sentences mention conventions that decided.
 TEST(Sentences, SayWhatIsNotProved) {
     Trajectory trajectory = run_of("ball_on_sine");
     std::size_t zeno = 0;

@@ -1,4 +1,4 @@
-// JSON, CSV and the summary: a contract that scripts read.
+// JSON, CSV and the summary: formats that scripts depend on.
 #include "output/output.hpp"
 
 #include <gtest/gtest.h>
@@ -106,7 +106,7 @@ TEST_F(Outputs, SharpCertificatesBoundTheRestartedMotion) {
         EXPECT_EQ(c["inequalities"].size(), 5u);
     }
     const std::string text = summary(sharp);
-    // One name for each number, in the sentence, in what decided, and in the keys of JSON.
+    // Each number has one name, in the sentence, in the decisive bound, and in the JSON keys.
     EXPECT_NE(text.find(": uniform position;\n"), std::string::npos) << text;
     EXPECT_NE(text.find(": shadowing position and velocity;\n            tightest of the bounds: uniform position"),
               std::string::npos)
@@ -135,7 +135,7 @@ TEST_F(Outputs, CsvHasTwoRowsAtAnImpactTheSecondWithALargerJ) {
         EXPECT_EQ(std::stoi(after[10]), std::stoi(before[10]) + 1);
         const auto j = static_cast<std::size_t>(std::stoi(after[10]));
         if (j < trajectory.events.size() && trajectory.events[j].kind == Event::Kind::zeno) {
-            // The last impact before a Zeno point: what follows is the restarted motion.
+            // The last impact before a Zeno point: the row holds the state after the restart.
             EXPECT_EQ(std::stod(after[2 + 2]), trajectory.events[j].truncation->v[0]);
             EXPECT_NEAR(std::stod(after[7]), 0.0, 1e-15);
             ++cuts;
@@ -164,7 +164,7 @@ TEST(Sampling, EquidistantInstantsHaveBothEnds) {
 }
 
 TEST_F(Outputs, ChosenInstantsAreTheOnlyRows) {
-    // An impact, a Zeno point, a release: the state after each; in the order in which they were asked for.
+    // An impact, a Zeno point, a release: the state after each, in the requested order.
     std::vector<double> times{20.0, 0.0};
     for (const Event& event : trajectory.events) times.push_back(event.t);
     const std::vector<std::string> lines = split(to_csv(trajectory, {times, false, false}), '\n');
@@ -199,7 +199,7 @@ TEST_F(Outputs, RowsAtChosenInstantsTellTheEventsSinceTheRowBefore) {
     const std::vector<std::string> told{"event", "", "", "impact", "impact+zeno", "release", "impact+zeno", ""};
     for (std::size_t i = 0; i < told.size(); ++i)
         EXPECT_EQ(lines[i].substr(lines[i].rfind(',') + 1), told[i]) << lines[i];
-    // At an event it has happened; without instants the rows themselves are steps and events.
+    // At an event the sample is the state after it. Without requested times the rows are steps and events.
     const auto at = split(to_csv(trajectory, {std::vector{trajectory.events[0].t}, false, false}), '\n');
     EXPECT_EQ(at[1].substr(at[1].rfind(',') + 1), "impact");
     EXPECT_EQ(to_csv(trajectory).find("event"), std::string::npos);
@@ -241,7 +241,7 @@ TEST_F(Outputs, CsvCanBeHeadedForPythonAndWithUnits) {
     EXPECT_EQ(lines[0], "t,phase,x,y,x_rate,y_rate,gap,gap_rate,lambda_,energy,j");
     EXPECT_EQ(lines[1], "s,,m,m,m/s,m/s,m,m/s,N,J,");
     EXPECT_EQ(lines[2].substr(0, 13), "0,hybrid,0,2,");
-    // Names that Python keeps, and one that is taken.
+    // Python keywords, and a name that is in use.
     const auto odd = test::typed(
         "title = \"odd\"\n[[coordinate]]\nname = \"is\"\nstart = 1\n[[coordinate]]\nname = \"is_rate\"\n"
         "[lagrangian]\nkinetic = \"is'^2 + is_rate'^2\"\npotential = \"is\"\n[[constraint]]\ngap = \"is\"\n"
@@ -287,7 +287,7 @@ TEST(Summary, APlasticLandingIsCalledSo) {
     EXPECT_FALSE(is_plastic_landing(test::events_of(bouncing, Event::Kind::zeno)[0]));
 }
 
-// A release of the pendulum is at theta1 = 0, but for rounding: people read 0, scripts what was computed.
+// At a release of the pendulum theta1 = 0 except for rounding. The summary prints 0, JSON prints the computed number.
 TEST(Summary, RoundingNoiseIsZeroForPeople) {
     const auto pendulum = test::load("double_pendulum");
     const Trajectory trajectory = simulate(pendulum, pendulum->default_run());
@@ -311,7 +311,7 @@ TEST(Summary, EnergyThatDriftsByRoundingAloneIsNotExact) {
 }
 
 TEST_F(Outputs, SayThatTheRunStarted) {
-    // Where a run begins the gap may be as small as it ever is.
+    // At the start of a run the gap may have its minimum.
     const auto hills = test::load("ball_on_hills");
     auto run = hills->default_run();
     run.options.end_time = 0.3;
@@ -341,7 +341,8 @@ TEST_F(Outputs, SayByWhichTolerancesAnUndecidedRunWasMadeAgain) {
     EXPECT_NE(summary(trajectory).find("\n  " + told + "\n\n"), std::string::npos) << summary(trajectory);
 }
 
-// Samples from the cut to the Zeno point are in the hybrid phase, as the contract has it, and say what they hold.
+// Samples from the cut to the Zeno point belong to the hybrid phase, as the format requires, and name the held
+// contacts.
 TEST_F(Outputs, SamplesOfTheRestartedMotionAreMarked) {
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno)[0];
     const double between = 0.5 * (zeno.truncation->t + zeno.t);

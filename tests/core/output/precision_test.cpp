@@ -1,4 +1,4 @@
-// Digits that a person reads: none that an error or rounding changes.
+// Printed digits: none that error or rounding may change.
 #include "output/precision.hpp"
 
 #include <gtest/gtest.h>
@@ -60,7 +60,7 @@ TEST(MeaninglessEnd, IsNotWhereTheRunEndsBefore) {
     EXPECT_FALSE(holds(summary(trajectory), "?")) << summary(trajectory);
 }
 
-// At the end of the run of the gallery that is known best and least.
+// At the end of the gallery's most and least accurate run.
 TEST(Summary, PrintsNoDigitBeyondTheEstimate) {
     for (const char* name : {"ball_on_sine", "ball_in_gusts", "double_pendulum"}) {
         const auto model = load(name);
@@ -83,7 +83,7 @@ TEST(Summary, PrintsNoDigitBeyondTheEstimate) {
     }
 }
 
-// Rounding: a gap that is held, an angle that is 0, a coordinate that is small beside the others of its unit.
+// Zero within rounding: a held gap, an angle of 0, a coordinate that is small relative to others of its unit.
 TEST(Precision, KnowsWhatIsZeroToRounding) {
     const auto model = typed(
         "title = \"noise\"\n[[coordinate]]\nname = \"x\"\nstart = 2\nunit = \"m\"\n[[coordinate]]\nname = \"z\"\n"
@@ -102,7 +102,7 @@ TEST(Precision, KnowsWhatIsZeroToRounding) {
     EXPECT_EQ(known_digits(3e-15, errors.q[2], 6), "0");
 }
 
-// A nonlinear expression of what is not known is not known either, and of what is known it is.
+// A nonlinear expression of an unknown coordinate is unknown; an expression of known ones is known.
 TEST(Precision, OfAnExpressionIsThatOfItsCoordinates) {
     const Trajectory trajectory = shaken();
     const ErrorEstimate estimate = estimate_error(trajectory);
@@ -117,7 +117,7 @@ TEST(Precision, OfAnExpressionIsThatOfItsCoordinates) {
     EXPECT_LT(error, 1e-8);
 }
 
-// Where angles are shown in degrees their gap speeds are, too.
+// With angles in degrees, gap speeds are in degrees, too.
 TEST(Sentences, TellGapSpeedsInTheUnitOfTheAngles) {
     const auto model = load("double_pendulum");
     const Trajectory trajectory = simulate(model, model->default_run());

@@ -1,11 +1,11 @@
-// Numbers as a person reads them, with all digits that a quadruple has.
+// Printed numbers read back in quadruple precision.
 #pragma once
 
 #include "core/enclose/truth.hpp"
 
 namespace achilles::test {
 
-// The set of reals that a text stands for: "= 0.1", "= 2.5 +- 1.3e-09", "in [0.059, 0.061]".
+// The set of reals that a text represents: "= 0.1", "= 2.5 +- 1.3e-09", "in [0.059, 0.061]".
 struct PrintedSet {
     Real low, high;
     static PrintedSet of(const std::string& text) {
@@ -22,7 +22,7 @@ struct PrintedSet {
     Real width() const { return high - low; }
 };
 
-// What quadruples round is no fault of what is printed.
+// Rounding error of the quadruples, which is not an error of the text.
 inline Real rounding_of(const PrintedSet& x) {
     return (boost::multiprecision::abs(x.low) + boost::multiprecision::abs(x.high)) * Real(1e-32);
 }

@@ -1,4 +1,4 @@
-// What is told of enclosed events beside those of a run.
+// Enclosed events matched with the events of a run.
 #include "output/proof.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 
 namespace achilles::test {
 
-// Whatever the run cuts earlier than the proof: the same Zeno points, releases and impacts.
+// A run that cuts earlier than the proof has the same Zeno points, releases and impacts.
 TEST(EnclosedEvents, AreThoseOfTheRun) {
     for (const std::string name :
          {"ball_on_sine", "double_pendulum", "ball_on_hills", "impact_oscillator", "double_pendulum_two_stops"}) {
@@ -34,7 +34,7 @@ TEST(EnclosedEvents, AreThoseOfTheRun) {
     }
 }
 
-// After an undecided proof there are none.
+// After the instant where a proof becomes undecided there are none.
 TEST(EnclosedEvents, EndWhereTheProofDoes) {
     const auto model = load("ball_on_sine");
     achilles::EnclosureProblem claim = problem_from_decimals(model->default_run());

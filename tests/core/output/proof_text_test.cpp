@@ -1,4 +1,5 @@
-// What is printed of a proof, read back and held against its JSON: hypotheses lie inside the claim, conclusions hold those of the JSON.
+// The printed form of a proof, read back and compared with its JSON: hypotheses lie inside the proved boxes,
+// conclusions contain those of the JSON.
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
@@ -19,7 +20,7 @@ Interval interval_of(const Json& ends) {
             ends[1].is_null() ? rounding::infinity : ends[1].get<double>()};
 }
 
-// Line by line. What is wrong is a failure of the test that reads.
+// Reads line by line. An unexpected line fails the test.
 class Reader {
  public:
     Reader(const Model& model, const std::string& text, const Json& json)
@@ -60,7 +61,7 @@ class Reader {
         EXPECT_EQ(line_, expected) << text_;
     }
 
-    // Of "  x = 1, y in [0, 1]".
+    // Parses "  x = 1, y in [0, 1]".
     std::vector<PrintedSet> list(const std::vector<std::string>& names) {
         std::vector<PrintedSet> all;
         next_line();
@@ -145,7 +146,7 @@ class Reader {
         EXPECT_EQ(next, events.size()) << text_;
     }
 
-    // "  impacts  7 to 9 more before the cut, by part": from this one on.
+    // Parses "  impacts  7 to 9 more before the cut, by part" from line `next` on.
     std::size_t impacts(std::size_t next) {
         int few = 0, many = 0;
         const bool is_range = std::sscanf(line_.c_str(), "  impacts %d to %d", &few, &many) == 2;
@@ -239,7 +240,7 @@ TEST(ProofText, ClaimsNoMoreThanItsJson) {
     tbb::parallel_for(std::size_t{0}, claims.size(), [&](std::size_t i) {
         const auto model = load(names[i / 2]);
         achilles::Run run = model->default_run();
-        run.options.max_steps = 40;  // a quick proof, to the end or until then
+        run.options.max_steps = 40;  // a short proof, complete or stopped early
         claims[i] = problem_of(model->description(), run, {i % 2 == 0 ? 0.0 : 3e-9, {}});
         claims[i].times = {0.9 * run.options.start_time + 0.1 * run.options.end_time};
         proofs[i] = prove(model, claims[i]);
@@ -256,8 +257,8 @@ TEST(ProofText, ClaimsNoMoreThanItsJson) {
     EXPECT_GT(cuts, 15);
 }
 
-// As typed where it is typed: outward roundings of hypotheses are false theorems. The printed set has members that land as late
-// and as early as the printed time allows.
+// Typed numbers are printed as typed: rounding hypotheses outwards would state a false theorem. Members of the printed
+// set impact as early and as late as the printed time allows.
 TEST(ProofText, PrintsHypothesesAsTyped) {
     const ReadProof radius = read_back("ball_on_floor", 0.9, {0.0, {{"r", 0.059, 0.061}}});
     EXPECT_TRUE(says(radius, "m = 1, r in [0.059, 0.061], g = 9.81, e = 0.7\n")) << radius.text;
@@ -284,7 +285,7 @@ TEST(ProofText, PrintsHypothesesAsTyped) {
     EXPECT_LT(time_of(radius).width(), 4.9e-4);
 }
 
-// Of parts, and of what stays undecided.
+// Proofs in parts, and undecided ones.
 TEST(ProofText, OfPartsClaimsNoMoreThanItsJson) {
     const ReadProof parts = read_back("ball_on_sine", 12.0, {0.0, {{"e", 0.499, 0.501}}}, 16);
     EXPECT_TRUE(says(parts, "  impacts  7 to 8 more before the cut, by part\n")) << parts.text;
@@ -295,7 +296,7 @@ TEST(ProofText, OfPartsClaimsNoMoreThanItsJson) {
     EXPECT_TRUE(undecided.json["end"].is_null());
 }
 
-// At a time that no double is, what is proved is of the double.
+// If the requested time is not a double, the proof is for the rounded one.
 TEST(ProofText, SaysWhichTimesAreRounded) {
     EXPECT_TRUE(says(read_back("ball_on_floor", 0.3, {}), "doubles nearest"));
     const auto model = load("ball_on_floor");

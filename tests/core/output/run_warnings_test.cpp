@@ -1,4 +1,4 @@
-// What a person should know of how a run was made is said, once, and is true.
+// Warnings about how a run was made: each is given once, and is true.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace achilles {
 namespace {
 
-// A drop from 2e-7 m: the first impact is below eps_q = 1e-6 already, and nothing is left of the bouncing.
+// A drop from 2e-7 m: the first impact is below eps_q = 1e-6, so the whole bouncing is cut.
 TEST(RunWarnings, ABoundAsLargeAsTheMotion) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();
@@ -32,7 +32,7 @@ TEST(RunWarnings, ABoundAsLargeAsTheMotion) {
     for (const RunWarning& remark : remarks(better)) EXPECT_NE(remark.label, large[0].label);
 }
 
-// The proofs start from the computed state: an interval says little where that is wrong by more.
+// Certificates start from the computed state. If that has a larger error, their interval means little.
 TEST(RunWarnings, ALooseTolerance) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
@@ -46,11 +46,11 @@ TEST(RunWarnings, ALooseTolerance) {
         return *std::find_if(of.events.rbegin(), of.events.rend(),
                              [](const Event& e) { return e.kind == Event::Kind::zeno; });
     };
-    EXPECT_LT(zeno_of(trajectory).t, zeno_of(loose).certificate->zeno_low);  // indeed
+    EXPECT_LT(zeno_of(trajectory).t, zeno_of(loose).certificate->zeno_low);  // it is indeed outside
     EXPECT_TRUE(remarks(trajectory).empty());
 }
 
-// What a motion still goes along the surface is no bounce that is left out.
+// Sliding along the surface does not count as omitted bounces.
 TEST(RunWarnings, SlidingIsNoBouncing) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();
@@ -61,7 +61,7 @@ TEST(RunWarnings, SlidingIsNoBouncing) {
     for (const RunWarning& remark : remarks(simulate(floor, run))) EXPECT_NE(remark.label, "eps is large here");
 }
 
-// What double precision cannot resolve is cut, whatever was asked for: then what was asked for is not said to hold.
+// Bouncing below the resolution of double precision is cut anyway. Then the tolerances eps are reported as not met.
 TEST(RunWarnings, AnEpsThatIsNotMet) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
@@ -81,7 +81,7 @@ TEST(RunWarnings, AnEpsThatIsNotMet) {
               1);
 }
 
-// A run that ends between a cut and its Zeno point has no event of it yet.
+// A run that ends between a cut and its Zeno point does not have that event yet.
 TEST(RunWarnings, AnEndBeforeTheZenoPoint) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();
@@ -100,7 +100,7 @@ TEST(RunWarnings, AnEndBeforeTheZenoPoint) {
     EXPECT_TRUE(remarks(simulate(floor, run)).empty());
 }
 
-// A run that stops where a contact lets go has no way to a Zeno point: its last phase has no motion yet.
+// A run that stops at a release is not before a Zeno point: its last phase is still empty.
 TEST(RunWarnings, AnEndAtARelease) {
     Trajectory trajectory = simulate(test::load("ball_on_sine"), test::load("ball_on_sine")->default_run());
     std::size_t release = 0, phase = 0;
@@ -117,7 +117,7 @@ TEST(RunWarnings, AnEndAtARelease) {
     for (const RunWarning& remark : remarks(trajectory)) EXPECT_NE(remark.label, "ends before a Zeno point");
 }
 
-// Of a landing without a bounce nothing is left out.
+// A plastic impact omits no bounces.
 TEST(RunWarnings, AnEndAtALanding) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();
@@ -128,7 +128,7 @@ TEST(RunWarnings, AnEndAtALanding) {
     for (const RunWarning& remark : remarks(simulate(floor, run))) EXPECT_NE(remark.label, "ends before a Zeno point");
 }
 
-// So it is where a later impact is cut while what is proved is large beside the motion.
+// The same if a later impact is cut, while the certified bound is large relative to the motion.
 TEST(RunWarnings, ABoundAsLargeAsTheMotionAfterSeveralImpacts) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();

@@ -1,4 +1,4 @@
-// The library as its header tells it: names, the state at a time, a sweep in memory.
+// The library as documented in its header: names, the state at a time, a sweep in memory.
 #include "output/sweep_columns.hpp"
 
 #include <gtest/gtest.h>
@@ -52,7 +52,7 @@ TEST(Library, KnowsTheStateAtATime) {
     }
 }
 
-// Column by column what the CSV says line by line.
+// The columns equal the columns of the CSV.
 void expect_as_csv(const std::string& text, int threads) {
     const auto model = test::load("ball_on_sine");
     const SweepSpec sweep = read_sweep(text, model->description());

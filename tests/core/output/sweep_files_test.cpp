@@ -1,4 +1,4 @@
-// The rows of a sweep as bytes, and the log that they are kept in.
+// The rows of a sweep as bytes, and the log that stores them.
 #include "output/sweep_files.hpp"
 
 #include <fmt/format.h>
@@ -23,7 +23,7 @@ class SweepFiles : public testing::Test {
     }
     ~SweepFiles() override { fs::remove_all(folder_); }
 
-    // Three chunks; the points that a log has.
+    // Writes three chunks.
     void write() {
         SweepLog log(log_, key_, false, 1000);
         log.append({0, 10}, std::string(1000, 'a'));
@@ -53,7 +53,7 @@ TEST_F(SweepFiles, KeepRowsAsBytes) {
     }
 }
 
-// A section of one run: nothing varies.
+// A sweep without axes: a section of one run.
 TEST_F(SweepFiles, MayHaveNoAxis) {
     const auto model = test::load("ball_on_sine");
     const std::string text = "--print x --at impact --end 3";
@@ -80,7 +80,7 @@ TEST_F(SweepFiles, AreReadBackFromTheLog) {
     EXPECT_THROW(SweepLog(log_, key_, true, 1000), InputError) << "while another one has it";
 }
 
-// Wherever its writer was ended, and whatever byte is not as it was.
+// Whatever byte the log is truncated at or corrupted in.
 TEST_F(SweepFiles, LoseWhatDoesNotCheck) {
     write();
     const auto size = fs::file_size(log_);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr auto open = ContactState::open, held = ContactState::held;
 
-// Every mode of four contacts, which stand anywhere among the sixteen.
+// Every mode of four contacts, whose numbers are spread over the sixteen possible ones.
 std::vector<std::pair<Mode, ContactSet>> some_modes() {
     constexpr std::size_t places[] = {0, 3, 7, 15};
     std::vector<std::pair<Mode, ContactSet>> modes;
@@ -53,7 +53,7 @@ TEST(Mode, KnowsTheStateOfEveryContact) {
     }
 }
 
-// The two states that no contact law has yet must survive beside the others: friction will need four.
+// The two states without a contact law yet are stored and read, too. Friction will need four states.
 TEST(Mode, HasRoomForFourStates) {
     for (const auto& [mode, set] : some_modes())
         for (const unsigned other : {2u, 3u}) {
@@ -81,7 +81,8 @@ TEST(Mode, ChangesTheContactsThatAreNamed) {
         }
 }
 
-// As the sets of held contacts are: what is in a map by modes comes in the order that it had by sets.
+// Modes are ordered like their sets of held contacts, so maps keyed by mode keep the order that they had when keyed by
+// set.
 TEST(Mode, IsOrderedAsWhatItHolds) {
     std::map<Mode, ContactSet> modes;
     for (const auto& [mode, set] : some_modes()) modes.emplace(mode, set);

@@ -1,4 +1,4 @@
-// The table of options: every row reads and writes a member of its own, and no member is left out.
+// The table of options: every row reads and writes its own member, and no member is missing.
 #include "run/options.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace achilles {
 namespace {
 
-// An allowed value that is not the default.
+// A valid value that is not the default.
 OptionValue another(const Option& option) {
     const OptionValue usual = option.get({});
     if (const auto* number = std::get_if<double>(&usual)) return *number == 0.0 ? 1.0 : 2.0 * *number;
@@ -64,7 +64,7 @@ TEST(Options, WhatIsNotAllowedIsTold) {
                                                                     "eps_t must be a positive number, but it is inf"}));
 }
 
-// The start may be at any time, the end is after it.
+// The start time is arbitrary; the end time is after it.
 TEST(Options, TimesHaveAnOrder) {
     Options options;
     options.start_time = -20.0;
@@ -80,7 +80,7 @@ TEST(Options, TimesHaveAnOrder) {
     EXPECT_FALSE(is_valid_value(option("tolerance"), -1.0));
 }
 
-// Whatever the times before and after, there is always a run between the two commands.
+// Whatever the times before and after, the start is before the end between the two commands.
 TEST(Options, AreSetInAnOrderInWhichTheEndStaysAfterTheStart) {
     const double times[] = {-7.0, -2.0, 0.0, 3.0, 9.0};
     for (const double start : times)

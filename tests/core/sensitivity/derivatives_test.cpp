@@ -1,4 +1,4 @@
-// Derivatives of whole runs against pinned numbers, and where there are none.
+// Derivatives of whole runs against pinned numbers, and runs without derivatives.
 #include "sensitivity/derivatives.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 using Row = std::vector<double>;
 
-// The system of the gallery's file with a replacement in it.
+// A system of the gallery with a replacement in its file.
 std::shared_ptr<const Model> changed(const std::string& name, const std::string& from, const std::string& to) {
     std::ifstream file(source_file("assets/systems/" + name + ".toml"));
     std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -38,7 +38,7 @@ Run exact(const Model& model, double eps = 1e-9) {
     return run;
 }
 
-// Of the k-th event of a kind, from 1.
+// Derivatives at the k-th event of a kind, counted from 1.
 const achilles::Derivatives::EventSensitivity& at(const achilles::Derivatives& d, const Trajectory& trajectory,
                                                   Event::Kind kind, int k) {
     for (std::size_t i = 0; i < trajectory.events.size(); ++i)
@@ -54,7 +54,7 @@ void expect_row(const Values& found, const Row& expected, double relative, const
             << what << ", direction " << k;
 }
 
-// theory-derivatives.md 11; the fifth is the ball's mass, of which nothing depends.
+// theory-derivatives.md 11. The fifth parameter is the ball's mass, which affects nothing.
 TEST(Derivatives, OfTheBallAreThePinnedOnes) {
     const auto model = waves();
     const Trajectory trajectory = simulate(model, exact(*model));
@@ -104,7 +104,7 @@ TEST(Derivatives, OfThePendulumAreThePinnedOnes) {
     }
 }
 
-// dx(20)/dx of the ball goes as w^3 where the bouncing is cut at w (theory-derivatives.md 4).
+// The error of dx(20)/dx of the ball is of order w^3 if the bouncing is cut at speed w (theory-derivatives.md 4).
 TEST(Derivatives, ErrOfThirdOrderInTheSpeedAtTheCut) {
     const auto model = waves();
     const double truth = -4.947980848111053;
@@ -124,8 +124,8 @@ TEST(Derivatives, ErrOfThirdOrderInTheSpeedAtTheCut) {
     }
 }
 
-// What each event is at a fixed time does not depend on how the change follows it: a start that is moved along the motion, and
-// back in time by as much, is the same run.
+// A start moved along the motion, with the start time moved by as much, gives the same run. So the derivative of every
+// event is zero at fixed time.
 TEST(Derivatives, AlongTheMotionAreATimeShift) {
     const auto model = load("double_pendulum");
     const Trajectory trajectory = simulate(model, exact(*model));
@@ -137,7 +137,7 @@ TEST(Derivatives, AlongTheMotionAreATimeShift) {
     along(10, 0) = 1.0;
     const auto d = differentiate(trajectory, along);
     for (std::size_t i = 0; i < d.events.size(); ++i) {
-        // (X' + c F, t' + c): nothing at fixed time, so that the event happens when it did.
+        // (X' + c F, t' + c): zero at fixed time, so the event does not move.
         EXPECT_NEAR(d.events[i].t[0], 0.0, 1e-10) << i;
         EXPECT_LT(d.events[i].q.norm() + d.events[i].v_after.norm(), 1e-10) << i;
     }
@@ -152,13 +152,13 @@ TEST(Derivatives, OfARunThatStartsInContactAreThoseAlongTheSurface) {
     const Trajectory trajectory = simulate(model, run);
     ASSERT_EQ(trajectory.phases.front().kind, Phase::Kind::constrained);
     const auto d = differentiate(trajectory);
-    for (std::size_t k = 0; k < 4; ++k)  // each coordinate by itself leaves the surface
+    for (std::size_t k = 0; k < 4; ++k)  // a change of one coordinate leaves the surface
         EXPECT_NE(d.refused[k].find(k < 2 ? "changes the gap" : "changes the gap rate"), std::string::npos)
             << d.refused[k];
     EXPECT_EQ(d.refused[5], "");
     EXPECT_TRUE(std::isnan(d.end->q(0, 0)));
     EXPECT_TRUE(std::isfinite(d.end->q(0, 5)));
-    // Along it there are, and tell the run beside this one.
+    // Along the surface the derivatives exist, and predict a neighboring run.
     Eigen::MatrixXd along = Eigen::MatrixXd::Zero(4 + 3 + 1, 1);
     along.col(0).head(4) << 1.0, std::cos(0.8), 0.0, 0.1 * std::sin(0.8);
     const auto tangent = differentiate(trajectory, along);
@@ -188,7 +188,7 @@ TEST(Derivatives, AreRefusedPastTheEuclideanProjection) {
     }
 }
 
-// Two contacts that close at the same time: the order of their landings depends on the direction.
+// Two contacts that close at the same time: the order of their impacts depends on the direction of the change.
 TEST(Derivatives, EndWhereThereAreNone) {
     const auto model = load("box_dropped_flat");
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -198,12 +198,12 @@ TEST(Derivatives, EndWhereThereAreNone) {
     EXPECT_LT(d.events.size(), trajectory.events.size());
 }
 
-// A gap that falls to 0.03 and rises: the margin knows it.
+// A gap that falls to about 0.03 and rises again: the margin reports its minimum.
 TEST(Derivatives, MarginsTellALowPass) {
     const auto model = model_of(PlaneSystem{
         .potential = "0", .gap = "b - 1 + a^2/100", .a = -5.0, .b = 0.9, .a_rate = 1.0, .b_rate = 0.03, .end = 6.0});
     const auto d = differentiate(simulate(model, model->default_run()));
-    // h = 0.9 + 0.03 t - 1 + (t - 5)^2/100, least where t = 3.5
+    // h = 0.9 + 0.03 t - 1 + (t - 5)^2/100, minimal at t = 3.5.
     EXPECT_NEAR(d.margins.gap_minimum.value_or(-1.0), 0.9 + 0.105 - 1.0 + 0.0225, 1e-12);
 }
 

@@ -1,4 +1,4 @@
-// Estimated errors: each term by itself where the truth is known, then whole runs.
+// Estimated errors: each term alone where the true error is known, then whole runs.
 #include <gtest/gtest.h>
 
 #include "core/sensitivity/estimates.hpp"
@@ -8,7 +8,7 @@
 namespace achilles::test {
 namespace {
 
-// A motion of one coordinate under a force, above a floor that it never meets.
+// One coordinate moves under a force, above a floor that it never meets.
 std::shared_ptr<const Model> free_motion(const std::string& force, double rate) {
     return typed(
         fmt::format("title = \"free\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nrate = {}\nforce = \"{}\"\n"
@@ -23,7 +23,7 @@ Trajectory run_of(const std::shared_ptr<const Model>& model, double end, double 
     return simulate(model, run);
 }
 
-// The first of a kind, in both.
+// The first event of a kind in the rough and in the accurate run.
 struct Pair {
     const Event &rough, &truth;
     double estimate;
@@ -38,7 +38,7 @@ Pair first(Event::Kind kind, const Trajectory& rough, const Trajectory& truth, c
     return {rough.events.at(place(rough)), truth.events.at(place(truth)), estimate.events.at(place(rough))};
 }
 
-// One step of x'' = -x from 1: what the polynomial leaves out, with its sign.
+// One step of x'' = -x from x = 1: the estimate is the truncation error of the polynomial, with its sign.
 TEST(EstimatedError, OfOneStepIsWhatItsPolynomialLeavesOut) {
     const auto model = free_motion("-x", 0.0);
     const Trajectory step = run_of(model, 0.7, 1e-6);
@@ -52,7 +52,8 @@ TEST(EstimatedError, OfOneStepIsWhatItsPolynomialLeavesOut) {
     EXPECT_EQ(end.reach(), 1.5 * end.norm + 3.0 * end.sigma);
 }
 
-// x'' = 2 x^3 from x = 1, x' = -1: x = 1/(1 + t). What is wrong with it grows as (1 + t)^3, so the first step's error is the largest.
+// x'' = 2 x^3 from x = 1, x' = -1 has the solution x = 1/(1 + t). Errors grow as (1 + t)^3, so that of the first step
+// dominates.
 State exact_decay(double t) {
     State state{Vector(1), Vector(1), t};
     state.q[0] = 1.0 / (1.0 + t);
@@ -71,7 +72,7 @@ TEST(EstimatedError, IsCarriedThroughSteps) {
     EXPECT_GT(end.norm, 1e-9);
 }
 
-// Rounding alone: that of the first steps is 10^6 times as large at the end.
+// Rounding alone: the rounding errors of the first steps grow by 10^6 until the end.
 TEST(EstimatedError, CarriesTheCovarianceOfRounding) {
     const auto model = free_motion("2*x^3", -1.0);
     const Trajectory steps = run_of(model, 99.0, 1e-15);
@@ -84,9 +85,10 @@ TEST(EstimatedError, CarriesTheCovarianceOfRounding) {
     EXPECT_LT(error, end.reach());
 }
 
-// The same through impacts, a cut and releases. For the ball at t = 20, where dx/dz is 20, sigma is 1.35e-14, and 1.5 norm + 3 sigma
-// covered the true errors of 100 random starts. With crossings that turn the error alone it is 1.0e-14; with the component of the gap in
-// place of that of the state, where rounding does not enter, 4.0e-14.
+// The same through impacts, a cut and releases. For the ball at t = 20, where dx/dz is 20, sigma is 1.35e-14, and 1.5
+// norm + 3 sigma covered the true errors of 100 random starts. If the crossings transformed the error but not the
+// covariance, sigma would be 1.0e-14. With the gap's component in place of the state's, which has no rounding, it would
+// be 4.0e-14.
 TEST(EstimatedError, TurnsTheCovarianceAtEvents) {
     const auto model = load("ball_on_sine");
     const auto end = estimate_error(run_of(model, 20.0, 1e-14, 1e-9)).end.value();
@@ -94,8 +96,8 @@ TEST(EstimatedError, TurnsTheCovarianceAtEvents) {
     EXPECT_LT(end.sigma, 2e-14);
 }
 
-// The ball's flight is a parabola, to the bit: its first impact is wrong by what the root of the gap's series misses alone, and
-// so is all that follows until the next.
+// The ball's flight is a parabola, so its steps are exact to the last bit. The error of the first impact is that of the
+// root of the gap's series, and it determines all errors until the next impact.
 TEST(EstimatedError, OfAnImpactIsByItsResidual) {
     const auto model = load("ball_on_sine");
     const Trajectory rough = run_of(model, 2.0, 1e-5), truth = run_of(model, 2.0, 1e-14);
@@ -108,7 +110,8 @@ TEST(EstimatedError, OfAnImpactIsByItsResidual) {
     EXPECT_LT((estimate.end->v - v).norm(), 0.01 * v.norm());
 }
 
-// A cut, where the integration is exact: the state after it by the shift, the Zeno time by one more bounce.
+// A cut with exact integration. The error after it is the restart's shift; the error of the Zeno time includes one more
+// bounce.
 TEST(EstimatedError, OfACutIsItsShift) {
     for (const char* name : {"ball_on_sine", "double_pendulum"}) {
         const auto model = load(name);
@@ -137,7 +140,7 @@ TEST(EstimatedError, OfAReleaseIsInSeconds) {
     }
 }
 
-// The shift against the signed bounds of proofs, to leading order: in a plane of curved metric and a curved gap.
+// Orders of the shift, for a configuration-dependent metric and a curved gap.
 TEST(ErrorOfCompletion, ShiftIsOfThirdOrder) {
     const auto model = load("ball_on_sine");
     const Trajectory trajectory = run_of(model, 5.0, 1e-14);
@@ -147,12 +150,14 @@ TEST(ErrorOfCompletion, ShiftIsOfThirdOrder) {
     const auto large = of.shift({0, {}, restart, 2e-3}), small = of.shift({0, {}, restart, 1e-3});
     EXPECT_NEAR(large.q.norm() / small.q.norm(), 8.0, 1e-12);
     EXPECT_NEAR(large.v.norm() / small.v.norm(), 8.0, 1e-12);
-    // I = 2 (e w)^3/(3 a^2 (1 - e^3)) of h. The ball's M is constant: D = -n' n, and q shifts by (B - ndot) I alone.
+    // Integral of the gap: I = 2 (e w)^3/(3 a^2 (1 - e^3)). The ball's M is constant, so D = -n' n, and q shifts by (B
+    // - ndot) I only.
     const auto wait = of.wait({0, {}, restart, 1e-3}), shorter = of.wait({0, {}, restart, 5e-4});
     EXPECT_NEAR(wait.error / shorter.error, 8.0, 0.05);
 }
 
-// Whole runs from ten starts: the norm at the end within a factor 2 where rounding does not hide it, and the reach holds.
+// Whole runs from ten starts: the estimated norm at the end is within a factor of 2, unless rounding dominates. The
+// reach covers the true error.
 TEST(EstimatedError, IsRightWithinAFactorOfTwo) {
     struct Setting {
         double tolerance, eps;
@@ -175,7 +180,7 @@ TEST(EstimatedError, IsRightWithinAFactorOfTwo) {
     }
 }
 
-// Forces, time, several gaps: the gallery's own runs.
+// Default runs of the gallery's systems, with forces, time and several gaps.
 TEST(EstimatedError, OfEveryKindOfSystem) {
     for (const char* name : {"ball_in_gusts", "driven_double_pendulum", "double_pendulum_two_stops", "kneed_leg",
                              "travelling_wave", "driven_damped_pendulum"}) {
@@ -191,9 +196,9 @@ TEST(EstimatedError, OfEveryKindOfSystem) {
     }
 }
 
-// One coordinate that passes a narrow force: a pulse or a step in place, time or rate; or that flies over a narrow post, or one of
-// the potential. It starts some widths before the feature, and goes on for long after it: a step over its tail is much longer
-// than the series of the force reaches.
+// One coordinate passes a narrow feature: a pulse or step of the force in position, time or rate, or a narrow post of
+// the gap or the potential. The start is some widths before the feature, and the run continues long after it. A step
+// over the tail is much longer than the radius of convergence of the force's series.
 std::shared_ptr<const Model> narrow_system(std::mt19937& random, int kind) {
     const auto any = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
     const auto feature = [&](const std::string& variable, double from, double rate) {
@@ -229,8 +234,8 @@ std::shared_ptr<const Model> narrow_system(std::mt19937& random, int kind) {
                     rate, force, potential, kind == 5 ? 1 : 0, gap, end));
 }
 
-// The estimate was 1e24 and more where the error is 1e-9: the terms after those that a step keeps are not what it leaves out
-// where they grow.
+// Regression: the estimate was above 1e24 where the error is 1e-9. The terms after the last one of a step do not
+// estimate its truncation error if they grow.
 TEST(EstimatedError, OfNarrowForcesIsThatOfTheRun) {
     std::mt19937 random(36);
     int rated = 0, covered = 0;
@@ -248,7 +253,7 @@ TEST(EstimatedError, OfNarrowForcesIsThatOfTheRun) {
     EXPECT_GE(covered, rated - 1);
 }
 
-// Of pulses in time the run knows where it is to its rounding, so what follows is the pulse's error alone.
+// With a pulse in time, the error before it is rounding only, so the error afterwards is that of the pulse.
 TEST(EstimatedError, OfAPulseIsRightToAPercent) {
     for (const char* variable : {"x - 2", "t - 1"}) {
         const auto model = free_motion(fmt::format("exp(-(({})/0.03)^2)/(0.03*sqrt(pi))", variable), 1.0);
@@ -258,8 +263,8 @@ TEST(EstimatedError, OfAPulseIsRightToAPercent) {
     }
 }
 
-// A start at another time changes nothing before the drive does; its derivative is asked as exactly as the motion's own rate, not
-// as its rounding. It took 464183 parts of one step.
+// The start time has no effect before the drive has, so its derivative needs only the accuracy of the motion's own
+// rate, not of its rounding. Regression: one step took 464183 subintervals.
 TEST(EstimatedError, OfADriveThatHasPassedTakesFewParts) {
     const auto model = free_motion("-x + exp(-((t - 1)/0.02)^2)", 0.0);
     auto run = with(model->default_run(), 1e-9, 1e-6);
@@ -270,7 +275,7 @@ TEST(EstimatedError, OfADriveThatHasPassedTakesFewParts) {
     EXPECT_LT(links, 3 * trajectory.pieces.size());
 }
 
-// A square of cosh overflows where it is far from infinite in its reciprocal: what a step leaves out there has no number.
+// cosh(u)^2 overflows although its reciprocal is harmless: then the truncation error of the step has no value.
 TEST(EstimatedError, SaysWhereAFunctionOverflows) {
     const auto model = free_motion("-49.6/cosh((t - 2.07)/0.0077)^2 - 1.02*exp(-((x - 2)/0.2)^2)", 0.5);
     auto run = with(model->default_run(), 1e-9, 1e-6);
@@ -279,7 +284,7 @@ TEST(EstimatedError, SaysWhereAFunctionOverflows) {
     EXPECT_NE(estimate.none_since.find("cosh(u)^2"), std::string::npos) << estimate.none_since;
 }
 
-// What a drive does is compared with the energy of the whole run, not with what there is before it begins, which is nothing.
+// The drift is relative to the largest energy of the whole run. Before the drive begins the energy is zero.
 TEST(EnergyDrift, IsRelativeToTheLargestEnergyOfTheRun) {
     for (const char* pulse : {"exp(-((t - 1)/0.03)^2)", "exp(-((t - 5)/0.3)^2)"}) {
         const auto model = free_motion(pulse, 0.0);

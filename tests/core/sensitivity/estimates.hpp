@@ -1,4 +1,4 @@
-// Estimated errors beside true ones.
+// Estimated errors and true errors of runs.
 #pragma once
 
 #include <random>
@@ -15,7 +15,7 @@ inline Run with(Run run, double tolerance, double eps) {
     return run;
 }
 
-// Runs that start near the system's own, in the air.
+// Runs that start in flight, near the system's own start.
 inline std::vector<Run> starts_around(const Model& model, int count, unsigned seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> any(-1.0, 1.0);
@@ -37,14 +37,14 @@ inline std::vector<Run> starts_around(const Model& model, int count, unsigned se
     return runs;
 }
 
-// Of the state at the end: what the estimate says, and the difference from a run as exact as double precision allows, which is
-// itself in doubt.
+// Errors of the final state: the estimate, and the difference from a run at the tightest tolerances. `doubt` is the
+// estimated error of the latter.
 struct RatedEstimate {
     bool same = false;  // both runs have the same Zeno points and releases, and an estimate
     double error = 0.0, estimate = 0.0, sigma = 0.0, reach = 0.0, doubt = 0.0;
     bool is_covered() const { return error <= reach + doubt; }
-    // Whether the ratio means something: neither rounding hides the error nor what the exact run does not know, and it is so small
-    // that first order is enough.
+    // Whether the ratio is meaningful: the error dominates rounding and the error of the tight run, and is small enough
+    // for first order.
     bool has_ratio() const { return error > 0.0 && error >= 10.0 * std::max(sigma, doubt) && error <= 1e-5; }
     double ratio() const { return estimate / error; }
 };

@@ -1,4 +1,4 @@
-// The horizon of a run: until then other tolerances lead to the same motion, and after it they do not.
+// The horizon of a run: other tolerances give the same motion before it, and a different motion after it.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -11,13 +11,13 @@ namespace achilles::test {
 namespace {
 
 struct Meaningless {
-    const char* file;  // below the sources
+    const char* file;  // relative to the source folder
     std::vector<std::pair<std::string, double>> values;
     double end;
-    bool is_exact = false;  // flights are parabolas: every tolerance takes the same steps, and another method is asked
+    bool is_exact = false;  // parabolic flights: every tolerance takes the same steps, so another method is compared
 };
 
-// Elastic billiards, driven oscillators, chaos: their ends mean nothing.
+// Elastic billiards, driven oscillators and chaotic systems, whose final states are meaningless.
 const std::vector<Meaningless>& meaningless() {
     static const std::vector<Meaningless> all{{"tests/reference/horizon/shaker.toml", {}, 10.0},
                                               {"tests/reference/horizon/sinai_billiard.toml", {}, 60.0},
@@ -46,7 +46,7 @@ Run run_of(const Model& model, const Meaningless& one) {
     return run;
 }
 
-// The largest difference of a coordinate, as a share of its range, of two runs in a part of their time.
+// Largest difference of a coordinate between two runs in [from, to], relative to its range.
 double difference(const Trajectory& a, const Trajectory& b, const State& range, double from, double to) {
     constexpr int instants = 2000;
     Sampler of_a(a), of_b(b);
@@ -105,8 +105,8 @@ TEST(Horizon, IsNoneWithoutAnEstimate) {
     EXPECT_FALSE(estimate.none_since.empty());
 }
 
-// What rounding adds to q and t grows as the run's own changes do: on the shaken floor its standard deviation at t = 1.71 was
-// 1.8e-4 where what it starts with grows to 1e-10.
+// Rounding errors of q and t grow like the perturbations of the run. Regression: on the shaken floor sigma was 1.8e-4
+// at t = 1.71, where perturbations of rounding size grow to 1e-10.
 TEST(Horizon, RoundingGrowsAsTheErrorDoes) {
     const auto model = model_of(meaningless()[0]);
     auto run = model->default_run();
@@ -116,7 +116,7 @@ TEST(Horizon, RoundingGrowsAsTheErrorDoes) {
     EXPECT_LT(end.sigma, 1e-8);
 }
 
-// ---- the course, by hand ----
+// ---- the error course, from given events ----
 
 Run still(double q, double v) {
     Run run;
@@ -138,9 +138,9 @@ State sizes(double q, double v) { return {Vector::Constant(1, q), Vector::Consta
 TEST(ErrorCourse, FindsTheFirstShareThatIsExceeded) {
     ErrorCourse course;
     course.begin(still(5.0, 0.0));
-    course.add(event_at(1.0, 5.0, 0.0), sizes(0.9e-12, 0.0));  // the least range: 1e-9
+    course.add(event_at(1.0, 5.0, 0.0), sizes(0.9e-12, 0.0));  // smallest allowed range: 1e-9
     EXPECT_FALSE(course.horizon());
-    course.add(event_at(2.0, 7.0, 3.0), sizes(1.9e-3, 2.9e-3));  // the range so far is 2, and 3
+    course.add(event_at(2.0, 7.0, 3.0), sizes(1.9e-3, 2.9e-3));  // the ranges so far are 2 and 3
     EXPECT_FALSE(course.horizon());
     course.add(event_at(3.0, 6.0, 1.0), sizes(1.0e-3, 3.1e-3));
     ASSERT_EQ(course.horizon(), 3.0);
@@ -168,7 +168,7 @@ TEST(ErrorCourse, DoesNotRecover) {
     EXPECT_EQ(course.at(0.0)->q[0], 0.0);
 }
 
-// Inside a step a coordinate comes to its highest: the range is that of the whole flight.
+// A coordinate has its maximum inside a step: the range includes the whole flight.
 TEST(ErrorCourse, KnowsTheRangeInsideSteps) {
     const auto model = typed(
         "title = \"throw\"\n[[coordinate]]\nname = \"y\"\nrate = 10\n[lagrangian]\nkinetic = \"y'^2/2\"\n"

@@ -1,6 +1,6 @@
-// There is machine code wherever the processor can run it, unless it is switched off; it gives the bits of the loops;
-// it is never writable. What compares its bits with the loops' (here, expression_test, series_test, side_by_side_test)
-// would compare the loops with themselves if there were none.
+// Machine code exists on every processor that can run it, unless it is switched off. It gives the same bits as the
+// loops, and its memory is never writable and executable. Without these tests, the bit comparisons (here and in
+// expression_test, series_test, side_by_side_test) could compare the loops with themselves.
 #include <gtest/gtest.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
@@ -33,7 +33,7 @@
 namespace achilles {
 namespace {
 
-// What the processor says itself, not what core makes of it.
+// Read from the processor directly, independently of core.
 std::optional<Width> widest_of_processor() {
 #if ACHILLES_MACHINE_CODE
     __builtin_cpu_init();
@@ -48,7 +48,7 @@ class MachineCodes : public testing::Test {
         EXPECT_EQ(best_width(), widest_of_processor());
         if (!widest_of_processor()) GTEST_SKIP() << "no AVX2, or built without: everything is evaluated by loops";
     }
-    // The vectors that work on runs side by side, of four or of eight.
+    // The vector widths for runs in lanes: four, or four and eight.
     static std::vector<Width> of_lanes() {
         if (widest_of_processor() == Width::eight) return {Width::four, Width::eight};
         return {Width::four};
@@ -65,10 +65,10 @@ std::shared_ptr<const Model> load_without(const std::string& system) {
     return model;
 }
 
-// Register 2 is x + y, 3 is that times y, 4 its sine.
+// Register 2 is x + y, register 3 is that times y, register 4 is its sine.
 constexpr Instruction few[] = {{Operation::add, 0, 1}, {Operation::multiply, 2, 1}, {Operation::sin, 3}};
 
-// ---- where there is code ----
+// ---- where machine code exists ----
 
 TEST_F(MachineCodes, AreMadeOfExpressions) {
     const auto code = machine_code(few, 2);
@@ -80,7 +80,7 @@ TEST_F(MachineCodes, AreMadeOfExpressions) {
     EXPECT_EQ(registers[4], std::sin(9.75));
 }
 
-// A ball over a flat floor has nothing to sum up; these two have.
+// A ball over a flat floor has no sums to vectorize; these two systems have.
 TEST_F(MachineCodes, AreMadeOfTheOrdersOfSeries) {
     for (const auto& [system, key] : test::problems) {
         const auto model = test::load(system);
@@ -107,7 +107,7 @@ TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
     }
 }
 
-// Skipped where the processor has no AVX-512: none of the paths for it was run then, in any test.
+// Skipped on processors without AVX-512. Then no test runs its code paths.
 TEST_F(MachineCodes, TakeAvx512WhereTheProcessorHasIt) {
     if (widest_of_processor() != Width::eight) GTEST_SKIP() << "this processor has no AVX-512: its paths were not run";
 #if defined(__GNUC__) && !defined(__clang__)
@@ -137,14 +137,14 @@ TEST_F(MachineCodes, AreNotMadeWhereTheyAreSwitchedOff) {
     }
 }
 
-// Also run with the variable set: core/without_machine_code.
+// Also run with the variable set, by the test core/without_machine_code.
 TEST(MachineCodeSwitch, IsTheProgramsEnvironment) {
     const char* const given = std::getenv("ACHILLES_MACHINE_CODE");
     const bool off = given != nullptr && std::string_view(given) == "0";
     EXPECT_EQ(best_width(), off ? std::nullopt : widest_of_processor());
 }
 
-// ---- the memory where it stands ----
+// ---- memory protection ----
 
 struct Mapping {
     std::uintptr_t begin = 0, end = 0;
@@ -165,7 +165,7 @@ std::vector<Mapping> mappings() {
     return all;
 }
 
-// Bytes that can be run and come from no file.
+// Number of executable bytes in anonymous memory.
 std::size_t bytes_of_code() {
     std::size_t bytes = 0;
     for (const Mapping& one : mappings())
@@ -203,7 +203,7 @@ std::string run_of(const std::shared_ptr<const Model>& model) { return to_json(s
 TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
     enum Status { as_expected, has_code, other_bits, not_denied };
     const std::string expected = run_of(test::load("ball_on_sine"));
-    const pid_t child = fork();  // what is denied stays so
+    const pid_t child = fork();  // the denial is permanent
     ASSERT_GE(child, 0);
     if (child == 0) {
         if (!test::deny_executable_memory()) _exit(not_denied);
@@ -219,16 +219,16 @@ TEST_F(MachineCodes, AreDoneWithoutWhereNoMemoryCanBeMadeExecutable) {
     EXPECT_EQ(WEXITSTATUS(status), as_expected);
 }
 
-// ---- the same bits as the loops, in all systems; runs side by side: side_by_side_test ----
+// ---- the same bits as the loops for all systems; for runs in lanes see side_by_side_test ----
 
-// The gallery, and what has time in its forces and gaps.
+// The gallery and the systems with explicit time in forces or gaps.
 std::vector<std::string> systems_with_time() {
     std::vector<std::string> names = test::all_systems();
     names.insert(names.end(), std::begin(test::timed_systems), std::end(test::timed_systems));
     return names;
 }
 
-// How many are numbers.
+// Compares bit by bit. Returns how many are finite.
 int expect_bits(const std::vector<double>& a, const std::vector<double>& b, const std::string& what) {
     EXPECT_EQ(a.size(), b.size());
     int numbers = 0;
@@ -241,7 +241,7 @@ int expect_bits(const std::vector<double>& a, const std::vector<double>& b, cons
     return numbers;
 }
 
-// Near the start, or far from it.
+// A random state near the start or far from it.
 std::vector<double> any_state(const Model& model, std::mt19937_64& random) {
     const Run run = model.default_run();
     std::vector<double> state(run.q.begin(), run.q.end());
@@ -288,7 +288,7 @@ TEST_F(MachineCodes, GiveTheValuesOfTheLoops) {
     }
 }
 
-// All orders of a motion from this state at a time of its own, the second order by itself, and order 0.
+// All orders of the motion from this state at a start time of its own; the second order separately; order 0.
 std::vector<double> orders_of(const Model& model, const SeriesProgram& program, const std::vector<double>& state) {
     const std::size_t n = state.size() / 2, events = program.events(), width = 2 * n + events;
     SeriesEvaluator<double> series(program, model.default_run().parameters);
@@ -335,12 +335,12 @@ TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
     }
 }
 
-// A motion with two event functions, the gap and hddot: both are followed, by one run's code and by that of eight.
+// A motion with two event functions, the gap and hddot, by the code of one run and by that of eight.
 TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
     constexpr int last = 12;
     for (const std::string& system : systems_with_time()) {
         const auto model = test::load(system);
-        if (model->contacts() > 1) continue;  // their gaps need other bounds on what cancels
+        if (model->contacts() > 1) continue;  // their gaps need other cancellation bounds
         const Equations& e = model->equations();
         const Program program(joined({e.free.f, {e.gaps[0], e.free.contacts[0].hddot}, e.pivots}),
                               model->layout().slots());
@@ -349,7 +349,7 @@ TEST_F(MachineCodes, GiveTheOrdersOfEveryEventFunction) {
         EXPECT_TRUE(OrderCode::of(LaneAccess::plan_of(series), *widest_of_processor())) << system;
         std::mt19937_64 random(3);
         const std::vector<double> state = any_state(*model, random), parameters = model->default_run().parameters;
-        // Row k: q, v, h and hddot, of order k.
+        // Row k: the coefficients of order k of q, v, h and hddot.
         const auto rows_of = [&](auto evaluator) {
             using Number = std::remove_cvref_t<decltype(evaluator.start(0))>;
             std::vector<Number> rows(width * (last + 2), Number(0.0));

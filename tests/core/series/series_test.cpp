@@ -14,7 +14,7 @@
 namespace achilles {
 namespace {
 
-// x(t) = 0.3 + 0.7 t - 0.2 t^2, y(t) = 1.2 - 0.5 t + 0.1 t^3; the parameter p.
+// x(t) = 0.3 + 0.7 t - 0.2 t^2, y(t) = 1.2 - 0.5 t + 0.1 t^3, and the parameter p.
 constexpr double x_series[] = {0.3, 0.7, -0.2, 0.0}, y_series[] = {1.2, -0.5, 0.0, 0.1};
 constexpr double p = 1.7, t = 0.05;
 
@@ -32,7 +32,7 @@ void expect_series(const std::string& text) {
     Evaluator<double> direct(program);
     direct.input(2) = p;
     direct.fix();
-    for (int round = 0; round < 2; ++round) {  // nothing may be left of the first
+    for (int round = 0; round < 2; ++round) {  // the second round must not depend on the first
         double inputs[2] = {x_series[0], y_series[0]};
         terms.begin(inputs);
         double sum = terms.start(0), power = 1.0;
@@ -97,13 +97,13 @@ TEST(Series, SumTheirTermsToTheFunction) {
         expect_series(text);
 }
 
-// A random plan for any number of lanes: one coordinate moves, with 1 to 3 event functions; every rule takes an inner
-// sum or none.
+// A random plan for a given number of lanes: one coordinate, 1 to 3 event functions. Every rule has an inner sum or
+// none.
 struct RandomSeries {
     explicit RandomSeries(std::uint32_t lanes) : factors(lanes), random(lanes) {
         const auto any = [&](std::size_t below) { return static_cast<std::uint32_t>(random() % below); };
         std::uniform_real_distribution<double> number(-0.5, 0.5);
-        plan.series = 3 + lanes;  // none, the inputs, one a rule
+        plan.series = 3 + lanes;  // none, the inputs, and one per rule
         plan.lanes = lanes;
         plan.weighted = any(lanes + 1);
         for (std::uint32_t i = 0; i < lanes; ++i) {
@@ -125,7 +125,8 @@ struct RandomSeries {
         states[1] = now[1] = states[plan.states()] = 0.7;
         now[2] = states[plan.states() + 1] = -0.4;
     }
-    // Orders k >= 2 from there on, until they are small or the last; the last made.
+    // Makes orders from k >= 2 on, until the coefficients are below the target or the last order is reached. Returns
+    // the last.
     int extend(const OrderCode* code, int k, double target) {
         const SeriesTables tables{factors.data(), now.data(), rows.data()};
         MotionOrders motion;
@@ -151,7 +152,7 @@ struct RandomSeries {
     std::mt19937_64 random;
 };
 
-// The loops and the machine code of this width give the same bits, and they are the sums.
+// The loops and the machine code of this width give the same bits, and these are the convolution sums.
 class SeriesOrders : public testing::TestWithParam<Width> {};
 INSTANTIATE_TEST_SUITE_P(Every, SeriesOrders, testing::Values(Width::four, Width::eight),
                          [](const auto& width) { return width.param == Width::eight ? "AVX512" : "AVX2"; });
@@ -181,10 +182,10 @@ TEST_P(SeriesOrders, AreTheSameByLoopsAndByMachineCode) {
                     EXPECT_NEAR(now[one.plan.series + l], sum, 1e-14 * (1.0 + std::abs(sum)));
                 }
                 if (k == RandomSeries::orders) break;
-                const int made = one.extend(code.get(), k + 1, 0.0);  // nothing is large: one order
+                const int made = one.extend(code.get(), k + 1, 0.0);  // nothing exceeds the target: one order
                 ASSERT_EQ(made, ++k);
             }
-            // Many at once, which begin with the states and the sums that were left.
+            // Many orders at once, starting from the states and sums of the previous calls.
             results.push_back(one.extend(code.get(), 2, 0.3));
             results.insert(results.end(), one.states.begin(), one.states.end());
             if (!width) first = results;
@@ -195,7 +196,7 @@ TEST_P(SeriesOrders, AreTheSameByLoopsAndByMachineCode) {
     if (!has_code) GTEST_SKIP() << "no machine code of this width: the processor does not have it, or it is off";
 }
 
-// x'' = x from (1, 1), where the outputs are inputs: they stay what they are while the next order's are written.
+// x'' = x from (1, 1), where outputs are inputs. They must not change while the next order is written.
 TEST(Series, OutputsAreNeverInputs) {
     Graph graph;
     Scope scope;
@@ -223,7 +224,7 @@ TEST(Series, OutputsAreNeverInputs) {
     }
 }
 
-// A function that is not defined at the start gives no number, at order 0 or at the next.
+// A function undefined at the start gives NaN, at order 0 or at the next.
 TEST(Series, OutsideTheDomainIsNotANumber) {
     Graph graph;
     Scope scope;

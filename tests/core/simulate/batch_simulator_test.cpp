@@ -1,4 +1,5 @@
-// Runs eight at a time: the same bits by any vectors and beside any neighbours, and the ends that each run has alone.
+// Runs eight at a time: the same bits with any vector width and any neighboring runs, and the same results as single
+// runs.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
@@ -17,7 +18,7 @@ namespace {
 class Uniform {
  public:
     explicit Uniform(unsigned seed) : random_(seed) {}
-    // In [-most, most).
+    // Uniform in [-most, most).
     double operator()(double most) { return most * (2.0 * static_cast<double>(random_() >> 11) * 0x1p-53 - 1.0); }
 
  private:
@@ -30,7 +31,7 @@ void append(std::string& bytes, const Double8& x) {
     for (const double lane : x.lane) append(bytes, lane);
 }
 
-// All functions that have no edge, and none that the gallery lacks.
+// A system with every function that has no domain boundary, including those that no gallery system uses.
 std::shared_ptr<const Model> many_functions() {
     return test::typed(R"toml(
 title = "A test"
@@ -58,7 +59,7 @@ end_time = 12.0
 )toml");
 }
 
-// The same with the time wherever it may stand.
+// The same, with time in every position where it may occur.
 std::shared_ptr<const Model> many_functions_of_time() {
     SystemDescription system = many_functions()->description();
     system.coordinates[0].force.text = "cos(2*t)/5 - tanh(x')*exp(-t)/9 + sqrt(2 + sin(t))/9";
@@ -69,7 +70,7 @@ std::shared_ptr<const Model> many_functions_of_time() {
 
 std::vector<std::pair<std::string, std::shared_ptr<const Model>>> models() {
     std::vector<std::pair<std::string, std::shared_ptr<const Model>>> all;
-    for (const std::string& name : test::all_systems())  // of one gap: others are not stepped side by side
+    for (const std::string& name : test::all_systems())  // only runs with one contact are stepped in lanes
         if (const auto model = test::load(name); model->contacts() == 1) all.emplace_back(name, model);
     for (const std::string name : test::timed_systems) all.emplace_back(name, test::load(name));
     all.emplace_back("many functions", many_functions());
@@ -109,7 +110,7 @@ TEST(SineAndCosineOfLanes, KnowWhatIsNoAngleAndDoNotDisturbTheOthers) {
     EXPECT_EQ(sine[5], 1e-300);
 }
 
-// A step from somewhere, of a flight or in contact.
+// A step from a random state, in flight or in contact.
 LaneStep any_step(const Model& model, Uniform& uniform) {
     const Run run = model.default_run();
     LaneStep step(model.lane_programs().coordinates);
@@ -122,7 +123,7 @@ LaneStep any_step(const Model& model, Uniform& uniform) {
         step.known[lane] = lane % 2 == 0 ? 1.0 : 0.0;
         step.h[lane] = lane % 2 == 0 ? 0.0 : std::abs(uniform(0.5));
         step.hdot[lane] = 0.6 + uniform(0.5);
-        step.t[lane] = static_cast<double>(lane) / 3.0;  // of a force, say; the motion takes 5 s from there
+        step.t[lane] = static_cast<double>(lane) / 3.0;  // explicit time; the motion takes 5 s from there
         step.until[lane] = 5.0 + step.t[lane];
     }
     return step;
@@ -186,7 +187,7 @@ Double8 eight(double x) {
     return result;
 }
 
-// Nothing is claimed of a force that its remainder covers, of one that pulls, or of a state that is none.
+// A step claims nothing about a contact force below its remainder, a negative one, or a state that is not finite.
 TEST(LaneSteps, KnowThatAForceStaysOnlyAboveItsRemainder) {
     const auto model = test::drop();
     for (const Vectors vectors : possible_vectors()) {
@@ -210,14 +211,14 @@ TEST(LaneSteps, KnowThatAForceStaysOnlyAboveItsRemainder) {
     }
 }
 
-// A throw to a height, over a floor that it leaves or comes down to: h = 1e-3 + t - t^2/2 is least at its end. What is
-// within the remainder, or within what earlier steps made the gap wrong by, is not plain.
+// A ball thrown from or landing on a floor: h = 1e-3 + t - t^2/2 has its minimum at the end. If the gap is within the
+// remainder, or within the error of earlier steps, the lane defers to the scalar stepper.
 TEST(LaneSteps, TellAnImpactOnlyBeyondTheRemainder) {
     const auto model = test::drop();
     const auto stepper = make_lane_stepper(model->lane_programs(), 1e-10);
     stepper->fix({eight(1.0)});
     LaneStep step(model->lane_programs().coordinates);
-    const double flight = 1.0 + std::sqrt(1.0 + 2.0e-3);  // until it comes down
+    const double flight = 1.0 + std::sqrt(1.0 + 2.0e-3);  // until it lands
     for (std::size_t lane = 0; lane < Double8::count; ++lane) {
         step.q_and_v[0][lane] = step.h[lane] = 1e-3;
         step.q_and_v[1][lane] = step.hdot[lane] = 1.0;
@@ -225,7 +226,7 @@ TEST(LaneSteps, TellAnImpactOnlyBeyondTheRemainder) {
     const double ends[] = {2.5,           flight + 1e-6, flight + 1e-11, flight - 1e-11,
                            flight - 1e-6, 1.0,           flight - 1e-4,  flight - 1e-6};
     std::copy(std::begin(ends), std::end(ends), step.until.lane);
-    step.error[6] = 2e-3;       // more than its height there
+    step.error[6] = 2e-3;       // more than the height there
     step.rate_error[7] = 1e-6;  // moves the gap by as much as its height at the end
     stepper->fly(step);
     using LaneOutcome = LaneStep::LaneOutcome;
@@ -235,11 +236,11 @@ TEST(LaneSteps, TellAnImpactOnlyBeyondTheRemainder) {
     for (std::size_t lane = 0; lane < Double8::count; ++lane)
         EXPECT_EQ(static_cast<int>(step.end[lane]), static_cast<int>(expected[lane])) << lane;
     EXPECT_NEAR(step.t[0], flight, 1e-13);
-    EXPECT_GT(step.error[4], 0.0);  // of what the next step must know
+    EXPECT_GT(step.error[4], 0.0);  // the error that the next step must take into account
     EXPECT_LT(step.error[4], 1e-8);
 }
 
-// The remainder of a low flight is small against its height: 1e-12 above the floor, at a tolerance of 1e-10, is above.
+// The remainder of a low flight is small relative to its height. At tolerance 1e-10, a gap of 1e-12 counts as open.
 TEST(LaneSteps, KnowLowFlightsAgainstTheirHeight) {
     const auto model = test::drop();
     const auto stepper = make_lane_stepper(model->lane_programs(), 1e-10);
@@ -253,7 +254,8 @@ TEST(LaneSteps, KnowLowFlightsAgainstTheirHeight) {
         EXPECT_EQ(static_cast<int>(end), static_cast<int>(LaneStep::LaneOutcome::no_event));
 }
 
-// Where it ends before a brief one's order is used up it is the same flight; else a part of it, as long as that serves.
+// If a flight ends before the order of a brief step is used up, it is the same flight as with full steps. Otherwise the
+// brief step is a part of it, as long as its series is accurate.
 TEST(LaneSteps, OfBriefFlightsLandWhereOthersDo) {
     const auto model = test::load("ball_on_sine");
     const auto stepper = make_lane_stepper(model->lane_programs(), 1e-10);
@@ -275,7 +277,7 @@ TEST(LaneSteps, OfBriefFlightsLandWhereOthersDo) {
     EXPECT_EQ(static_cast<int>(low.end[0]), static_cast<int>(LaneOutcome::impact));
     EXPECT_LT(low.duration[0], low.brief[0]);
     EXPECT_NEAR(low.duration[0], low_by_others.duration[0], 1e-12);
-    EXPECT_NEAR(low.brief[0], low_by_others.brief[0], 1e-9);  // either tells how long it might have been
+    EXPECT_NEAR(low.brief[0], low_by_others.brief[0], 1e-9);  // both report the possible length
     const LaneStep high = flight(1.0, true), high_by_others = flight(1.0, false);
     EXPECT_EQ(static_cast<int>(high.end[0]), static_cast<int>(LaneOutcome::no_event));
     EXPECT_EQ(high.duration[0], high.brief[0]);
@@ -327,7 +329,7 @@ double difference(const State& a, const State& b) {
     return std::max((a.q - b.q).cwiseAbs().maxCoeff(), (a.v - b.v).cwiseAbs().maxCoeff());
 }
 
-// To within what the tolerance makes of a time, a speed, and the place of a cut.
+// Equal within the effect of the tolerance on times, speeds and the place of a cut.
 void expect_same_sequence(const std::vector<EventRecord>& some, const std::vector<EventRecord>& others) {
     ASSERT_EQ(some.size(), others.size());
     for (std::size_t k = 0; k < some.size(); ++k) {
@@ -369,7 +371,7 @@ TEST(RunsSideBySide, EndWhereEachEndsAlone) {
     }
 }
 
-// In steps of their own, not all by the runs' steppers.
+// Most steps are lane steps. They are of lower order than those of single runs, so there are more of them.
 TEST(RunsSideBySide, TakeFewStepsAlone) {
     const auto model = test::load("ball_on_sine");
     const auto runs = near_default(*model, 200, 1.0, 4);
@@ -377,10 +379,10 @@ TEST(RunsSideBySide, TakeFewStepsAlone) {
     for (const RunResult& attempt : together(model, runs))
         together_steps += std::get<Trajectory>(attempt).statistics.steps;
     for (const auto& run : runs) alone_steps += simulate(model, run, nullptr, Recording::final_state).statistics.steps;
-    EXPECT_GT(static_cast<double>(together_steps), 1.1 * static_cast<double>(alone_steps));  // of lower order
+    EXPECT_GT(static_cast<double>(together_steps), 1.1 * static_cast<double>(alone_steps));  // lower order
 }
 
-// A step that lanes refuse, here one in contact to past the release, is made once, by the run's own stepper.
+// A step that lanes refuse is made once, by the scalar stepper. Here it is in contact and reaches past the release.
 TEST(RunsSideBySide, CountNoStepThatIsNotMade) {
     const auto model = test::model_of({.potential = "b*(1 - a)", .a_rate = 1.0, .end = 2.0});
     const auto attempts = together(model, {model->default_run()});
@@ -392,8 +394,8 @@ TEST(RunsSideBySide, CountNoStepThatIsNotMade) {
     EXPECT_EQ(run.statistics.steps, alone.statistics.steps);
 }
 
-// The flight that a release begins is left to the run's own stepper until its gap is known to be open, and no longer: its
-// steps are of lower order then, and more.
+// After a release the scalar stepper integrates the flight only until the gap is known to be open. Lane steps are of
+// lower order, so more of them are needed.
 TEST(RunsSideBySide, FlyOnTogetherPastARelease) {
     const auto model = test::load("double_pendulum");
     auto begun = model->default_run(), long_after = begun;  // of one flight, from t = 5.6 to 9
@@ -406,7 +408,7 @@ TEST(RunsSideBySide, FlyOnTogetherPastARelease) {
     EXPECT_GT(static_cast<double>(steps(1) - steps(0)), 1.2 * static_cast<double>(alone)) << alone;
 }
 
-// Runs that differ in all that they can differ in.
+// Runs that differ in everything that may differ.
 std::vector<Run> mixture(const Model& model) {
     auto runs = near_default(model, 60, 0.5, 5);
     for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -431,7 +433,7 @@ std::vector<Run> mixture(const Model& model) {
 }
 
 TEST(RunsSideBySide, DependOnNoNeighborAndNoThread) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);  // even where there are two cores
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);  // also on two cores
     const auto model = test::load("ball_on_sine");
     const auto runs = mixture(*model);
     std::vector<std::string> alone;
@@ -443,7 +445,7 @@ TEST(RunsSideBySide, DependOnNoNeighborAndNoThread) {
     }
 }
 
-// Runs that differ in the restitution alone follow one another in what the one before has compiled.
+// Runs that differ in restitution alone reuse the compiled programs of the previous run.
 TEST(RunsSideBySide, ForgetTheRestitutionOfTheRunBefore) {
     const auto model = test::load("double_pendulum");
     for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {
@@ -495,7 +497,7 @@ TEST(RunsSideBySide, AreTheSameWithoutMachineCode) {
     }
 }
 
-// Where a function has an edge, every run goes its own way.
+// If a function has a singularity, every run is simulated separately.
 TEST(RunsSideBySide, OfAPartialSystemAreSimulatedOneByOne) {
     const auto model = test::typed(R"toml(
 title = "A test"

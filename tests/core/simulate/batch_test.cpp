@@ -1,4 +1,4 @@
-// Many runs at once give what each gives alone, whatever the number of threads.
+// Runs in a batch give the same results as single runs, for any number of threads.
 #include "simulate/batch.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace achilles {
 namespace {
 
-// Starts that differ much in the work they take, and some that are below the floor.
+// Starts that differ strongly in computational cost; some are below the floor.
 std::vector<Run> balls(const Model& model, int count) {
     std::vector<Run> runs;
     for (int i = 0; i < count; ++i) {
@@ -35,7 +35,7 @@ void put(std::string& bytes, const Vector& x) {
     put(bytes, x.data(), static_cast<std::size_t>(x.size()) * sizeof(double));
 }
 
-// Everything a run computes but the time it took, bit for bit.
+// Everything that a run computes except its wall time, bit for bit.
 std::string content_of(const RunResult& attempt) {
     if (const auto* error = std::get_if<InputError>(&attempt)) return error->what();
     const auto& trajectory = std::get<Trajectory>(attempt);
@@ -59,7 +59,7 @@ std::string content_of(const RunResult& attempt) {
 }
 
 TEST(ManyRuns, GiveTheSameBytesOnOneTwoAndEightThreads) {
-    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);  // even where there are two cores
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 8);  // also on two cores
     const auto model = test::load("ball_on_sine");
     const auto runs = balls(*model, 120);
     std::vector<std::string> alone;
@@ -70,11 +70,11 @@ TEST(ManyRuns, GiveTheSameBytesOnOneTwoAndEightThreads) {
             alone.push_back(error.what());
         }
     }
-    EXPECT_EQ(std::set<std::string>(alone.begin(), alone.end()).size(), runs.size());  // they are worth comparing
+    EXPECT_EQ(std::set<std::string>(alone.begin(), alone.end()).size(), runs.size());  // the comparison is not void
     for (const int threads : {1, 2, 8}) {
         std::mutex mutex;
         std::set<std::thread::id> seen;
-        // A model of its own each time, so that threads also meet while its programs are derived on first use.
+        // A new model each time, so that threads also meet while its programs are derived at first use.
         const auto together = simulate_many(
             test::load("ball_on_sine"), runs,
             [&](std::size_t, const RunResult& attempt) {
@@ -111,7 +111,7 @@ TEST(ManyRuns, KeepNothingThatTakeDoesNotKeep) {
         [&](std::size_t i) {
             auto run = model->default_run();
             run.v[0] = 0.004 * static_cast<double>(i);
-            run.options.end_time = 1.4;  // still in the air
+            run.options.end_time = 1.4;  // still in flight
             return run;
         },
         [&](std::size_t i, RunResult&& attempt) { ends[i] = std::get<Trajectory>(attempt).end.q[0]; });
@@ -120,7 +120,7 @@ TEST(ManyRuns, KeepNothingThatTakeDoesNotKeep) {
         model, 0, [&](std::size_t) { return model->default_run(); }, [](std::size_t, RunResult&&) { FAIL(); });
 }
 
-// Which end a run comes to does not depend on what is kept of it.
+// The end of a run does not depend on what is recorded.
 TEST(ManyRuns, EndTheSameWhenOnlyTheEndIsKept) {
     const auto model = test::load("ball_on_sine");
     const auto runs = balls(*model, 40);

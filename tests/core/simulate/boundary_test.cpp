@@ -1,4 +1,4 @@
-// What runs decide next to where the course of events changes: a sample of what bench_boundary asks at length.
+// Runs close to a boundary where their sequence of events changes: a sample of what bench_boundary tests at length.
 #include <gtest/gtest.h>
 
 #include "boundary/families.hpp"
@@ -7,7 +7,8 @@
 namespace achilles::test {
 namespace {
 
-// A contact force that dips to -0.3 of the tolerance lets go, or nobody can tell; it does not hold.
+// A contact force that dips to -0.3 of the tolerance causes a release, or the run is undecided. The contact is not
+// held.
 TEST(Boundary, NoFalseContactOnACrest) {
     const Crest crest;
     for (const Way way : ways) {
@@ -31,14 +32,15 @@ TEST(Boundary, WhatWasDecidedWronglyOnce) {
     }
 }
 
-// A wrong answer is one that the run's own error explains, 1e-2 to 1e-13 from the boundary.
+// Starts 1e-2 to 1e-13 from the boundary. A wrong answer is allowed only if the boundary is within ten times the run's
+// error.
 TEST(Boundary, NoWrongAnswerFartherThanTenErrors) {
     int asked = 0, right = 0;
     for (const Family family : families) {
         for (const bool in_contact : {false, true}) {
             Boundaries source(family, in_contact, 7 + static_cast<unsigned>(family));
             const std::vector<Question> questions = source.next();
-            for (std::size_t i = 0; i < questions.size(); i += 13) {  // from either side in turns
+            for (std::size_t i = 0; i < questions.size(); i += 13) {  // alternating sides
                 const Question& question = questions[i];
                 Judge34 judge(question);
                 for (const Way way : ways) {
@@ -57,7 +59,7 @@ TEST(Boundary, NoWrongAnswerFartherThanTenErrors) {
     EXPECT_GT(right, asked / 3);
 }
 
-// What the comparison must not let pass: an impact left out, one too many, a release or a Zeno point that is none.
+// The comparison must reject a missing impact, an extra one, and a false release or Zeno point.
 TEST(BoundaryJudge, CatchesALie) {
     const auto model = load("ball_on_sine");
     Question question{model, model->default_run(), false};

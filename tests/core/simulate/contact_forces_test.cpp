@@ -1,4 +1,4 @@
-// The forces that hold contacts and the accelerations of gaps, against differences along runs.
+// Contact forces and gap accelerations, against finite differences along runs.
 #include "simulate/contact_forces.hpp"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 namespace achilles {
 namespace {
 
-// a = -(0, 1) + sum lambda_i g_i' and hddot of every gap, along the ball in the box.
+// Along the ball in the box: a = -(0, 1) + sum lambda_i g_i', and hddot of every gap.
 TEST(ContactForces, AreWhatTheMotionShows) {
     const Trajectory trajectory = test::run_gaps("ball_in_box");
     const Model& model = *trajectory.model;
@@ -45,7 +45,7 @@ TEST(ContactForces, AreWhatTheMotionShows) {
     EXPECT_GE(in_contact, 1);
 }
 
-// The table moves as in vibrating_table, and it is the second contact: its work is the same.
+// The table moves as in vibrating_table but is the second contact. Its work is the same.
 TEST(ContactForces, AnyContactThatMovesDoesWork) {
     const auto alone = test::run_gaps("vibrating_table");
     const auto model = test::typed(R"toml(
@@ -82,7 +82,7 @@ tolerance = 1e-10
     ASSERT_GT(std::abs(alone.work), 0.001);
 }
 
-// A view of a system with several contacts is told its forces; power is the rate of work.
+// With several contacts a view receives the contact forces. Power is the rate of work.
 TEST(ContactForces, AreToldToViews) {
     const Trajectory trajectory = test::run_gaps("bowl_and_post");
     const Model& model = *trajectory.model;

@@ -1,5 +1,6 @@
-// Events that were decided wrongly once, or not at all: releases in a dip of the contact force, low impacts, impacts
-// under the floor, doubts told at the wrong place, and surfaces that a state could not be moved onto.
+// Regression tests of events that were once missed or decided wrongly: releases in a dip of the contact force, low
+// impacts, impacts below the floor, ambiguities reported at the wrong place, and states that could not be moved onto
+// the surface.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,7 +26,7 @@ using test::count;
 
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-9, 1e-10, 1e-13};
 
-// The least contact force is -0.3 of a tolerance of 1e-6, and the end of a step lies in that dip.
+// The smallest contact force is -0.3 of a tolerance of 1e-6, and a step ends within that dip.
 const PlaneSystem crest{.gap = "b - 0.25*cos(a)",
                         .a = -1.1410500000000001,
                         .b = 0.10416005219094915,
@@ -61,7 +62,7 @@ TEST(Decisions, NorEightAtATime) {
     }
 }
 
-// Their hddot nears zero, so that a low bounce lasts long: 7 impacts, and 4, the last of 2.6e-7.
+// hddot approaches zero, so a low bounce lasts long. The two runs have 7 impacts, and 4 with a last speed of 2.6e-7.
 TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
     const PlaneSystem seven{.kinetic = "0.9453125*(a'^2 + b'^2)",
                             .potential = "1.890625*b - 0.296875*a",
@@ -92,8 +93,8 @@ TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
     }
 }
 
-// After a bouncing that was cut, the contact force dips to less than the cut has made wrong (1e-10): the true motion is
-// released for an instant at t = 0.74854, and the one that is drawn would stay until 0.92694.
+// After a cut, the contact force dips to less than the cut's error (1e-10). The true motion is released for an instant
+// at t = 0.74854; the computed one would stay in contact until 0.92694.
 TEST(Decisions, WhatACutMadeWrongDecidesNothing) {
     const auto model =
         model_of({.kinetic = "0.5498046875*a'^2 + 0.482421875*b'^2",
@@ -116,7 +117,8 @@ TEST(Decisions, WhatACutMadeWrongDecidesNothing) {
     }
 }
 
-// The last step ends under the floor, by more than a run at 1e-4 knows of it: in doubt until the run is made again.
+// The last step ends below the floor by more than the error at tolerance 1e-4. The run is redone at a tighter
+// tolerance.
 TEST(Decisions, ARunDoesNotEndUnderTheFloor) {
     const auto model = model_of({.kinetic = "0.604248046875*(a'^2 + b'^2)",
                                  .potential = "1.26025390625*b + 0.4189453125*a",
@@ -148,13 +150,13 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
             const Trajectory trajectory = simulate(model, run);
             EXPECT_GE(count(trajectory, Event::Kind::impact), 3u);
             for (const Event& event : trajectory.events) EXPECT_GE(event.q[1], -1e-15) << to_text(method) << tolerance;
-            // Nor does a step end there, where the integrated gap is wrong by as much as the tolerance allows.
+            // No run ends there, although the integrated gap may be wrong by as much as the tolerance.
             EXPECT_GE(trajectory.statistics.least_gap, -1e-15) << to_text(method) << tolerance;
         }
 }
 
-// A wall so steep that a series at the start, cut where its terms are small, does not see it: one step leads into it,
-// where h(q) < 0 although the series of the gap says 1/2. The impact is where h(q) = 0: a^20 = 1/2.
+// A wall so steep that the Taylor series at the start, truncated where its terms are small, misses it. One step leads
+// into the wall, where h(q) < 0 although the series of the gap gives 1/2. The impact is at h(q) = 0: a^20 = 1/2.
 TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
     for (const double end : {0.9, 0.95, 1.0}) {
         const auto model =
@@ -167,7 +169,7 @@ TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
     }
 }
 
-// So is a post that a series from afar does not see, which is watched (Edge): exp(-400 (a - 1)^2) = 1/2.
+// A series far from a thin post misses it, too. The post is monitored as an Edge: exp(-400 (a - 1)^2) = 1/2.
 TEST(Decisions, NorInsideAThinPost) {
     for (const double steep : {400.0, 200.0})
         for (const double end : {0.97, 0.99, 1.0, 1.02, 3.0}) {
@@ -183,7 +185,7 @@ TEST(Decisions, NorInsideAThinPost) {
         }
 }
 
-// A dip that leaves the remainder at the end of a step, to within rounding, begins where it enters it.
+// A dip that leaves the remainder's range at the end of a step, within rounding, begins where it enters that range.
 TEST(Decisions, ADipUpToTheEndOfAStepIsNotPassedOver) {
     for (const double place : {4.9390187770179645, 4.9390187796429652}) {
         const auto model = model_of({.potential = "0",
@@ -199,7 +201,7 @@ TEST(Decisions, ADipUpToTheEndOfAStepIsNotPassedOver) {
     }
 }
 
-// A dip to 1e-12 at t = 1: told there, or decided where 1e-14 decides it.
+// A dip to 1e-12 at t = 1 is reported as undecided there, or decided at tolerance 1e-14.
 TEST(Decisions, ADoubtIsToldWhereItIs) {
     const auto cut_at_resolution = model_of(
         {.kinetic = "1/2*(a'^2 + b'^2)", .potential = "0", .gap = "b + (a - 1)^2 - 1e-16", .a_rate = 1.0, .end = 2.0});
@@ -216,7 +218,7 @@ TEST(Decisions, ADoubtIsToldWhereItIs) {
     EXPECT_NEAR(decided.events[0].t, 1.0 - 1e-6, 1e-9);
 }
 
-// V = a b on the floor b = 0: the force is a, which starts from zero and rises.
+// V = a b on the floor b = 0: the contact force is a, which starts at zero and grows.
 TEST(Decisions, AForceThatStartsFromZeroAndRisesHolds) {
     const auto model = model_of({.potential = "a*b", .a_rate = 1.0, .end = 2.0});
     for (const Method method : {Method::taylor, Method::dopri5}) {
@@ -254,8 +256,8 @@ TEST(Decisions, TimeNeverRunsBack) {
     }
 }
 
-// A ball that stays where it lands, at t, and the end of the run: t + (end - t) may be the double after the end, or
-// before it. Of the heights and ends here some are rounded up, some down; the run ends at the end.
+// A ball lands at t and stays until the end of the run. In floating point t + (end - t) may be the double after or
+// before the end. The heights and ends here include both cases; the run must end exactly at the end time.
 TEST(Decisions, NorByARounding) {
     const auto model = model_of({.e = "0", .b = 1.0});
     auto run = model->default_run();

@@ -1,5 +1,5 @@
-// Where a motion leaves the domain of its equations, the run ends and says what ceases to be defined, when and in which
-// state; it neither hangs nor goes on.
+// When a motion leaves the domain of its equations, the run ends and reports which expression becomes undefined, when,
+// and in which state. It neither hangs nor continues.
 #include "simulate/domain_monitor.hpp"
 
 #include <gtest/gtest.h>
@@ -17,13 +17,14 @@ namespace {
 struct BoundaryCase {
     std::string name, start, rate, kinetic, potential, gap;
     Outcome::Kind kind;
-    std::string beginning;  // of the message
+    std::string beginning;  // start of the message
     double t;               // the instant, known in closed form
 };
 
 void PrintTo(const BoundaryCase& edge, std::ostream* out) { *out << edge.name; }
 
-// Flat is what stays so on the way to h = 0; a distance bends near its centre, and has a normal where it closes.
+// A gap is degenerate if dh vanishes as h tends to 0. A distance has dh = 0 at its center only, and a normal where it
+// closes.
 TEST(DegenerateGap, IsNotADistanceFarFromWhereItCloses) {
     const auto with_gap = [](const std::string& gap) {
         return test::typed(
@@ -51,7 +52,7 @@ TEST_P(DomainBoundaries, EndTheRunWithAReason) {
     const std::string& message = trajectory.outcome.message;
     EXPECT_EQ(trajectory.outcome.kind, edge.kind) << message;
     EXPECT_EQ(message.substr(0, edge.beginning.size()), edge.beginning) << message;
-    // when, and in which state
+    // The message gives the instant and the state.
     const std::size_t t = message.find(" t = ");
     ASSERT_NE(t, message.npos) << message;
     EXPECT_NEAR(std::stod(message.substr(t + 5)), edge.t, 1e-4 * edge.t) << message;
@@ -70,21 +71,21 @@ const BoundaryCase edges[] = {
      "log(x) in the potential becomes undefined, with x = ", std::sqrt(pi / 2)},
     {"sqrt", "1.0", "-1.0", "x'^2/2", "0*x + 1e-9*sqrt(x)", "x + 1", left,
      "sqrt(x) in the potential becomes undefined, with x = ", 1.0},
-    // no force: x = 1 - t, and the gap is undefined from x = 1/2 on
+    // No force: x = 1 - t. The gap is undefined for x < 1/2.
     {"gap", "1.0", "-1.0", "x'^2/2", "0", "sqrt(x - 1/2) + 1/2", left,
      "sqrt(x - 1/2) in the gap becomes undefined, with x - 1/2 = ", 0.5},
     {"pole_of_the_gap", "1.0", "1.0", "x'^2/2", "0", "1/(2 - x)", left,
      "1/(2 - x) in the gap becomes undefined, with 2 - x = ", 1.0},
-    // x'' = -1/x^2, x = 1/2 (1 + cos(u)), from x' = -1: the cycloid's remainder, t = pi/2 - 1
+    // x'' = -1/x^2 from x' = -1: the cycloid x = 1/2 (1 + cos(u)), t = pi/2 - 1
     {"division", "1.0", "-1.0", "x'^2/2", "-1/x", "x + 1", left,
      "(-1)/x in the potential becomes undefined, with x = ", pi / 2 - 1},
     // x x'^2 is constant: x^(3/2) = 1 - 3/2 t
     {"mass", "1.0", "-1.0", "x*x'^2/2", "0", "x + 1", left,
      "the mass matrix is no longer positive definite: the pivot of 'x' is ", 2.0 / 3},
-    // x = 1 - t^2/2 meets h = x^3 at its flat zero
+    // x = 1 - t^2/2 meets h = x^3 at its degenerate zero.
     {"flat_contact", "1.0", "0.0", "x'^2/2", "x", "x^3", left,
      "dh = 0 at the contact: the normal is not defined, at t = ", std::sqrt(2.0)},
-    // and h = x^2 only touches: no number of digits tells whether there is an impact
+    // h = x^2 only touches zero: no precision decides whether there is an impact.
     {"touching_contact", "1.0", "0.0", "x'^2/2", "x", "x^2", Outcome::Kind::undecided,
      "the gap is within integration error (7e-14) of zero, and dh vanishes where h = 0, so the contact has no normal, "
      "just after t = ",
@@ -94,7 +95,7 @@ const BoundaryCase edges[] = {
 INSTANTIATE_TEST_SUITE_P(Domain, DomainBoundaries, testing::ValuesIn(edges),
                          [](const auto& edge) { return edge.param.name; });
 
-// What would be right is told where the run ends, too.
+// The error at the end of the run includes advice on how to correct the file.
 TEST(Domain, AFlatGapIsToldWithAdvice) {
     const auto model = test::typed(
         "title = \"flat\"\n[[coordinate]]\nname = \"x\"\nstart = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
@@ -103,7 +104,7 @@ TEST(Domain, AFlatGapIsToldWithAdvice) {
     EXPECT_NE(message.find("; write a gap whose dh is not 0 where h = 0"), std::string::npos) << message;
 }
 
-// Where the factors of a gap meet, no normal is left: the advice is a constraint for each.
+// Where two factors of a gap vanish there is no normal. The advice is one constraint for each factor.
 TEST(Domain, AProductOfGapsIsToldWithAdvice) {
     const auto with_gap = [](const std::string& gap) {
         const auto model = test::typed(
@@ -121,7 +122,7 @@ TEST(Domain, AProductOfGapsIsToldWithAdvice) {
     EXPECT_NE(corner.message.find("gap = \"y - x + 1\""), std::string::npos) << corner.message;
 }
 
-// A run away to infinity crosses no edge: it has another outcome.
+// A motion to infinity crosses no domain boundary. It has another outcome.
 TEST(Domain, InfinityIsNoEdge) {
     const auto model = test::typed(
         "title = \"away\"\n[[coordinate]]\nname = \"x\"\nstart = 1.0\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"

@@ -1,5 +1,5 @@
-// What rounding, or the error of the integration, would decide alone is not decided: releases, starts, dips of the gap
-// and of the contact force, and flights that are shorter than the resolution of time.
+// Ambiguity: nothing is decided by rounding or integration error alone. Covers releases, starts, dips of the gap and of
+// the contact force, and flights shorter than the resolution of time.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,9 +25,9 @@ using test::count;
 
 // ---- the surface at rounding level ----
 
-// V = b F(a) on the floor b = 0: the contact force is F, and a' stays what it is. Here F = (p - a)^3 or its square, and
-// a is so large that the neighbouring doubles of p lie 1e-7 from it: h''' = -F' a' is 0 as well as a computed state can
-// tell, and whether the force lets go is not known.
+// V = b F(a) on the floor b = 0: the contact force is F(a), and a' is constant. Here F is (p - a)^3 or its square, and
+// a is so large that the doubles next to p differ from it by 1e-7. To a computed state h''' = -F' a' is 0, so it is
+// unknown whether the contact is released.
 TEST(AmbiguousEvents, AReleaseIsOneOnlyWhereTheForceIsProvedToFall) {
     for (const char* force : {"(1000000001 - a)^3", "(1000000001 - a)^2"}) {
         const Trajectory touch = run_of({.potential = std::string("b*") + force, .a = 1e9, .a_rate = 1.0, .end = 2.0});
@@ -35,26 +35,26 @@ TEST(AmbiguousEvents, AReleaseIsOneOnlyWhereTheForceIsProvedToFall) {
         EXPECT_EQ(count(touch, Event::Kind::release), 0u) << force;
         EXPECT_NEAR(touch.end_time, 1.0, 1e-2) << force;
     }
-    // The same with a force that falls at the rate 1.
+    // The same with a force that decreases at the rate 1.
     const Trajectory release = run_of({.potential = "b*(1000000001 - a)", .a = 1e9, .a_rate = 1.0, .end = 2.0});
     EXPECT_EQ(release.outcome.kind, Outcome::Kind::end_time) << release.outcome.message;
     EXPECT_EQ(count(release, Event::Kind::release), 1u);
 }
 
-// The force sin(a) at the two doubles around pi, where it is 1.2e-16 and -3.2e-16: zero to within the rounding of a, so
-// that its rate decides.
+// The force sin(a) at the two doubles around pi is 1.2e-16 and -3.2e-16: zero within the rounding of a. Its rate
+// decides.
 constexpr double below_pi = 3.141592653589793, above_pi = 3.1415926535897936;
 
 TEST(AmbiguousEvents, ARoundingOfTheStateDoesNotDecideAStart) {
     for (const double a : {below_pi, above_pi}) {
         for (const Method method : {Method::taylor, Method::dopri5}) {
             PlaneSystem plane{.potential = "b*sin(a)", .a = a, .end = 1.0};
-            plane.a_rate = 1.0;  // the force falls: the ball leaves
+            plane.a_rate = 1.0;  // the force decreases: release
             const Trajectory leaves = run_of(plane, 1e-10, method);
             EXPECT_EQ(leaves.outcome.kind, Outcome::Kind::end_time) << leaves.outcome.message;
             ASSERT_EQ(leaves.phases.size(), 1u) << a;
             EXPECT_EQ(leaves.phases[0].kind, Phase::Kind::hybrid) << a;
-            plane.a_rate = -1.0;  // it rises
+            plane.a_rate = -1.0;  // the force increases
             const Trajectory stays = run_of(plane, 1e-10, method);
             EXPECT_EQ(stays.outcome.kind, Outcome::Kind::end_time) << stays.outcome.message;
             ASSERT_EQ(stays.phases.size(), 1u) << a;
@@ -75,10 +75,10 @@ TEST(AmbiguousEvents, ARoundingOfTheStateDoesNotDecideAPlasticImpact) {
     }
 }
 
-// ---- a dip ----
+// ---- dips ----
 
-// The force, or the gap, is 2 (1 - cos(a - p)) + c with a' = 1: it dips to c at t = p. The series of the cosine does
-// not end, so it has a remainder.
+// The contact force, or the gap, is 2 (1 - cos(a - p)) + c with a' = 1: a dip to c at t = p. The Taylor series of the
+// cosine is infinite, so it has a remainder.
 PlaneSystem dip(bool contact, double p, double c, double end) {
     const std::string quantity = fmt::format("(2*(1 - cos(a - {:.17g})) + {:.17g})", p, c);
     PlaneSystem plane{.potential = "0", .gap = "b + " + quantity, .a_rate = 1.0, .end = end};
@@ -89,7 +89,7 @@ PlaneSystem dip(bool contact, double p, double c, double end) {
     return plane;
 }
 
-// 1e-16 is less than any integration knows. Where it is decided nevertheless, the other sign is decided the same way.
+// A dip to +-1e-16 or 0 is below any integration error: the run must be undecided.
 TEST(AmbiguousEvents, ADipWithinTheRemainderIsNotDecided) {
     for (const bool contact : {false, true})
         for (const double c : {1e-16, 0.0, -1e-16})
@@ -101,11 +101,11 @@ TEST(AmbiguousEvents, ADipWithinTheRemainderIsNotDecided) {
             }
 }
 
-// The same where a step ends in the dip, or close beside it: it is the next step's dip then, which starts inside the
-// remainder, and rises. At 1e-14 the remainder is left 1e-7 beside p, so p is moved until the first step ends within
-// 1e-10 of it, and then by up to 3e-7.
+// The same for a step that ends in the dip or close to it. The next step then starts within its remainder and
+// increases. At tolerance 1e-14 the gap leaves the remainder's range 1e-7 from p. So p is moved until the first step
+// ends within 1e-10 of it, and then by up to 3e-7.
 void expect_undecided_where_a_step_ends(bool contact, Method method, double low, double high) {
-    const auto past = [&](double p) {  // how far the first step goes beyond p, where nothing happens at the dip
+    const auto past = [&](double p) {  // how far the first step extends beyond p, if no event occurs
         return run_of(dip(contact, p, 1e-9, p + 3.0), 1e-14, method).pieces.at(0).end - p;
     };
     ASSERT_GT(past(low), 0.0);
@@ -133,8 +133,8 @@ TEST(AmbiguousEvents, ADipThatHoldsTheEndOfAStepIsNotDecidedByTheNextOne) {
     }
 }
 
-// A start 0.1 of the tolerance above zero, 0.9 of it below soon afterwards, then high above: something happens. Whoever
-// takes the rise for the whole story sees nothing.
+// The gap starts 0.1 tolerances above zero, falls to 0.9 tolerances below it, then rises far above. An event occurs,
+// but a test that looks at the rise alone misses it.
 TEST(AmbiguousEvents, ADipThatBeginsInsideTheRemainderIsNotPassedOver) {
     for (const bool contact : {false, true})
         for (const double tolerance : {1e-4, 1e-6, 1e-8}) {
@@ -146,8 +146,8 @@ TEST(AmbiguousEvents, ADipThatBeginsInsideTheRemainderIsNotPassedOver) {
         }
 }
 
-// A run that ends within the remainder of the ground: h = b - sin(a) is 10^-3 of the tolerance below zero at the end,
-// falling, so there is an impact before it; with the other sign there is none.
+// A run that ends with the gap within the remainder. h = b - sin(a) is 1e-3 tolerances below zero at the end and
+// falling, so there is an impact. With the other sign there is none.
 TEST(AmbiguousEvents, AnImpactJustBeforeTheEndIsOne) {
     for (const double tolerance : {1e-6, 1e-8, 1e-10})
         for (const double sign : {1.0, -1.0}) {
@@ -161,10 +161,10 @@ TEST(AmbiguousEvents, AnImpactJustBeforeTheEndIsOne) {
         }
 }
 
-// ---- what steps have made wrong ----
+// ---- errors of earlier steps ----
 
-// A ball bounces once, on the way through waves of V, and passes a post of height B. It touches from B* on, which runs
-// at 1e-14 tell.
+// A ball bounces once, moves through waves of V, and passes a post of height B. From B* on, known from runs at
+// tolerance 1e-14, it touches the post.
 Trajectory past_the_post(double height, double tolerance) {
     return run_of({.potential = "b + 0.3*cos(2*a)",
                    .gap = fmt::format("b - {:.17g}*exp(-40*(a - 2.6)^2)", height),
@@ -175,8 +175,8 @@ Trajectory past_the_post(double height, double tolerance) {
                   tolerance);
 }
 
-// The bounce's state is wrong by more than the distance to the decision, so no exactness after it can decide: only the
-// whole run, made again. Nothing is decided wrongly, and nothing stays undecided that 1e-14 decides.
+// The error after the bounce is larger than the distance to the boundary, so tighter steps after it cannot decide. Only
+// rerunning everything can. No decision is wrong, and none that 1e-14 can make stays open.
 TEST(AmbiguousEvents, WhatEarlierStepsMadeWrongDecidesNothing) {
     double clear = 0.1, touched = 0.7;
     ASSERT_EQ(past_the_post(clear, 1e-14).statistics.impacts, 1);
@@ -198,14 +198,14 @@ TEST(AmbiguousEvents, WhatEarlierStepsMadeWrongDecidesNothing) {
                 ++made_again;
                 EXPECT_EQ(trajectory.rerun_options->tolerance, 1e-14);
             }
-    EXPECT_GT(made_again, 10);  // and it is said
+    EXPECT_GT(made_again, 10);  // the trajectory reports it
 }
 
-// ---- time at its resolution ----
+// ---- the resolution of time ----
 
-// Thrown up at 5e11 where g = 1e6, so that it lands at t = 1e6 and comes to rest at 2e6. Doubles resolve 2.3e-10 s
-// there: a flight of four of that is 1e-13 high, which is more than eps_q = 1e-15 allows to be cut. The height is a
-// coordinate, which rounding does not limit; time does.
+// Thrown up at 5e11 with g = 1e6, the ball lands at t = 1e6 and comes to rest at 2e6. There doubles resolve 2.3e-10 s.
+// A flight of four times that is 1e-13 high, more than eps_q = 1e-15 allows to cut. The height is a coordinate, which
+// rounding does not limit; time is limited.
 TEST(AmbiguousEvents, FlightsShorterThanTheResolutionOfTimeEndTheBouncing) {
     for (const Method method : {Method::taylor, Method::dopri5}) {
         const auto model = test::drop();

@@ -1,4 +1,4 @@
-// The automaton by itself: what it asks for, and what it makes of an answer, whoever gives it.
+// The execution automaton alone: its step requests, and its response to given step results.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +14,7 @@ namespace {
 using StepOutcome = StepResult::StepOutcome;
 using AmbiguityPolicy = ExecutionAutomaton::AmbiguityPolicy;
 
-// A throw from x = 0 upwards at speed 1: it lands at t = 2, with -1. Steps are told, not made.
+// A ball thrown upwards from x = 0 at speed 1 lands at t = 2 with rate -1. Step results are supplied by the tests.
 class Automaton : public testing::Test {
  protected:
     Automaton() {
@@ -24,7 +24,7 @@ class Automaton : public testing::Test {
     ExecutionAutomaton execution(AmbiguityPolicy ambiguity_policy = AmbiguityPolicy::retry_tight) {
         return ExecutionAutomaton(model_, run_, surfaces_, nullptr, Recording::final_state, ambiguity_policy);
     }
-    // The motion at t, as that of one step without an event; `end` and what it needs may be changed.
+    // Result of a step to t without an event, on the exact motion. `end` and its data may be changed.
     StepResult at(double t, StepOutcome end = StepOutcome::no_event) {
         state_.q.resize(1);
         state_.v.resize(1);
@@ -59,7 +59,7 @@ TEST_F(Automaton, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     EXPECT_EQ(request->starts[0].gap.hdot, 1.0);
     EXPECT_TRUE(request->begins && request->plain && !request->exactly);
     EXPECT_EQ(request->most, run_.options.max_steps);
-    EXPECT_EQ(execution.next(), request);  // as long as nothing came
+    EXPECT_EQ(execution.next(), request);  // a request stays until its result comes
     EXPECT_TRUE(request->begins);
     execution.accept(at(0.5));
     request = execution.next();
@@ -72,7 +72,7 @@ TEST_F(Automaton, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
     EXPECT_EQ(request->most, run_.options.max_steps - 1);
 }
 
-// Newton's law; and where the next one is certified to be followed by a Zeno point, contact.
+// Newton's law; then contact, if the truncation at the next impact is certified.
 TEST_F(Automaton, BouncesOrCompletes) {
     auto bouncing = execution();
     ASSERT_NE(bouncing.next(), nullptr);
@@ -119,7 +119,7 @@ TEST_F(Automaton, BouncesOrCompletes) {
     EXPECT_EQ(trajectory.statistics.evaluations, 3);
 }
 
-// On the floor, which does not let go: g = 1.
+// On the floor, without a release: g = 1.
 TEST_F(Automaton, ReleasesOnlyWhereTheForceIsProvedToFall) {
     run_.v << 0.0;
     auto execution = this->execution();
@@ -134,7 +134,7 @@ TEST_F(Automaton, ReleasesOnlyWhereTheForceIsProvedToFall) {
     EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::undecided);
 }
 
-// The whole stretch, from its beginning, once.
+// Repeats the whole segment from its start, once.
 TEST_F(Automaton, AsksExactlyWhereAStepIsInDoubt) {
     auto execution = this->execution();
     for (const double t : {0.5, 1.0}) {
@@ -191,7 +191,8 @@ TEST_F(Automaton, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
     }
 }
 
-// An event that the step before had come to: no step is counted, and time stands; the state is moved to the surface.
+// An event at the end of the previous step: no step is counted, time does not advance, and the state is moved onto the
+// surface.
 TEST_F(Automaton, LandsWithoutAStep) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
@@ -244,7 +245,7 @@ TEST_F(Automaton, CountsStepsAgainstTheirBoundAndEndsAtTheEndTime) {
     EXPECT_EQ(execution.finish().outcome.kind, Outcome::Kind::end_time);
 }
 
-// Steps of the resolution of time: not for lanes, and not for ever.
+// Steps at the resolution of time are refused for lanes, and end the run after a bounded number.
 TEST_F(Automaton, GivesUpWhereTimeStandsStill) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
@@ -266,7 +267,7 @@ TEST_F(Automaton, StartsAgainOnlyForARunOfItsKind) {
         change(other);
         return !execution.restart(other);
     };
-    // Whether it moves alike is for the caller to know, who keeps the surfaces and the stepper.
+    // Whether the motion stays the same is the caller's responsibility: it owns the surfaces and the stepper.
     EXPECT_FALSE(refuses([](achilles::Run& run) { run.parameters[0] = 2.0; }));
     EXPECT_TRUE(refuses([](achilles::Run& run) { run.options.tolerance *= 0.1; }));
     EXPECT_TRUE(refuses([](achilles::Run& run) { run.options.method = Method::dopri5; }));
@@ -277,7 +278,8 @@ TEST_F(Automaton, StartsAgainOnlyForARunOfItsKind) {
 
 // ---- with its stepper ----
 
-// Def. 5: flights and impacts, then contact, up to the next flight. A stretch begins at every event, and only there.
+// Definition 5: flights and impacts, then contact, until the next flight. A segment begins at every event and only
+// there.
 TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
     const auto model = test::load("ball_on_sine");
     const auto run = model->default_run();
@@ -288,7 +290,7 @@ TEST(AutomatonAndStepper, TakeTurnsAsDefinition5Says) {
     bool event = true, released = false;
     while (const StepRequest* request = execution.next()) {
         stretches += request->begins ? 1 : 0;
-        const bool zeno = request->begins && !event;  // the motion in contact goes on past the Zeno point
+        const bool zeno = request->begins && !event;  // the motion in contact continues past the Zeno point
         if (zeno) {
             EXPECT_EQ(request->mode.held(), ContactSet::of(0));
         } else {

@@ -1,4 +1,4 @@
-// What a run can be asked about its events.
+// Explanations of a run's events.
 #include "simulate/explain.hpp"
 
 #include <gtest/gtest.h>
@@ -15,13 +15,13 @@ TEST(Reasons, AnImpactCostsWhatRestitutionSays) {
         const Event& event = trajectory.events[i];
         if (event.kind != Event::Kind::impact) continue;
         const ImpactReason reason = explain_impact(trajectory, i);
-        // (1 - e^2) w^2/(2 W), with W = |grad h|^2/m = 1 + cos^2 x.
+        // Loss (1 - e^2) w^2/(2 W) with W = |grad h|^2/m = 1 + cos^2 x.
         const double w = event.impact_speed, W = 1 + std::pow(std::cos(event.q[0]), 2);
         EXPECT_NEAR(reason.energy_before - reason.energy_after, 0.75 * w * w / (2 * W), 1e-14) << i;
     }
 }
 
-// The paper's ball: at its first impact hddot > 0, so no truncation can be thought of; later ones fail an inequality,
+// The paper's ball. At its first impact hddot > 0, so truncation is impossible. Later impacts violate an inequality,
 // until the one that is cut.
 TEST(Reasons, AnImpactThatIsNotCutFailsSomething) {
     for (const auto conditions : {Conditions::paper, Conditions::sharp}) {
@@ -60,7 +60,7 @@ TEST(Reasons, AReleaseIsWhereTheForceVanishesUpwards) {
             EXPECT_NEAR(reason.lambda, 0.0, 1e-9);
             EXPECT_GT(reason.jerk, 0.0);
             EXPECT_LT(reason.lambda_rate, 0.0);
-            // During the contact the surface pushes, and at the end less and less.
+            // During contact the contact force is positive, and it decreases towards the release.
             ASSERT_GT(reason.force.size(), 10U);
             for (std::size_t k = 0; k + 1 < reason.force.size(); ++k) EXPECT_GT(reason.force[k].second, 0.0);
             const auto& [t, lambda] = reason.force[reason.force.size() - 2];

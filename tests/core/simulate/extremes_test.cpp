@@ -1,4 +1,4 @@
-// Numbers at the edge of what doubles are: very small tolerances, very long times.
+// Extreme numbers: very small tolerances and very long times.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,8 @@ void expect_numbers(const Trajectory& trajectory) {
     EXPECT_EQ(text.find("nan"), text.npos);
 }
 
-// After it came to rest the ball slides on at 1/2 for ever: the motion is known at any time that has a number.
+// After coming to rest vertically, the ball slides on at rate 1/2 forever. The motion is representable at any finite
+// time.
 TEST(LongTimes, AreReachedByWhatGoesStraightOn) {
     const auto model = test::load("ball_on_floor");
     for (const Method method : {Method::taylor, Method::dopri5})

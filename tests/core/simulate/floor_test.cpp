@@ -1,4 +1,4 @@
-// Never under the floor: a sample of what bench_floor does at length, over every system of the gallery.
+// No run gets below the floor: a sample of bench_floor, over every system of the gallery.
 #include "floor/floor.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ TEST_P(Floor, IsNeverPassedFromRandomStarts) {
     const auto faults = simulate_many(model, runs, [](std::size_t, RunResult&& attempt) {
         if (std::holds_alternative<InputError>(attempt)) return std::string();  // not defined there
         const auto& trajectory = std::get<Trajectory>(attempt);
-        // Between the ends of steps dense output is an interpolation, not better than the tolerance allows.
+        // Between the ends of steps, dense output is an interpolation with an error up to 100 tolerances.
         const std::string wrong = fault(trajectory, 100.0 * trajectory.run.options.tolerance);
         return wrong.empty() ? wrong : wrong + start_of(trajectory);
     });
@@ -37,7 +37,7 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
     const auto model = load(GetParam());
     Starts starts(model, 9);
     std::vector<achilles::Run> runs;
-    const int count = model->contacts() == 1 ? 400 : 40;  // several contacts are stepped alone
+    const int count = model->contacts() == 1 ? 400 : 40;  // runs with several contacts are stepped one by one
     for (int i = 0; i < count; ++i) runs.push_back(started(*model, starts.next()));
     std::vector<std::string> faults(runs.size());
     simulate_ends(
@@ -51,8 +51,8 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
     for (const std::string& wrong : faults) EXPECT_EQ(wrong, "");
 }
 
-// Whatever the parameters and the times, too: nothing is lost, nothing passes through, nothing pulls, and every outcome is
-// one of two. The bar of the energy is 1e-10 of the largest of its terms.
+// Random parameters and start times as well. Energy is conserved, no gap becomes negative, no contact force pulls, and
+// every outcome is one of two. The energy may be off by 1e-10 of its largest term.
 TEST_P(Floor, AndAllLawsStandAtRandom) {
     const auto model = load(GetParam());
     for (const Method method : {Method::taylor, Method::dopri5}) {
@@ -77,13 +77,13 @@ TEST_P(Floor, AndAllLawsStandAtRandom) {
 INSTANTIATE_TEST_SUITE_P(Every, Floor, testing::ValuesIn(all_systems()),
                          [](const auto& system) { return system.param; });
 
-// The truth in 34 digits knows one contact.
+// The 34-digit reference supports one contact only.
 class FloorOfOneGap : public testing::TestWithParam<std::string> {};
 
 TEST_P(FloorOfOneGap, IsMetWhenThe34DigitsSay) {
     const auto model = load(GetParam());
     Starts starts(model, 8);
-    for (int i = 0; i < (model->dof() > 2 ? 1 : 2); ++i) {  // the truth about three links takes seconds
+    for (int i = 0; i < (model->dof() > 2 ? 1 : 2); ++i) {  // the reference takes seconds for three links
         auto run = started(*model, starts.next());
         run.options.tolerance = 1e-12;
         run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-9;
@@ -101,7 +101,7 @@ TEST_P(FloorOfOneGap, IsMetWhenThe34DigitsSay) {
 INSTANTIATE_TEST_SUITE_P(Every, FloorOfOneGap, testing::ValuesIn(systems_of_one_gap()),
                          [](const auto& system) { return system.param; });
 
-// What the comparison must not let pass: an impact left out, and one moved by 1e-6.
+// The comparison must reject a missing impact, and one moved by 1e-6.
 TEST(FloorJudge, CatchesALie) {
     const auto model = load("ball_on_sine");
     auto run = model->default_run();
@@ -123,27 +123,27 @@ TEST(FloorJudge, CatchesALie) {
     EXPECT_NE(fault(under, 1e-8), "");
     EXPECT_EQ(fault(trajectory, 1e-8), "");
     under = trajectory;
-    under.coefficients[under.pieces[0].first + 1] -= 5.0;  // y of the first step, below the floor inside it
+    under.coefficients[under.pieces[0].first + 1] -= 5.0;  // y of the first step: below the floor inside the step
     EXPECT_NE(fault(under, 1e-8), "");
 }
 
-// A flight whose least gap is +1e-10, -1e-10 or 1e-13 meets the floor when it should, and not otherwise. The starts
-// were tuned in 34 digits.
+// A flight whose smallest gap is +1e-10, -1e-10 or 1e-13 has an impact exactly if it should. The starts were tuned with
+// 34 digits.
 TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
     int seen = 0;
     for (const std::string& system : systems_of_one_gap()) {
         const auto model = load(system);
         GrazingStarts source(model, 96);
         for (const double least : {1e-10, -1e-10, 1e-13}) {
-            const int count = model->equations().autonomous ? 2 : 1;  // the truth about a drive takes seconds
+            const int count = model->equations().autonomous ? 2 : 1;  // the reference takes seconds for driven systems
             for (int i = 0; i < count; ++i) {
                 const auto found = source.next(least);
                 if (!found) break;
                 const Grazing& grazing = *found;
                 ++seen;
                 for (const double tolerance : {1e-14, model->default_run().options.tolerance}) {
-                    // A dip of 1e-13 at the default is beyond dopri5, which bounds no error: wrong in some systems
-                    // (bench_floor lists them), so not asked here.
+                    // A gap of 1e-13 at the default tolerance is beyond dopri5, which has no error bound. Some systems
+                    // fail (bench_floor lists them), so this case is skipped.
                     if (least == 1e-13 && tolerance > 1e-14) continue;
                     auto run = started(*model, grazing.start);
                     run.options.tolerance = tolerance;
@@ -171,7 +171,7 @@ TEST(Grazing, IsRightAtATightToleranceAndTo1em10AtTheDefault) {
     EXPECT_GT(seen, 20);
 }
 
-// Dips that later steps of a flight once decided as if the earlier ones had made no error, or none in the rate.
+// Dips that later steps of a flight once decided while ignoring the error of the earlier steps, or of their rates.
 TEST(Grazing, WhatEarlierStepsMadeIsNotForgotten) {
     struct KnownDip {
         const char* system;

@@ -1,4 +1,4 @@
-// Runs with forces, moving and several gaps against others in 113-bit arithmetic (tests/reference/gaps.json).
+// Runs with forces, moving gaps and several gaps, against 113-bit references (tests/reference/gaps.json).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -48,7 +48,7 @@ class Gaps : public testing::TestWithParam<Case> {
     Trajectory trajectory_;
 };
 
-// The impacts of the reference are those above a speed of 1e-3.
+// The reference lists impacts faster than 1e-3.
 TEST_P(Gaps, AreAsInTheReference) {
     ASSERT_EQ(trajectory_.outcome.kind, Outcome::Kind::end_time) << trajectory_.outcome.message;
     std::vector<Event> events;
@@ -91,7 +91,7 @@ INSTANTIATE_TEST_SUITE_P(Reference, Gaps,
                                           testing::Values(Method::taylor, Method::dopri5)),
                          name_of);
 
-// A body that slides on a floor at x' = 1 and is lifted by 3/2 - x'^2 there, against gravity 1, until it strikes a wall.
+// A body slides on a floor at about x' = 1 until it hits a wall. The force 3/2 - x'^2 lifts it against gravity 1.
 std::shared_ptr<const Model> lifted(double e, double push) {
     return test::typed(fmt::format(R"toml(
 title = "Lifted where it is slow"
@@ -105,7 +105,7 @@ end_time = 1.5
                                    push, e));
 }
 
-// The force that holds a contact may depend on velocities: an impact that only presses it may leave it without.
+// Contact forces may depend on velocities. An impact that only presses the held contact may remove its contact force.
 TEST(HeldContacts, AnImpactMayTakeTheForceFromWhatIsHeld) {
     const auto floor = ContactSet::of(1), wall = ContactSet::of(0);
     for (const Method method : {Method::taylor, Method::dopri5}) {
@@ -115,18 +115,19 @@ TEST(HeldContacts, AnImpactMayTakeTheForceFromWhatIsHeld) {
         run.options.tolerance = 1e-12;
         const Trajectory trajectory = simulate(model, run);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-        ASSERT_EQ(trajectory.events.size(), 1u);  // the blow, which opens the floor
+        ASSERT_EQ(trajectory.events.size(), 1u);  // the impact, which opens the floor contact
         EXPECT_EQ(trajectory.events[0].contacts, wall);
         EXPECT_EQ(trajectory.events[0].opened, floor);
         EXPECT_TRUE(trajectory.end_mode.held().empty());
-        // x' falls by 1/10 for each metre, from 1 at the wall to -1/2; then y'' = 1/2 - (exp(-t/10)/2)^2.
+        // x' decreases by 1/10 per meter, from 1 at the wall to -1/2; then y'' = 1/2 - (exp(-t/10)/2)^2.
         const double blow = 10.0 * std::log(1.1), t = 1.5 - blow;
         EXPECT_NEAR(trajectory.events[0].t, blow, 1e-12);
         EXPECT_NEAR(trajectory.end.q[1], t * t / 4.0 - 0.25 / 0.04 * (std::exp(-0.2 * t) - 1.0 + 0.2 * t), 1e-12);
     }
 }
 
-// The same where the wall catches it and holds it there: the floor leaves, the wall stays.
+// The same with a wall whose impact is plastic and holds the body: the floor contact is released, the wall contact
+// stays.
 TEST(HeldContacts, APlasticImpactMayTakeTheForceFromWhatIsHeld) {
     const auto model = lifted(0.0, 0.01);
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -139,7 +140,7 @@ TEST(HeldContacts, APlasticImpactMayTakeTheForceFromWhatIsHeld) {
     EXPECT_NEAR(trajectory.end.q[1], t * t / 4.0, 1e-11);
 }
 
-// A blow that is passed on to a held surface that moves does work there, too.
+// An impact transmitted to a held, moving contact does work there, too.
 TEST(HeldContacts, WhatIsPassedOnToASurfaceThatMovesDoesWork) {
     const auto model = test::typed(R"toml(
 title = "Body on a lift, against a wall that leans over"
@@ -154,7 +155,7 @@ end_time = 1.5
     ASSERT_FALSE(trajectory.events.empty());
     const Event& blow = trajectory.events[0];
     EXPECT_EQ(blow.mode.held(), ContactSet::of(1));
-    // W = 1 for the wall while the lift holds the body: p = (1 + e) |hdot|, half of it on the lift.
+    // W = 1 for the wall while the lift holds the body: p = (1 + e) |hdot|, and half of it acts on the lift.
     const double impulse = 1.5 * 1.15, before = 0.3 * blow.t;
     EXPECT_NEAR(blow.work - before, 0.3 * impulse / 2.0, 1e-12);
     EXPECT_NEAR(blow.loss, 0.5 * impulse * 0.5 * 1.15, 1e-12);

@@ -1,5 +1,5 @@
-// Landings that come within the errors of one another: certain where their order does not matter, one landing where it does
-// (theory-gaps.md 2.4).
+// Impacts closer in time than their errors: decided where their order does not matter, one simultaneous impact where it
+// does (theory-gaps.md 2.4).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,7 +11,8 @@ namespace {
 
 constexpr Method methods[] = {Method::taylor, Method::dopri5};
 
-// A ball falls into the corner of a wall and a floor, which it reaches `apart` seconds later or before.
+// A ball falls into the corner of a wall and a floor. It reaches the wall `apart` seconds after the floor; `apart` may
+// be negative.
 std::shared_ptr<const Model> corner(double height, double apart) {
     const double fall = std::sqrt(2.0 * height / 9.81), x = 1.5 * (fall + apart) * (fall + apart);
     return typed(fmt::format(R"toml(
@@ -40,7 +41,7 @@ TEST(SimultaneousImpacts, NeedNoOrderInACorner) {
                     EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
                     EXPECT_LT(trajectory.end.q.norm() + trajectory.end.v.norm(), 1e-12);
                     const double fall = std::sqrt(2.0 * height / 9.81);
-                    for (std::size_t i = 0; i < 4; ++i) {  // each contact as it would land alone
+                    for (std::size_t i = 0; i < 4; ++i) {  // each contact as if it impacted alone
                         const Event& event = trajectory.events[i];
                         if (!event.contacts.has_one()) continue;
                         const double speed = event.contacts.contains(0) ? 3.0 : 9.81;
@@ -51,7 +52,8 @@ TEST(SimultaneousImpacts, NeedNoOrderInACorner) {
                 }
 }
 
-// On the axis of a V of half angle 0.6 from the vertical, turned by phi with its weight: both walls are reached at once.
+// A ball falls on the axis of a V of half angle 0.6, and hits both walls at once. The V and the weight are rotated by
+// phi.
 TEST(SimultaneousImpacts, AreOneOnTheAxisOfATurnedV) {
     for (int i = 0; i < 80; ++i) {
         const double phi = -0.4 + 0.01 * i;

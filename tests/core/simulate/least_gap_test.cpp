@@ -1,4 +1,4 @@
-// The least gap of a run: where it starts, where steps end, and where the gap turns round between.
+// The smallest gap of a run: at its start, at the ends of steps, and at minima between them.
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,8 @@ TEST(LeastGap, IsThatOfTheStartWhereTheRunOnlyRises) {
     EXPECT_EQ(least_gap(trajectory), gap.output(0));
 }
 
-// A loose method may dip below the surface just after a release, from a rate of 0: what is drawn there counts.
+// At a loose tolerance the motion may dip below the surface just after a release at rate 0. The displayed motion
+// counts.
 TEST(LeastGap, IsNoLargerThanAnySample) {
     const auto mass = test::typed(
         "title = \"mass\"\n[[coordinate]]\nname = \"x\"\nstart = 0.5\nforce = \"3*cos(1.3*t) - 0.3*x'\"\n"
@@ -34,13 +35,13 @@ TEST(LeastGap, IsNoLargerThanAnySample) {
     for (const Sample& sample : Sampler(trajectory).all(7)) EXPECT_GE(sample.state.q[0], least - 1e-15) << sample.t;
 }
 
-// Past a valley of depth 1/100 at x = 1, and one that is less deep at x = 3, in one step or in many.
+// Past valleys of the gap: depth 1/100 at x = 1 and a shallower one at x = 3, in one step or in many.
 TEST(LeastGap, IsFoundInsideSteps) {
     const auto valleys = test::typed(
         "title = \"valleys\"\n[[coordinate]]\nname = \"x\"\nrate = 1\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
         "potential = \"0\"\n[[constraint]]\ngap = \"(x - 1)^2*(x - 3)^2 + (x + 1)/200\"\nrestitution = 0.5\n"
         "[run]\nend_time = 4.5\n");
-    // d/dx of the gap is 0 a little before x = 1: from Newton's method there.
+    // Zero of the gap's derivative just before x = 1, computed separately by Newton's method.
     const double x = 0.9993755849629357;
     const double least = (x - 1) * (x - 1) * (x - 3) * (x - 3) + (x + 1) / 200;
     for (const Method method : {Method::taylor, Method::dopri5})

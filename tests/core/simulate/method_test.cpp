@@ -1,4 +1,4 @@
-// The two integrators against each other, and what the Taylor method promises over long runs and near touches.
+// The two integrators against each other, and the accuracy of the Taylor method in long runs and near grazing.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace achilles {
 namespace {
 
-// The model's own run with these values set.
+// The model's default run with these values set.
 Run with(const Model& model, std::initializer_list<const char*> settings) {
     Run run = model.default_run();
     for (const char* setting : settings) assign(run, model.description(), setting);
@@ -24,8 +24,8 @@ double energy_of(const Model& model, const Run& run, const State& state) {
     return program.output(0);
 }
 
-// Two independent integrators that agree. The paper's conditions cut at the same impacts or nearly; with the sharp ones
-// at this eps what is left of a cut is third order in a speed of 1e-4.
+// The two integrators agree. With the paper's conditions they cut at nearly the same impacts. With the sharp ones at
+// this eps the error of a cut is of third order in a speed of 1e-4.
 TEST(Methods, AgreeOnEverySystem) {
     for (const char* asset : {"ball_on_sine", "double_pendulum", "falling_rod"}) {
         SCOPED_TRACE(asset);
@@ -61,7 +61,7 @@ TEST(Methods, AgreeOnEverySystem) {
     }
 }
 
-// 40-digit references: what is left at t = 20 is rounding.
+// Against 40-digit references: the error at t = 20 is rounding.
 TEST(Methods, TaylorReachesTheReferenceTo1e13) {
     for (const test::Problem& problem : test::problems) {
         SCOPED_TRACE(problem.key);
@@ -81,7 +81,7 @@ TEST(Methods, TaylorReachesTheReferenceTo1e13) {
     }
 }
 
-// A ball that slides to and fro in a valley: its surface, its rate and its energy are kept.
+// A ball slides to and fro in a valley: the gap, its rate and the energy are conserved.
 TEST(LongRuns, AThousandSecondsInContact) {
     const auto model = test::load("ball_on_sine");
     auto run = with(*model, {"x=-1", "y=-0.8414709848078965", "x'=0.2", "y'=0.10806046117362795"});
@@ -121,9 +121,9 @@ TEST(LongRuns, AThousandElasticImpacts) {
     }
 }
 
-// A ball in flight over a crest at pi/2, tuned so that it passes at height `clearance`. With x = pi/2 + u t and
-// y = 1 + clearance - t^2/2 about the crest, h = clearance + (1 - cos(u t)) - t^2/2 has its least value `clearance` at
-// t = 0 for u > 1. The start lies a second before.
+// A ball flies over a crest at pi/2 and clears it by `clearance`. With x = pi/2 + u t and y = 1 + clearance - t^2/2
+// about the crest, h = clearance + (1 - cos(u t)) - t^2/2. Its minimum for u > 1 is `clearance` at t = 0. The start is
+// one second earlier.
 Trajectory graze(double clearance, double tolerance, Method method) {
     const auto model = test::load("ball_on_sine");
     constexpr double u = 1.25, ahead = 1.0;
@@ -168,8 +168,8 @@ TEST(Grazing, IsRightOrUndecidedAtAnyTolerance) {
     }
 }
 
-// x'' = -4 x^3 from x = 0: of the series' terms only every fourth is not nothing, and the first ones that are nothing
-// must not be taken for its end.
+// x'' = -4 x^3 from x = 0: only every fourth term of the series is nonzero. The first zeros must not be taken for the
+// end of the series.
 TEST(Methods, SymmetryDoesNotHideTerms) {
     const auto model = test::typed(
         "title = \"spring\"\n[[coordinate]]\nname = \"x\"\nstart = 0\nrate = 1\n"
@@ -185,7 +185,7 @@ TEST(Methods, SymmetryDoesNotHideTerms) {
     EXPECT_NEAR(end.v[0], other.v[0], 1e-10);
 }
 
-// A contact force that is constant, and so small that its remainder covers it, is not known to stay: hddot = -g.
+// A constant contact force smaller than its remainder is not known to stay positive: hddot = -g.
 TEST(Methods, AForceWithinItsRemainderIsNotKnownToStay) {
     const auto model = test::drop();
     auto run = model->default_run();

@@ -1,4 +1,4 @@
-// Two contacts that chatter together come to rest (theory-gaps.md 2.6 and 3).
+// Two chattering contacts come to rest (theory-gaps.md 2.6 and 3).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -20,8 +20,8 @@ std::shared_ptr<const Model> system_of(const std::string& coordinates, const std
         parse_system("title = \"two contacts\"\n" + coordinates + "[lagrangian]\n" + lagrangian + gaps));
 }
 
-// A rod of length 1 and mass 1 with this moment of inertia over a floor: W12/W11 = (J - 1/4)/(J + 1/4), g = 1.
-// The floor may rise with a constant rate, and the rod with it.
+// A rod of length 1, mass 1 and this moment of inertia above a floor: W12/W11 = (J - 1/4)/(J + 1/4), g = 1. The floor
+// may rise at a constant rate, and the rod with it.
 std::shared_ptr<const Model> rod(const std::string& inertia, const std::string& e_left = "0.5",
                                  const std::string& rise = "0") {
     return system_of(
@@ -49,9 +49,9 @@ Trajectory run_to(const std::shared_ptr<const Model>& model, double end, double 
 
 const ContactSet both = ContactSet::of(0).with(1);
 
-// Dropped flat it falls sqrt(2) s and bounces for 2 sqrt(2) s more; what is certified encloses that.
+// Dropped flat, the rod falls for sqrt(2) s and bounces for another 2 sqrt(2) s. The certificate encloses that time.
 TEST(Pairs, ARodDroppedFlatComesToRest) {
-    for (const char* inertia : {"(1/12)", "0.5"}) {  // acute, obtuse
+    for (const char* inertia : {"(1/12)", "0.5"}) {  // acute, obtuse contact pair (sign of W12)
         const Trajectory trajectory = run_to(rod(inertia), 10.0);
         ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         EXPECT_EQ(trajectory.end_mode.held(), both);
@@ -63,11 +63,11 @@ TEST(Pairs, ARodDroppedFlatComesToRest) {
         EXPECT_LE(rests[0].certificate->zeno_low, 3.0 * std::sqrt(2.0));
         EXPECT_GE(rests[0].certificate->zeno_high, 3.0 * std::sqrt(2.0));
         EXPECT_LE(rests[0].certificate->zeno_high - rests[0].certificate->zeno_low, 2e-6);
-        EXPECT_NEAR(trajectory.loss, 1.0, 1e-12);  // all it had
+        EXPECT_NEAR(trajectory.loss, 1.0, 1e-12);  // the whole initial energy
     }
 }
 
-// Tilted, too. An obtuse pair comes to rest through Zeno points of one contact that the other one undoes.
+// Tilted rods too. With an obtuse pair, Zeno points of single contacts are undone by the other one until both rest.
 TEST(Pairs, TiltedRodsAndBallsInWedgesComeToRest) {
     for (const double tilt : {0.05, 0.2, -0.3})
         for (const char* inertia : {"(1/12)", "0.1", "0.3", "0.5"}) {
@@ -86,8 +86,8 @@ TEST(Pairs, TiltedRodsAndBallsInWedgesComeToRest) {
     EXPECT_GT(test::events_of(wide, Event::Kind::zeno).size(), 10u);
 }
 
-// With constant a and W the bound scales with r0, and no chatter lasts longer: both bounce together for
-// 2 e w/(a (1 - e)).
+// With constant a and W the bound is proportional to r0, and no chatter lasts longer. Both contacts bouncing together
+// take 2 e w/(a (1 - e)).
 TEST(Pairs, TheBoundHoldsForThoseThatBounceTogether) {
     for (const double c : {-0.8, -0.3, 0.0, 0.25, 0.8})
         for (const double e : {0.1, 0.5, 0.8}) {
@@ -104,7 +104,7 @@ TEST(Pairs, TheBoundHoldsForThoseThatBounceTogether) {
             pair.r0 = Interval(2.0) * pair.r0;
             EXPECT_NEAR(pair_bound(pair)->T.hi() / bound->T.hi(), 2.0, 1e-12);
             EXPECT_NEAR(pair_bound(pair)->J.hi() / bound->J.hi(), 8.0, 1e-12);
-            // What is not constant makes it longer, up to where nothing is proved.
+            // With varying a and W the bound is larger, until nothing is proved.
             pair.Delta = Interval(1e-6);
             pair.omega = Interval(1e-6);
             const auto rough = pair_bound(pair);
@@ -115,8 +115,8 @@ TEST(Pairs, TheBoundHoldsForThoseThatBounceTogether) {
         }
 }
 
-// An impact of both takes the part (1 - e)/(1 + e) of p' W p/2, e the larger restitution, and p' W p >= ((1 + e_i) hdot_i)^2/W_ii:
-// what the bound for unequal restitutions stands on.
+// A simultaneous impact takes at least the part (1 - e)/(1 + e) of p' W p/2, where e is the larger restitution. Also p'
+// W p >= ((1 + e_i) hdot_i)^2/W_ii. The bound for unequal restitutions is based on these two.
 TEST(Pairs, AnImpactOfBothTakesItsPart) {
     std::mt19937 random(5);
     const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -137,7 +137,7 @@ TEST(Pairs, AnImpactOfBothTakesItsPart) {
             least = std::min(least, impact->loss / bound);
         }
     }
-    EXPECT_LT(least, 1.01);  // it is met
+    EXPECT_LT(least, 1.01);  // the bound is attained
 }
 
 TEST(Pairs, UnequalRestitutionsComeToRestToo) {
@@ -150,7 +150,7 @@ TEST(Pairs, UnequalRestitutionsComeToRestToo) {
             ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << inertia << " " << trajectory.outcome.message;
             EXPECT_EQ(trajectory.end_mode.held(), both) << inertia << " " << tilt;
             EXPECT_NEAR(trajectory.loss, 1.0, 1e-9);
-            // A start that is cut sooner encloses where it rests.
+            // With an earlier cut, the certificate encloses the time of rest.
             run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-4;
             const Trajectory early = simulate(rod(inertia, "0.3"), run);
             const auto certificate = test::events_of(early, Event::Kind::zeno).back().certificate;
@@ -160,8 +160,8 @@ TEST(Pairs, UnequalRestitutionsComeToRestToo) {
         }
 }
 
-// A pair restarts from another place and from another velocity: what both do to the energy is booked, and what a floor that
-// rises does is its work.
+// A pair restarts from another position and velocity: the energy balance includes the change by both, and the work of a
+// rising floor.
 TEST(Pairs, TheirRestBalancesTheEnergy) {
     for (const char* rise : {"0", "0.7"})
         for (const char* inertia : {"(1/12)", "0.5"})
@@ -180,7 +180,8 @@ TEST(Pairs, TheirRestBalancesTheEnergy) {
             }
 }
 
-// Three equal balls pass a blow to and fro in no time where e < 7 - 4 sqrt 3, without any force: that is told.
+// Three equal balls exchange infinitely many impacts in zero time if e < 7 - 4 sqrt 3, without any force. This is
+// reported as chatter.
 TEST(Pairs, WhatCollapsesWithoutAForceIsToldAsChatter) {
     for (const double e : {0.001, 0.01, 0.05}) {
         const auto model = system_of(
@@ -205,7 +206,7 @@ TEST(Pairs, TheBoundIsThatOfTheTheory) {
     const PairReference all[] = {{{1.0, 1.0}, {1.0, 0.5, 1.0}, {0.5, 0.5}, 78.044111382075},
                                  {{1.0, 1.3}, {1.0, -0.6, 2.0}, {0.5, 0.5}, 46.927026349887},
                                  {{1.0, 1.3}, {1.0, 0.4, 2.0}, {0.3, 0.6}, 88.202842317443},
-                                 // nothing draws the second back while the first is open
+                                 // no force closes the second gap while the first one is open
                                  {{1.0, 0.0}, {1.0, -1.0, 1.5}, {0.5, 0.4}, 151.816179201},
                                  {{1.5, -0.02}, {2.0, -0.5, 1.0}, {0.3, 0.6}, 166.003114177}};
     for (const auto& [a, W, e, T] : all) {
@@ -221,7 +222,7 @@ TEST(Pairs, TheBoundIsThatOfTheTheory) {
     }
 }
 
-// A block falls on a block: free, both fall as fast, and hddot of the upper contact is 0.
+// One block falls on another. In flight both fall equally, so hddot of the upper contact is 0.
 std::shared_ptr<const Model> two_blocks(const std::string& lower, const std::string& upper, int height = 0) {
     return system_of("[[coordinate]]\nname = \"y1\"\nstart = 0.3\n[[coordinate]]\nname = \"y2\"\nstart = " +
                          std::to_string(height + 1) +
@@ -251,7 +252,8 @@ TEST(Pairs, ABlockOnABlockComesToRest) {
     }
 }
 
-// Where the gap is known to 1e-13 alone, roundings keep the blocks bouncing for ever: that is seen.
+// The gap is known only to 1e-13, so rounding would keep the blocks bouncing forever. The sequence is cut at the
+// resolution.
 TEST(Pairs, RoundingsDoNotKeepBlocksBouncing) {
     const auto model = two_blocks("0.5", "0.4", 1000);
     const Trajectory trajectory = simulate(model, model->default_run());

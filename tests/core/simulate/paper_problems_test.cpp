@@ -11,7 +11,7 @@ using test::Problem;
 
 struct Bars {
     double tolerance, eps;
-    double events, second_ball_zeno_state, end;  // allowed absolute errors
+    double events, second_ball_zeno_state, end;  // tolerances, absolute errors
 };
 
 void expect_near(const Vector& q, const Vector& v, const nlohmann::json& state, double bar, const std::string& what) {
@@ -87,16 +87,16 @@ TEST(PaperProblems, TinyEpsEndsBelowRoundingAndNeverLoops) {
         EXPECT_EQ(tiny.outcome.kind, Outcome::Kind::end_time) << tiny.outcome.message;
         for (const Event& event : test::events_of(tiny, Event::Kind::zeno)) {
             EXPECT_TRUE(event.certificate->certified);
-            if (problem.key == "double_pendulum") continue;  // its gap is a coordinate, exact near 0: 1e-14 can be met
+            if (problem.key == "double_pendulum") continue;  // its gap is a coordinate, exact near 0
             EXPECT_TRUE(event.certificate->cut_at_resolution);
-            EXPECT_GT(event.certificate->velocity_bound, 1e-14);  // the bound it has, not the one that was asked for
+            EXPECT_GT(event.certificate->velocity_bound, 1e-14);  // the actual bound, not the requested one
             EXPECT_LT(event.certificate->velocity_bound, 1e-5);
         }
     }
 }
 
-// Bounds that nothing meets, where the gap is a difference of large numbers: what puts proofs off does not keep the
-// bouncing from ending where it must.
+// Tolerances below what is possible, where the gap is a difference of large numbers. Postponed proofs must not keep the
+// bouncing from ending at the resolution.
 TEST(PaperProblems, BoundsThatNothingMeetsEndBelowRounding) {
     const auto model = test::typed(
         "title = \"high up\"\n[[coordinate]]\nname = \"x\"\nrate = 1.5\n[[coordinate]]\nname = \"y\"\nstart = 1002\n"
@@ -126,7 +126,7 @@ TEST(PaperProblems, SharpConditionsCutEarlierAndAreRight) {
         ASSERT_EQ(zenos.size(), expected["zeno_times"].size());
         for (std::size_t i = 0; i < zenos.size(); ++i) {
             const Certificate& c = *zenos[i].certificate;
-            // Later Zeno times carry the small errors of earlier truncations, which a certificate does not cover.
+            // Later Zeno times contain the small errors of earlier truncations, which a certificate does not include.
             const double allowed = i == 0 ? 1e-11 : 1e-8;
             EXPECT_GE(test::number(expected["zeno_times"][i]), c.zeno_low - allowed);
             EXPECT_LE(test::number(expected["zeno_times"][i]), c.zeno_high + allowed);
@@ -137,7 +137,7 @@ TEST(PaperProblems, SharpConditionsCutEarlierAndAreRight) {
         run.options.truncation.conditions = Conditions::paper;
         const Trajectory paper = simulate(model, run);
         EXPECT_LE(sharp.statistics.impacts, paper.statistics.impacts - 11 * static_cast<long>(zenos.size()));
-        // Third order: far from the Zeno point, and still right at the end.
+        // Third order: accurate at the end although the cut is far from the Zeno point.
         expect_near(sharp.end.q, sharp.end.v, expected["end_state"], 5e-9, "end");
         run.options.truncation = {1e-15, 1e-15, 1e-15, Conditions::sharp, Reinitialization::kinetic};
         const Trajectory tiny = simulate(model, run);

@@ -1,4 +1,4 @@
-// Contacts of which fewer would do: all that rest are told as held, and who carries may change without an event
+// Redundant contacts: all contacts at rest are reported as held, and the load-bearing ones may change without an event
 // (theory-gaps.md 2.5).
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 namespace achilles {
 namespace {
 
-// A plate of mass 1, or a beam where it has no tilt v, that slides on supports at (x, y) under a load at (u, v) of its own;
-// "s" moves on at rate 1.
+// A plate of mass 1, or a beam if it has no tilt v, on supports at (x, y) under a load at (u, v) on the plate. The
+// coordinate "s" moves at rate 1.
 struct Plate {
     std::vector<std::pair<double, double>> supports;
     std::string load, x, y;
@@ -57,7 +57,7 @@ Trajectory simulated(const std::shared_ptr<const Model>& model, Method method = 
     return trajectory;
 }
 
-// One phase, of all contacts, whatever the load does.
+// Expects a single phase that holds all contacts, for this motion of the load.
 void expect_rest(const Plate& plate) {
     SCOPED_TRACE(plate.load + " at " + plate.x + ", " + plate.y);
     for (const Method method : {Method::taylor, Method::dopri5}) {
@@ -77,17 +77,18 @@ TEST(RedundantContacts, WhoCarriesMayChangeWithoutAnEvent) {
     expect_rest({beam, "1", "s/4 - 0.6", "0"});
 }
 
-// Its force touches 0 and grows again: the load comes up to a diagonal, or to the middle, where that of any three does.
+// Contact forces touch 0 and grow again: the load reaches a diagonal, or the middle, where any three supports would
+// suffice.
 TEST(RedundantContacts, AForceThatOthersShareMayTouchZero) {
     expect_rest({four_legs, "2", "0.3 + 0.2*cos(t)^2", "0.3"});
     expect_rest({four_legs, "2", "0.3*cos(t)^2", "0"});
     expect_rest({four_legs, "4*cos(t)^2", "0.4", "0.1"});
     expect_rest({beam, "4*cos(t)^2", "0.3", "0"});
-    // It comes to rest over a leg in the middle, which the others could spare.
+    // The load stops over a leg in the middle, which is redundant.
     expect_rest({{{0, 0}, {1, -1}, {-1, 0}, {0, 1}}, "2", "0.3*cos(t)^2", "0.2*cos(t)^2"});
 }
 
-// Where all forces vanish nobody is left to share, and what comes then cannot be told.
+// When all contact forces vanish at once there is no load to share, and the continuation is undecided.
 TEST(RedundantContacts, WhereEveryForceTouchesZeroNothingIsDecided) {
     const auto model = Plate{four_legs, "4*cos(t)^2", "0.4", "0.1", 0.0}.model();
     const Trajectory trajectory = simulate(model, model->default_run());
@@ -95,7 +96,8 @@ TEST(RedundantContacts, WhereEveryForceTouchesZeroNothingIsDecided) {
     EXPECT_NEAR(trajectory.end_time, std::acos(0.0), 1e-4);
 }
 
-// The load moves over the last support: that alone keeps its contact, from where the load and the weight are balanced on it.
+// The load moves past the last support. That contact alone stays closed, from the instant where load and weight balance
+// on it.
 TEST(RedundantContacts, OnlyThoseAreReleasedThatOpen) {
     for (const Method method : {Method::taylor, Method::dopri5}) {
         const Trajectory trajectory = simulated(Plate{beam, "2", "s", "0"}.model(), method);
@@ -110,7 +112,7 @@ TEST(RedundantContacts, OnlyThoseAreReleasedThatOpen) {
     }
 }
 
-// The forces that are shown: the load's share of each leg, of least norm, also where three legs would do.
+// The reported contact forces are of least norm, also where three legs would suffice.
 TEST(RedundantContacts, ForcesAreOfLeastNorm) {
     const Trajectory trajectory = simulated(Plate{four_legs, "1", "s/4 - 1/2", "0.2"}.model());
     ContactForces forces(*trajectory.model, trajectory.run.parameters);
@@ -134,7 +136,7 @@ TEST(RedundantContacts, IsTold) {
         << summary(trajectory);
 }
 
-// A gap given twice is that gap: of a table that moves, which throws the ball and catches it.
+// A gap given twice behaves as one gap. The moving table throws the ball and catches it.
 TEST(RedundantContacts, AGapThatIsGivenTwiceIsThrownAndCaught) {
     const auto ball = [](const std::string& second) {
         return test::typed(fmt::format(R"toml(
@@ -160,7 +162,8 @@ end_time = 10
     }
 }
 
-// Random supports and loads, some of which tip it over: laws, another method, and contacts in the other order.
+// Random supports and loads, some of which tip the plate. Checks the laws, the other method, and another order of
+// contacts.
 TEST(RedundantContacts, AnyPlateObeysTheLaws) {
     std::mt19937 random(5);
     const auto number = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
@@ -171,7 +174,7 @@ TEST(RedundantContacts, AnyPlateObeysTheLaws) {
         const int count = 3 + trial % 4;
         for (int i = 0; i < count; ++i)
             plate.supports.emplace_back(std::round(100 * number(-1, 1)) / 100, std::round(100 * number(-1, 1)) / 100);
-        // About the middle of the supports.
+        // relative to the center of the supports
         for (auto& [x, y] : plate.supports) {
             if (trial % 3 == 0) y = 0.0;
             x = x > 0 ? x + 0.5 : x - 0.5;
@@ -184,7 +187,7 @@ TEST(RedundantContacts, AnyPlateObeysTheLaws) {
         auto run = model->default_run();
         run.options.end_time = 2.0;
         const Trajectory trajectory = simulate(model, run);
-        if (trajectory.outcome.kind != Outcome::Kind::end_time) {  // what tips may chatter
+        if (trajectory.outcome.kind != Outcome::Kind::end_time) {  // a tipping plate may chatter
             EXPECT_FALSE(trajectory.events.empty()) << trajectory.outcome.message;
             continue;
         }
@@ -201,7 +204,7 @@ TEST(RedundantContacts, AnyPlateObeysTheLaws) {
     EXPECT_GE(released, 2);
 }
 
-// A list of contacts in a message names at least one: with gaps scaled by 1e8 'wall' touches while none is held.
+// A list of contacts in a message must not be empty. With gaps scaled by 1e8, 'wall' touches while nothing is held.
 TEST(RedundantContacts, NamesNoEmptySet) {
     const auto model = test::typed(R"toml(
 title = "ball between a moving floor, a wall and a disc"

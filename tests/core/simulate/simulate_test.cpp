@@ -1,4 +1,4 @@
-// The starts and ends a run may have, what its energy does, and what watches it.
+// Possible starts and ends of runs, energy, and monitoring from another thread.
 #include "simulate/simulate.hpp"
 
 #include <fmt/format.h>
@@ -73,7 +73,7 @@ TEST(Restitution, ZeroIsCapturedAtTheFirstImpactWithNegativeNormalAcceleration) 
         }
     }
     ASSERT_GE(trajectory.events.size(), 3u);
-    EXPECT_EQ(trajectory.events[1].kind, Event::Kind::impact);  // hddot > 0 at the first
+    EXPECT_EQ(trajectory.events[1].kind, Event::Kind::impact);  // hddot > 0 at the first impact
     EXPECT_EQ(trajectory.events[2].kind, Event::Kind::zeno);
 }
 
@@ -150,7 +150,8 @@ TEST(Starts, AboveTheFloorEndsAtTheClosedFormZenoTime) {
     EXPECT_EQ(trajectory.end_phase, Phase::Kind::constrained);
 }
 
-// Where hddot is constant the sharp bounds are equalities, and the Zeno time is exact; only what is seen decides.
+// With constant hddot the sharp bounds are attained and the Zeno time is exact. Only the uniform bound determines the
+// cut.
 TEST(Starts, AboveAFlatFloorTheCertificateIsTheClosedForm) {
     const Trajectory trajectory = on_floor("start = 0.5\nrate = 0.0", Conditions::sharp);
     const Event zeno = test::events_of(trajectory, Event::Kind::zeno).at(0);
@@ -219,7 +220,7 @@ TEST(Simulate, AMotionTooFastForItsEndTimeEnds) {
     EXPECT_THROW(simulate(model, run), InputError);
 }
 
-// What a run keeps is bounded, and in the end it keeps what it says.
+// A run ends when the data that it stores reach the memory limit. What was stored until then is kept.
 TEST(Simulate, ARunEndsWhereItsMemoryDoes) {
     const auto model = test::load("ball_in_bowl");
     auto run = model->default_run();
@@ -241,7 +242,7 @@ TEST(Simulate, ARunEndsWhereItsMemoryDoes) {
     }
 }
 
-// A run that would take hours: with restitution 1 every impact is followed by another.
+// A run that would take hours: with restitution 1 every impact is followed by another one.
 Run endless(const Model& model) {
     Run run = model.default_run();
     run.parameters[2] = 1.0;
@@ -266,7 +267,7 @@ TEST(MonitoredRun, ARunEndsWhereAnotherThreadStopsIt) {
     EXPECT_GE(stopped.statistics.impacts, 20);
     EXPECT_EQ(watch.impacts.load(), stopped.statistics.impacts);
     EXPECT_EQ(watch.time.load(), stopped.end_time);
-    // What there is of it is the beginning of the whole run.
+    // The stopped trajectory is the beginning of the whole one.
     auto shorter = run;
     shorter.options.max_impacts = static_cast<int>(stopped.statistics.impacts);
     const Trajectory whole = simulate(model, shorter);

@@ -1,5 +1,5 @@
-// Starts and landings that a person types and no drawing of lots would give: symmetric, redundant, just touching.
-// They go on, and say what was decided (theory-gaps.md 2.4, 2.5).
+// Symmetric, redundant and just-touching starts and impacts, which users type but random tests never produce. Such runs
+// continue and report how the ambiguity was resolved (theory-gaps.md 2.4, 2.5).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -67,7 +67,7 @@ TEST(SymmetricRuns, ARodDroppedFlatStopsWhereThatIsAsked) {
         EXPECT_NE(trajectory.outcome.message.find(part), std::string::npos) << trajectory.outcome.message;
 }
 
-// Slightly tilted it is one order or the other: what the alternatives tell, in the limit.
+// A slightly tilted rod has a definite impact order. In the limit it follows one of the reported alternatives.
 TEST(SymmetricRuns, ARodDroppedNearlyFlatDoesWhatAnAlternativeTells) {
     const auto model = flat_rod(0.5);
     for (const bool left_first : {true, false}) {
@@ -116,7 +116,7 @@ end_time = {}
     }
 }
 
-// A table of mass 1 on those of four legs at (+-1, +-1), under a load at (x, y) on its top.
+// A table of mass 1 on a subset of four legs at (+-1, +-1), under a load at (x, y) on its top.
 std::shared_ptr<const Model> table(const std::string& load, const std::string& x, const std::string& y,
                                    const std::vector<int>& legs = {0, 1, 2, 3}) {
     const char* const signs[] = {"- u - v", "+ u - v", "- u + v", "+ u + v"};
@@ -136,7 +136,7 @@ end_time = 4
                                    load, x, y, constraints));
 }
 
-// Three legs carry a load beside the diagonals, two one on a diagonal, and it may change and move.
+// Three legs carry a load off the diagonals, two carry one on a diagonal. The load may change and move.
 TEST(SymmetricRuns, ATableWithOneLegTooManyStandsUnderAnyLoad) {
     struct Load {
         const char *load, *x, *y;
@@ -159,7 +159,7 @@ TEST(SymmetricRuns, ATableWithOneLegTooManyStandsUnderAnyLoad) {
     }
 }
 
-// The same of the gallery's, where nothing is left that could move: its forces have no rates to decide by.
+// The same for the gallery's table, which has no free coordinate. Its contact forces have no rates to decide by.
 TEST(SymmetricRuns, TheTableOfTheGalleryStandsUnderALoadOnItsMiddle) {
     const auto model = test::load("table_on_legs");
     auto run = model->default_run();
@@ -172,12 +172,13 @@ TEST(SymmetricRuns, TheTableOfTheGalleryStandsUnderALoadOnItsMiddle) {
     EXPECT_NEAR(trajectory.end.q.norm() + trajectory.end.v.norm(), 0.0, 1e-12);
 }
 
-// A load that moves over the edge tips it about two legs: the other two leave at once, and it goes on as if it had those two.
+// A load that moves past the edge tips the table about two legs. The other two are released at once, and the motion is
+// that of a table with two legs.
 TEST(SymmetricRuns, ATableTipsOverItsEdge) {
     const auto four = table("2", "s", "0.1"), two = table("2", "s", "0.1", {1, 3});
     const Trajectory trajectory = simulate(four, four->default_run());
     ASSERT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    // 2 s = 3 there: the load and the weight are balanced on the edge.
+    // Here 2 s = 3: the load and the weight balance on the edge.
     const Event& tips = trajectory.events.back();
     EXPECT_NEAR(tips.t, 1.5, 1e-9);
     EXPECT_EQ(tips.contacts, ContactSet::of(0).with(2));
@@ -214,7 +215,7 @@ TEST(SymmetricRuns, ATouchingCradleGoesOn) {
     const double together[] = {-1.0 / 3, 2.0 / 3, 2.0 / 3};
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(trajectory.end.v[i], together[i], 1e-12);
     EXPECT_NEAR(trajectory.end.q[2] - trajectory.end.q[1], 1.0, 1e-12);
-    EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(1));  // closed, though nothing presses it
+    EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(1));  // closed, although nothing presses it
 
     const auto apart = cradle(1.0, 1e-3);
     const Trajectory one_by_one = simulate(apart, apart->default_run());

@@ -1,4 +1,4 @@
-// What is drawn of a very long run keeps what happens in it.
+// Thinning a very long trajectory for display keeps its events.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 namespace achilles {
 namespace {
 
-// Two thousand seconds of which the first twelve have all events: a straight line from start to end would be drawn there.
+// In a run of two thousand seconds all events are in the first twelve. Uniform thinning would show a straight line
+// there.
 TEST(ThinnedTrajectory, StepsAroundEventsStay) {
     const auto ball = test::load("ball_on_sine");
     auto run = ball->default_run();
@@ -35,7 +36,7 @@ TEST(ThinnedTrajectory, ARunWithoutStepsHasItsEvents) {
     EXPECT_EQ(Sampler(trajectory).some(500, 0).size(), Sampler(trajectory).all().size());
 }
 
-// Where everything is full of events the bound holds all the same.
+// The limit also holds if there are events everywhere.
 TEST(ThinnedTrajectory, ManyImpactsAreThinnedToo) {
     const auto floor = test::load("ball_on_floor");
     auto run = floor->default_run();

@@ -1,5 +1,4 @@
-// Moreau's time stepping, as Siconos has it, against the executions with events: another discretisation of the same
-// impact law.
+// Moreau's time stepping, as in Siconos, against event-driven executions: another discretization of one impact law.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +9,7 @@
 namespace achilles {
 namespace {
 
-// Steps of fixed length: positions to the middle, the impulses of a whole step there, forces and impacts alike, and on.
+// Time stepping with a fixed step h. Forces and impacts act at the midpoint, as impulses of the whole step:
 //     q_m = q + h/2 v,   v+ = v + h f(q_m, v, t_m) + M^-1 G' p,   q+ = q_m + h/2 v+
 //     0 <= p perpendicular hdot+ + e hdot- >= 0 of the contacts whose gap is closed at q_m
 class TimeStepping {
@@ -54,7 +53,7 @@ class TimeStepping {
         state_.t += step_;
     }
 
-    // v, which forces have changed already, by the impulses.
+    // Adds the contact impulses to v, which includes the forces already.
     void collide(ContactSet closed, const State& middle) {
         std::vector<Vector> g, impulse;  // g_i, M^-1 g_i'
         std::vector<double> b;           // hdot + e hdot- without impulses
@@ -94,7 +93,7 @@ class TimeStepping {
     std::vector<double> restitutions_;
 };
 
-// It errs in the first order of its step, by about what ten times the step makes of it, and that much it may differ.
+// The error is of first order in h. It must be less than half of the difference between the results with h and 10 h.
 TEST(TimeStepping, EndsWhereTheExecutionDoes) {
     for (const std::string name : {"ball_in_box", "pendulum_two_stops", "bowl_and_post"}) {
         SCOPED_TRACE(name);
@@ -106,7 +105,7 @@ TEST(TimeStepping, EndsWhereTheExecutionDoes) {
         const auto apart = [](const State& a, const State& b) { return (a.q - b.q).norm() + (a.v - b.v).norm(); };
         EXPECT_LT(apart(fine, execution.end), 0.5 * apart(fine, rough));
         EXPECT_LT(apart(fine, execution.end), 1e-4);
-        EXPECT_GT(apart(fine, execution.end), 1e-9);  // or it would be no other method
+        EXPECT_GT(apart(fine, execution.end), 1e-9);  // the method is a different one
     }
 }
 

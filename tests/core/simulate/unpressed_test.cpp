@@ -1,5 +1,5 @@
-// Plastic contacts that nothing presses stay closed, others complete beside them, and a force that appears later presses or lifts
-// them at its instant (theory-gaps.md 2.7).
+// Plastic contacts without contact force stay closed, and other contacts complete beside them. A force that appears
+// later holds or opens them at its instant (theory-gaps.md 2.7).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,7 +23,7 @@ Trajectory to_its_end(const std::shared_ptr<const Model>& model, Method method =
     return trajectory;
 }
 
-// A mass that comes to a plastic stop; the coordinate is x, the gap a factor times its distance from the stop.
+// A mass with a plastic impact at a stop. Its coordinate is x; the gap is a factor times its distance from the stop.
 std::shared_ptr<const Model> stop(const std::string& force, const std::string& gap, const std::string& more = "",
                                   const std::string& start = "start = 1, rate = -2") {
     return typed(fmt::format(R"toml(
@@ -49,12 +49,12 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
         {"-0.2*x'", "1e-7*x", "", 0.0},
         {"0.3*x'", "x/3", "", 0.0},
         {"-4*x", "7*x", "", 0.0},              // a spring that is slack at the stop
-        {"-4*(x - 0.1)", "x - 0.1", "", 0.1},  // at 1/10
+        {"-4*(x - 0.1)", "x - 0.1", "", 0.1},  // a stop at 1/10
         {"-4*(x - L)*x'", "x - L", "parameter = [{ name = \"L\", value = 0.3 }]", 0.3},
         {"wind", "x", "parameter = [{ name = \"wind\", value = 0 }]", 0.0},
         {"push - pull", "x", "parameter = [{ name = \"push\", value = 0.7 }, { name = \"pull\", value = 0.7 }]", 0.0},
         {"-4*sin(x)", "sin(x)", "", 0.0},
-        {"-0.2*(x' - 0.5)", "x - 0.5*t", "", 1.5}};  // the stop moves
+        {"-0.2*(x' - 0.5)", "x - 0.5*t", "", 1.5}};  // a moving stop
     for (const auto& [force, gap, more, at] : stops)
         for (const Method method : methods) {
             SCOPED_TRACE(fmt::format("{}, {}, {}", force, gap, to_text(method)));
@@ -72,7 +72,7 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
         }
 }
 
-// The force is 0 at the start and not afterwards: its rate decides, and where that is 0, too, nothing does.
+// The force is 0 at the start only: its rate decides. If the rate is 0 as well, the run is undecided.
 TEST(UnpressedContacts, AreNoneWhereTheForceVanishesAtAnInstant) {
     for (const auto& [force, held] : {std::pair("t", false), {"-t", true}, {"sin(t)*cos(x)", false}}) {
         const Trajectory trajectory = to_its_end(stop(force, "x", "", "start = 0"));
@@ -83,7 +83,7 @@ TEST(UnpressedContacts, AreNoneWhereTheForceVanishesAtAnInstant) {
         const auto model = stop(force, "x", "", "start = 0");
         EXPECT_EQ(simulate(model, model->default_run()).outcome.kind, Outcome::Kind::undecided) << force;
     }
-    // Far smaller than other forces, but there.
+    // Far smaller than other forces, but not zero.
     const Trajectory pressed = to_its_end(stop("-1e-9*(2 + cos(t))", "x")), lifted = to_its_end(stop("1e-9", "x"));
     EXPECT_EQ(pressed.end_mode.held(), ContactSet::of(0));
     EXPECT_TRUE(lifted.end_mode.held().empty());
@@ -125,7 +125,8 @@ TEST(UnpressedContacts, LetOthersCompleteBesideThem) {
             }
 }
 
-// Mass w hits mass z at t = 1, which rests until then; z moves on at rate 1 and pulls or presses x, which stopped at t = 0.5.
+// Mass w hits mass z, at rest until then, at t = 1. Then z moves at rate 1 and pulls or presses x, which stopped at t =
+// 0.5.
 std::shared_ptr<const Model> pulled_later(const std::string& force, const std::string& factor) {
     return typed(fmt::format(R"toml(
 title = "A force that begins later"
@@ -142,7 +143,7 @@ TEST(UnpressedContacts, AreLiftedOrPressedByAForceThatAppears) {
     for (const char* factor : {"1", "3", "1e-6"})
         for (const Method method : methods) {
             SCOPED_TRACE(fmt::format("{} {}", factor, to_text(method)));
-            // x'' = 0.6 (t - 1) from t = 1 on
+            // x'' = 0.6 (t - 1) for t >= 1
             const Trajectory lifted = to_its_end(pulled_later("0.6*z", factor), method);
             EXPECT_TRUE(lifted.end_mode.held().empty());
             EXPECT_NEAR(lifted.end.q[0], 0.1 * 8.0, 1e-8);
@@ -191,7 +192,7 @@ TEST(UnpressedContacts, StayClosedInProofs) {
     EXPECT_EQ(proof.events.back().kind, Event::Kind::zeno);
     EXPECT_TRUE(proof.events.back().t.contains(std::sqrt(2.0 * 5.0 / 9.81) * 3.0));
     EXPECT_EQ(proof.events.back().mode.held(), ContactSet::of(0).with(1));
-    // A force that is 0 at an instant presses nothing, and holds nothing.
+    // With a contact force that is 0 at the start only, the proof cannot decide whether the contact stays closed.
     const auto instant = stop("t^2", "x", "", "start = 0");
     EXPECT_FALSE(prove(instant, problem_from_decimals(instant->default_run())).end);
 }

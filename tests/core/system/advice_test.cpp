@@ -1,4 +1,5 @@
-// Mistakes that many make, in TOML, in keys, and in expressions by the habits of other languages: each is told what to write.
+// Common mistakes in TOML, in keys, and in expressions with the syntax of other languages: the message says what to
+// write.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
@@ -16,7 +17,7 @@ TEST_P(Advice, IsGiven) {
     EXPECT_EQ(told(changed(good, {{change.from, change.to}})), change.message);
 }
 
-// What would be right, in a line of its own.
+// Messages with the correction on a line of its own.
 const FileEdit with_advice[] = {
     {"\"m*x\"\n", "\"m*x\n",
      "f.toml:16:17: not valid TOML: unescaped control characters other than TAB (U+0009) are explicitly prohibited\n   "

@@ -1,4 +1,4 @@
-// Several [[constraint]]: read, named, drawn; what is wrong with them is told with its place.
+// Several [[constraint]] entries: reading, names, drawings, and error messages with their location.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
@@ -13,7 +13,7 @@ const std::string only_one = "[[constraint]]\ngap = \"x - sin(theta)/9\"\nrestit
 const std::string knee = "[[constraint]]\nname = \"knee\"\ngap = \"x - sin(theta)/9\"\nrestitution = \"e\"\n";
 const std::string wall = "[[constraint]]\nname = \"wall\"\ngap = \"theta + 2\"\nrestitution = 0\n";
 
-// The good text with these constraints in place of its own.
+// The valid text with these constraints in place of its own.
 std::string with_constraints(const std::string& constraints) {
     return changed(good, {{only_one, constraints}, {"gap'", "gap_knee'"}});
 }
@@ -58,10 +58,10 @@ TEST(Constraints, HaveDrawingsOfTheirOwn) {
     EXPECT_TRUE(system.constraints[1].drawings.empty());
     EXPECT_EQ(system.drawings.size(), 1u);
     const std::vector<DrawingDescription> all = drawings_of(system);
-    ASSERT_EQ(all.size(), 3u);  // as they stand in the file
+    ASSERT_EQ(all.size(), 3u);  // in the order of the file
     EXPECT_EQ(all[0].shape, DrawingDescription::Shape::segment);
     EXPECT_EQ(all[2].shape, DrawingDescription::Shape::curve);
-    EXPECT_EQ(all[0].contact, std::size_t{0});  // who is held lights it
+    EXPECT_EQ(all[0].contact, std::size_t{0});  // highlighted while this contact is held
     EXPECT_FALSE(all[2].contact);
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(drawn, {{"\"x\"", "\"z\""}}) + wall)),
               "f.toml:24:8: unknown name 'z'\n    to = [\"z\", 1]\n           ^");

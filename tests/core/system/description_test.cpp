@@ -1,4 +1,4 @@
-// What a system file says is understood; what is wrong in it is told with its place, a caret and a hint.
+// Reading of system files: correct files are understood; errors are reported with location, caret and hint.
 #include "system/description.hpp"
 #include "model/read_system.hpp"
 
@@ -14,7 +14,7 @@
 namespace achilles {
 namespace {
 
-// The message of the error that this text is; "" if it is accepted.
+// The error message for this text; "" if it is accepted.
 std::string message_of(const std::string& text) {
     try {
         parse_system(text, "f.toml");
@@ -27,7 +27,7 @@ std::string message_of(const std::string& text) {
 const std::string coordinate = "[[coordinate]]\nname = \"x\"\nstart = 1\nrate = 0\n";
 const std::string energies = "[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"x\"\n";
 const std::string constraint = "[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n";
-const std::string title = "title = \"drop\"\n";                // first line of what is accepted
+const std::string title = "title = \"drop\"\n";                // first line of an accepted file
 const std::string least = coordinate + energies + constraint;  // lines 1-4, 5-7, 8-10
 
 TEST(Description, AViewMayHaveALabelAndAUnit) {
@@ -41,7 +41,7 @@ TEST(Description, AViewMayHaveALabelAndAUnit) {
     EXPECT_NE(message_of(title + least + view + "unit = \"deg\"\n").find("the unit 'deg'"), std::string::npos);
 }
 
-// A person writes "30 deg", not sixteen digits of it.
+// Files contain "30 deg", not its sixteen digits.
 TEST(Description, NumbersOfTheGalleryAreReadable) {
     constexpr std::size_t longest = 10;
     for (const std::string& name : test::all_systems()) {
@@ -53,7 +53,7 @@ TEST(Description, NumbersOfTheGalleryAreReadable) {
             EXPECT_LE(end - at, longest) << name << ": " << text.substr(at, end - at);
         }
     }
-    // What they come to is the double next to it.
+    // The value is the nearest double.
     const auto angle = [](const char* name, std::size_t i) { return test::load(name)->description().coordinates[i]; };
     EXPECT_EQ(angle("double_pendulum", 0).start, 0.5235987755982988);
     EXPECT_EQ(angle("swinging_leg", 1).range[1], 2.0943951023931953);
@@ -164,7 +164,7 @@ anything = { goes = [1, "here"] }
     EXPECT_EQ(system.constraints[0].name, "contact");
     EXPECT_EQ(system.constraints[0].gap.text, "y - sin(x)");
     EXPECT_EQ(system.constraints[0].gap.at.line, 31);
-    EXPECT_EQ(system.constraints[0].gap.at.column, 16);  // the y, behind the quote
+    EXPECT_EQ(system.constraints[0].gap.at.column, 16);  // the y after the quote
     EXPECT_EQ(system.constraints[0].restitution.text, "e");
     EXPECT_EQ(system.options.end_time, 20.0);
     EXPECT_EQ(system.options.tolerance, 1e-9);
@@ -201,7 +201,7 @@ TEST(Description, FillsInWhatIsAbsent) {
     EXPECT_EQ(system.options.end_time, 10.0);
     EXPECT_EQ(system.options.tolerance, 1e-10);
     EXPECT_TRUE(system.drawings.empty());
-    ASSERT_EQ(system.views.size(), 2u);  // one coordinate makes no plane
+    ASSERT_EQ(system.views.size(), 2u);  // one coordinate has no plane view
     EXPECT_EQ(system.views[0].name, "x");
     EXPECT_EQ(system.views[1].name, "gap");
     std::string plane = title + least + "[[coordinate]]\nname='y'\nstart=0\nrate=0\n";
@@ -238,7 +238,7 @@ TEST(Description, ExpressionsKnowWhereTheyStart) {
     EXPECT_EQ(multi.kinetic.at.line, 11);
     EXPECT_EQ(multi.kinetic.at.column, 1);
     EXPECT_EQ(multi.potential.at.column, 16);
-    // An error inside an expression: the place of its first character plus the parser's offset.
+    // An error inside an expression: location of its first character plus the parser's offset.
     const InputError error = one.error(one.constraints[0].gap.at, "unknown name 'x'");
     EXPECT_STREQ(error.what(), "<text>:10:8: unknown name 'x'\n    gap = \"x\"\n           ^");
 }
@@ -282,7 +282,7 @@ TEST(Description, HostileFilesEndInAMessage) {
     for (int i = 0; i <= 1000; ++i) parameters += "[[parameter]]\nname = \"p" + std::to_string(i) + "\"\nvalue = 1\n";
     EXPECT_EQ(message_of(title + least + parameters),
               "f.toml:3012:1: more than 1000 [[parameter]]\n    [[parameter]]\n    ^");
-    // A million strings, each of which knows its place: in lines of their own, and all in one.
+    // 600 000 strings with locations: on lines of their own, and all on one line. This must stay fast.
     std::string lines = "extra = [", one_line = lines;
     for (int i = 0; i < 300000; ++i) {
         lines += "\"a\",\n";
@@ -292,7 +292,7 @@ TEST(Description, HostileFilesEndInAMessage) {
     EXPECT_EQ(message_of(one_line + "]\n" + title + least), "");
     EXPECT_NE(message_of(one_line + "]\ntitle = 1").find("f.toml:2:9"), std::string::npos);
     EXPECT_EQ(message_of(std::string((4 << 20) + 1, '\n')), "f.toml: the file is larger than 4 MB");
-    // Every prefix of a good file is either good or a message.
+    // No prefix of a valid file may crash the reader.
     for (std::size_t size = 0; size < least.size(); ++size) message_of(least.substr(0, size));
 }
 
@@ -363,7 +363,7 @@ TEST(Description, ValuesOutsideARangeOfTheFileAreTold) {
     EXPECT_TRUE(outside_ranges(system, run).empty());
     assign(run, system, "theta=30");
     assign(run, system, "theta'=-6");
-    assign(run, system, "tilt=1000");  // its range is the slider's alone
+    assign(run, system, "tilt=1000");  // its range limits the slider only
     assign(run, system, "L=2");
     EXPECT_EQ(outside_ranges(system, run),
               (std::vector<std::string>{
@@ -381,7 +381,7 @@ TEST(Description, LinesTooThinToBeSeenAreTold) {
                       "line " + std::to_string(line) +
                       ": a width of 0.02 is too small to see: widths are in pixels, not in the units of "
                       "the points (default 2)"}));
-    for (const char* width : {"0", "0.5", "\"L/50\""})  // no line is meant; a fine one; what a slider moves
+    for (const char* width : {"0", "0.5", "\"L/50\""})  // no line, a thin line, a variable width
         EXPECT_TRUE(unseen_lines(parse_system(text + width + "\n")).empty()) << width;
 }
 
@@ -399,7 +399,7 @@ TEST(Description, UnreadableFilesSayWhy) {
     EXPECT_EQ(reading_error("such.toml"), "such.toml: there is no such file");
     EXPECT_EQ(reading_error("/"), "/: cannot read the file: it is a directory");
     EXPECT_EQ(reading_error("/dev/zero"), "/dev/zero: the file is larger than 4 MB");
-    // Nobody will ever write to it.
+    // A pipe that is never written to must not block.
     const std::string pipe = (std::filesystem::temp_directory_path() / "achilles_description_test.toml").string();
     ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     EXPECT_EQ(reading_error(pipe), pipe + ": cannot read the file: it is a pipe");

@@ -1,4 +1,4 @@
-// A system file without a mistake, into which tests put some.
+// A valid system file, into which tests insert mistakes.
 #pragma once
 
 #include <ostream>
@@ -41,7 +41,7 @@ x = "x"
 y = ["gap'"]
 )toml";
 
-// The first place of each of some texts, in turn, replaced.
+// The text with the first occurrence of each `from` replaced, in turn.
 inline std::string changed(std::string text, const std::vector<std::pair<std::string, std::string>>& changes) {
     for (const auto& [from, to] : changes) {
         const std::size_t at = text.find(from);
@@ -51,7 +51,7 @@ inline std::string changed(std::string text, const std::vector<std::pair<std::st
     return text;
 }
 
-// One change of the good text, and all that is told about it.
+// One change of the valid text, and the whole message for it.
 struct FileEdit {
     std::string from, to, message;
 };

@@ -1,4 +1,4 @@
-// Every kind of mistake in a system file, alone: the exact text, its place and its caret.
+// Every kind of mistake in a system file, one at a time: the exact message, location and caret.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"

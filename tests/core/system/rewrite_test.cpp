@@ -1,4 +1,4 @@
-// What the reader rewrites before expressions are read: parameters that follow from others, and texts of its own.
+// What the reader rewrites before it parses expressions: derived parameters and generated texts.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
@@ -18,7 +18,7 @@ std::string parameter(const std::string& name, const std::string& value, const s
     return "[[parameter]]\nname = \"" + name + "\"\nvalue = \"" + value + "\"\n" + more;
 }
 
-// The good text with more parameters, the first of them in line 14, and a potential.
+// The valid text with more parameters, the first of them on line 14, and a potential.
 std::string with_parameters(const std::string& parameters, const std::string& potential = "m*x") {
     return changed(good, {{"[lagrangian]", parameters + "[lagrangian]"}, {"\"m*x\"", "\"" + potential + "\""}});
 }
@@ -43,7 +43,7 @@ TEST(DerivedParameters, AreNoParametersOfARun) {
     EXPECT_EQ(std::count(names.begin(), names.end(), "J"), 0);
 }
 
-// They stand for their expression wherever they stand, in any order, and follow the parameters.
+// Derived parameters are replaced by their expressions everywhere, in any order, and follow the parameters.
 TEST(DerivedParameters, FollowFromOthersInAnyOrder) {
     const std::string text =
         with_parameters(parameter("k", "2*J + sqrt(e)") + parameter("J", "m*half^2") + parameter("half", "m/2"), "k*x");
@@ -60,7 +60,7 @@ TEST(DerivedParameters, FollowFromOthersInAnyOrder) {
     EXPECT_NEAR(energy.potential(), values[2] * run.q[0], 1e-14);
 }
 
-// What stands in their place moves the same, to the last bit.
+// With the expressions in place of the parameters, the motion is the same bit for bit.
 TEST(DerivedParameters, AreTheirExpressions) {
     const auto end = [](const std::string& text) {
         const auto model = test::typed(text);
@@ -124,7 +124,7 @@ TEST(DerivedParameters, AreNotSet) {
     EXPECT_EQ(run, before);
 }
 
-// Some parameters, and all that is told about them.
+// Parameter entries, and the whole message for them.
 struct WrongParameters {
     std::string parameters, message;
 };
@@ -205,7 +205,7 @@ TEST(Degrees, MayStandWhereverTheUnitIsRad) {
               "the unit is rad, and here it is rad/s^2\n    range = [0, \"90 deg\"]\n                    ^");
 }
 
-// A text that the reader makes has no place of its own: what is wrong in it is told at the place of what it was made from.
+// A generated text has no location. Errors in it are reported at the location of its origin.
 TEST(Rewriting, TellsMistakesOfAMadeTextWhereItsOriginStands) {
     for (const bool is_written : {true, false}) {
         ParsedFile reading = read_tables(good, "<text>");

@@ -1,4 +1,4 @@
-// Several mistakes in a system file: told at once, in order, each once.
+// Several mistakes in a system file are reported together, in order, each once.
 #include <gtest/gtest.h>
 
 #include "core/system/mistakes.hpp"
@@ -38,7 +38,7 @@ TEST(SeveralMistakes, AreAllToldInOrderOfPosition) {
         "\"y\"]\n          ^\n\nf.toml:31:16: unknown name 'y'\n    y = [\"lamda\", \"y\"]\n                   ^");
 }
 
-// What is drawn has no say in how a run starts: both are told.
+// Drawings do not affect the start of a run, so both errors are reported.
 TEST(SeveralMistakes, OfADrawingAndOfTheStartAreToldTogether) {
     const std::vector<InputError> all =
         all_of(changed(good, {{"start = 1\n", "start = -1\n"}, {"\"s^2\"", "\"r^2\""}, {"[\"gap'\"]", "[\"lamda\"]"}}));
@@ -90,7 +90,7 @@ TEST(OneMistake, DoesNotBringOthers) {
         ASSERT_EQ(all.size(), 1u) << to;
         EXPECT_EQ(all[0].message, message);
     };
-    // a name that stands in four expressions, with and without prime
+    // a name used in four expressions, with and without prime
     only("name = \"theta\"", "name = \"thteta\"", "unknown name theta'; did you mean thteta'?");
     only("name = \"theta\"", "naem = \"theta\"", "unknown key 'naem' in [[coordinate]]; did you mean 'name'?");
     only("name = \"m\"", "name = \"1m\"", "'1m' is not a name");
@@ -98,7 +98,7 @@ TEST(OneMistake, DoesNotBringOthers) {
          "unknown key 'constant' in a system file; did you mean 'constraint'?");
     only("[lagrangian]", "[Lagrangian]", "unknown key 'Lagrangian' in a system file; did you mean 'lagrangian'?");
     only("over = ", "ovr = ", "unknown key 'ovr' in [[drawing]] of shape curve; did you mean 'over'?");
-    only("(x'^2 + ", "(xx^x + ", "unknown name 'xx'; did you mean 'x'?");  // no word of the exponent
+    only("(x'^2 + ", "(xx^x + ", "unknown name 'xx'; did you mean 'x'?");  // not about the exponent
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Units follow from those that a file gives, and are not made up where it gives none.
+// Units follow from those in the file. Where the file gives none, there is none.
 #include "system/units.hpp"
 
 #include <gtest/gtest.h>
@@ -25,11 +25,11 @@ TEST(Units, FollowFromThoseOfTheFile) {
     EXPECT_EQ(unit("ball_on_sine", "energy/(m*g)"), "m");
     EXPECT_EQ(unit("ball_on_sine", "x'*t - 2*x"), "m");
     EXPECT_EQ(unit("ball_on_sine", "1/(x*t)"), "1/(m*s)");
-    EXPECT_EQ(unit("ball_on_sine", "(x'^2)^0.75"), "");  // no whole powers
+    EXPECT_EQ(unit("ball_on_sine", "(x'^2)^0.75"), "");  // non-integer powers
     EXPECT_EQ(unit("ball_in_bowl", "c*x"), "");          // 1/m times m
     EXPECT_EQ(unit("bead_in_ring", "r*sin(phi)"), "m");
     EXPECT_EQ(unit("impact_oscillator", "k*x"), "N");  // N/m
-    EXPECT_EQ(unit("swinging_leg", "c"), "J");         // "N m", which a product does not tell from work
+    EXPECT_EQ(unit("swinging_leg", "c"), "J");         // "N m", which as a product cannot be distinguished from work
 }
 
 TEST(Units, OfAngles) {
@@ -43,7 +43,7 @@ TEST(Units, OfAngles) {
     EXPECT_EQ(unit("ball_on_sine", "atan(y/x)"), "rad");
 }
 
-// Half of a sum is not known, nor is what two terms that disagree may be.
+// No unit if one term's unit is unknown, or if two terms disagree.
 TEST(Units, AreNothingWhereTheyAreNotKnown) {
     const std::string head =
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"y\"\n"
@@ -58,7 +58,7 @@ TEST(Units, AreNothingWhereTheyAreNotKnown) {
     EXPECT_EQ(unit_of_expression(system, "x + sin(y)"), "m");
 }
 
-// Of several constraints each has a gap and a force.
+// With several constraints each has a gap and a contact force.
 TEST(Units, OfSeveralGaps) {
     const SystemDescription system = parse_system(
         "title = \"\"\n[[coordinate]]\nname = \"x\"\nstart = 1\nunit = \"m\"\n[[coordinate]]\nname = \"a\"\nunit = "
