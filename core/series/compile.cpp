@@ -17,7 +17,7 @@ namespace achilles {
 // The distinct inner sums of a plan, and their lanes.
 
 // Sums over 0 < j < k of x_j y_{k-j}, or, if weighted, of j x_j y_{k-j}/k.
-class InnerSums {
+class InnerSumLanes {
  public:
     // The sum of these series, as an operand that place() replaces by its lane.
     std::uint32_t of(std::uint32_t x, std::uint32_t y, bool weighted) {
@@ -403,7 +403,7 @@ class SeriesCompiler {
         made_;
     std::map<std::uint32_t, Operand> partners_;                                        // by series of the result
     std::map<std::pair<Operation, std::uint32_t>, std::uint32_t> function_registers_;  // by function and operand
-    InnerSums sums_;
+    InnerSumLanes sums_;
 };
 
 SeriesProgram::SeriesProgram(const Program& program, std::size_t dof, std::size_t events) : program_(program) {
