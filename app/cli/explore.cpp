@@ -181,8 +181,8 @@ class Explorer {
         request(session_, state_, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
     }
 
-    // Replays a journal or the content of a picture. Asks once about every file it needs; if one answer is no, nothing
-    // of the journal is done. Journals that it replays are subject to the same questions.
+    // Replays a journal or the content of a picture. Asks once about every file it needs. If one answer is no, no
+    // command of the journal runs. The same questions are asked for journals that this journal replays.
     void begin_replay(const std::string& name) {
         const std::string file = is_picture(name) ? name : find_journal(name).string();
         if (trust_.budget) trust_.budget->limit();

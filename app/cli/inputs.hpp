@@ -78,9 +78,10 @@ class Inputs {
 bool is_picture(const std::string& path);
 
 // Commands that restore the session shown in a picture, from what is stored in it. Its system is opened from the file
-// of that name if the file may be read and still has the same text, else as an unsaved new text. File output of its
-// journal is left out. Throws FileAccessDenied, with the questions to ask, before it reads a file that the user has not
-// named. Throws InputError if the file is not a picture of Achilles, or shows no session.
+// with the stored name if that file may be read and its text has not changed; otherwise as a new, unsaved text.
+// Commands of the journal that write files are left out. Throws FileAccessDenied, with the questions to ask, before it
+// reads a file that the user has not named. Throws InputError if the file is not a picture of Achilles, or shows no
+// session.
 std::vector<Command> session_in(const std::string& picture, const FilePolicy& trust);
 
 }  // namespace achilles

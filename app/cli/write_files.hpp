@@ -11,8 +11,8 @@
 
 namespace achilles {
 
-// Opens a device or a named pipe for writing; returns a negative number and sets errno on failure. Waits for a reader
-// of the pipe, with a note on standard error.
+// Opens a device or a named pipe for writing; returns a negative number and sets errno on failure. If a pipe has no
+// reader yet, it says so on standard error and waits for one.
 int open_in_place(const std::string& path);
 
 // A set of output files. add() checks that each can be written, before the work; nothing remains if the work is
@@ -43,7 +43,7 @@ class OutputFiles {
     struct File {
         std::string path, content;                // as given
         std::filesystem::path target, temporary;  // temporary is empty unless it exists now
-        std::optional<Identity> identity;         // of the existing file
+        std::optional<Identity> identity;         // of the file that exists at the path; empty if there is none
         bool in_place = false;                    // a device or standard output
         bool swapped = false;  // target and temporary have been exchanged: the temporary is the old file
         bool made = false;     // the target is new and complete

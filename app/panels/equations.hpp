@@ -50,7 +50,7 @@ class EquationsView {
     using SheetResult = std::shared_ptr<const EquationSheet>;
     std::unique_ptr<Worker<SheetResult>> worker_;
     bool is_under_way_ = false;
-    std::shared_ptr<const Model> model_;  // of the last request
+    std::shared_ptr<const Model> model_;  // the model whose equations were requested last
     std::vector<double> signs_;           // ranges and values of the parameters that determine the signs
     SheetResult sheet_;
     std::vector<float> set_for_;

@@ -205,7 +205,8 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
 
 namespace {
 
-// left/right of an inequality: near 0 is a wide margin, 1 is none. 0 if the right side is 0 (a sign condition).
+// The ratio left/right of an inequality left < right, within [0, 1]: a small ratio means a wide margin, 1 means none
+// is left. A sign condition has 0 on its right side; its ratio is taken as 0.
 double share_of(const Inequality& inequality) {
     return inequality.right > 0.0 ? std::clamp(inequality.left / inequality.right, 0.0, 1.0) : 0.0;
 }

@@ -15,7 +15,7 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
-constexpr std::size_t most_words = 2000;                       // of the stored command line
+constexpr std::size_t most_words = 2000;                       // the longest stored command line that is read
 
 // Adds the name of the picture to errors.
 template <class Work>
