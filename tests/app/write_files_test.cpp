@@ -119,14 +119,15 @@ TEST(StandardOutput, ThatIsFullIsAnError) {
     }
 }
 
-// A pipe without a reader: prints a note, waits, and then writes everything.
+// A pipe without a reader: prints a note, waits, and then writes everything. The note of the run before is
+// removed first: a shell that starts the program later would find it and read the pipe too soon.
 TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
     for (const std::string arguments :
          {"simulate ./drop.toml --json pipe", "sweep ./drop.toml --over y=1:2:5 --print t --csv pipe"}) {
         folder.put("script",
-                   "mkfifo pipe\n'" ACHILLES_BINARY_DIR "/achilles' " + arguments +
+                   "rm -f err\nmkfifo pipe\n'" ACHILLES_BINARY_DIR "/achilles' " + arguments +
                        " 2>err &\np=$!\nfor i in $(seq 1000); do grep -q waiting err && break; sleep 0.01; done\n"
                        "cat pipe >got\nwait $p\necho $? >status\nrm pipe\n");
         ASSERT_EQ(std::system(("cd '" + folder.path().string() + "' && timeout 60 sh ./script").c_str()), 0)
