@@ -322,7 +322,7 @@ std::string SweepSummary::text() const {
         const ColumnRange& column = columns_[i];
         text += fmt::format("  {:<{}}   ", name_of(i), width);
         if (column.count == 0) {
-            text += fmt::format("exists in none of the {} runs\n", totals_.runs);
+            text += fmt::format("does not exist in any of the {} runs\n", totals_.runs);
             continue;
         }
         const std::string low = fmt::format("{:.6g}", column.low), high = fmt::format("{:.6g}", column.high);
@@ -339,7 +339,7 @@ std::vector<std::string> SweepSummary::nowhere() const {
     std::vector<std::string> sentences;
     for (std::size_t i = 0; i < columns_.size(); ++i)
         if (columns_[i].count == 0 && totals_.runs > 0)
-            sentences.push_back(fmt::format("{} exists in none of the {} runs", name_of(i), totals_.runs));
+            sentences.push_back(fmt::format("{} does not exist in any of the {} runs", name_of(i), totals_.runs));
     return sentences;
 }
 

@@ -78,7 +78,9 @@ std::string why_not_cut(const ImpactReason& reason, const Certificate* attempt, 
             several ? ", or another contact may open or close," : "");
     const std::optional<Inequality> inequality = failed(*attempt);
     if (!inequality) return "Not cut: this impact came before the conditions were checked.";
-    if (!(inequality->right > 0.0)) return fmt::format("Not cut: the {} does not hold.", inequality->name);
+    if (!(inequality->right > 0.0))
+        return fmt::format("Not cut: the {} must be below {}, and its bound is {}.", inequality->name,
+                           number(inequality->right, "{:.3g}"), number(inequality->left, "{:.3g}"));
     return fmt::format("Not cut: the {} requires {} < {}; the left side is {} times too large.", inequality->name,
                        number(inequality->left, "{:.3g}"), number(inequality->right, "{:.3g}"),
                        number(inequality->left / inequality->right, "{:.3g}"));

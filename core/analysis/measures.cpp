@@ -86,13 +86,15 @@ void check_quantity(const SystemDescription& description, const std::string& pri
     for (const std::string& name : names_in(asked.quantity)) {
         if (is_settable(description, name)) continue;
         if (name == "held" || name == "outcome")
-            throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name), "print it alone");
+            throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
+                                "print the quantity without d(...)");
         if (name == "impacts" || name == "zeno_points" || name == "releases")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
-                                "print it alone");
+                                "print the quantity without d(...)");
         if (name == "least_gap" || name == "work" || name == "loss")
-            throw refused_slope(print, fmt::format("derivatives of '{}' are not computed", name),
-                                "print it alone; differences of its values approximate its derivatives");
+            throw refused_slope(
+                print, fmt::format("derivatives of '{}' are not computed", name),
+                "print the quantity without d(...); differences of its values approximate its derivative");
     }
 }
 

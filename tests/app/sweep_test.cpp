@@ -40,8 +40,8 @@ TEST(SweepCommand, WritesATable) {
         "--print \"zeno_time(2) - zeno_time(1)\" --print held --units");
     EXPECT_EQ(answer.status, 0) << answer.err;
     EXPECT_EQ(answer.err,
-              "achilles: warning: zeno_time(2) exists in none of the 6 runs\n"
-              "achilles: warning: zeno_time(2) - zeno_time(1) exists in none of the 6 runs\n");
+              "achilles: warning: zeno_time(2) does not exist in any of the 6 runs\n"
+              "achilles: warning: zeno_time(2) - zeno_time(1) does not exist in any of the 6 runs\n");
     const auto lines = lines_of(answer.out);
     ASSERT_EQ(lines.size(), 8u);
     EXPECT_EQ(lines[0], "e,x',zeno_time(2),zeno_time(2) - zeno_time(1),held,outcome");
@@ -311,11 +311,11 @@ TEST(SweepCommand, SaysWhatItCameToWhereAFileIsNamed) {
 TEST(SweepCommand, SaysWhatExistsInNoRunAndDrawsNothingOfIt) {
     const Folder folder;
     const std::string sweep = "sweep ball_on_sine --over e=0.1:0.5:3 --end 1 --print \"zeno_time(1)\" ";
-    EXPECT_EQ(folder.run(sweep).err, "achilles: warning: zeno_time(1) exists in none of the 3 runs\n");
+    EXPECT_EQ(folder.run(sweep).err, "achilles: warning: zeno_time(1) does not exist in any of the 3 runs\n");
     const Answer nothing = folder.run(sweep + "--csv a.csv --out a.svg");
     EXPECT_EQ(nothing.status, 3);
     EXPECT_NE(nothing.err.find("no picture is drawn"), std::string::npos) << nothing.err;
-    EXPECT_NE(nothing.err.find("zeno_time(1)   exists in none of the 3 runs\nwrote a.csv\n"), std::string::npos)
+    EXPECT_NE(nothing.err.find("zeno_time(1)   does not exist in any of the 3 runs\nwrote a.csv\n"), std::string::npos)
         << nothing.err;
     EXPECT_EQ(folder.files(), std::vector<std::string>{"a.csv"});
     const Answer other = folder.run(sweep + "--print x --out b.svg");
