@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/multi_contact.hpp"
@@ -80,6 +81,24 @@ tolerance = 1e-10
     EXPECT_NEAR(second.work, alone.work, 1e-8);
     EXPECT_LT(second.statistics.energy_drift, 1e-9);
     ASSERT_GT(std::abs(alone.work), 0.001);
+}
+
+// The work of a sample includes that of all steps before its own.
+TEST(Samples, HaveTheWorkSinceTheStart) {
+    const auto model = test::load("ball_on_vibrating_table");
+    Run run = model->default_run();
+    run.options.end_time = 0.45;
+    const Trajectory trajectory = simulate(model, run);
+    Sampler sampler(trajectory);
+    double largest = 0.0;
+    for (const double t : {0.3, 0.4, 0.45}) {
+        const Sample sample = sampler.at(t);
+        Run part = run;
+        part.options.end_time = t;
+        EXPECT_NEAR(sample.work, simulate(model, part).work, 1e-8) << t;
+        largest = std::max(largest, std::abs(sample.work));
+    }
+    EXPECT_GT(largest, 1e-3);
 }
 
 // With several contacts a view receives the contact forces. Power is the rate of work.

@@ -156,17 +156,26 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
 }
 
 // A wall so steep that the Taylor series at the start, truncated where its terms are small, misses it. One step leads
-// into the wall, where h(q) < 0 although the series of the gap gives 1/2. The impact is at h(q) = 0: a^20 = 1/2.
+// into the wall, where h(q) < 0 although the series of the gap gives 1/2. The impact is at h(q) = 0: a^power = 1/2. The
+// 60th power is missed at exact_tolerance too, where no tighter run can find the impact instead.
 TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
-    for (const double end : {0.9, 0.95, 1.0}) {
-        const auto model =
-            model_of({.potential = "0", .gap = "b - a^20", .e = "0.1", .a = 0.1, .b = 0.5, .a_rate = 1.0, .end = end});
-        const Trajectory trajectory = simulate(model, model->default_run());
-        EXPECT_GE(trajectory.statistics.least_gap, -1e-12) << end;
-        ASSERT_GE(count(trajectory, Event::Kind::impact), 1u) << end << ": " << trajectory.outcome.message;
-        EXPECT_NEAR(trajectory.events[0].t, std::pow(0.5, 0.05) - 0.1, 1e-9) << end;
-        EXPECT_NEAR(trajectory.events[0].q[1], 0.5, 1e-9) << end;
-    }
+    for (const int power : {20, 60})
+        for (const double end : {0.9, 0.95, 1.0}) {
+            const auto model = model_of({.potential = "0",
+                                         .gap = fmt::format("b - a^{}", power),
+                                         .e = "0.1",
+                                         .a = 0.1,
+                                         .b = 0.5,
+                                         .a_rate = 1.0,
+                                         .end = end});
+            for (const double tolerance : {1e-10, 1e-14}) {
+                const Trajectory trajectory = simulate(model, with(*model, Method::taylor, tolerance));
+                EXPECT_GE(trajectory.statistics.least_gap, -1e-12) << end;
+                ASSERT_GE(count(trajectory, Event::Kind::impact), 1u) << end << ": " << trajectory.outcome.message;
+                EXPECT_NEAR(trajectory.events[0].t, std::pow(0.5, 1.0 / power) - 0.1, 1e-9) << end;
+                EXPECT_NEAR(trajectory.events[0].q[1], 0.5, 1e-9) << end;
+            }
+        }
 }
 
 // A series far from a thin post misses it, too. The post is monitored as an Edge: exp(-400 (a - 1)^2) = 1/2.
