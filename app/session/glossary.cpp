@@ -17,7 +17,8 @@ constexpr std::array terms{
     GlossaryTerm{"restitution", "e = -gap'(after)/gap'(before)",
                  "The normal speed after an impact over that before: 0 is plastic, 1 is elastic.", "paper (4)"},
     GlossaryTerm{"normal acceleration", "gap''",
-                 "Of the gap in free motion. Where it is negative, the bodies are pressed together.", "paper (8)"},
+                 "The gap's acceleration in free motion. Where it is negative, the bodies are pressed together.",
+                 "paper (8)"},
     GlossaryTerm{
         "Zeno point", "gap = 0, gap' = 0, gap'' < 0",
         "The limit of infinitely many impacts in finite time: with 0 < e < 1 each flight is about e times the last.",
