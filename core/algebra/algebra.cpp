@@ -217,9 +217,10 @@ void scale(FactoredForm& result, const Integer& number, int exponent) {
         result.number *= exponent > 0 ? cpp_rational(number) : cpp_rational(1, number);
 }
 
-class Splitter {
+class FactorSplitter {
  public:
-    Splitter(Algebra& algebra, FactoredForm& result) : algebra_(algebra), work_(algebra.work()), result_(result) {}
+    FactorSplitter(Algebra& algebra, FactoredForm& result)
+        : algebra_(algebra), work_(algebra.work()), result_(result) {}
 
     // Adds the factors of a nonzero polynomial.
     void split(const Multinomial& polynomial, int exponent) {
@@ -269,7 +270,7 @@ FactoredForm factor(const Fraction& fraction, Algebra& algebra) {
         result.number = 0;
         return result;
     }
-    Splitter splitter(algebra, result);
+    FactorSplitter splitter(algebra, result);
     splitter.split(fraction.numerator, 1);
     splitter.split(fraction.denominator, -1);
     // Rewrites sqrt(u) u as sqrt(u)^3.

@@ -21,8 +21,8 @@ Monomial common(const Monomial& a, const Monomial& b) {
 
 }  // namespace
 
-Writer::Writer(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks,
-               Notation notation)
+AlgebraWriter::AlgebraWriter(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks,
+                             Notation notation)
     : notation_(notation), order_(algebra.atom_count()) {
     const int highest = ranks.empty() ? 0 : *std::max_element(ranks.begin(), ranks.end());
     std::vector<std::pair<int, std::uint32_t>> keys;
@@ -43,14 +43,14 @@ Writer::Writer(const Algebra& algebra, std::span<const std::string> names, std::
     });
 }
 
-int Writer::degree_of_highest(const Monomial& powers) const {
+int AlgebraWriter::degree_of_highest(const Monomial& powers) const {
     int degree = 0;
     for (const std::size_t i : order_)
         if (highest_[i]) degree += powers[i];
     return degree;
 }
 
-bool Writer::before(const SumTerm& a, const SumTerm& b) const {
+bool AlgebraWriter::before(const SumTerm& a, const SumTerm& b) const {
     const int x = degree_of_highest(a.powers), y = degree_of_highest(b.powers);
     if (x != y) return x > y;
     for (const std::size_t i : order_)
@@ -59,7 +59,8 @@ bool Writer::before(const SumTerm& a, const SumTerm& b) const {
 }
 
 // |number| * atoms * bracket
-FormattedTerm Writer::product(const Rational& number, const Monomial& powers, const FormattedTerm* bracket) const {
+FormattedTerm AlgebraWriter::product(const Rational& number, const Monomial& powers,
+                                     const FormattedTerm* bracket) const {
     const Rational size = abs(number);
     std::vector<FormattedTerm> factors;
     for (const std::size_t i : order_) {
@@ -79,7 +80,7 @@ FormattedTerm Writer::product(const Rational& number, const Monomial& powers, co
 }
 
 // Several terms with a common factor, as that factor times a bracket.
-Writer::Piece Writer::collected(std::vector<SumTerm> items, const Monomial& shared) const {
+AlgebraWriter::Piece AlgebraWriter::collected(std::vector<SumTerm> items, const Monomial& shared) const {
     bool alike = true, whole = true;
     boost::multiprecision::cpp_int divisor = 0;
     for (SumTerm& item : items) {
@@ -99,8 +100,8 @@ Writer::Piece Writer::collected(std::vector<SumTerm> items, const Monomial& shar
 
 // The terms that share the next bracket: those with the same rates. If all terms have the same rates, those that
 // contain the most frequent atom to the same power. Empty if the remaining terms are written one by one.
-std::vector<std::size_t> Writer::next_group(const std::vector<SumTerm>& items,
-                                            const std::vector<std::size_t>& left) const {
+std::vector<std::size_t> AlgebraWriter::next_group(const std::vector<SumTerm>& items,
+                                                   const std::vector<std::size_t>& left) const {
     const auto rates = [&](std::size_t item) {
         Monomial powers = items[item].powers;
         for (std::size_t i = 0; i < most_atoms; ++i)
@@ -130,7 +131,7 @@ std::vector<std::size_t> Writer::next_group(const std::vector<SumTerm>& items,
     return best;
 }
 
-FormattedTerm Writer::sum(std::vector<SumTerm> items) const {
+FormattedTerm AlgebraWriter::sum(std::vector<SumTerm> items) const {
     std::sort(items.begin(), items.end(), [&](const SumTerm& a, const SumTerm& b) { return before(a, b); });
     std::vector<std::pair<std::size_t, Piece>> pieces;  // by index of the first term
     std::vector<std::size_t> left(items.size());
@@ -159,7 +160,7 @@ FormattedTerm Writer::sum(std::vector<SumTerm> items) const {
 }
 
 // Writes c - c cos(u)^2 as c sin(u)^2, if sin(u) is an atom.
-void Writer::gather_sines(std::vector<SumTerm>& items, const Algebra& algebra) const {
+void AlgebraWriter::gather_sines(std::vector<SumTerm>& items, const Algebra& algebra) const {
     for (std::size_t cosine = 0; cosine < written_.size(); ++cosine) {
         const std::optional<std::size_t> sine = algebra.sine_of(cosine);
         if (!sine || *sine >= written_.size()) continue;
@@ -177,9 +178,11 @@ void Writer::gather_sines(std::vector<SumTerm>& items, const Algebra& algebra) c
     }
 }
 
-FormattedTerm Writer::write(const Multinomial& polynomial) const { return write(FactoredForm{1, {{polynomial, 1}}}); }
+FormattedTerm AlgebraWriter::write(const Multinomial& polynomial) const {
+    return write(FactoredForm{1, {{polynomial, 1}}});
+}
 
-FormattedTerm Writer::write(const Fraction& fraction, Algebra& algebra) const {
+FormattedTerm AlgebraWriter::write(const Fraction& fraction, Algebra& algebra) const {
     if (!fraction.denominator.is_number() || fraction.is_zero()) return write(factor(fraction, algebra));
     std::vector<SumTerm> items;
     for (const Multinomial::Term& term : fraction.numerator.terms())
@@ -190,7 +193,7 @@ FormattedTerm Writer::write(const Fraction& fraction, Algebra& algebra) const {
     return all.negative ? FormattedTerm{fmt::format("-{}", inside(all.written, 2, notation_)), 1, {}} : all.written;
 }
 
-FormattedTerm Writer::write(const FactoredForm& given) const {
+FormattedTerm AlgebraWriter::write(const FactoredForm& given) const {
     FactoredForm factored = given;
     if (factored.number < 0) {
         // Writes -(a - b) as b - a.
@@ -203,7 +206,7 @@ FormattedTerm Writer::write(const FactoredForm& given) const {
             break;
         }
     }
-    struct Side {
+    struct FractionSide {
         Monomial powers{};
         std::vector<FormattedTerm> brackets;
     } top, bottom;
@@ -213,7 +216,7 @@ FormattedTerm Writer::write(const FactoredForm& given) const {
         return sum(std::move(items));
     };
     for (const auto& [base, exponent] : factored.factors) {
-        Side& side = exponent > 0 ? top : bottom;
+        FractionSide& side = exponent > 0 ? top : bottom;
         const int size = std::abs(exponent);
         if (base.terms().size() == 1) {
             for (std::size_t i = 0; i < most_atoms; ++i)
@@ -223,7 +226,7 @@ FormattedTerm Writer::write(const FactoredForm& given) const {
             side.brackets.push_back(size == 1 ? written : write_power(written, size, notation_));
         }
     }
-    const auto written = [&](const Rational& number, const Side& side) {
+    const auto written = [&](const Rational& number, const FractionSide& side) {
         if (side.brackets.empty()) return product(number, side.powers, nullptr);
         if (side.brackets.size() == 1 && abs(number) == 1 && side.powers == Monomial{}) return side.brackets.front();
         FormattedTerm result = product(number, side.powers, &side.brackets.front());

@@ -10,11 +10,12 @@
 
 namespace achilles {
 
-class Writer {
+class AlgebraWriter {
  public:
     // `names` and `ranks` are indexed by slot. Symbols of lower rank come first in a product. Sums start with the terms
     // of the highest degree in symbols of the highest rank.
-    Writer(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks, Notation notation);
+    AlgebraWriter(const Algebra& algebra, std::span<const std::string> names, std::span<const int> ranks,
+                  Notation notation);
 
     FormattedTerm write(const Multinomial& polynomial) const;
     // A polynomial over a number becomes a sum with fractional coefficients, anything else a quotient of products.

@@ -19,9 +19,9 @@ namespace {
 constexpr double first_step = 0.02, longest_step = 0.04, shortest_step = 1e-7;
 constexpr std::size_t most_points = 2000;
 
-class Walk {
+class BranchContinuation {
  public:
-    Walk(const ReturnMap& map, const ShootingSolver& newton, Branch& branch, double low, double high)
+    BranchContinuation(const ReturnMap& map, const ShootingSolver& newton, Branch& branch, double low, double high)
         : map_(map), newton_(newton), branch_(branch), p_(branch.parameter), low_(low), high_(high) {}
 
     // Follows the branch from a converged orbit along its tangent. Adds the points, and returns the reason for its end.
@@ -333,7 +333,7 @@ Branch follow(const std::shared_ptr<const Model>& model, const OrbitProblem& ask
     const ShootingSolver newton(map, scale_of(map, lap, high - low), parameter);
     const ConvergedOrbit closed = newton.close(lap);
     for (const int side : {0, 1}) {
-        Walk walk(map, newton, branch, low, high);
+        BranchContinuation walk(map, newton, branch, low, high);
         ConvergedOrbit from = closed;
         const double along = from.tangent[from.tangent.size() - 1];
         if ((side == 0) == (along > 0.0)) from.tangent = -from.tangent;

@@ -22,15 +22,15 @@ constexpr std::chrono::microseconds pause(1000);
 
 // The first byte of a message. From rank 0: the order, a chunk, dismissal. To rank 0: ready with a number of threads,
 // the result of a chunk, a failure.
-enum class Kind : char { order = 'o', chunk = 'c', dismissed = 'x', ready = 'r', done = 'd', failed = 'f' };
+enum class MessageKind : char { order = 'o', chunk = 'c', dismissed = 'x', ready = 'r', done = 'd', failed = 'f' };
 
-Kind kind_of(const Messages::RankMessage& letter) {
-    return static_cast<Kind>(letter.bytes.empty() ? 'x' : letter.bytes[0]);
+MessageKind kind_of(const Messages::RankMessage& letter) {
+    return static_cast<MessageKind>(letter.bytes.empty() ? 'x' : letter.bytes[0]);
 }
 
 std::string_view content_of(const Messages::RankMessage& letter) { return std::string_view(letter.bytes).substr(1); }
 
-std::string message(Kind kind, std::string_view content = {}) {
+std::string message(MessageKind kind, std::string_view content = {}) {
     std::string bytes(1, static_cast<char>(kind));
     bytes += content;
     return bytes;
@@ -56,7 +56,7 @@ class Crew {
  public:
     Crew(Messages& messages, ChunkQueue& queue, const std::string& order)
         : messages_(messages), queue_(queue), wanted_(static_cast<std::size_t>(messages.size())), out_(wanted_) {
-        for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(Kind::order, order));
+        for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(MessageKind::order, order));
     }
 
     // Receives all messages that have arrived, and sends chunks to ranks that can take them.
@@ -78,12 +78,12 @@ class Crew {
         const auto from = static_cast<std::size_t>(letter.from);
         std::string_view content = content_of(letter);
         switch (kind_of(letter)) {
-            case Kind::ready: {
+            case MessageKind::ready: {
                 const int threads = take<int>(content);
                 wanted_[from] = 2 * threads;
                 return queue_.add_threads(threads);
             }
-            case Kind::done: {
+            case MessageKind::done: {
                 const auto chunk = take<Chunk>(content);
                 const auto taken = take<double>(content);
                 --out_[from];
@@ -99,7 +99,7 @@ class Crew {
         if (wanted_[rank] == 0) return false;
         const std::optional<Chunk> chunk = queue_.take_at_once();
         if (!chunk) return false;
-        messages_.send(static_cast<int>(rank), message(Kind::chunk, as_bytes(*chunk)));
+        messages_.send(static_cast<int>(rank), message(MessageKind::chunk, as_bytes(*chunk)));
         --wanted_[rank];
         ++out_[rank];
         return true;
@@ -137,7 +137,7 @@ class Inbox final : public ChunkSource {
         std::string header(as_bytes(chunk));
         header += as_bytes(seconds);
         const std::scoped_lock lock(mutex_);
-        out_.push_back(message(Kind::done, header + bytes));
+        out_.push_back(message(MessageKind::done, header + bytes));
     }
     void fail(std::exception_ptr problem) override {
         std::string text = "stopped with an unknown error";
@@ -150,7 +150,7 @@ class Inbox final : public ChunkSource {
         std::array<char, 256> host{};
         if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
         const std::scoped_lock lock(mutex_);
-        out_.push_back(message(Kind::failed, fmt::format("on {}: {}", host.data(), text)));
+        out_.push_back(message(MessageKind::failed, fmt::format("on {}: {}", host.data(), text)));
         is_closed_ = true;
         changed_.notify_all();
     }
@@ -174,7 +174,7 @@ class Inbox final : public ChunkSource {
 }  // namespace
 
 void dismiss(Messages& messages) {
-    for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(Kind::dismissed));
+    for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(MessageKind::dismissed));
 }
 
 void help_with_chunks(Messages& messages, const std::function<RankTask(std::string_view order)>& begin) {
@@ -183,7 +183,7 @@ void help_with_chunks(Messages& messages, const std::function<RankTask(std::stri
     std::jthread work;
     const auto read = [&](const Messages::RankMessage& letter) {
         std::string_view content = content_of(letter);
-        if (kind_of(letter) == Kind::chunk) return inbox.add(take<Chunk>(content));
+        if (kind_of(letter) == MessageKind::chunk) return inbox.add(take<Chunk>(content));
         try {
             share = begin(content);
         } catch (...) {
@@ -191,12 +191,12 @@ void help_with_chunks(Messages& messages, const std::function<RankTask(std::stri
         }
         if (share.threads <= 0) share.threads = messages.cores();
         work = std::jthread([&] { work_on(inbox, share.threads, share.task); });
-        messages.send(0, message(Kind::ready, as_bytes(share.threads)));
+        messages.send(0, message(MessageKind::ready, as_bytes(share.threads)));
     };
     for (;;) {
         bool is_idle = true;
         if (const auto letter = messages.receive()) {
-            if (kind_of(*letter) == Kind::dismissed) break;
+            if (kind_of(*letter) == MessageKind::dismissed) break;
             read(*letter);
             is_idle = false;
         }

@@ -65,16 +65,16 @@ class SectionSampler {
             if (trajectory.pieces[i].end > std::max(trajectory.pieces[i].start, from)) pieces_.push_back(i);
     }
 
-    struct Point {
+    struct SampledPoint {
         double t, value;
         std::size_t piece;
     };
 
-    std::vector<Point> points() {
-        std::vector<Point> ends;
+    std::vector<SampledPoint> points() {
+        std::vector<SampledPoint> ends;
         for (const std::size_t i : pieces_)
             for (const double t : {trajectory_.pieces[i].start, trajectory_.pieces[i].end}) ends.push_back(at(i, t));
-        for (const Point& end : ends)
+        for (const SampledPoint& end : ends)
             if (std::isfinite(end.value)) rounding_ = std::max(rounding_, relative_rounding * std::abs(end.value));
         if (is_nothing(ends)) return {};
         left_ = most_looks + looks_per_piece * pieces_.size();
@@ -88,7 +88,7 @@ class SectionSampler {
     // Rounding level of a value that is zero.
     double rounding() const { return rounding_; }
 
-    Point at(std::size_t piece, double t) {
+    SampledPoint at(std::size_t piece, double t) {
         return {t, function_.value(sampler_.in(trajectory_.pieces[piece], t, function_.asks_for_work)), piece};
     }
     Sample sample(std::size_t piece, double t) { return sampler_.in(trajectory_.pieces[piece], t); }
@@ -99,10 +99,10 @@ class SectionSampler {
     static constexpr std::size_t most_looks = std::size_t{1} << 18, looks_per_piece = 32;
 
     // Whether all values are zero within rounding, also inside the steps, because steps may all end at zeros.
-    bool is_nothing(const std::vector<Point>& ends) {
+    bool is_nothing(const std::vector<SampledPoint>& ends) {
         if (function_.bounds == nullptr) return false;
         constexpr double share = 0.382;
-        const auto rounds_to = [&](const Point& point) {
+        const auto rounds_to = [&](const SampledPoint& point) {
             const DenseSegment& piece = trajectory_.pieces[point.piece];
             return std::abs(point.value) <= 4.0 * rad(function_.bounds->value(trajectory_, piece, point.t, point.t));
         };
@@ -114,12 +114,12 @@ class SectionSampler {
                std::all_of(pieces_.begin(), pieces_.end(), is_zero_in);
     }
 
-    void look_between(const Point& a, const Point& b) {
+    void look_between(const SampledPoint& a, const SampledPoint& b) {
         if (function_.bounds != nullptr) return divide(a, b, deepest);
         constexpr int parts = 8;
-        Point before = a;
+        SampledPoint before = a;
         for (int part = 1; part <= parts; ++part) {
-            const Point after = part == parts ? b : at(a.piece, a.t + (b.t - a.t) * part / parts);
+            const SampledPoint after = part == parts ? b : at(a.piece, a.t + (b.t - a.t) * part / parts);
             divide_where_it_bends(before, after, deepest_by_bend);
             if (part < parts) points_.push_back(after);
             before = after;
@@ -127,7 +127,7 @@ class SectionSampler {
     }
 
     // Bisects until the bounds exclude a zero between two points, or allow at most one, which then shows in the signs.
-    void divide(const Point& a, const Point& b, int depth) {
+    void divide(const SampledPoint& a, const SampledPoint& b, int depth) {
         if (left_ == 0) return divide_where_it_bends(a, b, std::min(depth, deepest_by_bend));
         --left_;
         const double t = 0.5 * (a.t + b.t);
@@ -135,7 +135,7 @@ class SectionSampler {
         const Interval value = function_.bounds->value(trajectory_, trajectory_.pieces[a.piece], a.t, b.t);
         if (mig(value) > 0.0 || mag(value) <= rounding_) return;
         if (value.is_defined() && mig(function_.bounds->rate()) > 0.0) return;
-        const Point middle = at(a.piece, t);
+        const SampledPoint middle = at(a.piece, t);
         divide(a, middle, depth - 1);
         points_.push_back(middle);
         divide(middle, b, depth - 1);
@@ -143,11 +143,11 @@ class SectionSampler {
 
     // Bisects between two points of equal sign if the curvature of the function is large enough for a zero between
     // them.
-    void divide_where_it_bends(const Point& a, const Point& b, int depth) {
+    void divide_where_it_bends(const SampledPoint& a, const SampledPoint& b, int depth) {
         if (depth == 0 || !((a.value < 0.0) == (b.value < 0.0))) return;
         const double t = 0.5 * (a.t + b.t);
         if (!(t > a.t && t < b.t)) return;
-        const Point middle = at(a.piece, t);
+        const SampledPoint middle = at(a.piece, t);
         const double bend = std::abs(middle.value - 0.5 * (a.value + b.value));
         if (!(2.0 * bend >= std::min(std::abs(a.value), std::abs(b.value)))) return;
         divide_where_it_bends(a, middle, depth - 1);
@@ -159,7 +159,7 @@ class SectionSampler {
     Sampler sampler_;
     const SectionFunction& function_;
     std::vector<std::size_t> pieces_;  // indices of the steps to examine
-    std::vector<Point> points_;
+    std::vector<SampledPoint> points_;
     double rounding_ = 0.0;
     std::size_t left_ = 0;  // remaining number of bound evaluations
 };
@@ -172,8 +172,8 @@ std::size_t events_until(const Trajectory& trajectory, double t) {
 
 // The zero between a negative and a positive value in one step. Returns nullopt for a jump or a pole, where the value
 // next to it stays large.
-std::optional<double> zero_between(SectionSampler& along, const SectionSampler::Point& below,
-                                   const SectionSampler::Point& above) {
+std::optional<double> zero_between(SectionSampler& along, const SectionSampler::SampledPoint& below,
+                                   const SectionSampler::SampledPoint& above) {
     const auto near = [](double a, double b) { return std::abs(b - a) <= 1e-13 * (1.0 + std::abs(a)); };
     std::uintmax_t most = 100;
     const auto value = [&](double t) { return along.at(above.piece, t).value; };
@@ -213,11 +213,11 @@ std::vector<SectionPoint> zeros_of(const Trajectory& trajectory, const Section& 
                                    const SectionFunction& function) {
     const FloatEnvironmentGuard ground;  // for the bounds
     SectionSampler along(trajectory, function, section.after.value_or(trajectory.run.options.start_time));
-    const std::vector<SectionSampler::Point> points = along.points();
+    const std::vector<SectionSampler::SampledPoint> points = along.points();
     const double rounding = along.rounding();
     std::vector<SectionPoint> moments;
-    const SectionSampler::Point* below = nullptr;  // the last negative point with no positive one after it
-    for (const SectionSampler::Point& point : points) {
+    const SectionSampler::SampledPoint* below = nullptr;  // the last negative point with no positive one after it
+    for (const SectionSampler::SampledPoint& point : points) {
         const bool jumped = &point != points.data() && point.piece != (&point)[-1].piece &&
                             std::abs(point.value - (&point)[-1].value) > 100.0 * rounding;
         if (jumped || !std::isfinite(point.value)) below = nullptr;

@@ -211,7 +211,7 @@ void EquationsOnPage::unsimplified(const TextAndLatex& left, Expression derived,
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
 }
 
-std::string EquationsOnPage::written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const {
+std::string EquationsOnPage::written(const Fraction& fraction, const AlgebraWriter& writer, Algebra& algebra) const {
     algebra.work() = Work{1000000};
     try {
         return writer.write(fraction, algebra).text;
@@ -233,7 +233,7 @@ EquationsOnPage::Quotient EquationsOnPage::factor_or_sum(const Fraction& fractio
 }
 
 EquationsOnPage::Quotient EquationsOnPage::split(const FactoredForm& factored, const std::string& whole,
-                                                 const Writer& writer) {
+                                                 const AlgebraWriter& writer) {
     FactoredForm top{numerator(factored.number), {}}, bottom{denominator(factored.number), {}};
     for (const auto& [base, exponent] : factored.factors)
         (exponent > 0 ? top : bottom).factors.push_back({base, std::abs(exponent)});
@@ -264,7 +264,7 @@ void EquationsOnPage::zeno(const std::optional<ZenoCondition>& found) {
         const std::string line = fmt::format("there {}", fmt::join(there, ", "));
         page_.sentence({line, line});
     }
-    const Writer writer = writer_of(zeno);
+    const AlgebraWriter writer = writer_of(zeno);
     const FactoredForm whole = zeno.positive * zeno.decisive;
     const std::string hddot = writer.write(whole).text;
     const bool divided = !zeno.positive.factors.empty() || zeno.positive.number != 1;
@@ -305,8 +305,8 @@ std::optional<double> EquationsOnPage::decisive_here(const ZenoCondition& zeno) 
 }
 
 // The writer covers the atoms that the algebra has created so far.
-Writer EquationsOnPage::writer_of(const ZenoCondition& zeno) const {
-    return Writer(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
+AlgebraWriter EquationsOnPage::writer_of(const ZenoCondition& zeno) const {
+    return AlgebraWriter(*zeno.algebra, model_.slot_names(), simplified_.ranks(), page_.notation());
 }
 
 std::vector<std::string> EquationsOnPage::on_surface(const ZenoCondition& zeno) const {
@@ -319,7 +319,7 @@ std::vector<std::string> EquationsOnPage::on_surface(const ZenoCondition& zeno) 
             return {};
         }
     }
-    const Writer writer = writer_of(zeno);
+    const AlgebraWriter writer = writer_of(zeno);
     std::vector<std::string> there;
     for (std::size_t i = 0; i < values.size(); ++i) {
         const std::string symbol = achilles::write(zeno.solved[i].first, model_.slot_names(), page_.notation()).text;
@@ -350,7 +350,7 @@ std::string EquationsOnPage::grounds(const ZenoCondition& zeno) const {
     return reasons.empty() ? "" : fmt::format(", {}", fmt::join(reasons, " and "));
 }
 
-void EquationsOnPage::reason(const ZenoCondition& zeno, const Writer& writer) {
+void EquationsOnPage::reason(const ZenoCondition& zeno, const AlgebraWriter& writer) {
     const std::string divisor = in_line(writer.write(zeno.positive).text);
     const std::string because = grounds(zeno);
     if (is_text() && divisor.size() > 60)

@@ -47,7 +47,7 @@ class EquationsOnPage {
     std::vector<std::string> on_surface(const ZenoCondition& zeno) const;
     // The value that must be negative, with the parameters of this run; nullopt if it depends on more than parameters.
     std::optional<double> decisive_here(const ZenoCondition& zeno) const;
-    Writer writer_of(const ZenoCondition& zeno) const;
+    AlgebraWriter writer_of(const ZenoCondition& zeno) const;
     // The condition on the restitution: impacts accumulate only for 0 < e < 1.
     void zeno_restitution(std::size_t contact);
     // Says which Zeno conditions with held contacts are not printed.
@@ -57,7 +57,7 @@ class EquationsOnPage {
     const Run& run_;
     const SimplifiedEquations& simplified_;
     Page page_;
-    Writer writer_;
+    AlgebraWriter writer_;
 
  private:
     struct Quotient {
@@ -65,16 +65,16 @@ class EquationsOnPage {
     };
     void flat(std::size_t index);
     // As a product of factors; as a quotient of sums if factoring takes too much work.
-    std::string written(const Fraction& fraction, const Writer& writer, Algebra& algebra) const;
+    std::string written(const Fraction& fraction, const AlgebraWriter& writer, Algebra& algebra) const;
     std::string written(const Fraction& fraction) const { return written(fraction, writer_, simplified_.algebra()); }
     void formula(const TextAndLatex& left, const std::optional<Fraction>& fraction, Expression derived,
                  const TextAndLatex& definition);
     void unsimplified(const TextAndLatex& left, Expression derived, const TextAndLatex& definition);
     Quotient factor_or_sum(const Fraction& fraction) const;
-    static Quotient split(const FactoredForm& factored, const std::string& whole, const Writer& writer);
+    static Quotient split(const FactoredForm& factored, const std::string& whole, const AlgebraWriter& writer);
     static void long_formula(Page& page, const TextAndLatex& left, const Quotient& quotient);
     std::string grounds(const ZenoCondition& zeno) const;
-    void reason(const ZenoCondition& zeno, const Writer& writer);
+    void reason(const ZenoCondition& zeno, const AlgebraWriter& writer);
 };
 
 }  // namespace achilles

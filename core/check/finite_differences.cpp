@@ -21,7 +21,7 @@ using Real = mp::number<mp::backends::cpp_bin_float<50>, mp::et_off>;
 using Reals = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
 
-struct Point {
+struct PreciseState {
     Reals q, v;
     Real t;
 };
@@ -35,7 +35,7 @@ class Functions {
     }
     Functions(const Functions&) = delete;
 
-    Reals operator()(const Point& at) {
+    Reals operator()(const PreciseState& at) {
         for (std::size_t i = 0; i < dof_; ++i) {
             evaluator_.input(i) = at.q[static_cast<Eigen::Index>(i)];
             evaluator_.input(dof_ + i) = at.v[static_cast<Eigen::Index>(i)];
@@ -57,8 +57,9 @@ class Functions {
 const Real step("1e-11");
 
 // d f/dx_i at a point, where x is q or v of the point.
-Real slope(const std::function<Real(const Point&)>& f, const Point& point, Reals Point::*x, Eigen::Index i) {
-    Point at = point;
+Real slope(const std::function<Real(const PreciseState&)>& f, const PreciseState& point, Reals PreciseState::*x,
+           Eigen::Index i) {
+    PreciseState at = point;
     const Real middle = (at.*x)[i];
     (at.*x)[i] = middle + step;
     const Real up = f(at);
@@ -77,18 +78,18 @@ class Differences {
           gaps_(model, run, model.equations().gaps) {}
 
     // M, bias, Q; for each contact dh, hdot, hddot, lambda; then hddot of each contact while one other is held.
-    Reals operator()(const Point& at) {
-        const auto L = [&](const Point& x) { return lagrangian_(x)[0]; };
-        const auto R = [&](const Point& x) { return forces_(x)[dof_]; };
+    Reals operator()(const PreciseState& at) {
+        const auto L = [&](const PreciseState& x) { return lagrangian_(x)[0]; };
+        const auto R = [&](const PreciseState& x) { return forces_(x)[dof_]; };
         Matrix M(dof_, dof_);
         Reals b(dof_), Q = forces_(at).head(dof_);
         for (Eigen::Index i = 0; i < dof_; ++i) {
-            const auto momentum = [&](const Point& x) { return slope(L, x, &Point::v, i); };
-            b[i] = -slope(L, at, &Point::q, i);
-            Q[i] -= slope(R, at, &Point::v, i);
+            const auto momentum = [&](const PreciseState& x) { return slope(L, x, &PreciseState::v, i); };
+            b[i] = -slope(L, at, &PreciseState::q, i);
+            Q[i] -= slope(R, at, &PreciseState::v, i);
             for (Eigen::Index j = 0; j < dof_; ++j) {
-                M(i, j) = slope(momentum, at, &Point::v, j);
-                b[i] += slope(momentum, at, &Point::q, j) * at.v[j];
+                M(i, j) = slope(momentum, at, &PreciseState::v, j);
+                b[i] += slope(momentum, at, &PreciseState::q, j) * at.v[j];
             }
         }
         const Eigen::PartialPivLU<Matrix> inverse(M);
@@ -101,7 +102,7 @@ class Differences {
         Matrix G(m, dof_);
         for (Eigen::Index k = 0; k < m; ++k)
             for (Eigen::Index i = 0; i < dof_; ++i)
-                G(k, i) = slope([&](const Point& x) { return gaps_(x)[k]; }, at, &Point::q, i);
+                G(k, i) = slope([&](const PreciseState& x) { return gaps_(x)[k]; }, at, &PreciseState::q, i);
         const Matrix W = G * inverse.solve(Matrix(G.transpose()));
         Reals all(dof_ * dof_ + 2 * dof_ + m * (dof_ + 3) + m * (m - 1));
         all.head(dof_ * dof_ + 2 * dof_) << M.reshaped(), b, Q;
@@ -156,7 +157,7 @@ class SurfacePoints {
         : count_(static_cast<Eigen::Index>(contacts.size())), functions_(model, run, outputs(model, contacts)) {}
 
     // Projects a state to h = 0 by Newton's method and its rates to hdot = 0. Returns false if that fails.
-    bool hold(Point& at) {
+    bool hold(PreciseState& at) {
         Reals values = functions_(at);
         for (int i = 0; i < 60 && is_finite(values); ++i, values = functions_(at)) {
             const Matrix G = values.tail(values.size() - 2 * count_).reshaped(at.q.size(), count_).transpose();
@@ -192,7 +193,7 @@ class ZenoConditionCheck {
         : surface_(model, run, contacts), hddot_(model, run, {hddot}), shown_(model, run, {as_expression(zeno)}) {}
 
     // The relative difference; nullopt if no state on the surfaces is found from this point.
-    std::optional<double> disagreement(Point at) {
+    std::optional<double> disagreement(PreciseState at) {
         if (!surface_.hold(at)) return std::nullopt;
         const Reals there = hddot_(at);
         if (!is_finite(there)) return std::nullopt;
@@ -344,7 +345,7 @@ MaxDifference compare_with_differences(const Model& model, const Run& run, const
     MaxDifference result;
     Random random;
     for (int tried = 0; tried < 10 * states && result.states < states; ++tried) {
-        Point at{Reals(n), Reals(n), run.options.start_time};
+        PreciseState at{Reals(n), Reals(n), run.options.start_time};
         for (Eigen::Index i = 0; i < n; ++i) {
             const auto& coordinate = model.description().coordinates[static_cast<std::size_t>(i)];
             at.q[i] = random.between(coordinate.range);

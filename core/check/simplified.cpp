@@ -47,9 +47,10 @@ class ParameterSigns {
     std::vector<std::uint32_t> parameters_, others_;
 };
 
-class Search {
+class SimplificationSearch {
  public:
-    Search(const Model& model, const Run& run, const std::vector<const ContactEquations*>& contacts, Graph& graph)
+    SimplificationSearch(const Model& model, const Run& run, const std::vector<const ContactEquations*>& contacts,
+                         Graph& graph)
         : layout_(model.layout()),
           e_(model.equations()),
           contacts_(contacts),
@@ -299,7 +300,7 @@ Expression expression_of(const FactoredForm& product, Algebra& algebra) {
 std::optional<ZenoCondition> zeno_condition(const Model& model, const Run& run,
                                             const std::vector<const ContactEquations*>& contacts, Graph& graph) {
     const FloatEnvironmentGuard ground;
-    return Search(model, run, contacts, graph).best();
+    return SimplificationSearch(model, run, contacts, graph).best();
 }
 
 namespace {

@@ -65,7 +65,7 @@ class SimplifiedEquations {
     }
 
     Algebra& algebra() const { return *algebra_; }
-    // The order of names in a product: parameters, coordinates, rates (Writer).
+    // The order of names in a product: parameters, coordinates, rates (AlgebraWriter).
     const std::vector<int>& ranks() const { return ranks_; }
 
  private:

@@ -34,7 +34,7 @@ CrossingSurface CrossingSurface::of_time(const Coordinates&, double time) {
             true};
 }
 
-void cross(Doubleton& set, const Step& step, const CrossingSurface& section, Interval& tau) {
+void cross(Doubleton& set, const EnclosureStep& step, const CrossingSurface& section, Interval& tau) {
     for (int round = 0;; ++round) {
         const Interval middle(mid(tau));
         Intervals point = step.centre_at(middle), box = step.box_over(set, tau);

@@ -25,7 +25,7 @@ struct CrossingSurface {
 
 // Maps the set to the surface. Every member must be known to cross it in tau, which is narrowed. Throws ProofStopped if
 // the crossing is not transversal.
-void cross(Doubleton& set, const Step& step, const CrossingSurface& section, Interval& tau);
+void cross(Doubleton& set, const EnclosureStep& step, const CrossingSurface& section, Interval& tau);
 
 // ---- first zero of a positive quantity, proved for every member of a set (theory-enclosure.md 3) ----
 

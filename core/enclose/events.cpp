@@ -139,7 +139,7 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
 
 // The states at the Zeno points if all members reach them in this step, each after its own accumulation time. The error
 // of the comparison motion is not included.
-Intervals Prover::zeno_box(std::size_t contact, const Step& step, const Interval& tau,
+Intervals Prover::zeno_box(std::size_t contact, const EnclosureStep& step, const Interval& tau,
                            const Completion::CompletionProof& proof) const {
     const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
     Intervals box = step.box_over(set_, tau);
@@ -180,7 +180,7 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     Interval passed(0.0);
     std::optional<Intervals> zeno;
     for (double left = proof->window; left > 0x1p-43 * proof->window;) {
-        const Step step = motion().make(set_, left, openings_);
+        const EnclosureStep step = motion().make(set_, left, openings_);
         count_step();
         const Interval wait = proof->wait - passed;
         const Interval tau(std::max(0.0, wait.lo()), std::min(step.length(), wait.hi()));

@@ -75,7 +75,7 @@ double Prover::longest() const {
 
 // Covers the requested times that members reach within elapsed times [0, elapsed] of a step. If all members reach the
 // time before any reaches the end of the step, the set is mapped to that time. Otherwise the hull there is extended.
-void Prover::cover(const Step& step, const Interval& elapsed) {
+void Prover::cover(const EnclosureStep& step, const Interval& elapsed) {
     const Interval now = set_.hull(Coordinates::t());
     for (SampleRequest& asked : asked_) {
         if (asked.is_known) continue;
@@ -182,7 +182,7 @@ const char* doubt_of(Transition transition) {
 }  // namespace
 
 // The event of this step that precedes all others in every member, if there is one.
-Prover::NextEvent Prover::next_in(const Step& step) const {
+Prover::NextEvent Prover::next_in(const EnclosureStep& step) const {
     std::vector<FirstRoot> roots;
     NextEvent next{{}, {}, step.length(), {}};
     for (std::size_t i = 0; i < z_.contacts; ++i) {
@@ -207,7 +207,7 @@ Prover::NextEvent Prover::next_in(const Step& step) const {
 }
 
 // Updates the bounds on the open gaps after a step without an event of theirs.
-void Prover::pass(const Step& step, const Interval& elapsed) {
+void Prover::pass(const EnclosureStep& step, const Interval& elapsed) {
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (mode_.is_held(i)) continue;
         const Interval factor = integer_power(elapsed, static_cast<int>(openings_[i].known));
@@ -239,7 +239,7 @@ void Prover::happen(Transition transition, std::size_t contact, const Interval& 
 }
 
 void Prover::move() {
-    const Step step = motion().make(set_, longest_step(), openings_);
+    const EnclosureStep step = motion().make(set_, longest_step(), openings_);
     count_step();
     const NextEvent next = next_in(step);
     if (next.contact) {

@@ -40,8 +40,8 @@ class Prover {
     void count_step();
     void move();
     double longest_step();
-    NextEvent next_in(const Step& step) const;
-    void pass(const Step& step, const Interval& elapsed);
+    NextEvent next_in(const EnclosureStep& step) const;
+    void pass(const EnclosureStep& step, const Interval& elapsed);
     void project(std::size_t contact);
     void retract(Mode onto);
     ContactSet opened_by(std::size_t contact);
@@ -51,7 +51,7 @@ class Prover {
     void land(std::size_t contact, const Interval& time);
     void capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened);
     bool complete(std::size_t contact, const Interval& time, const Interval& e, double radius);
-    Intervals zeno_box(std::size_t contact, const Step& step, const Interval& tau,
+    Intervals zeno_box(std::size_t contact, const EnclosureStep& step, const Interval& tau,
                        const Completion::CompletionProof& proof) const;
     void release(std::size_t contact, const Interval& time);
     void enter(Mode mode);
@@ -63,7 +63,7 @@ class Prover {
     EventMaps& maps(std::size_t contact);
     Completion& completion(std::size_t contact);
 
-    void cover(const Step& step, const Interval& elapsed);
+    void cover(const EnclosureStep& step, const Interval& elapsed);
     void cover(const Interval& times, const Intervals& q, const Intervals& v);
     void settle();
     bool is_over() const;

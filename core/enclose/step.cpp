@@ -24,7 +24,7 @@ Interval intersection(const Interval& a, const Interval& b) {
 }  // namespace
 
 // sum_k table_k tau^k, for every coordinate.
-Intervals Step::along(const Intervals& table, const Interval& tau) const {
+Intervals EnclosureStep::along(const Intervals& table, const Interval& tau) const {
     Intervals result(table.end() - static_cast<std::ptrdiff_t>(size_), table.end());
     for (int k = K - 1; k >= 0; --k) {
         const Interval* const row = coefficients(table, k);
@@ -33,9 +33,9 @@ Intervals Step::along(const Intervals& table, const Interval& tau) const {
     return result;
 }
 
-Intervals Step::centre_at(const Interval& tau) const { return along(centre_, tau); }
+Intervals EnclosureStep::centre_at(const Interval& tau) const { return along(centre_, tau); }
 
-Intervals Step::rate_at(const Interval& tau) const {
+Intervals EnclosureStep::rate_at(const Interval& tau) const {
     Intervals result(size_);
     for (int k = K; k >= 1; --k) {
         const Interval* const row = coefficients(centre_, k);
@@ -45,7 +45,7 @@ Intervals Step::rate_at(const Interval& tau) const {
     return result;
 }
 
-IntervalMatrix Step::slope_at(const Interval& tau) const {
+IntervalMatrix EnclosureStep::slope_at(const Interval& tau) const {
     IntervalMatrix result = slopes_.back();
     for (std::size_t k = slopes_.size() - 1; k-- > 0;)
         for (std::size_t i = 0; i < size_; ++i)
@@ -53,14 +53,14 @@ IntervalMatrix Step::slope_at(const Interval& tau) const {
     return result;
 }
 
-Intervals Step::remainder_at(const Interval& tau) const {
+Intervals EnclosureStep::remainder_at(const Interval& tau) const {
     Intervals result;
     const Interval scale = power(tau, K + 1);
     for (const Interval& entry : remainder_) result.push_back(times(entry, scale));
     return result;
 }
 
-Intervals Step::box_over(const Doubleton& set, const Interval& tau) const {
+Intervals EnclosureStep::box_over(const Doubleton& set, const Interval& tau) const {
     const Interval middle(mid(tau));
     Intervals plain = along(hull_, tau), sharp = centre_at(middle);
     const Intervals rate = rate_at(tau), remainder = remainder_at(tau);
@@ -72,7 +72,7 @@ Intervals Step::box_over(const Doubleton& set, const Interval& tau) const {
     return plain;
 }
 
-void Step::advance(Doubleton& set, double tau) const {
+void EnclosureStep::advance(Doubleton& set, double tau) const {
     const Interval at(tau);
     Intervals centre = centre_at(at);
     const Intervals remainder = remainder_at(at);
@@ -136,7 +136,7 @@ double EnclosureStepper::first_length(const Doubleton&, const Intervals& hull, d
 
 // Finds the a-priori box: the polynomial over [0, length] plus +-eps. It is accepted if the remainder over it is
 // strictly less than eps.
-bool EnclosureStepper::enclose(Step& step, const Intervals& hull, double length) {
+bool EnclosureStepper::enclose(EnclosureStep& step, const Intervals& hull, double length) {
     const std::size_t n = coordinates_.dof;
     const Interval span(0.0, length), middle(0.5 * length), whole = power(Interval(length), K + 1);
     Intervals box = hull;
@@ -182,7 +182,7 @@ bool EnclosureStepper::enclose(Step& step, const Intervals& hull, double length)
 }
 
 // The Taylor coefficients of all coordinates: h'' = hddot for an open contact; h and u of a held contact are constant.
-void EnclosureStepper::tabulate(Step& step, const Doubleton& set, const std::vector<OpenGapBound>& openings) {
+void EnclosureStepper::tabulate(EnclosureStep& step, const Doubleton& set, const std::vector<OpenGapBound>& openings) {
     const Coordinates& z = coordinates_;
     const std::size_t size = z.size(), n = z.dof;
     step.size_ = size;
@@ -217,7 +217,7 @@ void EnclosureStepper::tabulate(Step& step, const Doubleton& set, const std::vec
     }
 }
 
-Intervals EnclosureStepper::watch(const Step& step, const Doubleton& set, std::size_t contact,
+Intervals EnclosureStepper::watch(const EnclosureStep& step, const Doubleton& set, std::size_t contact,
                                   const OpenGapBound& opening) const {
     switch (law_of(mode_.state(contact)).watched) {
         case WatchedFunction::gap:
@@ -240,7 +240,7 @@ Intervals EnclosureStepper::watch_force(const Doubleton& set, std::size_t contac
     return result;
 }
 
-Intervals EnclosureStepper::watch_gap(const Step& step, const Doubleton& set, std::size_t contact,
+Intervals EnclosureStepper::watch_gap(const EnclosureStep& step, const Doubleton& set, std::size_t contact,
                                       const OpenGapBound& opening) const {
     const std::size_t size = coordinates_.size(), h = coordinates_.h(contact);
     Intervals result;
@@ -254,7 +254,7 @@ Intervals EnclosureStepper::watch_gap(const Step& step, const Doubleton& set, st
     return result;
 }
 
-Step EnclosureStepper::make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings) {
+EnclosureStep EnclosureStepper::make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings) {
     const Intervals hull = set.hull();
     at_centre_->expand(set.centre(), K);
     over_hull_->expand(hull, K);
@@ -262,7 +262,7 @@ Step EnclosureStepper::make(const Doubleton& set, double longest, const std::vec
     if (last_ > 0.0) length = std::min(length, 1.3 * last_);
     const double least = 0x1p-50 * std::max(mag(hull[Coordinates::t()]), 0x1p-20 * longest);
     const double fine = mode_.is_free() ? 2e-17 : 1e-15;
-    Step step;
+    EnclosureStep step;
     tabulate(step, set, openings);
     for (int round = 0; round < 60 && length > least; ++round) {
         if (!enclose(step, hull, length)) {

@@ -42,7 +42,7 @@ struct OpenGapBound {
     Interval gap = Interval::everything();
 };
 
-class Step {
+class EnclosureStep {
  public:
     double length() const { return length_; }
     // T, its derivative, S and rho for all coordinates; 0 <= tau <= length.
@@ -84,20 +84,22 @@ class EnclosureStepper {
 
     // Makes a step of at most `longest` (s); `openings` has an entry for each contact. Throws ProofStopped if no
     // a-priori box is found.
-    Step make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings);
+    EnclosureStep make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings);
     // Removes the limit that the last step sets to the length of the next.
     void forget() { last_ = 0.0; }
 
  private:
-    void tabulate(Step& step, const Doubleton& set, const std::vector<OpenGapBound>& openings);
+    void tabulate(EnclosureStep& step, const Doubleton& set, const std::vector<OpenGapBound>& openings);
     // Enclosures of the coefficients in time of the function whose zero is the event of this contact: the gap if it is
     // open, -hddot of the mode without it if it is held.
-    Intervals watch(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
-    Intervals watch_gap(const Step& step, const Doubleton& set, std::size_t contact, const OpenGapBound& opening) const;
+    Intervals watch(const EnclosureStep& step, const Doubleton& set, std::size_t contact,
+                    const OpenGapBound& opening) const;
+    Intervals watch_gap(const EnclosureStep& step, const Doubleton& set, std::size_t contact,
+                        const OpenGapBound& opening) const;
     Intervals watch_force(const Doubleton& set, std::size_t contact) const;
     bool keeps_gap(std::size_t contact) const { return law_of(mode_.state(contact)).kept == Constraint::gap; }
     std::size_t event(std::size_t contact) const { return 2 * coordinates_.dof + contact; }  // the row of its hddot
-    bool enclose(Step& step, const Intervals& hull, double length);
+    bool enclose(EnclosureStep& step, const Intervals& hull, double length);
     double first_length(const Doubleton& set, const Intervals& hull, double longest) const;
     std::vector<double> scales(const Intervals& hull, double length) const;
 

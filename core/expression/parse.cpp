@@ -65,14 +65,14 @@ class Parser {
 
  private:
     // Counts the nesting depth for the lifetime of the object.
-    struct Level {
-        explicit Level(Parser& parser) : parser_(parser) {
+    struct NestingGuard {
+        explicit NestingGuard(Parser& parser) : parser_(parser) {
             if (++parser_.depth_ > deepest)
                 throw ParseError(parser_.at_, "nested more than " + std::to_string(deepest) + " levels deep");
         }
-        ~Level() { --parser_.depth_; }
-        Level(const Level&) = delete;
-        Level& operator=(const Level&) = delete;
+        ~NestingGuard() { --parser_.depth_; }
+        NestingGuard(const NestingGuard&) = delete;
+        NestingGuard& operator=(const NestingGuard&) = delete;
         Parser& parser_;
     };
 
@@ -163,7 +163,7 @@ class Parser {
 
     // -x^2 is -(x^2): the sign binds less tightly than the power.
     Expression signed_factor() {
-        const Level level(*this);
+        const NestingGuard level(*this);
         if (take('-')) return -signed_factor();
         if (take('+')) return signed_factor();
         const std::size_t begin = at_;

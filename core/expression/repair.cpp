@@ -186,9 +186,9 @@ std::string text_of(const std::vector<Token>& tokens) {
 }
 
 // ---- words ----
-class Words {
+class TokenRepair {
  public:
-    Words(std::vector<Token> tokens, const Scope& scope) : tokens_(std::move(tokens)), scope_(scope) {}
+    TokenRepair(std::vector<Token> tokens, const Scope& scope) : tokens_(std::move(tokens)), scope_(scope) {}
 
     std::vector<Token> repaired() {
         for (std::size_t i = 0; i < tokens_.size(); ++i) {
@@ -423,7 +423,7 @@ std::string without_relation(const std::string& text, const Scope& scope) {
 std::string repaired(std::string_view text, const Scope& scope) {
     std::string plain = trimmed(with_plain_signs(without_index(without_latex(std::string(text)), scope)));
     while (plain.ends_with(';') || plain.ends_with(',')) plain = trimmed(plain.substr(0, plain.size() - 1));
-    return text_of(Words(tokens_of(without_relation(plain, scope)), scope).repaired());
+    return text_of(TokenRepair(tokens_of(without_relation(plain, scope)), scope).repaired());
 }
 
 namespace {

@@ -21,12 +21,12 @@ Expression unary(Op operation, Expression a) { return Builder::make(a.graph(), G
 Expression number(Expression like, const Rational& value) { return Builder::number(like.graph(), value); }
 
 // e = factor * rest, where `factor` is the outermost numeric factor.
-struct Term {
+struct ScaledExpression {
     Rational factor;
     Expression rest;
 };
 
-Term split(Expression e) {
+ScaledExpression split(Expression e) {
     if (Builder::is(e, Op::negate)) return {Rational(-1), Builder::first(e)};
     if (Builder::is(e, Op::multiply) && Builder::first(e).is_number())
         return {Builder::value(Builder::first(e)), Builder::second(e)};
@@ -61,7 +61,7 @@ bool fits(int exponent) { return exponent > -1000 && exponent < 1000; }
 
 Expression operator-(Expression a) {
     if (Builder::is(a, Op::subtract)) return binary(Op::subtract, Builder::second(a), Builder::first(a));
-    const Term term = split(a);
+    const ScaledExpression term = split(a);
     return scaled(Rational(-term.factor), term.rest);
 }
 
@@ -69,7 +69,7 @@ Expression operator+(Expression a, Expression b) {
     if (a.is_zero()) return b;
     if (b.is_zero()) return a;
     if (a.is_number() && b.is_number()) return number(a, Rational(Builder::value(a) + Builder::value(b)));
-    const Term x = split(a), y = split(b);
+    const ScaledExpression x = split(a), y = split(b);
     if (x.rest == y.rest) return scaled(Rational(x.factor + y.factor), x.rest);
     if (!b.is_number() && y.factor.sign() < 0) return a - scaled(Rational(-y.factor), y.rest);
     if (!a.is_number() && x.factor.sign() < 0) return b - scaled(Rational(-x.factor), x.rest);
@@ -82,7 +82,7 @@ Expression operator-(Expression a, Expression b) {
     if (a == b) return number(a, 0);
     if (a.is_zero()) return -b;
     if (a.is_number() && b.is_number()) return number(a, Rational(Builder::value(a) - Builder::value(b)));
-    const Term x = split(a), y = split(b);
+    const ScaledExpression x = split(a), y = split(b);
     if (x.rest == y.rest) return scaled(Rational(x.factor - y.factor), x.rest);
     if (!b.is_number() && y.factor.sign() < 0) return a + scaled(Rational(-y.factor), y.rest);
     if (b.is_number() && Builder::value(b).sign() < 0) return a + number(b, Rational(-Builder::value(b)));
@@ -96,11 +96,11 @@ Expression operator*(Expression a, Expression b) {
     if (a.is_zero() || b.is_one()) return a;
     if (b.is_zero() || a.is_one()) return b;
     if (a.is_number()) {
-        const Term term = split(b);
+        const ScaledExpression term = split(b);
         return scaled(Rational(Builder::value(a) * term.factor), term.rest);
     }
     if (b.is_number()) return b * a;
-    const Term x = split(a), y = split(b);
+    const ScaledExpression x = split(a), y = split(b);
     if (x.factor != 1 || y.factor != 1) return scaled(Rational(x.factor * y.factor), x.rest * y.rest);
     const auto [base_a, exponent_a] = as_power(a);
     const auto [base_b, exponent_b] = as_power(b);
@@ -115,7 +115,7 @@ Expression operator/(Expression a, Expression b) {
     if (a.is_zero() || b.is_one()) return a;
     if (a == b) return number(a, 1);
     if (b.is_number()) return number(b, Rational(1 / Builder::value(b))) * a;
-    const Term x = split(a), y = split(b);
+    const ScaledExpression x = split(a), y = split(b);
     if (!a.is_number() && (x.factor != 1 || y.factor != 1))
         return scaled(Rational(x.factor / y.factor), x.rest / y.rest);
     if (y.factor != 1) return number(a, Rational(Builder::value(a) / y.factor)) / y.rest;
@@ -167,7 +167,7 @@ Expression apply(Operation function, Expression x) {
     }
     if (x.is_one() && function == Op::log) return number(x, 0);
     if (x.is_one() && function == Op::sqrt) return x;
-    const Term term = split(x);
+    const ScaledExpression term = split(x);
     const bool negative = term.factor.sign() < 0;
     if (negative && odd) return -apply(function, -x);
     if (negative && even) return apply(function, -x);

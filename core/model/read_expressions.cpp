@@ -20,9 +20,10 @@ namespace {
 std::string without_primes(const std::string& name) { return name.substr(0, name.find('\'')); }
 
 // Reads the texts of one file and collects their mistakes.
-class Reader {
+class ExpressionReader {
  public:
-    Reader(Graph& graph, Names& names, ErrorCollector& mistakes) : graph_(graph), names_(names), mistakes_(mistakes) {}
+    ExpressionReader(Graph& graph, Names& names, ErrorCollector& mistakes)
+        : graph_(graph), names_(names), mistakes_(mistakes) {}
 
     // Returns nullopt if the text is missing or has a mistake, which is added.
     std::optional<Expression> read(const Text& text, Scope& scope, TextParts* parts = nullptr) {
@@ -177,7 +178,7 @@ void attempt_within_limits(ErrorCollector& mistakes, const Text& text, const Mak
 }
 
 // Reads the derived parameters to report their mistakes. Their values are part of the scopes.
-void read_definitions(const SystemDescription& system, const Layout& layout, Reader& reader, Graph& graph) {
+void read_definitions(const SystemDescription& system, const Layout& layout, ExpressionReader& reader, Graph& graph) {
     if (system.derived.empty()) return;
     const Scope parameters = definition_scope(system, layout, graph);
     for (const DerivedDescription& derived : system.derived) {
@@ -188,7 +189,7 @@ void read_definitions(const SystemDescription& system, const Layout& layout, Rea
 }
 
 // Q_i = force_i - dR/dv_i.
-void read_forces(const SystemDescription& system, const Layout& layout, Reader& reader, Equations& equations,
+void read_forces(const SystemDescription& system, const Layout& layout, ExpressionReader& reader, Equations& equations,
                  ErrorCollector& mistakes) {
     Graph& graph = equations.kinetic.graph();
     Scope scope = force_scope(system, layout, graph);
@@ -207,7 +208,7 @@ void read_forces(const SystemDescription& system, const Layout& layout, Reader& 
 
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
                     Equations& equations, ErrorCollector& mistakes) {
-    Reader reader(graph, names, mistakes);
+    ExpressionReader reader(graph, names, mistakes);
     TextParts parts;
     const auto read = [&](const Text& text, Scope scope, TextParts* places = nullptr) {
         return reader.read(text, scope, places);
@@ -244,7 +245,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
 namespace {
 
 void read_pictures(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
-                   Reader& reader) {
+                   ExpressionReader& reader) {
     Scope in_drawings = drawing_scope(system, layout, graph);
     for (const DrawingDescription& drawing : drawings_of(system)) {
         if (drawing.shape == DrawingDescription::Shape::curve && drawing.over.empty()) continue;  // its name is missing
@@ -276,7 +277,7 @@ bool check_expressions(const SystemDescription& system, Names names, ErrorCollec
     equations.energy = equations.power = any_value;
     equations.free.contacts.resize(system.constraints.size());
     for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
-    Reader reader(graph, names, mistakes);
+    ExpressionReader reader(graph, names, mistakes);
     attempt_within_limits(mistakes, system.kinetic, [&] { read_pictures(system, layout, graph, equations, reader); });
     return has_equations;
 }

@@ -48,7 +48,7 @@ namespace {
 using Coefficients = std::array<double, Polynomial::capacity>;
 
 // The coefficients of a polynomial, or of the quotient after low powers are divided out.
-struct Terms {
+struct PolynomialTerms {
     const double* c;
     int degree;
 };
@@ -64,7 +64,7 @@ constexpr auto binomials = [] {
 }();
 
 // Coefficients in the Bernstein basis over [0, 1]: b_i = sum_j C(i,j)/C(d,j) c_j.
-Coefficients to_bernstein(const Terms& p) {
+Coefficients to_bernstein(const PolynomialTerms& p) {
     Coefficients b{};
     const auto d = static_cast<std::size_t>(p.degree);
     for (std::size_t j = 0; j <= d; ++j) {
@@ -89,7 +89,7 @@ void halve(const Coefficients& b, int degree, Coefficients& left, Coefficients& 
 
 // The root between `low`, where p > 0, and `high`, where p < 0. Newton's method from x, kept inside the shrinking
 // bracket. From iteration `rounds` on, a Newton step of relative size below 2^-30 ends the iteration.
-double newton(const Terms& p, double low, double high, double x, int rounds) {
+double newton(const PolynomialTerms& p, double low, double high, double x, int rounds) {
     constexpr double squared_away = 0x1p-30;  // after a step this small the error is about its square
     for (int round = 0; round < 100; ++round) {
         const auto [value, slope] = value_and_slope(p.c, p.degree, x);
@@ -105,7 +105,7 @@ double newton(const Terms& p, double low, double high, double x, int rounds) {
     return x;
 }
 
-double polish(const Terms& p, double low, double high) {
+double polish(const PolynomialTerms& p, double low, double high) {
     const double at_low = value_and_slope(p.c, p.degree, low).value,
                  at_high = value_and_slope(p.c, p.degree, high).value;
     if (!(at_low > 0.0)) return low;
@@ -115,9 +115,9 @@ double polish(const Terms& p, double low, double high) {
 
 // Searches the step from left to right, in subintervals that are halved until the sign variations of each are
 // conclusive.
-class Search {
+class CrossingSearch {
  public:
-    Search(const Terms& p, double remainder) : p_(p), remainder_(remainder) {}
+    CrossingSearch(const PolynomialTerms& p, double remainder) : p_(p), remainder_(remainder) {}
 
     FirstCrossing run() {
         const Coefficients b = to_bernstein(p_);
@@ -184,7 +184,7 @@ class Search {
         return visit(left, low, middle, depth - 1) || visit(right, middle, high, depth - 1);
     }
 
-    const Terms& p_;
+    const PolynomialTerms& p_;
     const double remainder_;
     bool inside_ = false, starts_inside_ = false;
     double since_ = 0.0, rose_at_ = 0.0;
@@ -194,7 +194,7 @@ class Search {
 }  // namespace
 
 FirstCrossing first_descent(const Polynomial& polynomial, int known, double remainder) {
-    const Terms p{polynomial.c.data() + known, polynomial.degree - known};
+    const PolynomialTerms p{polynomial.c.data() + known, polynomial.degree - known};
     // On [0, 1] the powers of theta decrease, so the polynomial is a convex combination of the partial sums of its
     // coefficients (Abel summation) and lies between their minimum and maximum. The same holds for the derivative.
     double value = p.c[0], least = value, slope = p.c[1], least_slope = slope, largest_slope = slope;
@@ -218,7 +218,7 @@ FirstCrossing first_descent(const Polynomial& polynomial, int known, double rema
         return {FirstCrossing::Kind::root,
                 newton(p, 0.0, 1.0, std::min(1.0, 2.0 * p.c[0] / (root - p.c[1])), steady ? 0 : 2)};
     }
-    return Search(p, remainder).run();
+    return CrossingSearch(p, remainder).run();
 }
 
 }  // namespace achilles

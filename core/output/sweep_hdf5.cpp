@@ -263,13 +263,13 @@ class ColumnArray {
 };
 
 // The number of rows, and the maximum lengths of their texts.
-struct Extent {
+struct TableExtent {
     hsize_t rows = 0;
     std::size_t held = 0, contacts = 0, ends = 0;
 };
 
-Extent extent_of(const SweepTable& table, const RowReader& each_rows) {
-    Extent extent;
+TableExtent extent_of(const SweepTable& table, const RowReader& each_rows) {
+    TableExtent extent;
     each_rows([&](const Rows& rows) {
         extent.rows += rows.count();
         const auto widen = [&](std::size_t& width, ContactSet set) {
@@ -289,9 +289,10 @@ std::string options_text(const Options& options) {
     return text;
 }
 
-class Writer {
+class SweepHdf5Writer {
  public:
-    Writer(hid_t file, const SweepTable& table, const Extent& extent) : file_(file), table_(table), extent_(extent) {
+    SweepHdf5Writer(hid_t file, const SweepTable& table, const TableExtent& extent)
+        : file_(file), table_(table), extent_(extent) {
         is_grid_ = !table.is_section() && !table.sweep().random;
         for (const SweepAxis& axis : table.sweep().axes) shape_.push_back(axis.count);
         if (!is_grid_) shape_ = {extent.rows};
@@ -363,7 +364,7 @@ class Writer {
 
     hid_t file_;
     const SweepTable& table_;
-    Extent extent_;
+    TableExtent extent_;
     bool is_grid_ = false;
     std::vector<hsize_t> shape_;
     std::vector<ColumnArray> columns_;
@@ -387,7 +388,7 @@ void write_hdf5(const std::string& path, const SweepTable& table, const SweepOri
         system.append(origin.system.c_str(), 1, origin.system.size());
         system.close();
     }
-    Writer(file, table, extent_of(table, each_rows)).write(each_rows);
+    SweepHdf5Writer(file, table, extent_of(table, each_rows)).write(each_rows);
     file.close();
 }
 

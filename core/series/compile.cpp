@@ -51,11 +51,11 @@ class InnerSumLanes {
 
  private:
     static constexpr std::uint32_t mark = 1u << 31;
-    struct Sum {
+    struct InnerSum {
         std::uint32_t x, y;
         bool weighted;
     };
-    std::vector<Sum> sums_;
+    std::vector<InnerSum> sums_;
     std::map<std::tuple<std::uint32_t, std::uint32_t, bool>, std::uint32_t> ids_;
 };
 
@@ -100,10 +100,10 @@ class SeriesCompiler {
     using Operand = SeriesProgram::Operand;
 
     // coefficient * series. A form is a sum of such terms, for the higher orders of a register.
-    struct Term {
+    struct FormTerm {
         std::uint32_t series, coefficient;
     };
-    using Form = std::vector<Term>;
+    using Form = std::vector<FormTerm>;
     static constexpr std::size_t longest_form = 6;
 
     static constexpr std::uint32_t one = 0;  // index of the coefficient 1
@@ -151,17 +151,17 @@ class SeriesCompiler {
 
     Form scaled(const Form& form, std::uint32_t factor) {
         Form result = form;
-        for (Term& term : result) term.coefficient = times(term.coefficient, factor);
+        for (FormTerm& term : result) term.coefficient = times(term.coefficient, factor);
         return result;
     }
     Form negated(const Form& form) {
         Form result = form;
-        for (Term& term : result) term.coefficient = coefficient(Operation::negate, term.coefficient);
+        for (FormTerm& term : result) term.coefficient = coefficient(Operation::negate, term.coefficient);
         return result;
     }
     Form sum(const Form& a, const Form& b) {
         Form result = a;
-        for (const Term& term : b) {
+        for (const FormTerm& term : b) {
             std::size_t i = 0;
             while (i < result.size() && result[i].series != term.series) ++i;
             if (i == result.size()) {

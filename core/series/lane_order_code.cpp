@@ -59,7 +59,7 @@ class LaneOrderWriter {
     std::span<const std::uint8_t> bytes() { return code_.bytes(); }
 
  private:
-    const LanePlan::Sum& sum(std::uint32_t i) const { return lanes_.sums[i]; }
+    const LanePlan::LaneSum& sum(std::uint32_t i) const { return lanes_.sums[i]; }
     Index stride() const { return lane(lanes_.kept.size()); }
     // Offset of row 1 from `now`.
     Index first_row() const { return lane(plan_.numbers()) + stride(); }

@@ -34,13 +34,13 @@ LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums) {
     };
     // The factors of an unweighted sum may be swapped. Few distinct factors on each side mean few loads.
     std::set<std::uint32_t> on_left, on_right;
-    const auto more = [&](const Sum& sum) {
+    const auto more = [&](const LaneSum& sum) {
         return static_cast<int>(!on_left.contains(sum.left)) + static_cast<int>(!on_right.contains(sum.right));
     };
     for (std::size_t i = 0; i < inner_sums; ++i) {
         const bool is_weighted = i < plan.weighted;
-        Sum sum{place(plan.left[i], is_weighted), place(plan.right[i], false)};
-        const Sum turned{sum.right, sum.left};
+        LaneSum sum{place(plan.left[i], is_weighted), place(plan.right[i], false)};
+        const LaneSum turned{sum.right, sum.left};
         if (!is_weighted && more(turned) < more(sum)) sum = turned;
         on_left.insert(sum.left);
         on_right.insert(sum.right);

@@ -126,11 +126,11 @@ struct LanePlan {
         std::uint32_t series;
         bool weighted;  // multiplied by the order
     };
-    struct Sum {
+    struct LaneSum {
         std::uint32_t left, right;  // indices into `kept`
     };
     std::vector<StoredSums> kept;
-    std::vector<Sum> sums;  // in the order of the plan: the first plan.weighted are weighted
+    std::vector<LaneSum> sums;  // in the order of the plan: the first plan.weighted are weighted
 
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);
 };

@@ -21,7 +21,7 @@ constexpr unsigned scratch = 4;  // registers for temporary use
 using Index = std::ptrdiff_t;  // in doubles
 
 // Lanes [begin, begin + width).
-struct Part {
+struct LaneRange {
     Index begin;
     Width width;
     Index end() const { return begin + static_cast<Index>(width); }
@@ -86,7 +86,7 @@ class OrderWriter {
     void write_order(bool first) {
         for (std::size_t i = 0; i < plan_.rules.size(); ++i)
             RuleWriter(code_, factors).write(plan_.rules[i], static_cast<Index>(3 * i));
-        for (const Part& part : parts_) keep_and_sum(part, first);
+        for (const LaneRange& part : parts_) keep_and_sum(part, first);
     }
 
     // ---- terms of the inner sums with rows of earlier orders ----
@@ -97,7 +97,7 @@ class OrderWriter {
         for (std::size_t i = 0; i < parts_.size(); i += most)
             sum_older(std::span(parts_).subspan(i, std::min(most, parts_.size() - i)));
     }
-    void sum_older(std::span<const Part> parts) {
+    void sum_older(std::span<const LaneRange> parts) {
         const Index stride = 2 * lanes_;
         const std::size_t count = parts.size();
         for (std::size_t i = 0; i < 2 * count; ++i) code_.zero(Xmm(static_cast<int>(2 + i)));
@@ -126,9 +126,9 @@ class OrderWriter {
         }
     }
     // sums[i] += left * right
-    void add_products(std::span<const Part> parts, std::size_t sums, Index left, Index right) {
+    void add_products(std::span<const LaneRange> parts, std::size_t sums, Index left, Index right) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const Part& part = parts[i];
+            const LaneRange& part = parts[i];
             const Ymm product = part.vector(i % 2), sum = part.vector(sums + i);
             code_.vmovupd(product, at(left_row, left + part.begin));
             code_.vmulpd(product, product, at(right_row, right + part.begin + lanes_));
@@ -198,7 +198,7 @@ class OrderWriter {
         code_.vinsertf128(Ymm(to), Ymm(to), Xmm(to + 1), 1);
     }
     // Loads the numbers of a part into register `to`; overwrites the next two registers.
-    void gather(const std::uint32_t* numbers, const Part& part, int to) {
+    void gather(const std::uint32_t* numbers, const LaneRange& part, int to) {
         four(numbers + part.begin, to);
         if (part.width != Width::eight) return;
         four(numbers + part.begin + 4, to + 1);
@@ -206,7 +206,7 @@ class OrderWriter {
     }
 
     // In weighted lanes: reg *= the order k (which = 0) or 1/(k + 1) (which = 1).
-    void weigh(const Part& part, const Ymm& reg, Index which, const Ymm& free) {
+    void weigh(const LaneRange& part, const Ymm& reg, Index which, const Ymm& free) {
         if (part.begin >= weighted_) return;
         if (part.end() <= weighted_) {
             code_.vbroadcastsd(free, at(weights, which));
@@ -216,7 +216,7 @@ class OrderWriter {
         }
     }
 
-    void keep_and_sum(const Part& part, bool first) {
+    void keep_and_sum(const LaneRange& part, bool first) {
         const Index right = part.begin + lanes_;
         const Ymm x = part.vector(0), y = part.vector(1), free = part.vector(2);
         gather(plan_.left.data(), part, 0);
@@ -237,7 +237,7 @@ class OrderWriter {
     const SeriesPlan& plan_;
     Index lanes_, weighted_, sums_;
     Assembler code_;
-    std::vector<Part> parts_;
+    std::vector<LaneRange> parts_;
 };
 
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width width) {

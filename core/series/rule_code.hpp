@@ -17,15 +17,16 @@ class RuleWriter {
 
     // Storing the result can be omitted if its register keeps it for as long as it is needed.
     void write(const SeriesRule& rule, Index first, bool store = true) {
-        using Kind = Sum::Kind;
+        using Kind = PartialSum::Kind;
         const Xbyak::Xmm result = code_.result(rule.result);
         const std::uint32_t operands[3] = {rule.x, rule.y, rule.w};
-        Sum sum;
+        PartialSum sum;
         for (int i = 2; i >= 0; --i) {
             if (operands[i] == 0) continue;
             const bool alone = sum.kind == Kind::none;
-            const Sum term = product(rule.known[i], operands[i], first + code_.place(static_cast<std::uint32_t>(i)),
-                                     alone ? result : code_.vector(0));
+            const PartialSum term =
+                product(rule.known[i], operands[i], first + code_.place(static_cast<std::uint32_t>(i)),
+                        alone ? result : code_.vector(0));
             sum = alone ? term : total(sum, term, result);
         }
         if (sum.kind == Kind::none) code_.zero(result);
@@ -36,23 +37,23 @@ class RuleWriter {
 
  private:
     // A partial sum: in a register, or a number or its negative that is not loaded yet.
-    struct Sum {
+    struct PartialSum {
         enum class Kind { none, in_register, number, negative } kind = Kind::none;
         Xbyak::Xmm reg;
         std::uint32_t number = 0;
     };
 
     // A factor times its number, in register `to` unless the factor is known to be 1 or -1.
-    Sum product(std::int8_t known, std::uint32_t number, Index factor, const Xbyak::Xmm& to) {
-        if (known > 0) return {Sum::Kind::number, Xbyak::Xmm(), number};
-        if (known < 0) return {Sum::Kind::negative, Xbyak::Xmm(), number};
+    PartialSum product(std::int8_t known, std::uint32_t number, Index factor, const Xbyak::Xmm& to) {
+        if (known > 0) return {PartialSum::Kind::number, Xbyak::Xmm(), number};
+        if (known < 0) return {PartialSum::Kind::negative, Xbyak::Xmm(), number};
         code_.apply(Assembler::vmul, to, code_.held_or(to, number), at(factors_, factor));
-        return {Sum::Kind::in_register, to, 0};
+        return {PartialSum::Kind::in_register, to, 0};
     }
 
     // Writes code for sum + term. The result is in register `result`.
-    Sum total(const Sum& sum, const Sum& term, const Xbyak::Xmm& result) {
-        using Kind = Sum::Kind;
+    PartialSum total(const PartialSum& sum, const PartialSum& term, const Xbyak::Xmm& result) {
+        using Kind = PartialSum::Kind;
         constexpr auto vadd = Assembler::vadd, vsub = Assembler::vsub;
         if (sum.kind == Kind::in_register && term.kind == Kind::in_register) {
             code_.apply(vadd, result, sum.reg, term.reg);

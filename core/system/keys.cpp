@@ -145,16 +145,16 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
 }
 
 std::string_view instead_of_key(std::string_view word) {
-    struct KeyAlias {
+    struct KeyAdvice {
         std::string_view words, instead;
     };
-    static constexpr KeyAlias others[] = {
+    static constexpr KeyAdvice others[] = {
         {"friction mu mu_s mu_k friction_coefficient", "contacts have no friction here: leave it out"},
         {"gravity g", "gravity is a part of the potential, as m*g*y, with a [[parameter]] g"},
         {"stiffness k c contact_stiffness", "contacts are rigid: a spring belongs to the potential, as k/2*x^2"},
         {"mass m inertia", "a mass is a part of the kinetic energy, as m/2*x'^2, with a [[parameter]] m"},
         {"dt step step_size timestep h max_step", "the step follows from the tolerance in [run]"}};
-    for (const KeyAlias& other : others)
+    for (const KeyAdvice& other : others)
         if (has_word(other.words, word)) return other.instead;
     return "";
 }

@@ -71,7 +71,7 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest) {
 
 namespace {
 
-struct Kind {
+struct BinaryFormat {
     std::string_view begins, what, advice;
 };
 
@@ -79,7 +79,7 @@ constexpr std::string_view reproduce = "achilles reproduce FILE prints the comma
                            start_from_new = "achilles new NAME writes a system file to start from";
 
 // First bytes of binary files.
-constexpr Kind of_bytes[] = {
+constexpr BinaryFormat of_bytes[] = {
     {"\x89PNG", "a PNG picture", reproduce},
     {"%PDF", "a PDF document", reproduce},
     {"\xff\xd8\xff", "a JPEG picture", start_from_new},
@@ -94,7 +94,7 @@ constexpr Kind of_bytes[] = {
 };
 
 // First characters of text files, after white space.
-constexpr Kind of_texts[] = {
+constexpr BinaryFormat of_texts[] = {
     {"<svg", "an SVG picture", reproduce},
     {"<?xml", "an SVG picture or other XML", reproduce},
     {"<", "HTML or XML", start_from_new},
@@ -126,7 +126,7 @@ bool is_table(std::string_view text) {
 
 void refuse_other_files(std::string_view text, const std::string& name) {
     const std::string_view head = text.substr(0, 256);
-    for (const Kind& kind : of_bytes)
+    for (const BinaryFormat& kind : of_bytes)
         if (head.starts_with(kind.begins)) refuse(name, kind.what, kind.advice);
     if (head.starts_with("\xff\xfe") || head.starts_with("\xfe\xff") ||
         (head.size() > 3 && (head[1] == '\0' || head[0] == '\0') && head.find_first_not_of('\0') != head.npos))
@@ -136,7 +136,7 @@ void refuse_other_files(std::string_view text, const std::string& name) {
     const std::size_t first = text.find_first_not_of(" \t\r\n");
     if (first == text.npos) throw InputError(name, {}, "the file is empty", std::string(start_from_new));
     text.remove_prefix(first);
-    for (const Kind& kind : of_texts) {
+    for (const BinaryFormat& kind : of_texts) {
         if (!text.starts_with(kind.begins)) continue;
         const bool is_key = kind.begins.ends_with(' ') && text.substr(kind.begins.size()).starts_with("=");
         if (!is_key) refuse(name, kind.what, kind.advice);

@@ -13,10 +13,10 @@ namespace achilles {
 namespace {
 
 // Depth-first search along the definitions.
-class Walk {
+class DefinitionSorter {
  public:
-    Walk(std::vector<DerivedDescription>& derived, Names& names, ErrorCollector& mistakes)
-        : derived_(derived), names_(names), mistakes_(mistakes), states_(derived.size(), State::unseen) {
+    DefinitionSorter(std::vector<DerivedDescription>& derived, Names& names, ErrorCollector& mistakes)
+        : derived_(derived), names_(names), mistakes_(mistakes), states_(derived.size(), VisitState::unseen) {
         for (std::size_t i = 0; i < derived.size(); ++i) places_.emplace(derived[i].name, i);
         for (std::size_t i = 0; i < derived.size(); ++i) visit(i);
     }
@@ -24,17 +24,17 @@ class Walk {
     std::vector<DerivedDescription> ordered;
 
  private:
-    enum class State { unseen, on_the_way, done };
+    enum class VisitState { unseen, on_the_way, done };
 
     void visit(std::size_t i) {
-        if (states_[i] == State::done) return;
-        if (states_[i] == State::on_the_way) return tell_circle(i);
-        states_[i] = State::on_the_way;
+        if (states_[i] == VisitState::done) return;
+        if (states_[i] == VisitState::on_the_way) return tell_circle(i);
+        states_[i] = VisitState::on_the_way;
         way_.push_back(i);
         for (const std::string& name : names_in(derived_[i].definition.text))
             if (const auto other = places_.find(name); other != places_.end()) visit(other->second);
         way_.pop_back();
-        states_[i] = State::done;
+        states_[i] = VisitState::done;
         if (!names_.excused.contains(derived_[i].name)) ordered.push_back(derived_[i]);
     }
 
@@ -58,7 +58,7 @@ class Walk {
     std::vector<DerivedDescription>& derived_;
     Names& names_;
     ErrorCollector& mistakes_;
-    std::vector<State> states_;
+    std::vector<VisitState> states_;
     std::map<std::string, std::size_t> places_;
     std::vector<std::size_t> way_;
 };
@@ -67,7 +67,7 @@ class Walk {
 // and removes its parameters.
 void order_derived(ParsedFile& reading) {
     std::vector<DerivedDescription>& derived = reading.system.derived;
-    derived = std::move(Walk(derived, reading.names, reading.mistakes).ordered);
+    derived = std::move(DefinitionSorter(derived, reading.names, reading.mistakes).ordered);
 }
 
 using RewriteRule = void (*)(ParsedFile& reading);

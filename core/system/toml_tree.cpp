@@ -110,7 +110,7 @@ class Places {
 };
 
 // Context of a conversion.
-struct Source {
+struct ConversionContext {
     const std::string& text;
     const std::string& name;
     const Places& places;
@@ -129,9 +129,9 @@ Location inside(const Places& places, Location at) {
     return {at.line, at.column + 1};
 }
 
-TomlValue convert(const toml::node& node, Source source);
+TomlValue convert(const toml::node& node, ConversionContext source);
 
-TomlValue convert_table(const toml::table& table, const Source& source) {
+TomlValue convert_table(const toml::table& table, const ConversionContext& source) {
     TomlValue value;
     for (const auto& [key, node] : table) {
         value.entries.push_back({std::string(key.str()), location(key.source().begin), convert(node, source)});
@@ -142,7 +142,7 @@ TomlValue convert_table(const toml::table& table, const Source& source) {
     return value;
 }
 
-TomlValue convert(const toml::node& node, Source source) {
+TomlValue convert(const toml::node& node, ConversionContext source) {
     constexpr int deepest = 64;
     const Location at = location(node.source().begin);
     if (++source.depth > deepest) {
@@ -394,7 +394,7 @@ TomlValue read_toml(const std::string& text, const std::string& name) {
     try {
         const toml::table table = toml::parse(text);
         const Places places(text);
-        return convert(table, Source{text, name, places});
+        return convert(table, ConversionContext{text, name, places});
     } catch (const toml::parse_error& error) {
         std::string_view message = error.description();
         const std::string_view preamble = "Error while parsing ";  // "... key-value pair: expected '='"

@@ -65,7 +65,7 @@ class Simplification : public testing::Test {
         for (std::uint32_t i = 0; i < names.size(); ++i) scope.allowed.emplace(names[i], graph.symbol(i));
     }
     Fraction read(std::string_view text) { return algebra.simplify(parse(text, scope, graph)); }
-    Writer writer(Notation notation) { return {algebra, names, ranks, notation}; }
+    AlgebraWriter writer(Notation notation) { return {algebra, names, ranks, notation}; }
     std::string simple(std::string_view text, Notation notation = Notation::text) {
         const Fraction fraction = read(text);
         return writer(notation).write(fraction, algebra).text;

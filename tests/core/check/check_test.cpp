@@ -25,7 +25,7 @@ Condition condition(const Model& model, const Run& run) {
     EXPECT_TRUE(simplified.contacts[0].zeno);
     if (!simplified.contacts[0].zeno) return {};
     const ZenoCondition& zeno = *simplified.contacts[0].zeno;
-    const Writer writer(*zeno.algebra, model.slot_names(), simplified.ranks(), Notation::text);
+    const AlgebraWriter writer(*zeno.algebra, model.slot_names(), simplified.ranks(), Notation::text);
     std::string solved;
     for (const auto& [symbol, value] : zeno.solved)
         solved += (solved.empty() ? "" : ", ") + to_text(symbol, model.slot_names()) + " = " +

@@ -27,14 +27,14 @@ Doubleton landing(double x, double rate, double w) {
 
 // a = sin(t): the truncation error after order 20 is the tail of the series. The remainder contains it; half of the
 // remainder does not.
-TEST(Step, ItsRemainderIsWhatTheSeriesLeavesOut) {
+TEST(EnclosureStep, ItsRemainderIsWhatTheSeriesLeavesOut) {
     const auto model = model_of({.potential = "a^2/2 + b", .b = 1.0, .a_rate = 1.0});
     const achilles::EnclosureProblem claim = achilles::problem_of(model->default_run());
     const Coordinates z = coordinates_of(*model, claim);
     EnclosureStepper stepper(*model, z, {});
     const Doubleton start(
         {Interval(0.0), Interval(0.0), Interval(1.0), Interval(1.0), Interval(0.0), Interval(1.0), Interval(0.0)});
-    const Step step = stepper.make(start, 1.0, {{}});
+    const EnclosureStep step = stepper.make(start, 1.0, {{}});
     const Real length = step.length();
     Real term = length, tail = 0;
     for (int k = 3; k < 60; k += 2) {
