@@ -13,17 +13,17 @@ namespace achilles {
 
 namespace {
 
-struct Step {
+struct TickStep {
     double size = 1.0;
     int minor = 5;  // number of intervals between two ticks that minor ticks mark
 };
 
 // The smallest step 1, 2 or 5 times a power of ten with at most `most` multiples between the limits.
-Step nice_step(double low, double high, int most) {
+TickStep nice_step(double low, double high, int most) {
     const double slack = 1e-9 * (high - low);
     double power = std::pow(10.0, std::floor(std::log10((high - low) / most)));
     for (;; power *= 10.0) {
-        for (const Step& step : {Step{power, 5}, Step{2.0 * power, 4}, Step{5.0 * power, 5}}) {
+        for (const TickStep& step : {TickStep{power, 5}, TickStep{2.0 * power, 4}, TickStep{5.0 * power, 5}}) {
             const double first = std::ceil((low - slack) / step.size), last = std::floor((high + slack) / step.size);
             if (last - first + 1.0 <= most) return step;
         }
@@ -86,7 +86,7 @@ void set_linear(Axis& axis, double low, double high, double margin, int most) {
     if (high - low <= std::max(1e-9 * size, 1e-300)) room = size > 1e-290 ? 0.1 * size : 1.0;
     axis.low = low -= room;
     axis.high = high += room;
-    const Step step = nice_step(low, high, most);
+    const TickStep step = nice_step(low, high, most);
     const double minor = step.size / step.minor, slack = 1e-9 * (high - low);
     const double first = std::ceil((low - slack) / step.size), last = std::floor((high + slack) / step.size);
     const double largest = step.size * std::max(std::abs(first), std::abs(last));

@@ -166,9 +166,9 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
     return trail;
 }
 
-void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
+void add_body_trail(std::vector<DrawnShape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme) {
     constexpr std::uint8_t passed = 150, to_come = 60;
-    std::vector<Shape> lines;
+    std::vector<DrawnShape> lines;
     const WayPoint* before = nullptr;  // null after a break
     for (const WayPoint& here : way) {
         const bool is_passed = here.t <= t;
@@ -177,7 +177,7 @@ void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, d
             continue;
         }
         if (before == nullptr || here.phase != before->phase || is_passed != (before->t <= t)) {
-            Shape& line = lines.emplace_back();
+            DrawnShape& line = lines.emplace_back();
             line.stroke = phase_stroke(theme, here.phase, 0, 1);
             const bool in_contact = here.phase == Phase::Kind::constrained;
             // In contact it lies on the line of the surface, which must not shine through.
@@ -190,8 +190,8 @@ void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, d
     }
     // The future part lies below the past part.
     std::stable_partition(lines.begin(), lines.end(),
-                          [&](const Shape& line) { return line.stroke.color.a == to_come; });
-    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });
+                          [&](const DrawnShape& line) { return line.stroke.color.a == to_come; });
+    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const DrawnShape& shape) { return shape.moves; });
     shapes.insert(first, lines.begin(), lines.end());
 }
 

@@ -72,7 +72,7 @@ Trail trail_of(const Mechanism& mechanism, const Trajectory& trajectory, std::sp
 void add_present(std::vector<WayPoint>& way, const WayPoint& now);
 // Inserts the trail into the shapes of a mechanism, each phase in its color, the part after t faint. The trail lies
 // over the static shapes, whose lines would hide motion in contact, and under the moving ones.
-void add_body_trail(std::vector<Shape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
+void add_body_trail(std::vector<DrawnShape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
 
 // Contact force of a sample as a generalized force: sum of lambda_i times the gap gradient over the held contacts; zero
 // in free flight.

@@ -21,7 +21,7 @@ namespace achilles {
 namespace {
 
 // Range of all finite values; on a logarithmic axis, of the positive ones.
-struct Range {
+struct DataRange {
     double low = std::numeric_limits<double>::infinity(), high = -std::numeric_limits<double>::infinity();
     bool positive = false;
     void include(double x) {
@@ -116,7 +116,7 @@ std::vector<Sample> some_samples(const Trajectory& trajectory, double from, doub
 
 // Adds the values of x and of all visible y to the ranges.
 void include(std::span<const Sample> samples, Values& values, std::size_t curves, const Framing& framing,
-             Range& x_range, Range& y_range) {
+             DataRange& x_range, DataRange& y_range) {
     for (const Sample& sample : samples) {
         values.set(sample);
         x_range.include(values[0]);
@@ -253,7 +253,7 @@ void fade(std::vector<TimeBar>& bars, double horizon) {
     }
 }
 
-void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, double margin) {
+void set_limits(Axis& axis, const Framing::Limits& limits, const DataRange& range, double margin) {
     if (limits)
         set_ticks(axis, (*limits)[0], (*limits)[1], 0.0);
     else
@@ -261,7 +261,7 @@ void set_limits(Axis& axis, const Framing::Limits& limits, const Range& range, d
 }
 
 // Treats a quantity that varies by its noise only as constant.
-Range flush_noise_to_zero(Range range, double noise) {
+DataRange flush_noise_to_zero(DataRange range, double noise) {
     if (range.high - range.low > noise) return range;
     const double middle = 0.5 * (range.low + range.high);
     range.low = range.high = std::abs(middle) <= noise ? 0.0 : middle;
@@ -269,7 +269,7 @@ Range flush_noise_to_zero(Range range, double noise) {
 }
 
 void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& view, const Framing& framing,
-              Range x_range, Range y_range, const Noise& noise) {
+              DataRange x_range, DataRange y_range, const Noise& noise) {
     x_range = flush_noise_to_zero(x_range, noise.x);
     y_range = flush_noise_to_zero(y_range, noise.y);
     const bool whole_run = view.quantities()[0].is_time && !framing.log_x;
@@ -279,15 +279,15 @@ void set_axes(Panel& panel, const Trajectory& trajectory, const PreparedView& vi
 }
 
 // The time interval of a run that a panel shows (s), and samples that outline it.
-struct Extent {
+struct ShownInterval {
     double from = 0.0, to = 0.0;
     std::vector<Sample> close{};        // samples of a part of the run
     std::span<const Sample> samples{};  // `close`, or samples of the whole run
 };
 
-Extent extent_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-                 const Framing& framing) {
-    Extent extent{trajectory.run.options.start_time, samples.back().t, {}, samples};
+ShownInterval shown_interval_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
+                                const Framing& framing) {
+    ShownInterval extent{trajectory.run.options.start_time, samples.back().t, {}, samples};
     if (!view.quantities()[0].is_time || !framing.x) return extent;
     const double factor = view.quantities()[0].factor;
     extent.from = std::clamp((*framing.x)[0] / factor, extent.from, extent.to);
@@ -308,10 +308,10 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
 
 // Fills the curves and sets the axes. Samples give the approximate limits, the traced curves the exact ones. Returns
 // the time of each point of each curve (s).
-std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const Extent& extent,
+std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const ShownInterval& extent,
                                              const PreparedView& view, Values& values, const Framing& framing) {
     const std::size_t curves = panel.curves.size() / 2;
-    Range x_range, y_range;
+    DataRange x_range, y_range;
     x_range.positive = framing.log_x;
     y_range.positive = framing.log_y;
     include(extent.samples, values, curves, framing, x_range, y_range);
@@ -365,9 +365,9 @@ void show_whole(Axis& axis, double low, double high) {
 
 void show_whole(Panel& panel, const std::vector<Point>& line) {
     constexpr double little = 0.15;  // fraction of the axis
-    Range x, y;
+    DataRange x, y;
     for (const Point& point : line) x.include(point.x), y.include(point.y);
-    const auto is_near = [](const Axis& axis, const Range& range) {
+    const auto is_near = [](const Axis& axis, const DataRange& range) {
         const double more = little * (axis.high - axis.low);
         return range.low >= axis.low - more && range.high <= axis.high + more;
     };
@@ -420,7 +420,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
         for (Markers& markers : marked.markers) thin(markers, panel, framing.size);
     };
     if (!samples.empty()) {
-        const Extent extent = extent_of(trajectory, samples, view, framing);
+        const ShownInterval extent = shown_interval_of(trajectory, samples, view, framing);
         const auto times = add_courses(panel, trajectory, extent, view, values, framing);
         if (!single) name_drawn(panel);
         const std::span<const Event> events = events_within(trajectory, extent.from, extent.to);
@@ -435,7 +435,7 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
             panel.beyond = beyond_of(std::move(pale), *horizon);
         }
     } else {
-        set_axes(panel, trajectory, view, framing, Range{}, Range{}, {});
+        set_axes(panel, trajectory, view, framing, DataRange{}, DataRange{}, {});
         if (!single) name_drawn(panel);
     }
     if (several && over_time) panel.time_bars = contact_bars(trajectory, samples.back().t, panel.x, theme);

@@ -19,9 +19,9 @@ double distance_to(const Point& p, const Point& a, const Point& b) {
 }
 
 // Distance to the nearest line of a shape.
-double distance_to(const Point& p, const Shape& shape) {
+double distance_to(const Point& p, const DrawnShape& shape) {
     double least = std::numeric_limits<double>::infinity();
-    if (shape.kind == Shape::Kind::disc)
+    if (shape.kind == DrawnShape::Kind::disc)
         return std::abs(std::hypot(p.x - shape.points[0].x, p.y - shape.points[0].y) - shape.radius);
     for (std::size_t i = 1; i < shape.points.size(); ++i) {
         const double distance = distance_to(p, shape.points[i - 1], shape.points[i]);
@@ -31,9 +31,10 @@ double distance_to(const Point& p, const Shape& shape) {
 }
 
 // The shape that passes through all of these points; null if none does.
-const Shape* line_through(const std::vector<Shape>& shapes, const std::vector<Point>& places, double tolerance) {
-    for (const Shape& shape : shapes) {
-        const bool is_line = shape.kind == Shape::Kind::polyline || shape.kind == Shape::Kind::disc;
+const DrawnShape* line_through(const std::vector<DrawnShape>& shapes, const std::vector<Point>& places,
+                               double tolerance) {
+    for (const DrawnShape& shape : shapes) {
+        const bool is_line = shape.kind == DrawnShape::Kind::polyline || shape.kind == DrawnShape::Kind::disc;
         if (!is_line || shape.moves || shape.points.empty()) continue;
         if (std::all_of(places.begin(), places.end(),
                         [&](const Point& place) { return distance_to(place, shape) <= tolerance; }))
@@ -172,7 +173,7 @@ std::vector<Nearness> probes(const ContactGeometry& touch, AnchorPoint& grip, st
 }  // namespace
 
 void ContactGeometry::find_tips(const Mechanism& mechanism, const Trajectory& trajectory,
-                                const std::vector<Shape>& shapes, double size) {
+                                const std::vector<DrawnShape>& shapes, double size) {
     const State start{trajectory.run.q, trajectory.run.v, trajectory.run.options.start_time};
     constexpr double step = 0.02;  // fraction of the world, between probes
     auto grips = mechanism.grips(parameters_);
@@ -185,7 +186,7 @@ void ContactGeometry::find_tips(const Mechanism& mechanism, const Trajectory& tr
 }
 
 void ContactGeometry::find_discs(const Mechanism& mechanism, const Trajectory& trajectory,
-                                 const std::vector<Shape>& shapes) {
+                                 const std::vector<DrawnShape>& shapes) {
     const State start{trajectory.run.q, trajectory.run.v, trajectory.run.options.start_time};
     std::vector<bool> known(model_->contacts(), false);
     for (auto& [item, grip] : mechanism.discs(parameters_)) {
@@ -202,9 +203,9 @@ void ContactGeometry::find_discs(const Mechanism& mechanism, const Trajectory& t
                     points.push_back({one.foot.x - depth * one.away.x, one.foot.y - depth * one.away.y});
                 return points;
             };
-            const Shape* of_center = line_through(shapes, places(0.0), within * radius);
+            const DrawnShape* of_center = line_through(shapes, places(0.0), within * radius);
             if (of_center != nullptr) disc.contacts.push_back(contact);
-            const Shape* line =
+            const DrawnShape* line =
                 of_center != nullptr ? of_center : line_through(shapes, places(radius), within * radius);
             if (line == nullptr || known[contact]) continue;
             Solid solid{contact, of_center != nullptr ? 0.0 : radius};
@@ -212,7 +213,7 @@ void ContactGeometry::find_discs(const Mechanism& mechanism, const Trajectory& t
                 solid.pair = *pair;
                 const std::uint32_t clock = model_->layout().t();
                 solid.stands_still = !depends_on(model_->equations().gaps[contact], {&clock, 1});
-            } else if (line->kind == Shape::Kind::disc) {
+            } else if (line->kind == DrawnShape::Kind::disc) {
                 const Point& center = line->points[0];
                 const Nearness& one = near[0];
                 solid.center = center;
@@ -240,8 +241,8 @@ void ContactGeometry::rest(Drawing& drawing, double t, const State& state) const
                 wanted.emplace_back(near->away, radius * std::exp(-far * far));
             }
         const Point way = least_way(wanted);
-        for (Shape& shape : drawing.shapes)
-            if (shape.item == disc.item && shape.kind == Shape::Kind::disc)
+        for (DrawnShape& shape : drawing.shapes)
+            if (shape.item == disc.item && shape.kind == DrawnShape::Kind::disc)
                 shape.points[0] = {shape.points[0].x + way.x, shape.points[0].y + way.y};
     }
 }
@@ -297,23 +298,23 @@ const ContactGeometry::CachedGround& ContactGeometry::look(std::size_t which, co
 
 void ContactGeometry::add_ground(Drawing& drawing, double t, const State& state, ContactSet held,
                                  const Theme& theme) const {
-    std::vector<Shape> ground, lit;
+    std::vector<DrawnShape> ground, lit;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
         const CachedGround& seen = look(i, drawing, t, state);
-        Shape& shape = ground.emplace_back();
-        shape.kind = Shape::Kind::area;
+        DrawnShape& shape = ground.emplace_back();
+        shape.kind = DrawnShape::Kind::area;
         shape.fill_color = theme.ground;
         shape.points = seen.area;
         const std::size_t contact = solids_[i].contact;
         if (!held.contains(contact) || drawn_.contains(contact)) continue;
-        Shape& line = lit.emplace_back();
+        DrawnShape& line = lit.emplace_back();
         line.points = seen.line;
         line.stroke.color = phase_color(theme, Phase::Kind::constrained);
         line.stroke.width = 2.75;
     }
     drawing.shapes.insert(drawing.shapes.begin(), ground.begin(), ground.end());
     const auto first =
-        std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const Shape& shape) { return shape.moves; });
+        std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const DrawnShape& shape) { return shape.moves; });
     drawing.shapes.insert(first, lit.begin(), lit.end());
 }
 

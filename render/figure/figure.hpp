@@ -184,7 +184,7 @@ std::string to_text(const Figure& figure);
 
 // ---- the mechanism at one instant: evaluated shapes in world coordinates ----
 
-struct Shape {
+struct DrawnShape {
     enum class Kind { disc, polyline, text, area };  // area: filled convex polygons of one opaque color
     Kind kind = Kind::polyline;
     std::vector<Point> points;  // world; disc and text: one point, the center. A NaN point ends a line or polygon
@@ -199,7 +199,7 @@ struct Shape {
 };
 
 struct Drawing {
-    std::vector<Shape> shapes;                                      // in painting order
+    std::vector<DrawnShape> shapes;                                 // in painting order
     double x_low = -1.0, x_high = 1.0, y_low = -1.0, y_high = 1.0;  // the part of the world that must be visible
     double size = 2.0;  // size of the world that the run needs, whatever the view; symbols are scaled by it
 };

@@ -109,7 +109,7 @@ void raise(FormulaBox& box, const FormulaPiece& piece, float size, const Formula
 }
 
 // An element of a row: a box and the space before it.
-struct Set {
+struct RowElement {
     FormulaBox box;
     float space = 0.0F;  // before it, unless it starts a line
     Kind kind = Kind::letters;
@@ -152,12 +152,12 @@ std::vector<std::size_t> partners(const std::vector<FormulaPiece>& row) {
     return result;
 }
 
-std::vector<Set> set_pieces(const Formula& formula, float size, const FormulaFont& font, bool is_inside) {
+std::vector<RowElement> set_pieces(const Formula& formula, float size, const FormulaFont& font, bool is_inside) {
     const std::vector<FormulaPiece>& row = formula.pieces;
-    std::vector<Set> result(row.size());
+    std::vector<RowElement> result(row.size());
     int depth = 0;
     for (std::size_t i = 0; i < row.size(); ++i) {
-        Set& one = result[i];
+        RowElement& one = result[i];
         one.kind = row[i].kind;
         one.is_prefix = is_prefix(row, i);
         if (i > 0)
@@ -191,7 +191,7 @@ std::vector<Set> set_pieces(const Formula& formula, float size, const FormulaFon
     return result;
 }
 
-FormulaBox row_of(const std::vector<Set>& all, std::size_t begin, std::size_t end) {
+FormulaBox row_of(const std::vector<RowElement>& all, std::size_t begin, std::size_t end) {
     FormulaBox line;
     for (std::size_t i = begin; i < end; ++i) {
         const float x = line.width + (i == begin ? 0.0F : all[i].space);
@@ -201,7 +201,7 @@ FormulaBox row_of(const std::vector<Set>& all, std::size_t begin, std::size_t en
     return line;
 }
 
-float width_of(const std::vector<Set>& all, std::size_t begin, std::size_t end) {
+float width_of(const std::vector<RowElement>& all, std::size_t begin, std::size_t end) {
     float width = 0.0F;
     for (std::size_t i = begin; i < end; ++i) width += all[i].box.width + (i == begin ? 0.0F : all[i].space);
     return width;
@@ -210,8 +210,8 @@ float width_of(const std::vector<Set>& all, std::size_t begin, std::size_t end) 
 // Cost of a line break before element i: the depth of brackets, plus a penalty for breaking a product; `never` if no
 // break is allowed.
 constexpr int never = 1000, of_product = 100;
-int cost_of_break(const std::vector<Set>& all, std::size_t i) {
-    const Set& here = all[i];
+int cost_of_break(const std::vector<RowElement>& all, std::size_t i) {
+    const RowElement& here = all[i];
     if (i == 0 || here.is_brick || here.kind == Kind::close || here.kind == Kind::comma || all[i - 1].is_prefix)
         return never;
     if (all[i - 1].kind == Kind::space) return 0;  // between words
@@ -241,13 +241,13 @@ void FormulaBox::put(const FormulaBox& other, float x, float y) {
 }
 
 FormulaBox set(const Formula& formula, float size, const FormulaFont& font) {
-    const std::vector<Set> all = set_pieces(formula, size, font, true);
+    const std::vector<RowElement> all = set_pieces(formula, size, font, true);
     return row_of(all, 0, all.size());
 }
 
 std::vector<FormulaBox> set_in_lines(const Formula& formula, float size, const FormulaFont& font, float width,
                                      float indent) {
-    const std::vector<Set> all = set_pieces(formula, size, font, false);
+    const std::vector<RowElement> all = set_pieces(formula, size, font, false);
     std::vector<FormulaBox> lines;
     for (std::size_t begin = 0; begin < all.size();) {
         const float room = width - (lines.empty() ? 0.0F : indent);

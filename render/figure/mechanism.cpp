@@ -93,7 +93,7 @@ Color color_of(const std::string& text) {
     return {part(1), part(3), part(5), 255};
 }
 
-struct Box {
+struct BoundingBox {
     double x_low = std::numeric_limits<double>::infinity(), x_high = -x_low, y_low = x_low, y_high = -x_low;
     void include(const Point& p, double radius = 0.0) {
         if (!std::isfinite(p.x) || !std::isfinite(p.y)) return;
@@ -106,7 +106,7 @@ struct Box {
     void include(const EvaluatedDrawing& placed) {
         for (const Point& point : placed.points) include(point, std::max(0.0, placed.radius));
     }
-    void include(const Box& other) {
+    void include(const BoundingBox& other) {
         x_low = std::min(x_low, other.x_low);
         x_high = std::max(x_high, other.x_high);
         y_low = std::min(y_low, other.y_low);
@@ -122,8 +122,8 @@ struct Box {
 
 // Includes a static curve. Of a ground, the part below the motion counts; an object not much larger than the motion (a
 // bowl, a ring) is shown entirely.
-void include_under(Box& all, const Box& motion, const std::vector<Point>& curve) {
-    Box whole;
+void include_under(BoundingBox& all, const BoundingBox& motion, const std::vector<Point>& curve) {
+    BoundingBox whole;
     for (const Point& p : curve) whole.include(p);
     const bool near =
         std::any_of(curve.begin(), curve.end(), [&](const Point& p) { return motion.distance(p) <= motion.size(); });
@@ -136,8 +136,8 @@ void include_under(Box& all, const Box& motion, const std::vector<Point>& curve)
 }
 
 // Whether a wall with hatching, or a block, is shown entirely because it is near and not much larger than the motion.
-bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Point>& points) {
-    Box whole;
+bool is_shown_whole(DrawingShape shape, const BoundingBox& motion, const std::vector<Point>& points) {
+    BoundingBox whole;
     for (const Point& p : points) whole.include(p);
     const auto is_near = [&](const Point& p) { return motion.distance(p) <= motion.size(); };
     return (shape == DrawingShape::ground || shape == DrawingShape::box) && whole.size() <= 2.0 * motion.size() &&
@@ -146,7 +146,7 @@ bool is_shown_whole(DrawingShape shape, const Box& motion, const std::vector<Poi
 
 // Includes the point of a floor, wall or pivot that is nearest to the motion, unless it is far away.
 template <class EvaluatedDrawing>
-void include_nearest(Box& all, const Box& motion, const EvaluatedDrawing& placed) {
+void include_nearest(BoundingBox& all, const BoundingBox& motion, const EvaluatedDrawing& placed) {
     constexpr int parts = 100;
     const double reach = motion.size();
     double least = std::numeric_limits<double>::infinity();
@@ -166,7 +166,7 @@ void include_nearest(Box& all, const Box& motion, const EvaluatedDrawing& placed
 
 // Highlights a surface while a contact is held on it: lines get the color of constrained phases and become bolder.
 // Filled shapes keep their color and get such an outline.
-void light(Shape& shape, const Theme& theme) {
+void light(DrawnShape& shape, const Theme& theme) {
     shape.stroke.color = phase_color(theme, Phase::Kind::constrained);
     if (shape.stroke.width > 0.0) shape.stroke.width += shape.fill ? 1.5 : 0.75;
 }
@@ -321,8 +321,8 @@ std::vector<std::pair<std::size_t, AnchorPoint>> Mechanism::discs(std::span<cons
 
 namespace {
 
-Shape& add(Drawing& drawing, Shape::Kind kind, const Color& color, double width) {
-    Shape& shape = drawing.shapes.emplace_back();
+DrawnShape& add(Drawing& drawing, DrawnShape::Kind kind, const Color& color, double width) {
+    DrawnShape& shape = drawing.shapes.emplace_back();
     shape.kind = kind;
     shape.stroke.color = shape.fill_color = color;
     shape.stroke.width = width;
@@ -346,8 +346,8 @@ void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::s
             return gap.output(0);
         });
     }
-    add(drawing, Shape::Kind::polyline, theme.surface, 2.0).points = border(drawing, gaps);
-    Shape& disc = add(drawing, Shape::Kind::disc, theme.body, 0.0);
+    add(drawing, DrawnShape::Kind::polyline, theme.surface, 2.0).points = border(drawing, gaps);
+    DrawnShape& disc = add(drawing, DrawnShape::Kind::disc, theme.body, 0.0);
     disc.moves = true;
     disc.points = {{state.q[0], state.q[1]}};
     disc.radius = 0.012 * (drawing.x_high - drawing.x_low + drawing.y_high - drawing.y_low);
@@ -369,24 +369,24 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         const Color color = d.color.empty() ? own : on_theme(color_of(d.color), theme);
         Evaluator<double> run = model_.evaluator(item.program, parameters);
         EvaluatedDrawing placed = place(item, run, t, state, &limits);
-        const Shape::Kind kind = is_round(d.shape)               ? Shape::Kind::disc
-                                 : d.shape == DrawingShape::text ? Shape::Kind::text
-                                                                 : Shape::Kind::polyline;
+        const DrawnShape::Kind kind = is_round(d.shape)               ? DrawnShape::Kind::disc
+                                      : d.shape == DrawingShape::text ? DrawnShape::Kind::text
+                                                                      : DrawnShape::Kind::polyline;
         const bool is_part = d.shape == DrawingShape::spring || d.shape == DrawingShape::damper;
         const bool is_lit = d.contact ? held.contains(*d.contact) : !of_body.empty() && &item == body();
         if (d.shape == DrawingShape::ground) {
-            Shape& earth = add(drawing, Shape::Kind::area, theme.ground, 0.0);
+            DrawnShape& earth = add(drawing, DrawnShape::Kind::area, theme.ground, 0.0);
             earth.points = beneath(
                 placed.points.front(), placed.points.back(),
                 ends_are_outside(limits, placed.points) ? 2.0 * diagonal(limits) : hatch_of_world * limits.size);
             earth.moves = item.moves;
-            Shape& hatches = add(drawing, kind, color, 0.5 * placed.width);
+            DrawnShape& hatches = add(drawing, kind, color, 0.5 * placed.width);
             hatches.points = line_between(item, run, placed, limits.size);
             hatches.moves = item.moves;
             if (is_lit) light(hatches, theme);
         }
         if (is_part) placed.points = line_between(item, run, placed, limits.size);
-        Shape& shape = add(drawing, kind, color, placed.width);
+        DrawnShape& shape = add(drawing, kind, color, placed.width);
         shape.item = static_cast<std::size_t>(&item - items_.data());
         shape.moves = item.moves;
         shape.points = std::move(placed.points);
@@ -399,7 +399,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
     if (plane_) {
         add_plane(drawing, t, state, parameters, theme);
     } else if (items_.empty() && all) {
-        Shape& note = add(drawing, Shape::Kind::text, theme.surface, 1.0);
+        DrawnShape& note = add(drawing, DrawnShape::Kind::text, theme.surface, 1.0);
         note.points = {{0.5 * (limits.x_low + limits.x_high), 0.5 * (limits.y_low + limits.y_high)}};
         note.text = "this system has no [[drawing]]";
     }
@@ -407,7 +407,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
 }
 
 Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> samples) const {
-    Box box;
+    BoundingBox box;
     const std::size_t stride = 1 + samples.size() / 1000;
     if (plane_)
         for (std::size_t i = 0; i < samples.size(); i += stride)
@@ -419,7 +419,7 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
             box.include(place(item, run, samples[i].t, samples[i].state));
     }
     const bool still = box.empty();  // then all static shapes must be visible
-    Box all = box;
+    BoundingBox all = box;
     for (const Item& item : items_) {
         if (item.moves) continue;
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);

@@ -15,24 +15,25 @@ constexpr double apart = 0.035;  // fraction of the world: closer poses would me
 constexpr std::uint8_t pose = 55;
 
 // The moving shapes of a drawing with this opacity. Texts are left out, because they would be unreadable.
-std::vector<Shape> paled(std::vector<Shape> shapes, std::uint8_t alpha) {
-    std::erase_if(shapes, [](const Shape& shape) { return !shape.moves || shape.kind == Shape::Kind::text; });
-    for (Shape& shape : shapes) shape.stroke.color.a = shape.fill_color.a = alpha;
+std::vector<DrawnShape> paled(std::vector<DrawnShape> shapes, std::uint8_t alpha) {
+    std::erase_if(shapes, [](const DrawnShape& shape) { return !shape.moves || shape.kind == DrawnShape::Kind::text; });
+    for (DrawnShape& shape : shapes) shape.stroke.color.a = shape.fill_color.a = alpha;
     return shapes;
 }
 
-void put_under_what_moves(std::vector<Shape>& shapes, const std::vector<Shape>& more) {
-    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const Shape& shape) { return shape.moves; });
+void put_under_what_moves(std::vector<DrawnShape>& shapes, const std::vector<DrawnShape>& more) {
+    const auto first = std::find_if(shapes.begin(), shapes.end(), [](const DrawnShape& shape) { return shape.moves; });
     shapes.insert(first, more.begin(), more.end());
 }
 
 // Makes a disc as large as the picture transparent: the closer the view, the more of the disc is only its rim.
-void thin_out_large(std::vector<Shape>& shapes, const Drawing& seen) {
+void thin_out_large(std::vector<DrawnShape>& shapes, const Drawing& seen) {
     constexpr double large = 0.4, huge = 1.2;  // radius as a fraction of the picture's smaller side
     constexpr double least = 26.0, rim = 2.0;
     const double size = std::min(seen.x_high - seen.x_low, seen.y_high - seen.y_low);
-    for (Shape& shape : shapes) {
-        if (shape.kind != Shape::Kind::disc || !shape.moves || !shape.fill || !(shape.radius > large * size)) continue;
+    for (DrawnShape& shape : shapes) {
+        if (shape.kind != DrawnShape::Kind::disc || !shape.moves || !shape.fill || !(shape.radius > large * size))
+            continue;
         const double s = std::min(1.0, (shape.radius / size - large) / (huge - large));
         shape.fill_color.a = static_cast<std::uint8_t>(255.0 + s * (least - 255.0));
         shape.stroke.width = std::max(shape.stroke.width, rim);
@@ -249,15 +250,15 @@ Drawing TwoViews::draw(std::size_t side, const Sample& now, const Drawing& seen,
             return program.output(0);
         };
         const ScalarField field(seen, [&](const Point& p) { return -gap(p); });
-        Shape& ground = drawing.shapes.emplace_back();
-        ground.kind = Shape::Kind::area;
+        DrawnShape& ground = drawing.shapes.emplace_back();
+        ground.kind = DrawnShape::Kind::area;
         ground.fill_color = theme.ground;
         constexpr double end = std::numeric_limits<double>::quiet_NaN();
         for (const std::vector<Point>& part : field.not_negative()) {
             ground.points.insert(ground.points.end(), part.begin(), part.end());
             ground.points.push_back({end, end});
         }
-        Shape& line = drawing.shapes.emplace_back();
+        DrawnShape& line = drawing.shapes.emplace_back();
         line.points = field.zero_line();
         const bool is_held = now.mode.is_held(contact);
         line.stroke.color = is_held ? phase_color(theme, Phase::Kind::constrained) : theme.surface;
@@ -266,8 +267,8 @@ Drawing TwoViews::draw(std::size_t side, const Sample& now, const Drawing& seen,
         rests.x += radius * out.x, rests.y += radius * out.y;
     }
     if (model.contacts() > 1) rests = {};
-    Shape& disc = drawing.shapes.emplace_back();
-    disc.kind = Shape::Kind::disc;
+    DrawnShape& disc = drawing.shapes.emplace_back();
+    disc.kind = DrawnShape::Kind::disc;
     disc.moves = disc.fill = true;
     disc.points = {{here.x + rests.x, here.y + rests.y}};
     disc.radius = radius;

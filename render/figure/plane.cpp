@@ -216,7 +216,7 @@ namespace {
 using Pair = std::array<std::size_t, 2>;
 
 // Two coordinates and the rectangle in which they are sampled.
-struct Part {
+struct PlaneRegion {
     Pair pair;
     Drawing box;
 };
@@ -277,14 +277,14 @@ std::array<double, 2> reach(std::span<const Sample> samples, const CoordinateDes
     return {low - more, high + more};
 }
 
-std::optional<Part> part_of(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
-                            const Panel& panel) {
+std::optional<PlaneRegion> part_of(const Trajectory& trajectory, std::span<const Sample> samples,
+                                   const PreparedView& view, const Panel& panel) {
     const Model& model = *trajectory.model;
     const auto& quantities = view.quantities();
     if (quantities.size() != 2 || samples.empty()) return std::nullopt;
     const auto& x = quantities[0].coordinate;
     const auto& y = quantities[1].coordinate;
-    Part part;
+    PlaneRegion part;
     if (x && y && *x != *y) {
         part.pair = {*x, *y};
         part.box.x_low = panel.x.low / quantities[0].factor, part.box.x_high = panel.x.high / quantities[0].factor;

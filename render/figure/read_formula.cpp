@@ -20,9 +20,9 @@ bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z')
 constexpr std::array<std::string_view, 14> function_words{"sin",  "cos",  "tan", "arcsin", "arccos", "arctan", "sinh",
                                                           "cosh", "tanh", "exp", "log",    "mathrm", "min",    "max"};
 
-class Reader {
+class FormulaReader {
  public:
-    Reader(std::string_view text, const std::vector<FormulaName>& names) : text_(text), names_(names) {}
+    FormulaReader(std::string_view text, const std::vector<FormulaName>& names) : text_(text), names_(names) {}
 
     Formula row(char end = '\0') {
         Formula result;
@@ -234,7 +234,7 @@ std::string unescaped(std::string_view words) {
 }  // namespace
 
 Formula read_formula(std::string_view latex, const std::vector<FormulaName>& names) {
-    return Reader(latex, names).row();
+    return FormulaReader(latex, names).row();
 }
 
 Formula joined(std::vector<Formula> parts) {

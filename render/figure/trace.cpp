@@ -200,7 +200,7 @@ class PathThinner : public Thinner {
 };
 
 // Quantities at an instant.
-struct Node {
+struct TraceNode {
     double t = 0.0;
     Phase::Kind phase = Phase::Kind::hybrid;
     std::vector<double> values;  // x, then each y
@@ -263,7 +263,7 @@ class Tracer {
     static constexpr int most_halvings = 24;
     static constexpr int most_of_step = 200000;  // maximum number of samples in one step
 
-    void read_node(const Sample& sample, Node& node) {
+    void read_node(const Sample& sample, TraceNode& node) {
         node.t = sample.t;
         node.phase = sample.phase;
         node.values.resize(request_.quantities + 1);
@@ -282,7 +282,7 @@ class Tracer {
         auto& [low, high] = result_.ranges[quantity];
         low = std::min(low, value), high = std::max(high, value);
     }
-    void read_at(const DenseSegment& piece, double t, Node& node) {
+    void read_at(const DenseSegment& piece, double t, TraceNode& node) {
         Sample sample = sampler_.in(piece, t, request_.with_work);
         sample.phase = next_.phase;
         ++samples_of_step_;
@@ -290,7 +290,7 @@ class Tracer {
     }
 
     // Largest deviation of the curves at m from the chord between a and b, relative to the tolerance.
-    double deviation(const Node& a, const Node& m, const Node& b) const {
+    double deviation(const TraceNode& a, const TraceNode& m, const TraceNode& b) const {
         double most = 0.0;
         for (const std::size_t i : request_.shown) {
             const Point p = visible(a.pixels[i]), q = visible(m.pixels[i]), r = visible(b.pixels[i]);
@@ -335,10 +335,10 @@ class Tracer {
     }
     // Whether all of these nodes, extended by `beyond` (relative to the tolerance), lie in a column whose range the
     // curves have covered already.
-    bool is_covered(std::initializer_list<const Node*> nodes, double beyond) const {
+    bool is_covered(std::initializer_list<const TraceNode*> nodes, double beyond) const {
         return std::all_of(request_.shown.begin(), request_.shown.end(), [&](std::size_t i) {
             double low = std::numeric_limits<double>::infinity(), high = -low;
-            for (const Node* node : nodes) {
+            for (const TraceNode* node : nodes) {
                 if (!is_finite(node->pixels[i])) return false;
                 low = std::min(low, node->pixels[i].y), high = std::max(high, node->pixels[i].y);
             }
@@ -349,11 +349,11 @@ class Tracer {
     }
     // Adds the points between a and b, including b but not a. For a smooth curve, halving reduces the deviation to a
     // quarter. If the deviation was small before as well, both halves are accurate enough.
-    void refine(const DenseSegment& piece, const Node& a, const Node& b, double before, int halvings) {
+    void refine(const DenseSegment& piece, const TraceNode& a, const TraceNode& b, double before, int halvings) {
         const double t = 0.5 * (a.t + b.t);
         if (samples_of_step_ > most_of_step) return leave_out(b);
         if (halvings >= most_halvings || !(t > a.t && t < b.t)) return take(b);
-        Node& middle = levels_[static_cast<std::size_t>(halvings)];
+        TraceNode& middle = levels_[static_cast<std::size_t>(halvings)];
         read_at(piece, t, middle);
         const double off = deviation(a, middle, b);
         constexpr double near = 4.0, smooth = 16.0;
@@ -373,12 +373,12 @@ class Tracer {
         return *thinners_[2 * quantity + (phase == Phase::Kind::hybrid ? 0 : 1)];
     }
     // Interrupts the curves: a break is correct, but a chord across many reversals is not.
-    void leave_out(const Node& node) {
+    void leave_out(const TraceNode& node) {
         for (const std::size_t i : request_.shown) thinner(i, node.phase).lift();
         take(node);
     }
     // Adds a node. Where the phase changes, one curve ends and the other starts at the same point.
-    void take(const Node& node) {
+    void take(const TraceNode& node) {
         const bool changed = !has_taken_ || taken_.phase != node.phase;
         for (const std::size_t i : request_.shown) {
             Thinner& curve = thinner(i, node.phase);
@@ -389,7 +389,7 @@ class Tracer {
         taken_ = node;
         has_taken_ = true;
     }
-    static void put(Thinner& curve, const Node& node, std::size_t i) {
+    static void put(Thinner& curve, const TraceNode& node, std::size_t i) {
         const PlacedPoint point{{node.values[0], node.values[i + 1]}, node.pixels[i], node.t};
         if (is_finite(point.data) && is_finite(point.pixel))
             curve.add(point);
@@ -403,9 +403,9 @@ class Tracer {
     std::vector<std::unique_ptr<Thinner>> thinners_;
     std::vector<double> tolerances_;  // pixels, of each y
     Trace result_;
-    Node last_, next_, taken_;
-    std::array<Node, 2> third_;
-    std::vector<Node> levels_;
+    TraceNode last_, next_, taken_;
+    std::array<TraceNode, 2> third_;
+    std::vector<TraceNode> levels_;
     bool has_last_ = false, has_taken_ = false;
     int samples_of_step_ = 0;
 };

@@ -135,13 +135,13 @@ struct Baseline {
 };
 
 // A letter with its font, size and position: `along` the line, `down` from its top.
-struct Set {
+struct PlacedGlyph {
     const ImFontGlyph* glyph;
     float zoom, along, down, base, slant;  // base: distance of the baseline from the top of the letters
     float advance() const { return glyph->AdvanceX * zoom; }
 };
 
-void paint_glyph(ImDrawList* list, const Set& set, const Baseline& line, ImU32 color) {
+void paint_glyph(ImDrawList* list, const PlacedGlyph& set, const Baseline& line, ImU32 color) {
     const ImFontGlyph& glyph = *set.glyph;
     if (glyph.Visible == 0) return;
     const float left = set.along + glyph.X0 * set.zoom, right = set.along + glyph.X1 * set.zoom;
@@ -155,7 +155,7 @@ void paint_glyph(ImDrawList* list, const Set& set, const Baseline& line, ImU32 c
 }
 
 // Draws dots above a letter as discs, because the font's combining dots touch the taller Greek letters.
-void paint_dots(ImDrawList* list, const Set& set, const Baseline& line, float size, int dots, ImU32 color) {
+void paint_dots(ImDrawList* list, const PlacedGlyph& set, const Baseline& line, float size, int dots, ImU32 color) {
     const float radius = std::max(size * 0.066F, 0.8F);
     const float height = set.glyph->Y0 * set.zoom - 1.9F * radius;
     const float middle =
@@ -176,7 +176,7 @@ float set_line(const std::string& label, float size, const Draw& draw) {
         const Letter& letter = line[i];
         const float own_size = letter.script == 0 ? size : size * script_size;
         ImFont* font = font_for(double{own_size});
-        Set set{&glyph_of(font, letter.code), own_size / size_of(font), along, 0.0F, 0.0F, 0.0F};
+        PlacedGlyph set{&glyph_of(font, letter.code), own_size / size_of(font), along, 0.0F, 0.0F, 0.0F};
         set.base = ascent_of(font) * set.zoom;
         if (letter.script != 0) {
             const float shift = letter.script < 0 ? index_drop : -power_rise;
@@ -193,7 +193,7 @@ float set_line(const std::string& label, float size, const Draw& draw) {
 }  // namespace
 
 float label_width(const std::string& label, float size) {
-    return set_line(label, size, [](const Letter&, const Set&) {});
+    return set_line(label, size, [](const Letter&, const PlacedGlyph&) {});
 }
 
 float paint_label(ImDrawList* list, float x, float y, const std::string& label, Color color, float size, int angle) {
@@ -201,7 +201,7 @@ float paint_label(ImDrawList* list, float x, float y, const std::string& label, 
     const Baseline line{{std::round(x), std::round(y)}, angle != 90};
     const ImU32 ink = IM_COL32(color.r, color.g, color.b, color.a);
     push_font_texture(list);
-    const float length = set_line(label, size, [&](const Letter& letter, const Set& set) {
+    const float length = set_line(label, size, [&](const Letter& letter, const PlacedGlyph& set) {
         paint_glyph(list, set, line, ink);
         if (letter.dots > 0) paint_dots(list, set, line, size, letter.dots, ink);
     });

@@ -140,9 +140,9 @@ Image image_of(const Cells& cells) {
 }
 
 // Writes the items of a sheet in order.
-class Writer {
+class SvgWriter {
  public:
-    explicit Writer(const FontFile& font) : font_(font) {}
+    explicit SvgWriter(const FontFile& font) : font_(font) {}
 
     void operator()(const Fill& fill) {
         const Rectangle& r = fill.area;
@@ -317,7 +317,7 @@ class Writer {
 };
 
 // The complete file around the written body.
-std::string file_of(const Writer& writer, const SvgSize& size, const Notes& notes) {
+std::string file_of(const SvgWriter& writer, const SvgSize& size, const Notes& notes) {
     const double height_mm = size.width_mm * size.height / size.width;
     const std::string extent = size.width_mm > 0.0
                                    ? fmt::format("width=\"{:.6g}mm\" height=\"{:.6g}mm\"", size.width_mm, height_mm)
@@ -345,7 +345,7 @@ Rectangle area_of(const SvgSize& size) {
 std::string svg(const Figure& figure, const SvgSize& size, const std::filesystem::path& fonts, const Notes& notes) {
     const FontFile font(fonts);
     const auto measure = [&font](const std::string& label, float size_of_it) { return font.width(label, size_of_it); };
-    Writer writer(font);
+    SvgWriter writer(font);
     for (const auto& item : layout(figure, measure, area_of(size), size.scale)) std::visit(writer, item);
     return file_of(writer, size, notes);
 }
@@ -353,7 +353,7 @@ std::string svg(const Figure& figure, const SvgSize& size, const std::filesystem
 std::string svg(const Drawing& world, const Color& background, const SvgSize& size, const std::filesystem::path& fonts,
                 const Notes& notes) {
     const FontFile font(fonts);
-    Writer writer(font);
+    SvgWriter writer(font);
     const Rectangle area = area_of(size);
     if (background.a > 0) writer(Fill{area, background});
     const Placement placement = place(world, area);

@@ -86,10 +86,10 @@ void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenS
     if (!(stroke.width > 0.0) || stroke.color.a == 0) return;
     const double margin = stroke.width / 2.0 + 1.0;
     const ImVec2 clip_low = list->GetClipRectMin(), clip_high = list->GetClipRectMax();
-    const Box box{clip_low.x - margin, clip_low.y - margin, clip_high.x + margin, clip_high.y + margin};
+    const ClipBox box{clip_low.x - margin, clip_low.y - margin, clip_high.x + margin, clip_high.y + margin};
     const std::vector<Point> points = cut(thinned(pixels, thinning_tolerance), box, stroke.dash, stroke.width / 2.0);
 
-    Box bounds{1e9, 1e9, -1e9, -1e9};
+    ClipBox bounds{1e9, 1e9, -1e9, -1e9};
     for (const Point& p : points) {
         if (!is_finite(p)) continue;
         bounds = {std::min(bounds.x_low, p.x), std::min(bounds.y_low, p.y), std::max(bounds.x_high, p.x),
@@ -359,7 +359,7 @@ void thin_run(const std::vector<Point>& points, std::size_t begin, std::size_t e
 }
 
 // Liang-Barsky clipping: the part of the edge inside the box, as fractions of the edge.
-std::optional<std::pair<double, double>> inside(const Point& a, const Point& b, const Box& box) {
+std::optional<std::pair<double, double>> inside(const Point& a, const Point& b, const ClipBox& box) {
     double enter = 0.0, leave = 1.0;
     const auto side = [&](double start, double step, double low, double high) {
         if (step == 0.0) return start >= low && start <= high;
@@ -460,7 +460,8 @@ std::vector<Point> thinned(const std::vector<Point>& points, double tolerance) {
     return out;
 }
 
-std::vector<Point> cut(const std::vector<Point>& points, const Box& box, const std::vector<double>& dash, double cap) {
+std::vector<Point> cut(const std::vector<Point>& points, const ClipBox& box, const std::vector<double>& dash,
+                       double cap) {
     const Dashes dashes(dash, cap);
     Pieces pieces;
     double start = 0.0;  // arc length

@@ -90,7 +90,7 @@ class TilesPainter {
 };
 
 // ---- polylines in pixels, reduced before drawing: thinned, clipped, split into dashes; without ImGui and OpenGL ----
-struct Box {
+struct ClipBox {
     double x_low = 0.0, y_low = 0.0, x_high = 0.0, y_high = 0.0;
 };
 
@@ -105,6 +105,7 @@ std::vector<Point> thinned(const std::vector<Point>& points, double tolerance);
 // The parts of a polyline inside the box. `dash`: lengths on, off, on, ... in pixels; empty: solid. Dashes continue
 // from the first point along the whole curve, inside and outside the box, so that they do not move with the view. Each
 // dash is shortened by `cap` at both ends, because strokes have round ends that extend by half their width.
-std::vector<Point> cut(const std::vector<Point>& points, const Box& box, const std::vector<double>& dash, double cap);
+std::vector<Point> cut(const std::vector<Point>& points, const ClipBox& box, const std::vector<double>& dash,
+                       double cap);
 
 }  // namespace achilles

@@ -67,21 +67,21 @@ struct Offscreen::Implementation {
         check_room("drawing", room_for(surface.width, surface.height));
         context = memory_context();
         const Interface::Active active(interface);
-        const Current current(*this);
+        const CurrentContext current(*this);
         canvas.emplace(context.address, surface.curve_fineness);
         canvas->load_fonts();
     }
     ~Implementation() {
-        const Current current(*this);
+        const CurrentContext current(*this);
         canvas.reset();
     }
 
     // Mesa's drivers and a window share one current context, so this one is current only while it is used.
-    struct Current {
-        explicit Current(Implementation& owner) : context(owner.context) { context.make_current(); }
-        ~Current() { context.release(); }
-        Current(const Current&) = delete;
-        Current& operator=(const Current&) = delete;
+    struct CurrentContext {
+        explicit CurrentContext(Implementation& owner) : context(owner.context) { context.make_current(); }
+        ~CurrentContext() { context.release(); }
+        CurrentContext(const CurrentContext&) = delete;
+        CurrentContext& operator=(const CurrentContext&) = delete;
         MemoryContext& context;
     };
 
@@ -110,7 +110,7 @@ Image Offscreen::frame(const FrameFunction& draw, int passes, const Input& input
     }
     const Interface::Active active(implementation_->interface);
     const ImDrawData& data = implementation_->advance(draw, held);
-    const Implementation::Current current(*implementation_);
+    const Implementation::CurrentContext current(*implementation_);
     Canvas& canvas = *implementation_->canvas;
     const bool transparent = implementation_->options.transparent;
     if (transparent)
@@ -128,7 +128,7 @@ void Offscreen::step(const FrameFunction& draw, const Input& input) {
 void Offscreen::restyle(double scale, bool dark) {
     const Interface::Active active(implementation_->interface);
     implementation_->interface.restyle(scale, dark);
-    const Implementation::Current current(*implementation_);
+    const Implementation::CurrentContext current(*implementation_);
     implementation_->canvas->load_fonts();
 }
 

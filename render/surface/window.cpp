@@ -90,7 +90,7 @@ struct Window::Implementation {
         scale = surface.scale;
         dark = surface.dark;
         const Interface::Active active(interface);
-        const Current current(window);
+        const CurrentWindowContext current(window);
         glfwSwapInterval(1);
         canvas.emplace([](const char* name) { return reinterpret_cast<void*>(glfwGetProcAddress(name)); },
                        surface.curve_fineness);
@@ -101,7 +101,7 @@ struct Window::Implementation {
     }
     ~Implementation() {
         {
-            const Current current(window);
+            const CurrentWindowContext current(window);
             canvas.reset();
         }
         for (GLFWcursor* cursor : cursors)
@@ -109,11 +109,11 @@ struct Window::Implementation {
     }
 
     // OSMesa and the window's driver share one current context, so this one is current only while it is used.
-    struct Current {
-        explicit Current(GLFWwindow* window) { glfwMakeContextCurrent(window); }
-        ~Current() { glfwMakeContextCurrent(nullptr); }
-        Current(const Current&) = delete;
-        Current& operator=(const Current&) = delete;
+    struct CurrentWindowContext {
+        explicit CurrentWindowContext(GLFWwindow* window) { glfwMakeContextCurrent(window); }
+        ~CurrentWindowContext() { glfwMakeContextCurrent(nullptr); }
+        CurrentWindowContext(const CurrentWindowContext&) = delete;
+        CurrentWindowContext& operator=(const CurrentWindowContext&) = delete;
     };
 
     static GLFWwindow* open(const SurfaceOptions& surface, const std::string& title);
@@ -258,7 +258,7 @@ bool Window::Implementation::is_closing() {
 
 void Window::Implementation::restyle() {
     interface.restyle(scale * monitor_scale, dark);
-    const Current current(window);
+    const CurrentWindowContext current(window);
     canvas->load_fonts();
     stale = false;
 }
@@ -277,7 +277,7 @@ void Window::Implementation::frame(const FrameFunction& draw) {
     apply(events.next(ImGui::GetIO().WantTextInput));
     const ImDrawData& data = interface.frame(draw, width, height, step);
     show_cursor();
-    const Current current(window);
+    const CurrentWindowContext current(window);
     canvas->draw(data, interface.background());
     canvas->show();
     glfwSwapBuffers(window);
@@ -322,7 +322,7 @@ void Window::restyle(double scale, bool dark) {
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(implementation_->window, title.c_str()); }
 
 Image Window::picture() {
-    const Implementation::Current current(implementation_->window);
+    const Implementation::CurrentWindowContext current(implementation_->window);
     return implementation_->canvas->read();
 }
 

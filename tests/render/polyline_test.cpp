@@ -88,7 +88,7 @@ TEST(Polyline, DashesHaveTheirLengthsAcrossCorners) {
         const double angle = 2.0 * std::numbers::pi * i / 3000;
         circle.push_back({radius * std::cos(angle), radius * std::sin(angle)});
     }
-    const Box box{-100, -100, 100, 100};
+    const ClipBox box{-100, -100, 100, 100};
     EXPECT_NEAR(length(cut(circle, box, {4, 6}, 0.0)), 160.0, 0.1);
     EXPECT_NEAR(length(cut(circle, box, {4, 6}, 1.0)), 80.0, 0.1);  // the caps add the rest
 }
