@@ -35,7 +35,7 @@ namespace {
 constexpr double frame_patience = 1.0 / 40.0;
 
 // Seconds since the last call; 0 at the first call.
-class Clock {
+class FrameTimer {
  public:
     double elapsed() {
         const auto now = std::chrono::steady_clock::now();
@@ -295,7 +295,7 @@ class Explorer {
     FilePolicy trust_;
     std::deque<std::string> dropped_;  // dropped files not handled yet
     std::size_t replayed_ = 0;         // commands from journals since the last user input
-    Clock clock_;
+    FrameTimer clock_;
     double waited_ = 0.0;
 };
 

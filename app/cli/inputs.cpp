@@ -24,7 +24,7 @@ InputError not_carried(const std::string& name) {
 
 }  // namespace
 
-Inputs::Inputs(std::vector<Source> kept, const std::string& command)
+Inputs::Inputs(std::vector<InputSource> kept, const std::string& command)
     : kept_(std::move(kept)),
       from_picture_(true),
       trust_{FilePolicy::Files::virtual_only,
@@ -36,12 +36,12 @@ Inputs::Inputs(std::vector<Source> kept, const std::string& command)
 }
 
 // For a picture: the text that this name had at this request; after the last stored text, that one again.
-const Source& Inputs::next(const std::string& name, bool is_journal) {
+const InputSource& Inputs::next(const std::string& name, bool is_journal) {
     const std::size_t wanted = asked_[{name, is_journal}]++;
-    const Source* found = nullptr;
+    const InputSource* found = nullptr;
     std::size_t count = 0;
-    for (const Source& source : kept_)
-        if (source.name == name && (source.kind == Source::Kind::journal) == is_journal && count++ <= wanted)
+    for (const InputSource& source : kept_)
+        if (source.name == name && (source.kind == InputSource::Kind::journal) == is_journal && count++ <= wanted)
             found = &source;
     if (found == nullptr) throw not_carried(name);
     return *found;
@@ -49,13 +49,13 @@ const Source& Inputs::next(const std::string& name, bool is_journal) {
 
 std::string Inputs::text(const std::string& name) {
     if (from_picture_) return next(name, false).text;
-    kept_.push_back({Source::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
+    kept_.push_back({InputSource::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
     return kept_.back().text;
 }
 
 std::string Inputs::data(const std::string& path) {
     if (from_picture_) return next(path, false).text;
-    kept_.push_back({Source::Kind::system, path, read_text(files_read_.emplace_back(path))});
+    kept_.push_back({InputSource::Kind::system, path, read_text(files_read_.emplace_back(path))});
     return kept_.back().text;
 }
 
@@ -65,7 +65,7 @@ SystemDescription Inputs::system(const std::string& name) { return parse_system(
 
 std::string Inputs::journal_text(const std::string& path) {
     if (from_picture_) return next(path, true).text;
-    kept_.push_back({Source::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
+    kept_.push_back({InputSource::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
     return kept_.back().text;
 }
 
@@ -97,7 +97,7 @@ void Inputs::count(const std::string& name, const std::vector<Command>& commands
 
 std::string Inputs::first_system() const {
     const auto first = std::find_if(kept_.begin(), kept_.end(),
-                                    [](const Source& source) { return source.kind == Source::Kind::system; });
+                                    [](const InputSource& source) { return source.kind == InputSource::Kind::system; });
     if (first == kept_.end()) throw not_carried("SYSTEM");
     return first->name;
 }
@@ -144,8 +144,8 @@ DroppedOptions parsed(const std::string& command_line) {
     return asked;
 }
 
-const Source* carried(const Origin& origin, Source::Kind kind, const std::string& name) {
-    for (const Source& source : origin.sources)
+const InputSource* carried(const Origin& origin, InputSource::Kind kind, const std::string& name) {
+    for (const InputSource& source : origin.sources)
         if (source.kind == kind && (name.empty() || source.name == name)) return &source;
     return nullptr;
 }
@@ -159,7 +159,7 @@ struct DroppedCommands {
 
 // Whether the file of that name still has the same text. The name comes from an untrusted picture, so a path is read
 // only with permission. Throws FileAccessDenied if the user must be asked.
-bool is_held(const Source& source, const DroppedCommands& opening) {
+bool is_held(const InputSource& source, const DroppedCommands& opening) {
     std::error_code problem;
     if (is_system_path(source.name)) {
         if (!std::filesystem::is_regular_file(source.name, problem)) return false;
@@ -179,7 +179,7 @@ bool is_held(const Source& source, const DroppedCommands& opening) {
 }
 
 // Opens the system that the picture stores under this name.
-void open(const Source& source, DroppedCommands& opening) {
+void open(const InputSource& source, DroppedCommands& opening) {
     if (is_held(source, opening)) {
         opening.commands.emplace_back(command::Open{source.name});
         return;
@@ -189,7 +189,7 @@ void open(const Source& source, DroppedCommands& opening) {
 }
 
 // The run and the plots that a command line specifies.
-void ask(const DroppedOptions& asked, const Source& source, std::vector<Command>& commands) {
+void ask(const DroppedOptions& asked, const InputSource& source, std::vector<Command>& commands) {
     const SystemDescription description = parse_system(source.text, source.name);
     Run run = requested_run(description, asked.settings, asked.overrides);
     command::SetStart start;
@@ -219,7 +219,8 @@ void ask(const DroppedOptions& asked, const Source& source, std::vector<Command>
 void replay(const std::vector<Command>& journal, const Origin& origin, DroppedCommands& opening) {
     for (const Command& command : journal) {
         if (const auto* opened = std::get_if<command::Open>(&command)) {
-            if (const Source* source = carried(origin, Source::Kind::system, opened->system)) open(*source, opening);
+            if (const InputSource* source = carried(origin, InputSource::Kind::system, opened->system))
+                open(*source, opening);
             continue;
         }
         if (std::holds_alternative<command::Save>(command) || std::holds_alternative<command::Export>(command) ||
@@ -233,11 +234,11 @@ std::vector<Command> session_of(const Origin& origin, DroppedCommands& opening) 
     const DroppedOptions asked = parsed(origin.command);
     if (asked.kind == "paper")
         throw std::runtime_error("a picture made by achilles paper cannot be opened as a session");
-    const Source* source = carried(origin, Source::Kind::system, asked.system);
+    const InputSource* source = carried(origin, InputSource::Kind::system, asked.system);
     if (source == nullptr) throw std::runtime_error("the picture does not contain its system");
     open(*source, opening);
     ask(asked, *source, opening.commands);
-    if (const Source* journal = carried(origin, Source::Kind::journal, asked.journal);
+    if (const InputSource* journal = carried(origin, InputSource::Kind::journal, asked.journal);
         !asked.journal.empty() && journal != nullptr)
         replay(parse_journal(journal->text, journal->name), origin, opening);
     replay(parse_steps(asked.steps), origin, opening);

@@ -17,18 +17,18 @@ namespace achilles {
 // since pictures may come from untrusted sources.
 constexpr std::size_t most_changes = 1000;
 
-struct Source {
+struct InputSource {
     enum class Kind { system, journal };
     Kind kind = Kind::system;
     std::string name, text;
-    friend bool operator==(const Source&, const Source&) = default;
+    friend bool operator==(const InputSource&, const InputSource&) = default;
 };
 
 class Inputs {
  public:
     Inputs() = default;
     // Reads the inputs stored in a picture; `command` is the command that made it.
-    Inputs(std::vector<Source> kept, const std::string& command);
+    Inputs(std::vector<InputSource> kept, const std::string& command);
 
     // What the journals may do with files; by default nothing. Ignored for a picture, whose journals access no files.
     void trust(const FilePolicy& trust) {
@@ -54,16 +54,16 @@ class Inputs {
     std::vector<Command> steps(const std::vector<std::string>& lines);
     // The first system requested: the default for a command line, stored in a picture, that names none.
     std::string first_system() const;
-    const std::vector<Source>& kept() const { return kept_; }
+    const std::vector<InputSource>& kept() const { return kept_; }
     // Files read from the disk.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
 
  private:
-    const Source& next(const std::string& name, bool is_journal);
+    const InputSource& next(const std::string& name, bool is_journal);
     std::string journal_text(const std::string& path);
     void count(const std::string& name, const std::vector<Command>& commands);
 
-    std::vector<Source> kept_;
+    std::vector<InputSource> kept_;
     std::vector<std::filesystem::path> files_read_;
     bool from_picture_ = false;
     FilePolicy trust_;

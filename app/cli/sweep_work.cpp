@@ -14,8 +14,8 @@
 
 namespace achilles {
 
-void RunFailures::add(std::uint8_t code, Kind more) {
-    Kind& kind = kinds_[code];
+void RunFailures::add(std::uint8_t code, FailureCount more) {
+    FailureCount& kind = kinds_[code];
     kind.count += more.count;
     kind.first = std::min(kind.first, more.first);
 }
@@ -40,7 +40,7 @@ std::string RunFailures::take(std::string bytes) {
     const auto count = static_cast<std::size_t>(static_cast<unsigned char>(bytes.back()));
     bytes.pop_back();
     for (std::size_t i = 0; i < count; ++i) {
-        Kind kind;
+        FailureCount kind;
         const auto code = static_cast<std::uint8_t>(bytes.back());
         bytes.pop_back();
         std::memcpy(&kind, bytes.data() + bytes.size() - sizeof kind, sizeof kind);

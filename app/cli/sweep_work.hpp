@@ -22,11 +22,11 @@ class RunFailures {
     void tell(const SweepTable& table) const;
 
  private:
-    struct Kind {
+    struct FailureCount {
         std::uint64_t count = 0, first = most_points;
     };
-    void add(std::uint8_t code, Kind more);
-    std::map<std::uint8_t, Kind> kinds_;
+    void add(std::uint8_t code, FailureCount more);
+    std::map<std::uint8_t, FailureCount> kinds_;
 };
 
 // The bytes of a chunk: the stored form of its rows, then its failures and its summary.

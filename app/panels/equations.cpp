@@ -29,7 +29,7 @@ constexpr float caption_size = 0.867F, leading = 0.38F, before_heading = 1.0F, b
 constexpr int most_columns = 3;
 
 // A block of lines that must stay together, positioned from (0, 0).
-struct Unit {
+struct SheetBlock {
     std::vector<TypesetSheet::SheetLine> lines;
     std::vector<TypesetSheet::ConditionPlace> now;
     float width = 0.0F, height = 0.0F;
@@ -44,7 +44,7 @@ class Setter {
             names_.push_back({symbol.latex, typeset(symbol.name)});
     }
 
-    std::vector<Unit> units() {
+    std::vector<SheetBlock> units() {
         for (std::size_t i = 0; i < sheet_.blocks.size(); ++i) {
             block_ = i;
             add(sheet_.blocks[i]);
@@ -110,7 +110,7 @@ class Setter {
 
     void put(FormulaBox box, float x, Ink ink) {
         if (units_.empty()) begin(0.0F);
-        Unit& unit = units_.back();
+        SheetBlock& unit = units_.back();
         // Lines of plain letters get the line spacing of text.
         const float ascent = std::max(box.ascent, 0.72F * size_), descent = std::max(box.descent, 0.22F * size_);
         const float y = std::round(unit.height + ascent);
@@ -176,7 +176,7 @@ class Setter {
     }
 
     void now(std::size_t condition) {
-        Unit& unit = units_.back();
+        SheetBlock& unit = units_.back();
         unit.height += before_now * size_;
         unit.now.push_back({condition, 0.0F, unit.height, column_});
         unit.height += now_height * size_;
@@ -187,20 +187,20 @@ class Setter {
     const FormulaFont& font_;
     const float column_;
     std::vector<FormulaName> names_;
-    std::vector<Unit> units_;
+    std::vector<SheetBlock> units_;
     std::size_t block_ = 0;
 };
 
 // Distributes the units over columns of about the same height. A group starts a new column rather than being split.
-TypesetSheet in_columns(const std::vector<Unit>& units, int columns, float column, float size) {
+TypesetSheet in_columns(const std::vector<SheetBlock>& units, int columns, float column, float size) {
     float total = 0.0F;
-    for (const Unit& unit : units) total += unit.height;
+    for (const SheetBlock& unit : units) total += unit.height;
     const float target = total / static_cast<float>(columns);
     TypesetSheet page;
     float x = 0.0F, y = 0.0F, widest = 0.0F;
     int at = 0;
     for (std::size_t i = 0; i < units.size(); ++i) {
-        const Unit& unit = units[i];
+        const SheetBlock& unit = units[i];
         const bool is_last = at + 1 == columns, after_heading = i > 0 && units[i - 1].is_heading;
         const float filled = y + 0.5F * unit.height;
         if (!is_last && y > 0.0F && !after_heading && (filled > target || (unit.begins_group && y > 0.7F * target))) {

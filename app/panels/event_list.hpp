@@ -40,7 +40,7 @@ inline std::vector<std::size_t> turns(const Trajectory& trajectory, bool with_op
 // demand.
 class EventRows {
  public:
-    struct Row {
+    struct EventRow {
         std::size_t event;      // index of the event, or of the first folded impact
         std::size_t count = 0;  // number of folded impacts; 0: the row is a single event
         bool is_open = false;   // the folded impacts follow, one per row
@@ -66,7 +66,7 @@ class EventRows {
         add_impacts(session, state, next, trajectory.events.size() - next);
     }
     std::size_t size() const { return count_; }
-    Row at(std::size_t index) const {
+    EventRow at(std::size_t index) const {
         const auto after = std::upper_bound(parts_.begin(), parts_.end(), index,
                                             [](std::size_t i, const ListPart& part) { return i < part.row; });
         const ListPart& part = *std::prev(after);

@@ -168,7 +168,7 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
     tooltip(is_under_way ? "stop the proof"
             : is_there   ? "remove the proof from the plots and the events"
                          : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "
-                         "integration and rounding errors");
+                           "integration and rounding errors");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
@@ -230,7 +230,7 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
 }
 
 // A folded row: "10 impacts", the time of the first, and their energy loss; in a faint color.
-void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at, const EventColumns& columns) {
+void paint_impacts(const Session& session, const EventRows::EventRow& row, ImVec2 at, const EventColumns& columns) {
     const auto& events = session.trajectory().events;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 c{at.x + units(sign_at), at.y + 0.5F * ImGui::GetTextLineHeight()};
@@ -250,7 +250,7 @@ void paint_impacts(const Session& session, const EventRows::Row& row, ImVec2 at,
     columns.row(session, nullptr, lost, at, faint_color());
 }
 
-void show_impacts(const Session& session, const EventRows::Row& row, int present, const EventColumns& columns,
+void show_impacts(const Session& session, const EventRows::EventRow& row, int present, const EventColumns& columns,
                   PanelState& state, Commands& commands) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const auto& events = session.trajectory().events;
@@ -347,7 +347,7 @@ void show_list(const Session& session, ImVec2 size, PanelState& state, Commands&
             if (i == 0 || i == rows - 1) {
                 show_end(session, i == 0, columns, state, commands);
             } else {
-                const EventRows::Row row = all.at(static_cast<std::size_t>(i - 1));
+                const EventRows::EventRow row = all.at(static_cast<std::size_t>(i - 1));
                 const int reached = is_over ? -1 : present;
                 if (row.count > 0)
                     show_impacts(session, row, reached, columns, state, commands);

@@ -346,10 +346,10 @@ bool word_button(const char* word, const char* about, PanelState& state, bool en
 }  // namespace
 
 void show_take_away_items(const Session& session, PanelState& state, Commands& commands) {
-    struct Kind {
+    struct ExportItem {
         const char *name, *ending, *about;
     };
-    constexpr Kind kinds[] = {
+    constexpr ExportItem kinds[] = {
         {"Film as MP4\u2026", "mp4", "the mechanism in motion beside the plots (needs ffmpeg)"},
         {"Figure as SVG\u2026", "svg", "the plots for print; achilles reproduce can make them again"},
         {"Figure as PNG\u2026", "png", "the plots as an image in pixels"},
@@ -357,7 +357,7 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
         {"Run as CSV\u2026", "csv", "one row per instant"},
         {"Session as journal\u2026", "journal", "the commands that lead here, to replay anywhere"}};
     const bool is_there = session.under_way() == nullptr;
-    for (const Kind& kind : kinds)
+    for (const ExportItem& kind : kinds)
         if (item(kind.name, kind.about, state, is_there)) ask_to_take_away(session, state, kind.ending);
     ImGui::Separator();
     constexpr std::pair<const char*, const char*> lines[] = {

@@ -78,18 +78,18 @@ std::size_t wanted(const Session& session, const std::vector<Result>& results) {
 }
 
 // Text and width of a cell. In a strip of one line the time is beside the name.
-struct Cell {
+struct ResultCell {
     std::string name, time;
     float width = 0.0F;
 };
-struct Strip {
+struct StripLayout {
     float room = 0.0F;  // pixels, between its ends
     bool is_low = false;
 };
-Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
+ResultCell cell_of(const Session& session, const Result& result, const StripLayout& strip) {
     const Trajectory& trajectory = session.trajectory();
-    Cell cell{name_of(trajectory, result),
-              time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
+    ResultCell cell{name_of(trajectory, result),
+                    time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
     if (const EnclosedEvent* enclosed = session.enclosed(result.event))
         cell.name += ", proved", cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
@@ -102,23 +102,23 @@ Cell cell_of(const Session& session, const Result& result, const Strip& strip) {
 // The visible cells: results [begin, begin + size). Only these are measured, since a run may have thousands.
 struct VisibleResults {
     std::size_t begin = 0;
-    std::vector<Cell> cells;
+    std::vector<ResultCell> cells;
 };
 
 // As many as fit from `begin` on; at the end of the run the strip is filled with earlier ones.
 VisibleResults shown_from(const Session& session, const std::vector<Result>& results, std::size_t begin,
-                          const Strip& strip) {
+                          const StripLayout& strip) {
     VisibleResults shown{begin, {}};
     float x = 0.0F;
-    const auto fits = [&](const Cell& cell) { return shown.cells.empty() || x + cell.width <= strip.room; };
+    const auto fits = [&](const ResultCell& cell) { return shown.cells.empty() || x + cell.width <= strip.room; };
     for (std::size_t i = begin; i < results.size(); ++i) {
-        Cell cell = cell_of(session, results[i], strip);
+        ResultCell cell = cell_of(session, results[i], strip);
         if (!fits(cell)) return shown;
         x += cell.width + units(between);
         shown.cells.push_back(std::move(cell));
     }
     while (shown.begin > 0) {
-        Cell cell = cell_of(session, results[shown.begin - 1], strip);
+        ResultCell cell = cell_of(session, results[shown.begin - 1], strip);
         if (!fits(cell)) break;
         x += cell.width + units(between);
         shown.cells.insert(shown.cells.begin(), std::move(cell));
@@ -129,7 +129,7 @@ VisibleResults shown_from(const Session& session, const std::vector<Result>& res
 
 // The cells around result `seen`, which is near the middle.
 VisibleResults shown_around(const Session& session, const std::vector<Result>& results, std::size_t seen,
-                            const Strip& strip) {
+                            const StripLayout& strip) {
     std::size_t begin = seen;
     float x = 0.5F * cell_of(session, results[seen], strip).width;
     while (begin > 0) {
@@ -142,7 +142,7 @@ VisibleResults shown_around(const Session& session, const std::vector<Result>& r
 
 // The user's scroll position, until the current time reaches another result.
 VisibleResults shown_by(const Session& session, PanelState& state, const std::vector<Result>& results, std::size_t seen,
-                        const Strip& strip) {
+                        const StripLayout& strip) {
     ResultStrip& by_hand = state.strip;
     if (by_hand.seen != results[seen].event || by_hand.count != results.size()) {
         by_hand = {};
@@ -180,8 +180,8 @@ void use_hand(const VisibleResults& shown, std::size_t count, bool is_hovered, P
     }
 }
 
-void show_result(const Session& session, const Result& result, const Cell& cell, ImVec2 at, const Rectangle& strip,
-                 bool is_present, PanelState& state, Commands& commands) {
+void show_result(const Session& session, const Result& result, const ResultCell& cell, ImVec2 at,
+                 const Rectangle& strip, bool is_present, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[result.event];
     const int number = static_cast<int>(result.event) + 1;
     const float line = ImGui::GetTextLineHeightWithSpacing(), height = cell.time.empty() ? line : 2.0F * line;

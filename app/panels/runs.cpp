@@ -149,14 +149,14 @@ namespace {
 constexpr float run_name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, table_sign_width = 15.0F;
 
 // Columns as wide as the panel allows.
-struct Columns {
+struct RunColumns {
     float first = 0.0F, each = 0.0F;
     std::size_t count = 0;  // number of runs, plus one if there is a column of changes
     float at(std::size_t i) const { return first + each * static_cast<float>(i); }
 };
 
-Columns columns_of(const Session& session) {
-    Columns columns;
+RunColumns columns_of(const Session& session) {
+    RunColumns columns;
     const std::size_t runs = session.pinned().size() + 1;
     columns.count = runs == 2 ? 3 : runs;
     const float room = ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ScrollbarSize;
@@ -171,7 +171,7 @@ void paint_table_sign(const ImVec2& at, const Color& color) {
 }
 
 // Names and colors of the runs; this line does not scroll.
-void show_head(const Session& session, const Columns& columns) {
+void show_head(const Session& session, const RunColumns& columns) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const auto title = [&](std::size_t i, const std::string& name, const Color* color) {
         const float x = at.x + columns.at(i), side = color != nullptr ? units(table_sign_width) : 0.0F;
@@ -191,7 +191,7 @@ void show_head(const Session& session, const Columns& columns) {
 }
 
 // Bright where the value differs from the current run's; that one is bright if any differs.
-void show_row(const RunTable::Row& row, const Columns& columns) {
+void show_row(const RunTable::Row& row, const RunColumns& columns) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool any = std::find(row.differs.begin(), row.differs.end(), true) != row.differs.end();
     cell(at, row.name, columns.first - units(6.0F), any ? text_color() : faint_color());
@@ -224,7 +224,7 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
             session.pinned().size() == 1 ? "Comparison with the pinned run" : "Comparison with the pinned runs", "",
             state))
         commands.emplace_back(command::Show{"runs", false});
-    const Columns columns = columns_of(session);
+    const RunColumns columns = columns_of(session);
     show_head(session, columns);
     const float line = ImGui::GetTextLineHeightWithSpacing();  // height of whole lines
     const float room = std::max(line, std::floor(ImGui::GetContentRegionAvail().y / line) * line);

@@ -88,7 +88,7 @@ Notes notes_of(const Session& session, Words words, const command::Export& what)
     const Origin origin{"Achilles " + version(),
                         command_line(words),
                         "",
-                        {{Source::Kind::system, name, session.description().source_text}}};
+                        {{InputSource::Kind::system, name, session.description().source_text}}};
     return notes(origin, {{name, &session.trajectory()}});
 }
 

@@ -44,11 +44,11 @@ std::string take_word(std::string_view& text) {
 constexpr std::string_view software_key = "Software", title_key = "Title";  // standard PNG keywords
 constexpr std::string_view command_key = "Achilles Command", picture_key = "Achilles Picture";
 
-std::string key_of(Source::Kind kind) {
+std::string key_of(InputSource::Kind kind) {
     switch (kind) {
-        case Source::Kind::system:
+        case InputSource::Kind::system:
             return "Achilles System";
-        case Source::Kind::journal:
+        case InputSource::Kind::journal:
             return "Achilles Journal";
     }
     return {};
@@ -169,7 +169,8 @@ Notes notes(const Origin& origin, const std::vector<PictureRun>& runs) {
         add("Achilles Options", name + options_text(run.trajectory->run.options));
         add("Achilles Certificates", name + certificates_text(*run.trajectory));
     }
-    for (const Source& source : origin.sources) add(key_of(source.kind), shell_word(source.name) + "\n" + source.text);
+    for (const InputSource& source : origin.sources)
+        add(key_of(source.kind), shell_word(source.name) + "\n" + source.text);
     return result;
 }
 
@@ -192,7 +193,7 @@ Origin origin_of(std::string_view file) {
         if (note.keyword == software_key) origin.software = note.text;
         if (note.keyword == command_key) origin.command = note.text;
         if (note.keyword == picture_key) origin.picture = note.text;
-        for (const Source::Kind kind : {Source::Kind::system, Source::Kind::journal}) {
+        for (const InputSource::Kind kind : {InputSource::Kind::system, InputSource::Kind::journal}) {
             if (note.keyword != key_of(kind)) continue;
             std::string_view text = note.text;
             const std::string name = take_word(text);

@@ -17,7 +17,7 @@ struct Origin {
     std::string software;  // "Achilles 0.1.0"
     std::string command;   // shell syntax, without --out and other options that do not change the picture
     std::string picture;   // which picture of the command; "" if it makes only one
-    std::vector<Source> sources;
+    std::vector<InputSource> sources;
 };
 
 // Quotes a word for the shell if needed.

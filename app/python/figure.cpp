@@ -44,7 +44,7 @@ void add(std::vector<std::string>& words, const FigureStyle& look) {
 }
 
 std::string picture_of(const Figure& figure, const FigureStyle& look, const std::string& format,
-                       const std::string& command, const std::vector<Source>& sources, const Trajectory& shown) {
+                       const std::string& command, const std::vector<InputSource>& sources, const Trajectory& shown) {
     const Origin origin{"Achilles " + version(), command, "", sources};
     return achilles::picture_of(figure, size_of(look.page, look.size, figure, format),
                                 notes(origin, {{sources[0].name, &shown}}), format);

@@ -62,7 +62,7 @@ void add(std::vector<std::string>& words, const FigureStyle& look);
 // The picture as file content, with the command line that reproduces it and the files which that reads, the system
 // first.
 std::string picture_of(const Figure& figure, const FigureStyle& look, const std::string& format,
-                       const std::string& command, const std::vector<Source>& sources, const Trajectory& shown);
+                       const std::string& command, const std::vector<InputSource>& sources, const Trajectory& shown);
 // Calls `make` without the GIL and returns the result.
 pybind11::bytes without_gil(const std::function<std::string()>& make);
 

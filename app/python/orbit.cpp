@@ -15,8 +15,8 @@ namespace {
 // An orbit request and its result.
 struct PythonOrbit {
     std::shared_ptr<const PythonSystem> system;
-    std::vector<std::string> words;  // the equivalent command line, without options of a picture
-    std::vector<Source> sources;     // files that the command line reads
+    std::vector<std::string> words;    // the equivalent command line, without options of a picture
+    std::vector<InputSource> sources;  // files that the command line reads
     OrbitResult answer;
     std::vector<std::string> warnings;
 
@@ -46,14 +46,14 @@ std::shared_ptr<PythonOrbit> found_by(const std::shared_ptr<const PythonSystem>&
     const auto found = std::make_shared<PythonOrbit>();
     found->system = system;
     found->words = words_of(*system, asked, of_run);
-    found->sources = {{Source::Kind::system, system->name, model.description().source_text}};
+    found->sources = {{InputSource::Kind::system, system->name, model.description().source_text}};
     asked.settings = of_run.settings;
     const OptionOverrides overrides = overrides_of(of_run);
     for (const Option& option : all_options())
         if (overrides.given(option) != nullptr) asked.options.insert(option.key);
     if (json) {
         asked.guess = orbit_guess(*json, asked.from, model.description().coordinates.size());
-        found->sources.push_back({Source::Kind::system, asked.from, *json});
+        found->sources.push_back({InputSource::Kind::system, asked.from, *json});
     }
     const Run run = run_of(*system, of_run);
     validate_overrides(model, run, asked.settings);

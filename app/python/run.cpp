@@ -23,7 +23,7 @@ namespace achilles::python {
 namespace {
 
 // States of a run at given times. NumPy arrays refer to this memory and keep it alive.
-struct Table {
+struct StateTable {
     std::vector<double> t, q, v;  // q and v row by row
     std::vector<int> j;
     std::vector<std::uint8_t> is_constrained;
@@ -48,9 +48,10 @@ using Times = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 // A read-only array that refers to `data` without a copy and keeps its owner alive.
 template <class Number>
-py::array looking_at(const std::shared_ptr<const Table>& owner, const std::vector<Number>& data, py::ssize_t columns) {
-    const py::capsule keeper(new std::shared_ptr<const Table>(owner),
-                             [](void* kept) { delete static_cast<std::shared_ptr<const Table>*>(kept); });
+py::array looking_at(const std::shared_ptr<const StateTable>& owner, const std::vector<Number>& data,
+                     py::ssize_t columns) {
+    const py::capsule keeper(new std::shared_ptr<const StateTable>(owner),
+                             [](void* kept) { delete static_cast<std::shared_ptr<const StateTable>*>(kept); });
     std::vector<py::ssize_t> shape{static_cast<py::ssize_t>(owner->t.size())};
     if (columns >= 0) shape.push_back(columns);
     py::array_t<Number> array(shape, data.data(), keeper);
@@ -58,8 +59,8 @@ py::array looking_at(const std::shared_ptr<const Table>& owner, const std::vecto
     return array;
 }
 
-std::shared_ptr<const Table> table_of(const Trajectory& trajectory, const std::vector<Sample>& samples) {
-    const auto table = std::make_shared<Table>();
+std::shared_ptr<const StateTable> table_of(const Trajectory& trajectory, const std::vector<Sample>& samples) {
+    const auto table = std::make_shared<StateTable>();
     table->coordinates = trajectory.model->dof();
     for (const Sample& sample : samples) {
         table->t.push_back(sample.t);
@@ -73,7 +74,7 @@ std::shared_ptr<const Table> table_of(const Trajectory& trajectory, const std::v
 
 // The arrays of a run, t first; by default at the rows of its CSV.
 py::dict arrays_of(const std::shared_ptr<PythonRun>& made, const std::optional<Times>& times) {
-    std::shared_ptr<const Table> table;
+    std::shared_ptr<const StateTable> table;
     {
         const std::vector<double> instants =
             times ? std::vector<double>(times->data(), times->data() + times->size()) : std::vector<double>();
@@ -150,7 +151,7 @@ std::string draw(const PythonRun& made, const FigureStyleTuple& asked, const std
     return picture_of(publication(made.trajectory, views_of(description, look.views), look.style, nullptr,
                                   horizon_before_end(made.trajectory, made.estimate())),
                       look, format, command_of(made, look),
-                      {{Source::Kind::system, made.system->name, description.source_text}}, made.trajectory);
+                      {{InputSource::Kind::system, made.system->name, description.source_text}}, made.trajectory);
 }
 
 }  // namespace

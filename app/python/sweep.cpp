@@ -18,7 +18,7 @@ namespace achilles::python {
 namespace {
 
 // Codes for strings that occur repeatedly.
-class Words {
+class StringCodes {
  public:
     std::uint32_t code(const std::string& word) {
         const auto [at, is_new] = codes_.try_emplace(word, static_cast<std::uint32_t>(words_.size()));
@@ -33,14 +33,14 @@ class Words {
 };
 
 // All rows of a sweep, stored by column.
-struct Columns {
+struct SweepColumnData {
     std::vector<std::uint64_t> points;
     std::vector<double> numbers, times;
     std::vector<std::uint32_t> held, contacts, ends;
-    Words words;  // strings of the three columns above
+    StringCodes words;  // strings of the three columns above
 };
 
-void append(Columns& columns, const SweepTable& table, const Rows& rows) {
+void append(SweepColumnData& columns, const SweepTable& table, const Rows& rows) {
     const auto add = [](auto& to, const auto& from) { to.insert(to.end(), from.begin(), from.end()); };
     add(columns.points, rows.points);
     add(columns.numbers, rows.numbers);
@@ -65,7 +65,7 @@ py::array owned(std::vector<double>&& numbers, py::ssize_t width) {
 }
 
 // Each axis: its values along the axis, on the grid, and in every row.
-py::list axes_of(const SweepTable& table, const Columns& columns) {
+py::list axes_of(const SweepTable& table, const SweepColumnData& columns) {
     const SweepSpec& sweep = table.sweep();
     py::list axes;
     for (std::size_t i = 0; i < sweep.axes.size(); ++i) {
@@ -79,7 +79,7 @@ py::list axes_of(const SweepTable& table, const Columns& columns) {
     return axes;
 }
 
-py::dict told(const PythonSystem& system, const SweepTable& table, Columns columns) {
+py::dict told(const PythonSystem& system, const SweepTable& table, SweepColumnData columns) {
     constexpr std::array<const char*, 3> kinds{"number", "held", "outcome"};
     py::list prints;
     for (const RunMeasures::Column& column : table.measures().columns())
@@ -105,7 +105,7 @@ py::dict swept(const std::shared_ptr<const PythonSystem>& system, SweepOptions s
     sweep.fixed = fixed_names(asked.settings, overrides_of(asked));
     const SweepTable table(system->model, make_sweep(sweep, run_of(*system, asked), system->model->description()));
     const std::uint64_t points = table.sweep().count();
-    Columns columns;
+    SweepColumnData columns;
     std::atomic<bool> stop{false};
     std::atomic<std::uint64_t> done{0};
     const auto tick = [&] {

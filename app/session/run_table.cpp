@@ -126,9 +126,9 @@ std::optional<RunDivergence> parting(const std::vector<RunStep>& present, double
     return result;
 }
 
-class Table {
+class RunTableBuilder {
  public:
-    explicit Table(std::span<const ShownRun> runs) : digits_(runs.size() <= 3 ? 10 : 7) {
+    explicit RunTableBuilder(std::span<const ShownRun> runs) : digits_(runs.size() <= 3 ? 10 : 7) {
         for (const ShownRun& shown : runs) {
             runs_.push_back(shown.run);
             precisions_.emplace_back(*shown.run, shown.estimate);
@@ -140,7 +140,7 @@ class Table {
         inputs();
         partings();
         courses();
-        std::vector<Value> impacts, ends;
+        std::vector<ValueWithError> impacts, ends;
         for (const Trajectory* run : runs_) {
             impacts.push_back({static_cast<double>(run->statistics.impacts)});
             ends.push_back({run->end_time});
@@ -167,10 +167,10 @@ class Table {
         }
     }
 
-    struct Value {
+    struct ValueWithError {
         double x = std::nan(""), error = 0.0;  // NaN: no value
     };
-    void numbers(const std::string& name, const std::vector<Value>& values) {
+    void numbers(const std::string& name, const std::vector<ValueWithError>& values) {
         RunTable::Row& row = table_.rows.emplace_back();
         row.name = name;
         for (const auto& [x, error] : values) {
@@ -197,8 +197,9 @@ class Table {
     void courses() {
         constexpr std::size_t most = 60;
         const std::vector<std::vector<RunStep>>& all = courses_;
-        std::map<std::string, std::vector<std::vector<Value>>> times;  // per name and run: times of its occurrences
-        std::vector<std::pair<std::string, std::size_t>> order;        // rows: name and number of the occurrence
+        std::map<std::string, std::vector<std::vector<ValueWithError>>>
+            times;                                               // per name and run: times of its occurrences
+        std::vector<std::pair<std::string, std::size_t>> order;  // rows: name and number of the occurrence
         for (std::size_t i = 0; i < all.size(); ++i)
             for (const RunStep& step : all[i]) {
                 auto& of_runs = times[step.name];
@@ -214,9 +215,9 @@ class Table {
                 if (order.size() < most && key.second > longest()) order.push_back(key);
             }
         for (const auto& [name, number] : order) {
-            std::vector<Value> values;
-            for (const std::vector<Value>& of_run : times[name])
-                values.push_back(number <= of_run.size() ? of_run[number - 1] : Value{});
+            std::vector<ValueWithError> values;
+            for (const std::vector<ValueWithError>& of_run : times[name])
+                values.push_back(number <= of_run.size() ? of_run[number - 1] : ValueWithError{});
             numbers(fmt::format("{} {} (s)", name, number), values);
         }
     }
@@ -237,7 +238,7 @@ class Table {
             const bool is_angle = coordinates[i].unit == "rad";
             const double factor = is_angle ? degrees(1.0) : 1.0;
             for (const bool is_rate : {false, true}) {
-                std::vector<Value> values;
+                std::vector<ValueWithError> values;
                 for (std::size_t k = 0; k < runs_.size(); ++k) {
                     const State errors = precisions_[k].of_state(runs_[k]->end_time);
                     values.push_back({(is_rate ? runs_[k]->end.v : runs_[k]->end.q)[at] * factor,
@@ -260,7 +261,7 @@ class Table {
 
 }  // namespace
 
-RunTable run_table(std::span<const ShownRun> runs) { return Table(runs).made(); }
+RunTable run_table(std::span<const ShownRun> runs) { return RunTableBuilder(runs).made(); }
 
 std::string to_text(const RunTable& table) {
     std::string text;

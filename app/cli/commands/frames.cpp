@@ -38,14 +38,14 @@ struct FramesArguments {
 };
 
 // The times of the frames.
-struct Clock {
+struct FrameTimes {
     double fps, speed, start, end;
     double last() const { return (end - start) * fps / speed; }
     std::size_t count() const { return static_cast<std::size_t>(std::floor(last() * (1.0 + 1e-12))) + 1; }
     double time(std::size_t frame) const { return std::min(start + static_cast<double>(frame) * speed / fps, end); }
 };
 
-void check_count(const Clock& clock) {
+void check_count(const FrameTimes& clock) {
     if (clock.last() < static_cast<double>(most_frames)) return;
     throw InputError({}, {}, fmt::format("this would take more than {} frames", most_frames),
                      "use a lower --fps, a higher --speed or an earlier --end");
@@ -121,8 +121,8 @@ int join(const FramesArguments& arguments, std::size_t count, PictureJob& job) {
 }
 
 // Draws the missing frames. Returns the exit status.
-int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const Clock& clock, Animation& animation,
-              const std::function<Notes(const std::string&)>& notes_of) {
+int draw_into(const FrameFolder& folder, const FramesArguments& arguments, const FrameTimes& clock,
+              Animation& animation, const std::function<Notes(const std::string&)>& notes_of) {
     const std::size_t count = clock.count();
     const std::vector<std::size_t> numbers = folder.missing(count, notes_of, arguments.overwrite);
     if (!numbers.empty()) folder.try_to_write(numbers.front());
@@ -187,7 +187,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
     if (!job.reproduces()) check_frames_out(arguments.out, arguments.system);
     const Scenario scenario = arguments.steps.empty() ? plain(arguments, job) : after_steps(arguments, job);
     const Trajectory& trajectory = scenario.trajectory;
-    const Clock clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
+    const FrameTimes clock{arguments.fps, arguments.speed, trajectory.run.options.start_time, trajectory.end_time};
     check_count(clock);
     Animation animation(trajectory, scenario.views, arguments.size, arguments.speed / arguments.fps, arguments.camera);
     const std::vector<PictureRun> shown{{arguments.system, &trajectory}};

@@ -64,11 +64,11 @@ int draw_paper(const fs::path& folder, const std::string& format, double scale, 
 }  // namespace
 
 void add_paper(CLI::App& program, int& status, PictureJob& job) {
-    struct Arguments {
+    struct PaperArguments {
         std::string out = "achilles-paper", format = "png";
         double scale = 1.0;
     };
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<PaperArguments>();
     CLI::App* command =
         program.add_subcommand("paper", "Draws Fig. 4 (a)-(f) of the paper and compares its numbers with ours");
     command->add_option("--out", arguments->out, "folder for the pictures (default ./achilles-paper)")

@@ -91,10 +91,10 @@ void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ran
 }
 
 void add_reproduce(CLI::App& program, int& status) {
-    struct Arguments {
+    struct ReproduceArguments {
         std::string picture, out;
     };
-    const auto arguments = std::make_shared<Arguments>();
+    const auto arguments = std::make_shared<ReproduceArguments>();
     CLI::App* command = program.add_subcommand(
         "reproduce", "Prints the command that made a picture, and reproduces its bytes from the picture alone");
     command
