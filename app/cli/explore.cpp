@@ -138,7 +138,7 @@ class Explorer {
             keep(command);  // recorded first, in case it crashes
             try {
                 if (!session_.apply(command) && record_) record_->take_back();
-            } catch (const FileAccessDenied& problem) {
+            } catch (const PermissionDenied& problem) {
                 if (record_) record_->take_back();
                 give_up(problem);
             }
@@ -191,9 +191,9 @@ class Explorer {
                 is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
             replayed_ += journal.size();
             if (replayed_ > most_replayed)
-                throw FileAccessDenied(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
+                throw PermissionDenied(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
             begin(journal);
-        } catch (const FileAccessDenied& problem) {
+        } catch (const PermissionDenied& problem) {
             // If nothing is left to ask, or an answer was no, the error stays.
             const auto& wants = problem.wants;
             if (wants.empty() || std::any_of(wants.begin(), wants.end(),

@@ -86,13 +86,13 @@ std::vector<Command> Inputs::steps(const std::vector<std::string>& lines) {
 void Inputs::count(const std::string& name, const std::vector<Command>& commands) {
     replayed_ += commands.size();
     if (replayed_ > most_replayed)
-        throw FileAccessDenied(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
+        throw PermissionDenied(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
     changes_ += static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), [](const Command& command) {
         return undo_policy_of(command) == command::UndoPolicy::merge_with_previous ||
                undo_policy_of(command) == command::UndoPolicy::own_step;
     }));
     if (from_picture_ && changes_ > most_changes)
-        throw FileAccessDenied(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
+        throw PermissionDenied(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
 }
 
 std::string Inputs::first_system() const {
@@ -158,14 +158,14 @@ struct DroppedCommands {
 };
 
 // Whether the file of that name still has the same text. The name comes from an untrusted picture, so a path is read
-// only with permission. Throws FileAccessDenied if the user must be asked.
+// only with permission. Throws PermissionDenied if the user must be asked.
 bool is_held(const InputSource& source, const DroppedCommands& opening) {
     std::error_code problem;
     if (is_system_path(source.name)) {
         if (!std::filesystem::is_regular_file(source.name, problem)) return false;
         const std::optional<bool> may = may_read(source.name, opening.trust);
         if (!may) {
-            FileAccessDenied question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
+            PermissionDenied question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
             question.wants = {want(source.name, false)};
             throw question;
         }

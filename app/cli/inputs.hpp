@@ -47,7 +47,7 @@ class Inputs {
     SystemDescription system(const std::string& name);
     // The text of a data file, by its path.
     std::string data(const std::string& path);
-    // The commands of a journal. Throws FileAccessDenied if it does something without permission, or if all journals
+    // The commands of a journal. Throws PermissionDenied if it does something without permission, or if all journals
     // together have too many commands.
     std::vector<Command> journal(const std::string& path);
     // Commands from a command line; for a picture they count toward the limits, too.
@@ -79,7 +79,7 @@ bool is_picture(const std::string& path);
 
 // Commands that restore the session shown in a picture, from what is stored in it. Its system is opened from the file
 // with the stored name if that file may be read and its text has not changed; otherwise as a new, unsaved text.
-// Commands of the journal that write files are left out. Throws FileAccessDenied, with the questions to ask, before it
+// Commands of the journal that write files are left out. Throws PermissionDenied, with the questions to ask, before it
 // reads a file that the user has not named. Throws InputError if the file is not a picture of Achilles, or shows no
 // session.
 std::vector<Command> session_in(const std::string& picture, const FilePolicy& trust);

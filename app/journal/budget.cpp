@@ -34,13 +34,13 @@ void Budget::allow(const Options& typed) {
 void Budget::check(const Options& options) const {
     if (!is_limited_) return;
     if (options.memory > allowed_.memory)
-        throw FileAccessDenied(
+        throw PermissionDenied(
             {}, {},
             fmt::format("a run would keep up to {:.4g} MB; a run of a journal or a picture may keep at most {:.4g} MB",
                         options.memory / 1e6, allowed_.memory / 1e6),
             how_to_allow_);
     if (options.max_steps > allowed_.max_steps)
-        throw FileAccessDenied(
+        throw PermissionDenied(
             {}, {},
             fmt::format("a run would take up to {} steps; a run of a journal or a picture may take at most {}",
                         options.max_steps, allowed_.max_steps),
@@ -57,7 +57,7 @@ void Budget::check(const SweepSpec& sweep) const {
             check(options);
         }
     if (sweep.count() > max_points)
-        throw FileAccessDenied(
+        throw PermissionDenied(
             {}, {},
             fmt::format("the sweep has {} points; a sweep of a journal or a picture may have at most {}", sweep.count(),
                         max_points),
@@ -66,7 +66,7 @@ void Budget::check(const SweepSpec& sweep) const {
 
 void Budget::check_rows(std::uint64_t rows) const {
     if (is_limited_ && rows > max_points)
-        throw FileAccessDenied({}, {},
+        throw PermissionDenied({}, {},
                                fmt::format("the table of the sweep has more than {} rows; a sweep of a journal or a "
                                            "picture may have at most that many",
                                            max_points),
@@ -78,7 +78,7 @@ void Budget::charge(const Trajectory& run) {
     full_runs_ +=
         std::max(static_cast<double>(run.statistics.steps) / allowed_.max_steps, bytes_of(run) / allowed_.memory);
     if (full_runs_ > max_full_runs)
-        throw FileAccessDenied(
+        throw PermissionDenied(
             {}, {},
             fmt::format("the runs of this journal or picture together take more than {} steps or {:.4g} MB",
                         max_full_runs * allowed_.max_steps, max_full_runs * allowed_.memory / 1e6),

@@ -38,7 +38,7 @@ class Budget {
     void check(const Options& options) const;
     void check(const SweepSpec& sweep) const;
     void check_rows(std::uint64_t rows) const;  // rows of the sections of a sweep
-    // Adds a run to the total. Throws FileAccessDenied if the total exceeds max_full_runs.
+    // Adds a run to the total. Throws PermissionDenied if the total exceeds max_full_runs.
     void charge(const Trajectory& run);
 
  private:

@@ -66,7 +66,7 @@ bool would_overwrite(const FileUse& use, const FilePolicy& trust) {
     return use.writes && trust.files != FilePolicy::Files::virtual_only && fs::exists(use.path, problem);
 }
 
-// Throws FileAccessDenied if the command sets an option beyond the budget.
+// Throws PermissionDenied if the command sets an option beyond the budget.
 void check_work(const Command& command, const Budget* budget) {
     const auto* use = std::get_if<command::SetOption>(&command);
     if (use == nullptr || budget == nullptr) return;
@@ -111,13 +111,13 @@ std::optional<bool> may_read(const std::string& file, const FilePolicy& trust) {
 
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const FilePolicy& trust) {
     std::vector<Command> commands;
-    std::optional<FileAccessDenied> refused;
+    std::optional<PermissionDenied> refused;
     std::set<std::string> wanted;
     if (trust.budget) trust.budget->limit();
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
         if (commands.size() == most_replayed)
-            throw FileAccessDenied(name, at, fmt::format("a session replays at most {} commands", most_replayed));
+            throw PermissionDenied(name, at, fmt::format("a session replays at most {} commands", most_replayed));
         const FileUse use = file_use(command);
         const auto refuse = [&](const std::string& reason, const char* hint) {
             if (!refused) refused.emplace(name, at, reason, hint, std::string(line));
@@ -132,13 +132,13 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
         }
         try {
             check_work(command, trust.budget.get());
-        } catch (const FileAccessDenied& problem) {
+        } catch (const PermissionDenied& problem) {
             refuse(problem.message, problem.hint.c_str());
         }
         drop_overwrite(command);
         commands.push_back(std::move(command));
     });
-    if (refused) throw FileAccessDenied(*refused);
+    if (refused) throw PermissionDenied(*refused);
     return commands;
 }
 

@@ -8,7 +8,7 @@ namespace achilles {
 namespace {
 
 // Lengths at scale 1. The minimum sizes keep panels readable.
-constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_centre = 340.0F,
+constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_center = 340.0F,
                 least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F,
                 least_plane = 230.0F, least_world = 90.0F, least_plot = 110.0F;
 
@@ -48,10 +48,10 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float height = std::max(0.0F, lower - between - top - above - below_results);
     const bool has_plots = scene.shows("plots") || scene.shows("sweep");
     const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
-    const float centre = inside - (has_plots ? right + between : 0.0F);
-    parts.mechanism = {edge, top, centre, height};
+    const float center = inside - (has_plots ? right + between : 0.0F);
+    parts.mechanism = {edge, top, center, height};
     // A visible sweep replaces the plot.
-    (scene.shows("sweep") ? parts.sweep : parts.plots) = {edge + centre + between, top, right, height};
+    (scene.shows("sweep") ? parts.sweep : parts.plots) = {edge + center + between, top, right, height};
     parts.results = {edge, lower - between - below_results - results, inside, results};
     parts.energy = {edge, lower - between - energy, inside, energy};
     parts.timeline = {edge, lower, inside, timeline};
@@ -75,7 +75,7 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
 
     const std::string left_panel = editor ? "editor" : "controls";
     const float least_left = (editor ? least_editor : least_controls) * u;
-    const float others = (least_centre + (has_plots ? least_plots : 0.0F)) * u + 2.0F * between;
+    const float others = (least_center + (has_plots ? least_plots : 0.0F)) * u + 2.0F * between;
     // Room for the lines of the text.
     const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
@@ -91,32 +91,32 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));
     const float x = edge + (left > 0.0F ? left + between : 0.0F), width = std::max(0.0F, m.width - edge - x);
     const float right = has_plots ? size_of(scene.share("plots"), m.width, 0.54F * width, least_plots * u,
-                                            width - between - least_centre * u)
+                                            width - between - least_center * u)
                                   : 0.0F;
-    const float centre = std::max(0.0F, width - (right > 0.0F ? right + between : 0.0F));
+    const float center = std::max(0.0F, width - (right > 0.0F ? right + between : 0.0F));
 
     // Beside the editor the events would be too narrow for a certificate: put them below it.
     const bool events_below = editor && low > 0.0F;
     parts.controls = {edge, top, left, events_below ? height : all};
     const float timeline = std::min(m.timeline, height);
     const float lower = top + height - timeline - between;  // lower end of the parts above the player
-    const float all_results = m.results ? m.results(centre) : 0.0F;
+    const float all_results = m.results ? m.results(center) : 0.0F;
     const auto below = [&](float part, float its_height) {
         return part + its_height + (its_height > 0.0F ? 0.6F * between : 0.0F);
     };
-    const float caption = m.caption ? m.caption(centre) : 0.0F;
+    const float caption = m.caption ? m.caption(center) : 0.0F;
     // Minimum height: numbers and heading above the axes, and the picture itself.
     const float least = std::max((scene.shows("plane") ? least_plane : least_picture) * u,
-                                 (m.state ? m.state(centre) : 0.0F) + least_world * u);
+                                 (m.state ? m.state(center) : 0.0F) + least_world * u);
     // The error message is above the picture or, if that would become too low, above the plots.
-    float error = std::min(m.error ? m.error(centre) : 0.0F, height);
+    float error = std::min(m.error ? m.error(center) : 0.0F, height);
     const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;
     const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
     const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= least_plot * u;
     if (over_plots) error = 0.0F;
-    parts.error = over_plots ? Rectangle{x + centre + between, top, right, beside} : Rectangle{x, top, centre, error};
+    parts.error = over_plots ? Rectangle{x + center + between, top, right, beside} : Rectangle{x, top, center, error};
     const float said_at = below(top, error), said = std::min(caption, top + height - said_at);
-    parts.caption = {x, said_at, centre, said};
+    parts.caption = {x, said_at, center, said};
     const float picture = below(said_at, said);
     // The picture takes precedence: if it would be too low, the results shrink.
     float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
@@ -124,13 +124,13 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float space = results > 0.0F ? 0.4F * between : 0.0F;
     const float energy = energy_in(m, lower - results - space - 0.4F * between - picture - least);
     const float under = lower - (energy > 0.0F ? energy + 0.4F * between : 0.0F);
-    parts.mechanism = {x, picture, centre, std::max(0.0F, under - results - space - picture)};
-    parts.results = {x, under - results, centre, results};
-    parts.energy = {x, lower - energy, centre, energy};
-    parts.timeline = {x, top + height - timeline, centre, timeline};
+    parts.mechanism = {x, picture, center, std::max(0.0F, under - results - space - picture)};
+    parts.results = {x, under - results, center, results};
+    parts.energy = {x, lower - energy, center, energy};
+    parts.timeline = {x, top + height - timeline, center, timeline};
     const float plots_at = over_plots ? below(top, beside) : top;
     const float plots_height = top + height - plots_at;
-    parts.plots = {x + centre + between, plots_at, right, plots_height};
+    parts.plots = {x + center + between, plots_at, right, plots_height};
     if (has_sweep) {
         // The sweep alone, if the plots are hidden or there is no room for both.
         const bool with_plots = scene.shows("plots") && plots_height > 2.0F * least_plot * u + between;
@@ -158,7 +158,7 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
                                    double{m.width}});
     if (right > 0.0F)
         parts.splitters.push_back({"plots",
-                                   {x + centre, top, between, height},
+                                   {x + center, top, between, height},
                                    true,
                                    double{m.width} - double{edge} - half,
                                    -double{m.width}});

@@ -69,12 +69,12 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
     for (const std::string& quantity : usual_quantities(session)) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         if (ImGui::Selectable(("##" + quantity).c_str(), session.depend_text() == quantity, 0, {units(230.0F), 0.0F}))
-            commands.emplace_back(command::ShowDependence{quantity});
+            commands.emplace_back(command::ShowSensitivity{quantity});
         remember(state, "depend quantity " + quantity);
         cell(at, typeset(quantity), units(230.0F), text_color());
     }
     if (text_row("other", "depend expression", state.depend, 150.0F, state) && !state.depend.empty())
-        commands.emplace_back(command::ShowDependence{state.depend});
+        commands.emplace_back(command::ShowSensitivity{state.depend});
     tooltip(
         "an expression at the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
         "Press Enter to apply");

@@ -118,7 +118,7 @@ void show_proved(const Session& session, std::size_t event) {
 
 // "Impact of wall, event 7"; without the name if there is only one contact.
 std::string title(const char* kind, const Session& session, const Event& event, std::size_t index) {
-    const std::string contacts = contacts_told(session.trajectory(), event);
+    const std::string contacts = event_contacts_text(session.trajectory(), event);
     return fmt::format("{}{}{}, event {}", kind, contacts.empty() ? "" : " of ", contacts, index + 1);
 }
 
@@ -320,7 +320,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
     const bool is_plastic = is_plastic_landing(event);
-    const std::string contacts = contacts_told(session.trajectory(), event);
+    const std::string contacts = event_contacts_text(session.trajectory(), event);
     const bool close =
         show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
                                     contacts.empty() ? "" : " of ", contacts, index + 1,
@@ -346,7 +346,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                          remaining().width, text_color());
     show_certificate(event);
     const auto& others = certificate.others;
-    const std::string told = others ? others_told(*session.model(), *others) : "";
+    const std::string told = others ? other_contacts_text(*session.model(), *others) : "";
     if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
 }
 

@@ -54,7 +54,7 @@ int reached(const Session& session) {
 
 // "Zeno point" or, with several contacts, "Zeno knee", "wall opens knee".
 std::string event_name(const Session& session, const Event& event) {
-    const std::string contacts = contacts_told(session.trajectory(), event);
+    const std::string contacts = event_contacts_text(session.trajectory(), event);
     if (!event.opened.empty()) return contacts + " opens " + joined_names(*session.model(), event.opened);
     const EventNames& names = names_of(event);
     return contacts.empty() ? std::string(names.name) : fmt::format("{} {}", names.label, contacts);

@@ -75,14 +75,14 @@ void arrows(Focus& focus, const std::vector<FocusTarget>& stops, const FocusTarg
     for (const auto& [code, dx, dy] : {std::tuple{key::left, -1, 0}, std::tuple{key::right, 1, 0},
                                        std::tuple{key::up, 0, -1}, std::tuple{key::down, 0, 1}}) {
         if (!is_pressed(code)) continue;
-        const int next = neighbour(stops, here, dx, dy);
+        const int next = neighbor(stops, here, dx, dy);
         if (next >= 0) go_to(focus, stops[static_cast<std::size_t>(next)]);
     }
 }
 
 }  // namespace
 
-int neighbour(const std::vector<FocusTarget>& stops, const FocusTarget& from, int dx, int dy) {
+int neighbor(const std::vector<FocusTarget>& stops, const FocusTarget& from, int dx, int dy) {
     const Point here = middle(from.area);
     constexpr double aside = 3.0;  // cost of a sideways step
     double least = std::numeric_limits<double>::infinity();

@@ -28,6 +28,6 @@ struct Focus {
 
 // Index of the control that an arrow key leads to from `from` in the same window; -1: none. Of `dx` and `dy` one is 1
 // or -1.
-int neighbour(const std::vector<FocusTarget>& stops, const FocusTarget& from, int dx, int dy);
+int neighbor(const std::vector<FocusTarget>& stops, const FocusTarget& from, int dx, int dy);
 
 }  // namespace achilles

@@ -44,7 +44,7 @@ std::string explanation(const Session& session, std::size_t index) {
 // "Zeno 2", "landing", "release knee", "wall opens knee".
 std::string name_of(const Trajectory& trajectory, const Result& result) {
     const Event& event = trajectory.events[result.event];
-    const std::string contacts = contacts_told(trajectory, event), space = contacts.empty() ? "" : " ";
+    const std::string contacts = event_contacts_text(trajectory, event), space = contacts.empty() ? "" : " ";
     if (event.is_impact()) return fmt::format("{} opens {}", contacts, joined_names(*trajectory.model, event.opened));
     const std::string number = is_zeno_point(event) ? fmt::format(" {}", result.zeno) : "";
     return fmt::format("{}{}{}{}", names_of(event).label, number, space, contacts);

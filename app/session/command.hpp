@@ -401,11 +401,11 @@ struct SelectBranchPoint {
         CommandSpec("branch", "write: branch NUMBER, a point of the branch that `orbit` has followed",
                     UndoPolicy::merge_with_previous, &SelectBranchPoint::point);
 };
-struct ShowDependence {
+struct ShowSensitivity {
     std::string quantity;  // an expression that --print of a sweep accepts
     static constexpr auto spec = CommandSpec(
         "depend", "write: depend \"zeno_time(2)\", or another expression in the end and the events of a run",
-        UndoPolicy::view, Field(&ShowDependence::quantity, in_quotes));
+        UndoPolicy::view, Field(&ShowSensitivity::quantity, in_quotes));
 };
 
 }  // namespace command
@@ -414,7 +414,7 @@ struct ShowDependence {
 using AnyCommand =
     std::variant<command::Open, command::Set, command::SetOption, command::Seek, command::Play, command::Pause,
                  command::Select, command::New, command::SetText, command::Save, command::Show, command::DefaultPlane,
-                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowDependence,
+                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowSensitivity,
                  command::StopOrbit, command::FindOrbit, command::SelectBranchPoint, command::Find, command::SetGrid,
                  command::PlotView, command::Zoom, command::Fit, command::SetRange, command::AxisScale,
                  command::ShowCurve, command::Link, command::SetStart, command::LookAll, command::LookAt,
@@ -454,7 +454,7 @@ inline InputError refusal(const std::string& message, const std::string& hint = 
 
 // Thrown if a journal tries to do what its file policy does not allow. None of its commands has been performed. An
 // ordinary rejected command is reported and the session continues; this error also stops the rendering of a picture.
-struct FileAccessDenied : InputError {
+struct PermissionDenied : InputError {
     using InputError::InputError;
     std::vector<std::string> wants;  // results of want(), without duplicates, if the user may allow the file access
 };
@@ -465,7 +465,7 @@ template <class Command, class Perform>
 auto or_refuse(Perform perform) {
     try {
         return perform();
-    } catch (const FileAccessDenied&) {
+    } catch (const PermissionDenied&) {
         throw;
     } catch (const InputError& problem) {
         throw refusal(problem.what(), std::string(Command::spec.usage));

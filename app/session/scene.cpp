@@ -59,7 +59,7 @@ void Scene::perform(const command::ShowSweep& command) {
     shown_.insert("sweep");
 }
 
-void Scene::perform(const command::ShowDependence& command) {
+void Scene::perform(const command::ShowSensitivity& command) {
     depends_ = command.quantity;
     perform(command::Show{"depend", true});
 }
@@ -151,8 +151,8 @@ std::vector<Command> steps_to(const Scene& scene) {
     if (scene.sweep())
         before.perform(command::ShowSweep{*scene.sweep()}), steps.emplace_back(command::ShowSweep{*scene.sweep()});
     if (const auto& quantity = scene.depends()) {
-        steps.emplace_back(command::ShowDependence{*quantity});
-        before.perform(command::ShowDependence{*quantity});
+        steps.emplace_back(command::ShowSensitivity{*quantity});
+        before.perform(command::ShowSensitivity{*quantity});
     }
     for (const std::string& thing : command::shown_things)
         if (thing != "export" && scene.shows(thing) != before.shows(thing))

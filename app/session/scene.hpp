@@ -51,9 +51,9 @@ class Scene {
     void perform(const command::SetCamera& command);
     void perform(const command::Show& command);
     void perform(const command::DefaultPlane& command);
-    void perform(const command::ShowPlane& command);       // the caller has checked the names it uses
-    void perform(const command::ShowSweep& command);       // the caller has checked that the system allows it
-    void perform(const command::ShowDependence& command);  // the caller has checked that the system allows it
+    void perform(const command::ShowPlane& command);        // the caller has checked the names it uses
+    void perform(const command::ShowSweep& command);        // the caller has checked that the system allows it
+    void perform(const command::ShowSensitivity& command);  // the caller has checked that the system allows it
     void perform(const command::Find& command);
     void perform(const command::Speed& command);
     void perform(const command::Loop& command);

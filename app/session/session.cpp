@@ -80,7 +80,7 @@ bool Session::apply(const Command& command) {
         // Batch replay waits for this, too: the result of a journal must not depend on timing.
         follow_dependence(patience_ ? Timeout(0.0) : patience_);
         return true;
-    } catch (const FileAccessDenied&) {
+    } catch (const PermissionDenied&) {
         throw;
     } catch (const InputError& problem) {
         error_ = problem.what();
@@ -146,7 +146,7 @@ void Session::begin_document(Document document) {
         change_system(system, Plots(system->model), run);
         for (const std::string& told : outside_ranges(description, run)) warn(told);
         for (const std::string& told : unseen_lines(description)) warn(told);
-    } catch (const FileAccessDenied&) {
+    } catch (const PermissionDenied&) {
         throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);
@@ -187,7 +187,7 @@ void Session::read_document() {
         placed_ = command::Seek{time_};
         if (!same_system(description, this->description())) let_go();
         change_system(system, plots_.carried_over(system->model), run);
-    } catch (const FileAccessDenied&) {
+    } catch (const PermissionDenied&) {
         throw;
     } catch (const InputError& problem) {
         document_.problems = each_of(problem);

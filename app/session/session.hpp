@@ -71,7 +71,7 @@ class Session {
         : Session(name, first, default_run(first), std::move(library), patience) {}
 
     // Performs a command. On failure everything stays as it was, except error() or, for a text that is not a valid
-    // system, problems(); returns false then, but true for a text. Throws FileAccessDenied if a journal does
+    // system, problems(); returns false then, but true for a text. Throws PermissionDenied if a journal does
     // something that its policy does not allow, or exceeds its budget.
     bool apply(const Command& command);
 
@@ -247,7 +247,7 @@ class Session {
     void perform(const command::ShowLens& command);
     void perform(const command::ShowPlane& command);
     void perform(const command::ShowSweep& command);
-    void perform(const command::ShowDependence& command);
+    void perform(const command::ShowSensitivity& command);
     void perform(const command::Prove& command);
     void perform(const command::StopProof& command);
     void perform(const command::FindOrbit& command);

@@ -184,8 +184,8 @@ bool Session::influences_are_current() const {
            known->quantity.expression == depend_text();
 }
 
-void Session::perform(const command::ShowDependence& command) {
-    or_refuse<command::ShowDependence>([&] { check_quantity(command.quantity); });
+void Session::perform(const command::ShowSensitivity& command) {
+    or_refuse<command::ShowSensitivity>([&] { check_quantity(command.quantity); });
     scene_.perform(command);
 }
 

@@ -292,7 +292,7 @@ Run run_on(const OrbitPoint& point, Run run) {
     run.q = point.flight.q;
     run.v = point.flight.v;
     // A driven system keeps the phase of its drive. An autonomous one starts at the start time of the given run.
-    if (!point.has_flow) run.options.start_time = point.flight.t;
+    if (!point.is_autonomous) run.options.start_time = point.flight.t;
     run.options.end_time = run.options.start_time + length;
     return run;
 }

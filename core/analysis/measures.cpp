@@ -265,7 +265,7 @@ void MeasureEvaluator::at_end(const Trajectory& trajectory, std::vector<double>&
     sample.phase = trajectory.end_phase;
     sample.mode = trajectory.end_mode;
     sample.contact = !sample.mode.is_free();
-    sample.carriers = trajectory.phases.back().carriers;
+    sample.load_bearing = trajectory.phases.back().load_bearing;
     sample.state = trajectory.end;
     sample.work = trajectory.work;
     sample.loss = trajectory.loss;
@@ -297,7 +297,7 @@ void MeasureEvaluator::at(const Trajectory& trajectory, const SectionPoint& mome
     std::vector<Quantity> differentiated;
     if (measures_->quantities_)
         differentiated =
-            measures_->quantities_->at(trajectory, *derivatives_, moment.events - 1, moment.sample.carriers);
+            measures_->quantities_->at(trajectory, *derivatives_, moment.events - 1, moment.sample.load_bearing);
     measure(moment.sample, std::span(sequence_).first(moment.events), differentiated, numbers);
 }
 

@@ -160,12 +160,12 @@ Orbit orbit_of(const ReturnMap& map, const ConvergedOrbit& closed) {
     orbit.period = closed.lap.period;
     orbit.iterations = closed.iterations;
     orbit.error = closed.error;
-    orbit.has_flow = !map.is_driven();
+    orbit.is_autonomous = !map.is_driven();
     orbit.multipliers = free_multipliers(map, closed.shot, orbit.zero_multipliers);
     constexpr double rounding = 1e-9;
     orbit.stable = std::all_of(orbit.multipliers.begin(), orbit.multipliers.end(),
                                [](const auto& mu) { return std::abs(mu) < 1.0 - rounding; });
-    if (orbit.has_flow) orbit.multipliers.insert(orbit.multipliers.begin(), 1.0);
+    if (orbit.is_autonomous) orbit.multipliers.insert(orbit.multipliers.begin(), 1.0);
     orbit.multipliers.resize(static_cast<std::size_t>(2 * map.dof()));
     orbit.margins = closed.shot.derivatives.margins;
     set_psi(*map.model(), closed.shot.run, orbit);

@@ -62,8 +62,8 @@ struct OrbitPoint {
     // Number of multipliers that are exactly 0: two for every contact held at one time, by the rank of the monodromy
     // matrix.
     std::size_t zero_multipliers = 0;
-    bool has_flow = false;  // without a drive: one multiplier, that of a shift in time, is exactly 1
-    bool stable = false;    // all others are less than 1 in size
+    bool is_autonomous = false;  // without a drive: one multiplier, that of a shift in time, is exactly 1
+    bool stable = false;         // all others are less than 1 in size
     DerivativeMargins margins;
     // a_inf^(1/kappa(e)), the smallest over the Zeno points; linear in a parameter near the loss of a Zeno point.
     std::optional<double> psi;

@@ -200,7 +200,7 @@ std::vector<SectionPoint> events_of(const Trajectory& trajectory, const Section&
         sample.mode = event.mode;
         sample.contact = !event.mode.is_free();
         sample.phase = sample.contact ? Phase::Kind::constrained : Phase::Kind::hybrid;
-        sample.carriers = carriers_of(trajectory, event.mode, event.t);
+        sample.load_bearing = load_bearing_contacts(trajectory, event.mode, event.t);
         sample.state = {event.q, event.v_after, event.t};
         sample.work = event.work;
         sample.loss = event.loss;

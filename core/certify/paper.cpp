@@ -18,7 +18,7 @@ double norm(std::size_t n, const Entry& entry) {
     return std::sqrt(sum);
 }
 
-Interval around(double centre, double radius) { return Interval(centre) + Interval(-radius, radius); }
+Interval around(double center, double radius) { return Interval(center) + Interval(-radius, radius); }
 
 }  // namespace
 
@@ -119,7 +119,7 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
             return std::nullopt;
         if (needed_q < q && needed_v < v && (autonomous_ || needed_t < t)) {
             std::optional<Certificate::OtherContactBounds> others;
-            if (!prove_others(bounds->box, others)) return std::nullopt;
+            if (!prove_other_contacts_stay(bounds->box, others)) return std::nullopt;
             Certificate certificate = certificate_of(collision, *bounds);
             certificate.others = std::move(others);
             return certificate;
@@ -136,7 +136,8 @@ std::optional<Certificate> PaperConditions::prove(const Collision& collision, co
 }
 
 // |s_k - v*| + T max |s'| over V; see the header. contact_ must be evaluated at this collision.
-Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b, const Interval& wait) {
+Interval PaperConditions::tangential_bound(const Collision& collision, const Bounds& b,
+                                           const Interval& accumulation_time) {
     const Interval speeds(-b.w.hi(), b.w.hi());
     for (std::size_t i = 0; i < dof_; ++i) {
         rates_.input(i) = b.box[i];
@@ -150,15 +151,16 @@ Interval PaperConditions::tangential_bound(const Collision& collision, const Bou
         s.data(), dof_, [&](std::size_t i) { return contact_.impulse_direction(i); }, contact_.hdot());
     for (std::size_t i = 0; i < dof_; ++i)
         distance.push_back(abs(s[i] - Interval(collision.restart[static_cast<Eigen::Index>(i)])) +
-                           Interval(mag(rates_.s_rate(i))) * Interval(wait.hi()));
+                           Interval(mag(rates_.s_rate(i))) * Interval(accumulation_time.hi()));
     return norm(distance);
 }
 
 Certificate PaperConditions::certificate_of(const Collision& collision, const Bounds& b) {
     // The tighter interval for tau_inf (theory.md 4) is valid, because -hddot stays in [a_min, a_max].
-    const AccumulationTime wait = wait_for_zeno(e_, b.a_min, b.a_max, b.w);
+    const AccumulationTime accumulation_time = accumulation_time_bounds(e_, b.a_min, b.a_max, b.w);
     Certificate certificate =
-        certificate_at(collision.before.t, wait, estimated_wait(trend_at(collision), mid(e_), collision.speed));
+        certificate_at(collision.before.t, accumulation_time,
+                       estimated_accumulation_time(trend_at(collision), mid(e_), collision.speed));
     // The c_i use the tolerances of the run: the bounds over V are smaller than the radii of V, which are smaller than
     // the tolerances.
     const auto condition = [&](const char* name, const Interval& factor, double eps) -> Inequality {
@@ -175,7 +177,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     certificate.position_bound = (b.position * b.w).hi();
     certificate.a_min = b.a_min.lo();
     certificate.a_max = b.a_max.hi();
-    const Interval closer = tangential_bound(collision, b, wait.latest), added = b.velocity * b.w;
+    const Interval closer = tangential_bound(collision, b, accumulation_time.latest), added = b.velocity * b.w;
     certificate.velocity_bound = closer.is_defined() ? std::min(closer.hi(), added.hi()) : added.hi();
     certificate.paper = Certificate::Paper{b.e1.hi(),
                                            b.e2.hi(),

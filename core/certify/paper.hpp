@@ -47,7 +47,7 @@ class PaperConditions : public TruncationConditions {
     std::optional<Certificate> prove(const Collision& collision, const Truncation& tolerances);
     std::optional<Bounds> bounds_over(const Collision& collision, double eps_q, double eps_v, double eps_t);
     Certificate certificate_of(const Collision& collision, const Bounds& bounds);
-    Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& wait);
+    Interval tangential_bound(const Collision& collision, const Bounds& bounds, const Interval& accumulation_time);
 
     Definition7Terms<Evaluator<double>> point_;
     Range hddot_;

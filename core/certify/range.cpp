@@ -39,8 +39,8 @@ Interval Range::bound(const std::vector<Interval>& box, bool upper) {
 
 // Mean-value form from the center, with the slopes over the whole box. An undefined slope makes it undefined.
 Interval Range::over_part(const std::vector<Interval>& part) const {
-    Interval sum = at_centre_;
-    for (std::size_t i = 0; i < part.size(); ++i) sum = sum + slopes_[i] * (part[i] - centre_[i]);
+    Interval sum = at_center_;
+    for (std::size_t i = 0; i < part.size(); ++i) sum = sum + slopes_[i] * (part[i] - center_[i]);
     return sum;
 }
 
@@ -48,16 +48,16 @@ Interval Range::over(const std::vector<Interval>& box) {
     for (std::size_t i = 0; i < slots_.size(); ++i) gradient_.input(slots_[i]) = box[i];
     gradient_.run();
     bool smooth = true;
-    at_centre_ = Interval::undefined();
+    at_center_ = Interval::undefined();
     for (std::size_t i = 0; i < slots_.size(); ++i) {
         slopes_[i] = gradient_.output(i);
         smooth = smooth && slopes_[i].is_defined();
     }
     constexpr double hardly = 1.0 / 16.0;  // below this, using monotonicity gains less than 1 percent
     if (smooth) {
-        centre_.resize(box.size());
-        for (std::size_t i = 0; i < box.size(); ++i) centre_[i] = Interval(mid(box[i]));
-        at_centre_ = evaluate(centre_);
+        center_.resize(box.size());
+        for (std::size_t i = 0; i < box.size(); ++i) center_[i] = Interval(mid(box[i]));
+        at_center_ = evaluate(center_);
         const Interval near = over_part(box);
         if (near.is_defined() && width(near) <= hardly * mig(near)) return near;
     }

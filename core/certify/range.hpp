@@ -35,8 +35,8 @@ class Range {
 
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
-    std::vector<Interval> slopes_, rest_, middle_, centre_;  // of the current box
-    Interval at_centre_;                                     // the value at its center
+    std::vector<Interval> slopes_, rest_, middle_, center_;  // of the current box
+    Interval at_center_;                                     // the value at its center
 };
 
 // The interval of all numbers within `radius` of x.

@@ -21,10 +21,11 @@ double times(const Interval& x, const Interval& factor) {
 // Bounds over X: of -hddot, of the height of flights (h_m), and of the accumulation time.
 struct SharpConditions::Time {
     Interval a_min, a_max, r, height;
-    Interval longest;       // T, by the attained bounds
-    AccumulationTime wait;  // as certified
+    Interval longest;                    // T, by the attained bounds
+    AccumulationTime accumulation_time;  // as certified
     double half_width() const {
-        return (Interval(0.5) * (Interval(wait.latest.hi()) - Interval(wait.earliest.lo()))).hi();
+        return (Interval(0.5) * (Interval(accumulation_time.latest.hi()) - Interval(accumulation_time.earliest.lo())))
+            .hi();
     }
 };
 
@@ -82,8 +83,13 @@ std::optional<SharpConditions::Time> SharpConditions::time_over_box() {
     if (!certainly_positive(a)) return std::nullopt;
     const Interval a_min(a.lo()), a_max(a.hi()), r = a_max / a_min, one(1.0);
     if (!certainly_less(square(e_) * r, one)) return std::nullopt;
-    const AccumulationTime wait = wait_for_zeno(e_, a_min, a_max, box_.w);
-    return Time{a_min, a_max, r, square(e_ * box_.w) / (Interval(2.0) * a_min), Interval(wait.latest.hi()), wait};
+    const AccumulationTime accumulation_time = accumulation_time_bounds(e_, a_min, a_max, box_.w);
+    return Time{a_min,
+                a_max,
+                r,
+                square(e_ * box_.w) / (Interval(2.0) * a_min),
+                Interval(accumulation_time.latest.hi()),
+                accumulation_time};
 }
 
 // Intersects the enclosure of the accumulation time with the one of third order in the impact speed w (truncation.hpp).
@@ -98,11 +104,12 @@ void SharpConditions::sharpen(Time& time, const AccelerationTrend& trend) {
     if (!autonomous_) variables_.back() = box_.t0;
     const AccelerationBounds drift{-hddot_.over_part(variables_), -hddot_.slope(2 * dof_), -hddot_.P(), -hddot_.Phi(),
                                    -hddot_.Xi()};
-    const Interval third = third_order_wait(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
+    const Interval third =
+        third_order_accumulation_time(trend, drift, e_, time.a_min, time.a_max, box_.w, time.longest);
     if (!third.is_defined()) return;
     // Only the lower end of `earliest` and the upper end of `latest` are used.
-    if (third.lo() > time.wait.earliest.lo()) time.wait.earliest = third;
-    if (third.hi() < time.wait.latest.hi()) time.wait.latest = third;
+    if (third.lo() > time.accumulation_time.earliest.lo()) time.accumulation_time.earliest = third;
+    if (third.hi() < time.accumulation_time.latest.hi()) time.accumulation_time.latest = third;
 }
 
 // Whether X is proved to contain the motion until tau_inf, the shifted variables of theory.md 5.2, and the comparison
@@ -203,7 +210,7 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
         if (!time) return std::nullopt;
         if (!contain(*time)) continue;
         std::optional<Certificate::OtherContactBounds> others;
-        if (!prove_others(variables_, others)) return std::nullopt;
+        if (!prove_other_contacts_stay(variables_, others)) return std::nullopt;
         sharpen(*time, trend);
         find_shadow(*time);
         Certificate certificate = certificate_of(collision, *time, trend);
@@ -215,7 +222,8 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
 
 Certificate SharpConditions::certificate_of(const Collision& collision, const Time& time,
                                             const AccelerationTrend& trend) const {
-    Certificate c = certificate_at(collision.before.t, time.wait, estimated_wait(trend, mid(e_), collision.speed));
+    Certificate c = certificate_at(collision.before.t, time.accumulation_time,
+                                   estimated_accumulation_time(trend, mid(e_), collision.speed));
     Interval q(0.0), v(0.0);
     for (std::size_t i = 0; i < dof_; ++i) {
         q = q + square(Interval(need_q_[i]));

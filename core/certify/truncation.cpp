@@ -12,13 +12,14 @@
 
 namespace achilles {
 
-AccumulationTime wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w) {
+AccumulationTime accumulation_time_bounds(const Interval& e, const Interval& a_min, const Interval& a_max,
+                                          const Interval& w) {
     const Interval one(1.0), r = a_max / a_min, rebound = Interval(2.0) * e * (one + e) * w;
     return {rebound / (a_max * (one - square(e) / r)), rebound / (a_min * (one - square(e) * r))};
 }
 
-double estimated_wait(const AccelerationTrend& trend, double e, double w) {
-    return estimated_wait(trend.a, trend.b, trend.c, e, w);
+double estimated_accumulation_time(const AccelerationTrend& trend, double e, double w) {
+    return estimated_accumulation_time(trend.a, trend.b, trend.c, e, w);
 }
 
 namespace {
@@ -56,14 +57,15 @@ Interval third_order_error(const AccelerationTrend& trend, const AccelerationBou
     return T * (doubled * rho + d_m * S);
 }
 
-Interval third_order_wait(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
-                          const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest) {
+Interval third_order_accumulation_time(const AccelerationTrend& trend, const AccelerationBounds& drift,
+                                       const Interval& e, const Interval& a_min, const Interval& a_max,
+                                       const Interval& w, const Interval& latest) {
     const Interval one(1.0), two(2.0), per_a = one / Interval(trend.a), T0 = two * per_a / (one - e) * e * w;
     const Interval off = third_order_error(trend, drift, e, a_min, a_max, w, latest);
     const Interval curving = (two * Interval(trend.b) * per_a + Interval(trend.c)) / Interval(6.0);
-    const Interval centre = T0 - square(T0) * curving;
-    if (!off.is_defined() || !centre.is_defined()) return Interval::undefined();
-    return centre + Interval(-off.hi(), off.hi());
+    const Interval center = T0 - square(T0) * curving;
+    if (!off.is_defined() || !center.is_defined()) return Interval::undefined();
+    return center + Interval(-off.hi(), off.hi());
 }
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
@@ -111,26 +113,28 @@ ConditionsBase::ConditionsBase(const Model& model, const Run& run, const OtherCo
       truncation_(run.options.truncation),
       variables_(std::move(variables)),
       unpressed_(unpressed),
-      neighbours_(others) {
-    if (neighbours_ != nullptr) others_ = model.evaluator<Interval>(neighbours_->program, run.parameters);
+      other_contact_terms_(others) {
+    if (other_contact_terms_ != nullptr)
+        other_contact_program_ = model.evaluator<Interval>(other_contact_terms_->program, run.parameters);
 }
 
-bool ConditionsBase::prove_others(const std::vector<Interval>& box,
-                                  std::optional<Certificate::OtherContactBounds>& proved) {
-    if (neighbours_ == nullptr) return true;
-    set_box(others_, box);
-    others_.run();
-    proved = others_proved(*neighbours_, others_, unpressed_);
+bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
+                                               std::optional<Certificate::OtherContactBounds>& proved) {
+    if (other_contact_terms_ == nullptr) return true;
+    set_box(other_contact_program_, box);
+    other_contact_program_.run();
+    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
     return proved.has_value();
 }
 
-Certificate ConditionsBase::certificate_at(double tau_k, const AccumulationTime& wait, double estimated) const {
+Certificate ConditionsBase::certificate_at(double tau_k, const AccumulationTime& accumulation_time,
+                                           double estimated) const {
     Certificate certificate;
     certificate.certified = true;
     certificate.conditions = truncation_.conditions;
     certificate.reinitialization = truncation_.reinitialization;
-    certificate.zeno_low = (Interval(tau_k) + Interval(wait.earliest.lo())).lo();
-    certificate.zeno_high = (Interval(tau_k) + Interval(wait.latest.hi())).hi();
+    certificate.zeno_low = (Interval(tau_k) + Interval(accumulation_time.earliest.lo())).lo();
+    certificate.zeno_high = (Interval(tau_k) + Interval(accumulation_time.latest.hi())).hi();
     const double low = std::max(tau_k, certificate.zeno_low), time = tau_k + estimated;
     certificate.zeno_time = std::isfinite(time) ? std::clamp(time, low, std::max(low, certificate.zeno_high))
                                                 : 0.5 * (low + certificate.zeno_high);
@@ -147,7 +151,7 @@ void ConditionsBase::decide(Certificate& c, double half_width) const {
 
 TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
                                            Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground)
-    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.neighbours(contact, mode),
+    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.other_contact_terms(contact, mode),
                      model.bouncing(contact, mode).variables, unpressed, ground),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
@@ -161,12 +165,13 @@ AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
     return {-trend_.hddot(), -trend_.rate(), -trend_.by_sigma()};
 }
 
-std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactTerms& neighbours,
-                                                             const Evaluator<Interval>& program, ContactSet unpressed) {
+std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
+                                                                        const Evaluator<Interval>& program,
+                                                                        ContactSet unpressed) {
     Certificate::OtherContactBounds others;
-    const std::size_t bouncing = neighbours.bouncing.size();
+    const std::size_t bouncing = other_contact_terms.bouncing.size();
     std::size_t next = bouncing;
-    for (const std::size_t contact : neighbours.held) {
+    for (const std::size_t contact : other_contact_terms.held) {
         const Interval hddot = program.output(next), W = program.output(next + 1);
         next += 2;
         const bool is_unpressed = unpressed.contains(contact);
@@ -184,7 +189,7 @@ std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactT
         }
         others.held.push_back(held);
     }
-    for (std::size_t i = 0; i < neighbours.open.size(); ++i) {
+    for (std::size_t i = 0; i < other_contact_terms.open.size(); ++i) {
         const Interval gap = program.output(next++);
         if (!certainly_positive(gap)) return std::nullopt;
         others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
@@ -192,8 +197,8 @@ std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactT
     return others;
 }
 
-Interval transmission(const OtherContactTerms& neighbours, const Evaluator<Interval>& program, std::size_t i) {
-    const std::size_t bouncing = neighbours.bouncing.size();
+Interval transmission(const OtherContactTerms& other_contact_terms, const Evaluator<Interval>& program, std::size_t i) {
+    const std::size_t bouncing = other_contact_terms.bouncing.size();
     return program.output(bouncing + i * (2 + bouncing) + 2);
 }
 

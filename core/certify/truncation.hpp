@@ -20,7 +20,8 @@ namespace achilles {
 struct AccumulationTime {
     Interval earliest, latest;
 };
-AccumulationTime wait_for_zeno(const Interval& e, const Interval& a_min, const Interval& a_max, const Interval& w);
+AccumulationTime accumulation_time_bounds(const Interval& e, const Interval& a_min, const Interval& a_max,
+                                          const Interval& w);
 
 // The variation of -hddot along a bouncing motion, at the restart (q, s) and sigma = 0: its value a, its rate b along
 // the constrained motion, and its derivative c with respect to sigma = hdot.
@@ -30,10 +31,11 @@ struct AccelerationTrend {
 
 // Estimate of the accumulation time (s) to second order in w (theory-truncation.md 3):
 //     T0 - T0^2 (b/(3a) + c/6),   T0 = 2 e w/(a (1 - e)).    Needs a > 0, e < 1.
-double estimated_wait(const AccelerationTrend& trend, double e, double w);
+double estimated_accumulation_time(const AccelerationTrend& trend, double e, double w);
 // The same for any number type.
 template <class Number>
-Number estimated_wait(const Number& a, const Number& b, const Number& c, const Number& e, const Number& w) {
+Number estimated_accumulation_time(const Number& a, const Number& b, const Number& c, const Number& e,
+                                   const Number& w) {
     const Number T0 = 2.0 * e * w / (a * (1.0 - e));
     return T0 - T0 * T0 * (b / (3.0 * a) + c / 6.0);
 }
@@ -51,14 +53,16 @@ struct AccelerationBounds {
 // K = (1+e)/(1-e). Then
 //     delta = -hddot - a = b t + c hdot + R,   |R| <= rho
 //     rho = |G(q,s,0) - a| + |G_sigma - c| w + |P - b| T + |mid Phi| h_m + rad(Phi) w T + |Xi| w^2 T
-//     |wait - (T0 - T0^2 (b/(3a) + c/6))| <= T (2 rho/(a (1-e)) + d_m S),   d_m = max |a_max - a|, |a - a_min|
+//     |tau_inf - tau_k - (T0 - T0^2 (b/(3a) + c/6))| <= T (2 rho/(a (1-e)) + d_m S)
+//     d_m = max |a_max - a|, |a - a_min|
 //     S = T (|cA| + 1.09 |cB| + |cE|) + 2 z_m (|cC| + |cD| + |cF| + |cG|),  z_m = w sqrt(max(e, e'')^2 + e^2 a/a_min)
 // Proof: for any constant a, Theta = (hdot + K z)/a with z = sqrt(hdot^2 + 2 a h) is continuous across impacts and
 // falls at the rate 1 if hddot = -a. The contribution of delta is integrated by parts with the quadratic form Psi in
 // (t, hdot, z), which is also continuous across impacts and has the coefficients cA to cG. The result is undefined if
 // the enclosures are.
-Interval third_order_wait(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
-                          const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest);
+Interval third_order_accumulation_time(const AccelerationTrend& trend, const AccelerationBounds& drift,
+                                       const Interval& e, const Interval& a_min, const Interval& a_max,
+                                       const Interval& w, const Interval& latest);
 // Only the bound T (2 rho/(a (1-e)) + d_m S); its upper end is the result.
 Interval third_order_error(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
                            const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest);
@@ -105,10 +109,11 @@ class ConditionsBase {
     // Whether the other contacts are proved to keep their states (theory-gaps.md 2.3): over the box every held contact
     // is pressed, impulses press it further, and every other gap is open. If there are others, `proved` receives their
     // bounds.
-    bool prove_others(const std::vector<Interval>& box, std::optional<Certificate::OtherContactBounds>& proved);
+    bool prove_other_contacts_stay(const std::vector<Interval>& box,
+                                   std::optional<Certificate::OtherContactBounds>& proved);
     // A certificate with tau_inf in [tau_k + earliest, tau_k + latest]. Its estimate of tau_inf is clamped to that
     // interval, and to at least tau_k.
-    Certificate certificate_at(double tau_k, const AccumulationTime& wait, double estimated) const;
+    Certificate certificate_at(double tau_k, const AccumulationTime& accumulation_time, double estimated) const;
     // Adds the decision by the half width of the time interval and the shadowing bounds.
     void decide(Certificate& certificate, double half_width) const;
 
@@ -118,8 +123,8 @@ class ConditionsBase {
  private:
     std::vector<std::uint32_t> variables_;
     ContactSet unpressed_;
-    const OtherContactTerms* neighbours_;
-    Evaluator<Interval> others_;
+    const OtherContactTerms* other_contact_terms_;
+    Evaluator<Interval> other_contact_program_;
 };
 
 class TruncationConditions : protected ConditionsBase {
@@ -181,10 +186,11 @@ Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>
 // The bounds on the other contacts from the outputs of their program, which must have run. Returns nullopt if one of
 // them is not proved pressed, or open. Contacts in `unpressed`, which need no force (theory-gaps.md 2.7), need not be
 // pressed.
-std::optional<Certificate::OtherContactBounds> others_proved(const OtherContactTerms& neighbours,
-                                                             const Evaluator<Interval>& program, ContactSet unpressed);
+std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
+                                                                        const Evaluator<Interval>& program,
+                                                                        ContactSet unpressed);
 
 // kappa of held contact i for the bouncing contact, from a program that has run.
-Interval transmission(const OtherContactTerms& neighbours, const Evaluator<Interval>& program, std::size_t i);
+Interval transmission(const OtherContactTerms& other_contact_terms, const Evaluator<Interval>& program, std::size_t i);
 
 }  // namespace achilles

@@ -316,7 +316,7 @@ std::optional<PairConditions::PairCompletion> PairConditions::certify(const Pair
         if (!bound) return std::nullopt;
         if (!contain(box, *bound, *pair)) continue;
         std::optional<Certificate::OtherContactBounds> others;
-        if (!prove_others(box.all, others)) return std::nullopt;
+        if (!prove_other_contacts_stay(box.all, others)) return std::nullopt;
         look(box.all);
         PairCompletion result{certificate_of(box, *bound, *pair, collision), tangential};
         result.certificate.others = std::move(others);

@@ -46,22 +46,22 @@ Completion::Completion(const Model& model, const Coordinates& coordinates, std::
     trend_ = {with_parameters<double>(bouncing.trend, layout_, z_.parameters), z_.dof};
     rates_ = {with_parameters<double>(bouncing.rates, layout_, z_.parameters), z_.dof};
     if (model.contacts() == 1) return;
-    neighbours_ = &model.neighbours(contact, mode);
-    neighbours_program_ = with_parameters<Interval>(neighbours_->program, layout_, z_.parameters);
-    neighbours_variables_ = bouncing.variables;
+    other_contact_terms_ = &model.other_contact_terms(contact, mode);
+    other_contact_program_ = with_parameters<Interval>(other_contact_terms_->program, layout_, z_.parameters);
+    other_contact_variables_ = bouncing.variables;
 }
 
-// Evaluates neighbours_program_ over a box of the variables of BouncingModel.
+// Evaluates other_contact_program_ over a box of the variables of BouncingModel.
 void Completion::look(const Intervals& box) {
-    for (std::size_t i = 0; i < box.size(); ++i) neighbours_program_.input(neighbours_variables_[i]) = box[i];
-    neighbours_program_.run();
+    for (std::size_t i = 0; i < box.size(); ++i) other_contact_program_.input(other_contact_variables_[i]) = box[i];
+    other_contact_program_.run();
 }
 
 // A kappa that is 0 only within rounding is not accepted as a proof.
-bool Completion::others_stay(const Intervals& box) {
-    if (neighbours_ == nullptr) return true;
+bool Completion::other_contacts_stay(const Intervals& box) {
+    if (other_contact_terms_ == nullptr) return true;
     look(box);
-    const auto others = others_proved(*neighbours_, neighbours_program_, unpressed_);
+    const auto others = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
     return others && !others->rounded_zero;
 }
 
@@ -73,8 +73,8 @@ std::map<std::size_t, Interval> Completion::passed_on(const Doubleton& set) {
     if (!z_.autonomous) box.push_back(set.hull(Coordinates::t()));
     look(box);
     std::map<std::size_t, Interval> result;
-    for (std::size_t i = 0; i < neighbours_->held.size(); ++i)
-        result[neighbours_->held[i]] = transmission(*neighbours_, neighbours_program_, i);
+    for (std::size_t i = 0; i < other_contact_terms_->held.size(); ++i)
+        result[other_contact_terms_->held[i]] = transmission(*other_contact_terms_, other_contact_program_, i);
     return result;
 }
 
@@ -111,21 +111,21 @@ bool Completion::contain(Box& box, const Interval& e) {
 
 // The accumulation time as a function of the state at the collision: by the attained bounds A w, and to third order.
 void Completion::bound_time(CompletionProof& proof, const Box& box, const Doubleton& set, const Interval& e) {
-    const Interval one(1.0), two(2.0), c_w = -Interval(set.centre(u_));
-    const AccumulationTime per_speed = wait_for_zeno(e, box.a_min, box.a_max, one);
+    const Interval one(1.0), two(2.0), c_w = -Interval(set.center(u_));
+    const AccumulationTime per_speed = accumulation_time_bounds(e, box.a_min, box.a_max, one);
     const Interval A(per_speed.earliest.lo(), per_speed.latest.hi()), middle(mid(A));
     Intervals row(z_.size());
     row[Coordinates::t()] = one;
-    const auto time_of = [&](const Interval& at_centre, const Interval& by_u) {
+    const auto time_of = [&](const Interval& at_center, const Interval& by_u) {
         row[u_] = by_u;
-        return Interval(set.centre(Coordinates::t())) + at_centre + set.along(row.data());
+        return Interval(set.center(Coordinates::t())) + at_center + set.along(row.data());
     };
     proof.by_u = -middle;
-    proof.at_centre = middle * c_w + (A - middle) * box.w;
+    proof.at_center = middle * c_w + (A - middle) * box.w;
     proof.half = rad((A - middle) * Interval(box.w.hi()));
-    proof.time = time_of(proof.at_centre, proof.by_u);
+    proof.time = time_of(proof.at_center, proof.by_u);
     proof.own = rad(time_of(Interval(0.0), proof.by_u));
-    proof.wait = A * box.w;
+    proof.accumulation_time = A * box.w;
 
     Intervals start = box.q0;
     start.insert(start.end(), box.s0.begin(), box.s0.end());
@@ -141,16 +141,17 @@ void Completion::bound_time(CompletionProof& proof, const Box& box, const Double
     if (!off.is_defined() || !C2.is_defined() || !std::isfinite(off.hi())) return;
     const Interval m1(mid(C1)), m2(mid(C2));
     const Interval open = (C1 - m1) * box.w + (C2 - m2) * square(box.w) + Interval(-off.hi(), off.hi());
-    const Interval at_centre = m1 * c_w + m2 * square(c_w) + open, by_u = -(m1 + two * m2 * box.w);
-    const Interval time = time_of(at_centre, by_u);
+    const Interval at_center = m1 * c_w + m2 * square(c_w) + open, by_u = -(m1 + two * m2 * box.w);
+    const Interval time = time_of(at_center, by_u);
     if (width(time) < width(proof.time)) {
-        proof.at_centre = at_centre;
+        proof.at_center = at_center;
         proof.by_u = by_u;
         proof.half = std::min(proof.half, rad(open));
     }
     proof.time = {std::max(proof.time.lo(), time.lo()), std::min(proof.time.hi(), time.hi())};
-    const Interval wait = C1 * box.w + C2 * square(box.w) + Interval(-off.hi(), off.hi());
-    proof.wait = {std::max(proof.wait.lo(), wait.lo()), std::min(proof.wait.hi(), wait.hi())};
+    const Interval accumulation_time = C1 * box.w + C2 * square(box.w) + Interval(-off.hi(), off.hi());
+    proof.accumulation_time = {std::max(proof.accumulation_time.lo(), accumulation_time.lo()),
+                               std::min(proof.accumulation_time.hi(), accumulation_time.hi())};
 }
 
 // (E_q, E_s): the two-sided bounds on the integrals of h and of hdot^2, times their coefficients.
@@ -184,12 +185,12 @@ std::optional<Completion::CompletionProof> Completion::prove(const Doubleton& se
     for (std::size_t i = 0; i < n; ++i) {
         box.q0.push_back(set.hull(z_.q(i)));
         box.s0.push_back(set.hull(z_.v(i)));
-        trend_.input(layout_.q(i)) = rates_.input(layout_.q(i)) = set.centre(z_.q(i));
-        trend_.input(layout_.v(i)) = rates_.input(layout_.v(i)) = set.centre(z_.v(i));
+        trend_.input(layout_.q(i)) = rates_.input(layout_.q(i)) = set.center(z_.q(i));
+        trend_.input(layout_.v(i)) = rates_.input(layout_.v(i)) = set.center(z_.v(i));
     }
     box.t0 = set.hull(Coordinates::t());
     box.w = -set.hull(u_);
-    trend_.clock() = rates_.clock() = set.centre(Coordinates::t());
+    trend_.clock() = rates_.clock() = set.center(Coordinates::t());
     trend_.run();
     box.trend = {-trend_.hddot(), -trend_.rate(), -trend_.by_sigma()};
     const double w = box.w.hi(), e_mid = mid(e);
@@ -210,11 +211,11 @@ std::optional<Completion::CompletionProof> Completion::prove(const Doubleton& se
         box.r = box.a_max / box.a_min;
         const Interval one(1.0), kept = e * square(e) * box.r * sqrt(box.r);
         if (!certainly_less(square(e) * box.r, one) || !certainly_less(kept, one)) return std::nullopt;
-        const Interval longest(wait_for_zeno(e, box.a_min, box.a_max, Interval(w)).latest.hi());
+        const Interval longest(accumulation_time_bounds(e, box.a_min, box.a_max, Interval(w)).latest.hi());
         box.T = Interval((longest * Interval(1.0 + 0x1p-40)).hi());
         if (!contain(box, e)) continue;
         const Intervals all = variables(box);
-        if (!others_stay(all)) return std::nullopt;
+        if (!other_contacts_stay(all)) return std::nullopt;
         CompletionProof proof;
         bound_time(proof, box, set, e);
         bound_error(proof, box, e);

@@ -20,8 +20,8 @@ class Completion {
 
     // Bounds on the bouncing of all members after a collision.
     struct CompletionProof {
-        // The accumulation time (s) of every member: in at_centre + by_u (u - c_u), and in `wait`.
-        Interval wait, at_centre, by_u;
+        // The accumulation time (s) of every member: in at_center + by_u (u - c_u), and in `accumulation_time`.
+        Interval accumulation_time, at_center, by_u;
         Interval time;      // tau_inf
         double half = 0.0;  // half width of the accumulation time that the bounds leave, s
         double own = 0.0;   // half width of tau_inf by the size of the set, s
@@ -45,8 +45,8 @@ class Completion {
     void bound_error(CompletionProof& proof, const Box& box, const Interval& e);
     Intervals variables(const Box& box) const;
 
-    bool others_stay(const Intervals& box);
-    void look(const Intervals& box);  // evaluates neighbours_program_
+    bool other_contacts_stay(const Intervals& box);
+    void look(const Intervals& box);  // evaluates other_contact_program_
 
     Coordinates z_;
     Layout layout_;
@@ -56,9 +56,9 @@ class Completion {
     TrendTerms<Evaluator<double>> trend_;
     BouncingRates<Evaluator<double>> rates_;
     // Conditions on the other contacts, if the system has any.
-    const OtherContactTerms* neighbours_ = nullptr;
-    Evaluator<Interval> neighbours_program_;
-    std::vector<std::uint32_t> neighbours_variables_;
+    const OtherContactTerms* other_contact_terms_ = nullptr;
+    Evaluator<Interval> other_contact_program_;
+    std::vector<std::uint32_t> other_contact_variables_;
 };
 
 }  // namespace achilles

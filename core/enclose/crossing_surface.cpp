@@ -37,7 +37,7 @@ CrossingSurface CrossingSurface::of_time(const Coordinates&, double time) {
 void cross(Doubleton& set, const EnclosureStep& step, const CrossingSurface& section, Interval& tau) {
     for (int round = 0;; ++round) {
         const Interval middle(mid(tau));
-        Intervals point = step.centre_at(middle), box = step.box_over(set, tau);
+        Intervals point = step.center_at(middle), box = step.box_over(set, tau);
         for (std::size_t i = 0; i < box.size(); ++i) box[i] = hull(box[i], point[i]);
         const Intervals F = step.rate_at(tau), rho = step.remainder_at(tau), G = section.slope(box);
         IntervalMatrix S = step.slope_at(tau);

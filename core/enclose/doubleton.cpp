@@ -84,24 +84,24 @@ Intervals NearOrthogonalSolver::solve(const Intervals& x) const {
 }
 
 Doubleton::Doubleton(const Intervals& box, std::size_t constants)
-    : moving_(box.size() - constants), centre_(box.size()) {
+    : moving_(box.size() - constants), center_(box.size()) {
     const std::size_t n = box.size();
     std::vector<std::size_t> wide;
     for (std::size_t i = 0; i < n; ++i) {
-        centre_[i] = mid(box[i]);
+        center_[i] = mid(box[i]);
         if (box[i].lo() < box[i].hi()) wide.push_back(i);
     }
     start_ = Matrix::Zero(index(n), index(wide.size()));
     for (std::size_t j = 0; j < wide.size(); ++j) {
         start_(index(wide[j]), index(j)) = 1.0;
-        of_start_.push_back(box[wide[j]] - Interval(centre_[wide[j]]));
+        of_start_.push_back(box[wide[j]] - Interval(center_[wide[j]]));
     }
     errors_ = Matrix::Identity(index(moving_), index(moving_));
     of_errors_.assign(moving_, Interval(0.0));
 }
 
 Interval Doubleton::hull(std::size_t i) const {
-    Interval sum(centre_[i]);
+    Interval sum(center_[i]);
     for (std::size_t j = 0; j < of_start_.size(); ++j) sum += times(Interval(start_(index(i), index(j))), of_start_[j]);
     for (std::size_t j = 0; i < moving_ && j < moving_; ++j)
         sum += times(Interval(errors_(index(i), index(j))), of_errors_[j]);
@@ -130,10 +130,10 @@ Interval Doubleton::along(const Interval* row) const {
     return sum;
 }
 
-void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
+void Doubleton::map(const Intervals& at_center, const IntervalMatrix& slope) {
     const std::size_t n = moving_;
     for (std::size_t i = 0; i < n; ++i) {
-        bool bounded = std::isfinite(width(at_centre[i]));
+        bool bounded = std::isfinite(width(at_center[i]));
         for (std::size_t j = 0; j < size(); ++j) bounded = bounded && std::isfinite(width(slope(i, j)));
         if (!bounded) throw ProofStopped{"a term of the equations may be undefined or unbounded on the set"};
     }
@@ -141,8 +141,8 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
     const Matrix start = middle(by_start, n);
     Intervals rest(n);  // neither in the center nor in C
     for (std::size_t i = 0; i < n; ++i) {
-        centre_[i] = mid(at_centre[i]);
-        rest[i] = at_centre[i] - Interval(centre_[i]);
+        center_[i] = mid(at_center[i]);
+        rest[i] = at_center[i] - Interval(center_[i]);
         for (std::size_t j = 0; j < of_start_.size(); ++j)
             rest[i] += times(by_start(i, j) - Interval(start(index(i), index(j))), of_start_[j]);
     }
@@ -162,7 +162,7 @@ void Doubleton::map(const Intervals& at_centre, const IntervalMatrix& slope) {
 }
 
 void Doubleton::set(std::size_t i, double value) {
-    centre_[i] = value;
+    center_[i] = value;
     start_.row(index(i)).setZero();
     if (i < moving_) errors_.row(index(i)).setZero();
 }

@@ -39,25 +39,25 @@ class Doubleton {
     // Every map leaves the last `constants` coordinates unchanged; they never acquire errors.
     explicit Doubleton(const Intervals& box, std::size_t constants = 0);
 
-    std::size_t size() const { return centre_.size(); }
+    std::size_t size() const { return center_.size(); }
     // A point of the hull, the center of mean-value forms.
-    double centre(std::size_t i) const { return centre_[i]; }
-    Intervals centre() const { return {centre_.begin(), centre_.end()}; }
+    double center(std::size_t i) const { return center_[i]; }
+    Intervals center() const { return {center_.begin(), center_.end()}; }
     Interval hull(std::size_t i) const;
     Intervals hull() const;
     // sum_j row_j (z_j - c_j) over all members z.
     Interval along(const Interval* row) const;
 
-    // The image of the set under a map with F(z) in at_centre + slope (z - c). at_centre must contain F(c), and slope
+    // The image of the set under a map with F(z) in at_center + slope (z - c). at_center must contain F(c), and slope
     // the derivatives over the hull; both may include an error of F. Throws ProofStopped if an entry is undefined or
     // unbounded.
-    void map(const Intervals& at_centre, const IntervalMatrix& slope);
+    void map(const Intervals& at_center, const IntervalMatrix& slope);
     // Sets coordinate i to exactly this value in every member.
     void set(std::size_t i, double value);
 
  private:
     std::size_t moving_;  // number of coordinates that are not constant
-    std::vector<double> centre_;
+    std::vector<double> center_;
     Eigen::MatrixXd start_, errors_;  // C; B, for the coordinates that are not constant
     Intervals of_start_, of_errors_;  // r0, r: both contain 0
 };

@@ -172,20 +172,20 @@ class EventMapsOver : public EventMaps {
     // A coordinate that the map leaves unchanged has derivative 1 by itself.
     template <class Map>
     void apply(Doubleton& set, const Map& map) {
-        std::vector<Value> centre = values_.numbers(set.centre());
+        std::vector<Value> center = values_.numbers(set.center());
         std::vector<Gradient> over = gradients_.numbers(set.hull());
         const std::vector<Gradient> before = over;
-        map(values_, centre);
+        map(values_, center);
         map(gradients_, over);
-        Intervals at_centre;
-        for (const Value& value : centre) at_centre.push_back(value.value);
+        Intervals at_center;
+        for (const Value& value : center) at_center.push_back(value.value);
         IntervalMatrix slope = IntervalMatrix::identity(z_.size());
         for (std::size_t i = 0; i < z_.size(); ++i) {
             if (is_same(over[i], before[i])) continue;
             slope(i, i) = Interval(0.0);
             for (std::size_t j = 0; j < variables_.size(); ++j) slope(i, variables_[j]) = over[i].slope[j];
         }
-        set.map(at_centre, slope);
+        set.map(at_center, slope);
     }
     static bool is_same(const Gradient& a, const Gradient& b) {
         const auto same = [](const Interval& x, const Interval& y) { return x.lo() == y.lo() && x.hi() == y.hi(); };

@@ -141,14 +141,14 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
 // of the comparison motion is not included.
 Intervals Prover::zeno_box(std::size_t contact, const EnclosureStep& step, const Interval& tau,
                            const Completion::CompletionProof& proof) const {
-    const double middle = std::clamp(mid(proof.at_centre), 0.0, step.length());
+    const double middle = std::clamp(mid(proof.at_center), 0.0, step.length());
     Intervals box = step.box_over(set_, tau);
-    const Intervals point = step.centre_at(Interval(middle)), rho = step.remainder_at(tau),
+    const Intervals point = step.center_at(Interval(middle)), rho = step.remainder_at(tau),
                     F = step.rate_at(hull(tau, Interval(middle)));
     IntervalMatrix S = step.slope_at(tau);
     for (std::size_t i = 0; i < z_.size(); ++i) {
         S(i, z_.u(contact)) += F[i] * proof.by_u;
-        box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof.at_centre - Interval(middle)) + set_.along(S.row(i)));
+        box[i] = both(box[i], point[i] + rho[i] + F[i] * (proof.at_center - Interval(middle)) + set_.along(S.row(i)));
     }
     return box;
 }
@@ -182,10 +182,10 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
     for (double left = proof->window; left > 0x1p-43 * proof->window;) {
         const EnclosureStep step = motion().make(set_, left, openings_);
         count_step();
-        const Interval wait = proof->wait - passed;
-        const Interval tau(std::max(0.0, wait.lo()), std::min(step.length(), wait.hi()));
+        const Interval accumulation_time = proof->accumulation_time - passed;
+        const Interval tau(std::max(0.0, accumulation_time.lo()), std::min(step.length(), accumulation_time.hi()));
         if (tau.is_defined()) {
-            const bool is_all = passed.hi() == 0.0 && wait.hi() <= step.length();
+            const bool is_all = passed.hi() == 0.0 && accumulation_time.hi() <= step.length();
             const Intervals box = is_all ? zeno_box(contact, step, tau, *proof) : step.box_over(set_, tau);
             if (!zeno) zeno = box;
             for (std::size_t i = 0; i < box.size(); ++i) (*zeno)[i] = hull((*zeno)[i], box[i]);
@@ -196,15 +196,15 @@ bool Prover::complete(std::size_t contact, const Interval& time, const Interval&
         if (left > 0x1p-43 * proof->window) retract(mode_);
     }
     if (!zeno) throw ProofStopped{"no enclosure of the Zeno point was found"};
-    Intervals centre = set_.centre();
+    Intervals center = set_.center();
     for (std::size_t i = 0; i < 2 * z_.dof; ++i) {
         (*zeno)[z_.q(i)] += proof->error[i];
-        centre[z_.q(i)] += proof->error[i];
+        center[z_.q(i)] += proof->error[i];
     }
-    set_.map(centre, IntervalMatrix::identity(z_.size()));
+    set_.map(center, IntervalMatrix::identity(z_.size()));
     set_.set(u, 0.0);
     retract(mode_);
-    measure_others(mode_.held());
+    measure_other_gaps(mode_.held());
     const Intervals v = velocities(*zeno);
     const int impacts = bounces_[contact];
     result_.events.push_back(

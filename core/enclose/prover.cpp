@@ -281,7 +281,7 @@ void Prover::move() {
 // Adds every gap and its rate as coordinates.
 void Prover::begin() {
     const Intervals start = set_.hull();
-    measure_others({});
+    measure_other_gaps({});
     std::optional<std::size_t> on_surface;
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (certainly_positive(openings_[i].gap)) continue;
@@ -291,7 +291,7 @@ void Prover::begin() {
     if (on_surface) begin_on_surface(start, *on_surface);
 }
 
-void Prover::measure_others(ContactSet but) {
+void Prover::measure_other_gaps(ContactSet but) {
     for (std::size_t i = 0; i < z_.contacts; ++i) {
         if (but.contains(i)) continue;
         maps(i).measure_gap(set_);
@@ -335,7 +335,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
         maps.measure_gap(set_);
         set_.set(h, 0.0);
         openings_[contact].known = KnownRoot::landed;
-        measure_others(ContactSet::of(contact));
+        measure_other_gaps(ContactSet::of(contact));
         return;
     }
     double fast = 0.0;
@@ -346,7 +346,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     box[u_place] = Interval(0.0);
     set_ = Doubleton(box, z_.varied.size());
     maps.retract(set_);
-    measure_others(ContactSet::of(contact));
+    measure_other_gaps(ContactSet::of(contact));
     const Interval hddot = maps.normal(set_.hull()).hddot;
     if (!certainly_positive(hddot) && !certainly_negative(hddot) && model_->is_carried(contact, {}))
         unpressed_ = ContactSet::of(contact);

@@ -36,7 +36,7 @@ class Prover {
     };
     void begin();
     void begin_on_surface(const Intervals& start, std::size_t contact);
-    void measure_others(ContactSet but);
+    void measure_other_gaps(ContactSet but);
     void count_step();
     void move();
     double longest_step();

@@ -33,12 +33,12 @@ Intervals EnclosureStep::along(const Intervals& table, const Interval& tau) cons
     return result;
 }
 
-Intervals EnclosureStep::centre_at(const Interval& tau) const { return along(centre_, tau); }
+Intervals EnclosureStep::center_at(const Interval& tau) const { return along(center_, tau); }
 
 Intervals EnclosureStep::rate_at(const Interval& tau) const {
     Intervals result(size_);
     for (int k = K; k >= 1; --k) {
-        const Interval* const row = coefficients(centre_, k);
+        const Interval* const row = coefficients(center_, k);
         for (std::size_t i = 0; i < size_; ++i)
             result[i] = times(result[i], tau) + times(Interval(static_cast<double>(k)), row[i]);
     }
@@ -62,7 +62,7 @@ Intervals EnclosureStep::remainder_at(const Interval& tau) const {
 
 Intervals EnclosureStep::box_over(const Doubleton& set, const Interval& tau) const {
     const Interval middle(mid(tau));
-    Intervals plain = along(hull_, tau), sharp = centre_at(middle);
+    Intervals plain = along(hull_, tau), sharp = center_at(middle);
     const Intervals rate = rate_at(tau), remainder = remainder_at(tau);
     const IntervalMatrix slope = slope_at(tau);
     for (std::size_t i = 0; i < size_; ++i) {
@@ -74,17 +74,17 @@ Intervals EnclosureStep::box_over(const Doubleton& set, const Interval& tau) con
 
 void EnclosureStep::advance(Doubleton& set, double tau) const {
     const Interval at(tau);
-    Intervals centre = centre_at(at);
+    Intervals center = center_at(at);
     const Intervals remainder = remainder_at(at);
-    for (std::size_t i = 0; i < size_; ++i) centre[i] += remainder[i];
-    set.map(centre, slope_at(at));
+    for (std::size_t i = 0; i < size_; ++i) center[i] += remainder[i];
+    set.map(center, slope_at(at));
 }
 
 EnclosureStepper::EnclosureStepper(const Model& model, const Coordinates& coordinates, Mode mode)
     : coordinates_(coordinates),
       mode_(mode),
       variables_(coordinates.of_motion()),
-      at_centre_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::point)),
+      at_center_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::point)),
       over_hull_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::box_with_derivatives)),
       over_box_(make_expansion(model.hddot_series(mode), coordinates, ExpansionMode::box)) {}
 
@@ -95,7 +95,7 @@ std::vector<double> EnclosureStepper::scales(const Intervals& hull, double lengt
     std::vector<double> result(coordinates_.size(), 0.0);
     double position = 0.0, velocity = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
-        const double v = mag(hull[coordinates_.v(i)]), a = std::abs(mid(at_centre_->value(1, n + i)));
+        const double v = mag(hull[coordinates_.v(i)]), a = std::abs(mid(at_center_->value(1, n + i)));
         position = std::max(position, result[coordinates_.q(i)] = mag(hull[coordinates_.q(i)]) + v * length);
         velocity = std::max(velocity, result[coordinates_.v(i)] = v + a * length);
     }
@@ -105,7 +105,7 @@ std::vector<double> EnclosureStepper::scales(const Intervals& hull, double lengt
     }
     for (std::size_t i = 0; i < coordinates_.contacts; ++i) {
         const std::size_t h = coordinates_.h(i), u = coordinates_.u(i);
-        result[u] = mag(hull[u]) + std::abs(mid(at_centre_->value(0, event(i)))) * length;
+        result[u] = mag(hull[u]) + std::abs(mid(at_center_->value(0, event(i)))) * length;
         result[h] = mag(hull[h]) + result[u] * length;
     }
     return result;
@@ -123,12 +123,12 @@ double EnclosureStepper::first_length(const Doubleton&, const Intervals& hull, d
     for (const int k : {K - 1, K}) {
         for (std::size_t i = 0; i < 2 * n; ++i) {
             const std::size_t row = coordinates_.q(i);
-            limit(std::abs(mid(at_centre_->value(k, i))), std::max(3e-18 * scale[row], 1e-6 * rad(hull[row])), k);
+            limit(std::abs(mid(at_center_->value(k, i))), std::max(3e-18 * scale[row], 1e-6 * rad(hull[row])), k);
         }
         for (std::size_t i = event(0); i < event(coordinates_.contacts); ++i) {
             const double size =
-                std::abs(mid(at_centre_->value(0, i))) + std::abs(mid(at_centre_->value(1, i))) * length;
-            limit(std::abs(mid(at_centre_->value(k, i))), 3e-18 * size + 1e-6 * rad(over_hull_->value(0, i)), k);
+                std::abs(mid(at_center_->value(0, i))) + std::abs(mid(at_center_->value(1, i))) * length;
+            limit(std::abs(mid(at_center_->value(k, i))), 3e-18 * size + 1e-6 * rad(over_hull_->value(0, i)), k);
         }
     }
     return length;
@@ -186,20 +186,20 @@ void EnclosureStepper::tabulate(EnclosureStep& step, const Doubleton& set, const
     const Coordinates& z = coordinates_;
     const std::size_t size = z.size(), n = z.dof;
     step.size_ = size;
-    step.centre_.assign((K + 1) * size, Interval(0.0));
+    step.center_.assign((K + 1) * size, Interval(0.0));
     step.hull_.assign((K + 1) * size, Interval(0.0));
     step.slopes_.assign(K + 1, IntervalMatrix(size, size));
-    const auto fill = [&](int k, std::size_t row, const Interval& centre, const Interval& hull) {
-        step.centre_[static_cast<std::size_t>(k) * size + row] = centre;
+    const auto fill = [&](int k, std::size_t row, const Interval& center, const Interval& hull) {
+        step.center_[static_cast<std::size_t>(k) * size + row] = center;
         step.hull_[static_cast<std::size_t>(k) * size + row] = hull;
     };
     const auto copy = [&](int k, std::size_t row, int from, std::size_t i, const Interval& share) {
-        fill(k, row, times(at_centre_->value(from, i), share), times(over_hull_->value(from, i), share));
+        fill(k, row, times(at_center_->value(from, i), share), times(over_hull_->value(from, i), share));
         for (std::size_t j = 0; j < variables_.size(); ++j)
             step.slopes_[static_cast<std::size_t>(k)](row, variables_[j]) = times(over_hull_->slope(from, i, j), share);
     };
     for (std::size_t i = 0; i < size; ++i) {
-        fill(0, i, Interval(set.centre(i)), set.hull(i));
+        fill(0, i, Interval(set.center(i)), set.hull(i));
         step.slopes_[0](i, i) = Interval(1.0);
     }
     fill(1, Coordinates::t(), Interval(1.0), Interval(1.0));
@@ -208,7 +208,7 @@ void EnclosureStepper::tabulate(EnclosureStep& step, const Doubleton& set, const
     for (std::size_t i = 0; i < z.contacts; ++i) {
         if (keeps_gap(i)) continue;
         const std::size_t h = z.h(i), u = z.u(i);
-        fill(1, h, Interval(set.centre(u)), set.hull(u));
+        fill(1, h, Interval(set.center(u)), set.hull(u));
         step.slopes_[1](h, u) = Interval(1.0);
         for (int k = openings[i].known == KnownRoot::released ? 1 : 0; k < K; ++k) {
             copy(k + 1, u, k, event(i), Interval(1.0) / Interval(k + 1));
@@ -233,7 +233,7 @@ Intervals EnclosureStepper::watch_force(const Doubleton& set, std::size_t contac
     for (int k = 0; k < K; ++k) {
         for (std::size_t j = 0; j < variables_.size(); ++j)
             row[variables_[j]] = over_hull_->slope(k, event(contact), j);
-        result.push_back(-intersection(at_centre_->value(k, event(contact)) + set.along(row.data()),
+        result.push_back(-intersection(at_center_->value(k, event(contact)) + set.along(row.data()),
                                        over_hull_->value(k, event(contact))));
     }
     result.push_back(-over_box_->value(K, event(contact)));
@@ -246,7 +246,7 @@ Intervals EnclosureStepper::watch_gap(const EnclosureStep& step, const Doubleton
     Intervals result;
     for (int k = static_cast<int>(opening.known); k <= K; ++k) {
         const std::size_t at = static_cast<std::size_t>(k) * size + h;
-        const Interval sharp = step.centre_[at] + set.along(step.slopes_[static_cast<std::size_t>(k)].row(h));
+        const Interval sharp = step.center_[at] + set.along(step.slopes_[static_cast<std::size_t>(k)].row(h));
         result.push_back(intersection(sharp, step.hull_[at]));
     }
     result.push_back(step.remainder_[h]);
@@ -256,7 +256,7 @@ Intervals EnclosureStepper::watch_gap(const EnclosureStep& step, const Doubleton
 
 EnclosureStep EnclosureStepper::make(const Doubleton& set, double longest, const std::vector<OpenGapBound>& openings) {
     const Intervals hull = set.hull();
-    at_centre_->expand(set.centre(), K);
+    at_center_->expand(set.center(), K);
     over_hull_->expand(hull, K);
     double length = first_length(set, hull, longest);
     if (last_ > 0.0) length = std::min(length, 1.3 * last_);

@@ -46,7 +46,7 @@ class EnclosureStep {
  public:
     double length() const { return length_; }
     // T, its derivative, S and rho for all coordinates; 0 <= tau <= length.
-    Intervals centre_at(const Interval& tau) const;
+    Intervals center_at(const Interval& tau) const;
     Intervals rate_at(const Interval& tau) const;
     IntervalMatrix slope_at(const Interval& tau) const;
     Intervals remainder_at(const Interval& tau) const;
@@ -69,7 +69,7 @@ class EnclosureStep {
     std::size_t size_ = 0;
     double length_ = 0.0;
     // By order, a row with all coordinates: at the center, over the hull, and the derivatives over the hull.
-    Intervals centre_, hull_;
+    Intervals center_, hull_;
     std::vector<IntervalMatrix> slopes_;
     Intervals remainder_;             // R
     std::vector<Intervals> watched_;  // by contact
@@ -106,7 +106,7 @@ class EnclosureStepper {
     Coordinates coordinates_;
     Mode mode_;
     std::vector<std::size_t> variables_;
-    std::unique_ptr<Expansion> at_centre_, over_hull_, over_box_;
+    std::unique_ptr<Expansion> at_center_, over_hull_, over_box_;
     double last_ = 0.0;  // s
 };
 

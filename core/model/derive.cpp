@@ -17,9 +17,9 @@ using Row = std::vector<Expression>;
 
 // M = L D L' with unit lower triangular L. It needs no square roots and keeps zeros. L D is stored beside L, because it
 // is computed before the division.
-class Factorisation {
+class Factorization {
  public:
-    Factorisation(const Row& M, std::size_t n, Graph& graph) : dof_(n), lower_(n * n, graph.number(0)), pivots_(n) {
+    Factorization(const Row& M, std::size_t n, Graph& graph) : dof_(n), lower_(n * n, graph.number(0)), pivots_(n) {
         Row product(n * n, graph.number(0));  // L D
         for (std::size_t j = 0; j < n; ++j) {
             pivots_[j] = M[j * n + j];
@@ -141,7 +141,7 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     const std::uint32_t t = layout.t();
     const std::vector<std::uint32_t> q_slots = slots_from(layout.q(0), n), v_slots = slots_from(layout.v(0), n);
     const Row v = symbols(v_slots, graph);
-    const Factorisation mass(e.M, n, graph);
+    const Factorization mass(e.M, n, graph);
     e.pivots = mass.pivots();
     e.bias = bias(e.M, e.potential, v, q_slots, graph);
     Row against(n);  // b - Q

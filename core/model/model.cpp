@@ -155,8 +155,8 @@ const BouncingModel& Model::bouncing(std::size_t contact, Mode mode) const {
                    [&] { return derive_bouncing(contact_modes().of(mode).contacts.at(contact), equations_, layout_); });
 }
 
-const OtherContactTerms& Model::neighbours(std::size_t contact, Mode mode) const {
-    return derived(neighbours_, {mode, contact},
+const OtherContactTerms& Model::other_contact_terms(std::size_t contact, Mode mode) const {
+    return derived(other_contact_terms_, {mode, contact},
                    [&] { return derive_other_contacts(contact, mode, contact_modes(), layout_); });
 }
 

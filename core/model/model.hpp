@@ -90,7 +90,7 @@ class Model {
     // The programs of the truncation conditions of a contact in a mode in which it is open, derived at first use.
     // Throws InputError if they are too large.
     const BouncingModel& bouncing(std::size_t contact = 0, Mode mode = {}) const;
-    const OtherContactTerms& neighbours(std::size_t contact, Mode mode) const;
+    const OtherContactTerms& other_contact_terms(std::size_t contact, Mode mode) const;
     // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
@@ -172,7 +172,7 @@ class Model {
     mutable std::map<Mode, Program> powers_;
     mutable std::map<ContactInMode, ContactPrograms> programs_;
     mutable std::map<ContactInMode, BouncingModel> bouncings_;
-    mutable std::map<ContactInMode, OtherContactTerms> neighbours_;
+    mutable std::map<ContactInMode, OtherContactTerms> other_contact_terms_;
     mutable std::map<ContactInMode, bool> carried_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts

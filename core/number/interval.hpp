@@ -152,8 +152,8 @@ inline double width(const Interval& a) {
 // Radius around mid() that covers the interval.
 inline double rad(const Interval& a) {
     if (!a.is_defined()) return rounding::infinity;
-    const double centre = mid(a);
-    return rounding::sum_up(std::max(a.hi() - centre, centre - a.lo()));
+    const double center = mid(a);
+    return rounding::sum_up(std::max(a.hi() - center, center - a.lo()));
 }
 
 // --- Sets

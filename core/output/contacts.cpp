@@ -20,7 +20,7 @@ std::string joined_names(const Model& model, ContactSet contacts, std::string_vi
     return fmt::format("{}", fmt::join(contact_names(model, contacts), between));
 }
 
-std::string contacts_told(const Trajectory& trajectory, const Event& event) {
+std::string event_contacts_text(const Trajectory& trajectory, const Event& event) {
     const Model& model = *trajectory.model;
     return model.contacts() > 1 ? joined_names(model, event.contacts) : "";
 }
@@ -47,7 +47,7 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     return impulses;
 }
 
-std::string others_told(const Model& model, const Certificate::OtherContactBounds& others) {
+std::string other_contacts_text(const Model& model, const Certificate::OtherContactBounds& others) {
     constexpr int digits = 3;
     std::vector<std::string> parts;
     for (const Certificate::OtherContactBounds::HeldContactBound& held : others.held)

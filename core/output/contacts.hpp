@@ -18,7 +18,7 @@ std::vector<std::string> contact_names(const Model& model, ContactSet contacts);
 // The same joined: "bowl, post" or "bowl+post".
 std::string joined_names(const Model& model, ContactSet contacts, std::string_view between = ", ");
 // The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.
-std::string contacts_told(const Trajectory& trajectory, const Event& event);
+std::string event_contacts_text(const Trajectory& trajectory, const Event& event);
 
 // The impulses of impacts, v+ = v- + M^-1 sum p_i g_i', of the impacting contacts and of the held ones that react to
 // them (theory-gaps.md 2).
@@ -34,7 +34,7 @@ class Impulses {
 };
 
 // The bounds on the other contacts, as parts of a sentence.
-std::string others_told(const Model& model, const Certificate::OtherContactBounds& others);
+std::string other_contacts_text(const Model& model, const Certificate::OtherContactBounds& others);
 
 // "Moreau's law at event k", for the first event before this one whose order matters but is unknown. Later proofs
 // depend on this choice (theory-gaps.md 2.4). Empty if there is no such event.

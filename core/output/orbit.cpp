@@ -65,9 +65,9 @@ std::string to_json(const Orbit& orbit, const Branch* branch) {
     Json result = {{"achilles", version()},
                    {"system", system_json(orbit.run)},
                    {"options", options_json(orbit.run)},
-                   {"section", orbit.is_at_release ? "release"
-                               : orbit.has_flow    ? "flight"
-                                                   : "time"}};
+                   {"section", orbit.is_at_release   ? "release"
+                               : orbit.is_autonomous ? "flight"
+                                                     : "time"}};
     add_point(result, orbit);
     result["events"] = events_json(orbit.run);
     Json by = Json::object();
@@ -109,7 +109,7 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
     const std::size_t rest = point.multipliers.size() - point.zero_multipliers;
     for (std::size_t i = 0; i < point.multipliers.size(); ++i) {
         text += fmt::format("{}{}", i > 0 ? ", " : "", told(point.multipliers[i], digits));
-        if (i == 0 && point.has_flow) text += " (along the motion)";
+        if (i == 0 && point.is_autonomous) text += " (along the motion)";
         if (i + 1 == point.multipliers.size() && i >= rest)
             text += fmt::format(" (the last {} exactly)", point.zero_multipliers);
     }
@@ -117,7 +117,7 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
 }
 
 std::string stability_text(const OrbitPoint& point) {
-    const std::size_t first = point.has_flow ? 1 : 0;
+    const std::size_t first = point.is_autonomous ? 1 : 0;
     const double most = point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
     if (!point.stable) return fmt::format("unstable: perturbations grow by a factor {:.4g} per period", most);
     if (most == 0.0) return "stable: perturbations vanish within a period";

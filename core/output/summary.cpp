@@ -162,7 +162,7 @@ class RunTimeline {
                 "not covered: earlier integration errors and cuts may have shifted this time by {:.1g} s (estimate)",
                 error));
         const auto& others = event.certificate->others;
-        if (const std::string of_others = others ? others_told(model_, *others) : ""; !of_others.empty())
+        if (const std::string of_others = others ? other_contacts_text(model_, *others) : ""; !of_others.empty())
             text += indented("until then " + of_others);
         return text;
     }

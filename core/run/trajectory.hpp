@@ -31,9 +31,9 @@ struct DenseSegment {
     double start = 0.0, end = 0.0;
     std::size_t first = 0;  // into Trajectory::coefficients: degree + 1 blocks of (q, v), ascending powers
     std::uint32_t degree = 0;
-    Mode mode;            // mode of its phase; between a cut and its Zeno point, of the next phase
-    ContactSet carriers;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
-    Mode motion() const { return mode.only(carriers); }
+    Mode mode;                // mode of its phase; between a cut and its Zeno point, of the next phase
+    ContactSet load_bearing;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
+    Mode motion() const { return mode.only(load_bearing); }
     double work = 0.0, loss = 0.0;  // from the start of the run to the start of this piece
 };
 
@@ -47,9 +47,9 @@ struct Phase {
     // The held contacts that determine the motion: all of them, or a subset if gradients are linearly dependent. The
     // subset may change within the phase; this is the last one. The distribution of the forces is then not unique
     // (theory-gaps.md 2.5).
-    ContactSet carriers;
-    Mode motion() const { return mode.only(carriers); }
-    bool is_nonunique() const { return carriers != mode.held(); }
+    ContactSet load_bearing;
+    Mode motion() const { return mode.only(load_bearing); }
+    bool is_nonunique() const { return load_bearing != mode.held(); }
     double start = 0.0, end = 0.0;
     int impacts = 0;
     std::size_t first_piece = 0, last_piece = 0;  // pieces [first, last) of the trajectory

@@ -171,7 +171,7 @@ const ChainLink* Chain::next() {
 
 void Chain::step() {
     const DenseSegment& piece = trajectory_->pieces[next_piece_++];
-    if (piece.carriers != piece.mode.held())
+    if (piece.load_bearing != piece.mode.held())
         return break_off(
             "the gradients of the held contacts are linearly dependent: the contact forces are not unique");
     if (piece.mode != mode_) return break_off("the set of held contacts changes without an event");

@@ -110,7 +110,7 @@ class Chain {
     void meet_surface(std::size_t contact, Mode others, ChainLink& crossing);
     double residual_before(std::size_t contact);
     void retract(RowMatrix& J, Mode onto);
-    Eigen::RowVectorXd wait_row(const RowMatrix& J, std::size_t contact, Mode others, double speed);
+    Eigen::RowVectorXd accumulation_time_row(const RowMatrix& J, std::size_t contact, Mode others, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
     void set_gaps();
     void watch_minima(const FlowSensitivity& slope, double span);

@@ -132,7 +132,7 @@ void Chain::land(std::size_t event) {
         link.completion = ChainLink::PendingCompletion{i, others, -u, std::move(drawn)};
         take_out(before, contact, tangent_, J);
         state_.v = s;
-        J.row(tangent_.wait()) = wait_row(J, i, others, -u);
+        J.row(tangent_.accumulation_time()) = accumulation_time_row(J, i, others, -u);
         retract(J, others.with(i, ContactState::held));
         waiting_ = true;
     } else {
@@ -177,7 +177,7 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
 
 // The derivatives of the accumulation time T(a, b, c, e, w) of theory-derivatives.md 4 by the components before the
 // jump. J has the rows of q, v, t and p at the restart; state_ must be the restart.
-RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others, double speed) {
+RowVectorXd Chain::accumulation_time_row(const RowMatrix& J, std::size_t contact, Mode others, double speed) {
     auto& trend = trends_[{others, contact}];
     if (!trend)
         trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,
@@ -190,11 +190,11 @@ RowVectorXd Chain::wait_row(const RowMatrix& J, std::size_t contact, Mode others
         break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
     using Number = Jet<double, 5>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
-    const Number wait =
-        estimated_wait(minus(0, 0), minus(1, 1), minus(2, 2), Number::variable(e, 3), Number::variable(speed, 4));
-    RowVectorXd row = wait.slope[3] * (e_row * J);
-    for (std::size_t k = 0; k < 3; ++k) row -= wait.slope[k] * (trend->row(k) * J);
-    return row - wait.slope[4] * J.row(tangent_.u(contact));
+    const Number accumulation_time = estimated_accumulation_time(minus(0, 0), minus(1, 1), minus(2, 2),
+                                                                 Number::variable(e, 3), Number::variable(speed, 4));
+    RowVectorXd row = accumulation_time.slope[3] * (e_row * J);
+    for (std::size_t k = 0; k < 3; ++k) row -= accumulation_time.slope[k] * (trend->row(k) * J);
+    return row - accumulation_time.slope[4] * J.row(tangent_.u(contact));
 }
 
 void Chain::reach_zeno_point(std::size_t event) {
@@ -208,8 +208,8 @@ void Chain::reach_zeno_point(std::size_t event) {
     if (!may_be_unpressed || !model_->is_carried(i, mode_.without(i))) take_least(margins_.a_inf, a);
     // Perturbed runs with a longer accumulation time continue for the difference.
     ChainLink& link = add(ChainLink::Kind::jump, event);
-    link.J.col(tangent_.wait()) += rate();
-    link.J.row(tangent_.wait()).setZero();
+    link.J.col(tangent_.accumulation_time()) += rate();
+    link.J.row(tangent_.accumulation_time()).setZero();
     retract(link.J, mode_);
 }
 

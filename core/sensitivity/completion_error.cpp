@@ -57,11 +57,11 @@ State CompletionError::shift(const TruncationState& cut) {
     return shift;
 }
 
-CompletionError::AccumulationEstimate CompletionError::wait(const TruncationState& cut) {
+CompletionError::AccumulationEstimate CompletionError::accumulation_time(const TruncationState& cut) {
     const double e = surfaces_.restitution(cut.contact).value, u = newton::rate_after(e, -cut.speed);
     if (u == 0.0) return {0.0, 0.0};
     const AccelerationTrend at_cut = trend(cut);
-    AccumulationEstimate wait{estimated_wait(at_cut, e, cut.speed), 0.0};
+    AccumulationEstimate estimate{estimated_accumulation_time(at_cut, e, cut.speed), 0.0};
     auto flight = flights_.find(cut.others);
     if (flight == flights_.end()) flight = flights_.try_emplace(cut.others, *model_, cut.others, run_.parameters).first;
     MotionSeries& series = flight->second;
@@ -92,9 +92,10 @@ CompletionError::AccumulationEstimate CompletionError::wait(const TruncationStat
     state.v = impact(landed, state.v, 0.0);
     const double speed = -landed.hdot, kept = speed / cut.speed;
     const AccelerationTrend next = trend({cut.contact, cut.others, state, speed});
-    const double error = (span + estimated_wait(next, e, speed) - wait.formula) / (1.0 - kept * kept * kept);
-    if (std::isfinite(error) && kept < 1.0) wait.error = error;
-    return wait;
+    const double error =
+        (span + estimated_accumulation_time(next, e, speed) - estimate.formula) / (1.0 - kept * kept * kept);
+    if (std::isfinite(error) && kept < 1.0) estimate.error = error;
+    return estimate;
 }
 
 }  // namespace achilles

@@ -35,7 +35,7 @@ class CompletionError {
     struct AccumulationEstimate {
         double formula = 0.0, error = 0.0;
     };
-    AccumulationEstimate wait(const TruncationState& cut);
+    AccumulationEstimate accumulation_time(const TruncationState& cut);
 
  private:
     AccelerationTrend trend(const TruncationState& cut);

@@ -165,8 +165,8 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
             carried.move(of_cuts.shift(*cut), tangent);
         } else if (event.is_zeno() && cut) {
             // The error of the Zeno time of the run.
-            const CompletionError::AccumulationEstimate wait = of_cuts.wait(*cut);
-            const double error = wait.formula + wait.error - (event.t - cut->restart.t);
+            const CompletionError::AccumulationEstimate accumulation_time = of_cuts.accumulation_time(*cut);
+            const double error = accumulation_time.formula + accumulation_time.error - (event.t - cut->restart.t);
             if (!is_plastic_landing(event)) carried.error += chain.rate().head(carried.size) * error;
             cut.reset();
         }

@@ -25,7 +25,7 @@ struct TangentLayout {
     static constexpr Eigen::Index t() { return 0; }
     Eigen::Index q(std::size_t i) const { return index(1 + i); }
     Eigen::Index v(std::size_t i) const { return index(1 + dof + i); }
-    Eigen::Index wait() const { return index(1 + 2 * dof); }
+    Eigen::Index accumulation_time() const { return index(1 + 2 * dof); }
     Eigen::Index h(std::size_t contact) const { return index(2 + 2 * dof + contact); }
     Eigen::Index u(std::size_t contact) const { return index(2 + 2 * dof + contacts + contact); }
     Eigen::Index p(std::size_t k) const { return index(2 + 2 * dof + 2 * contacts + k); }

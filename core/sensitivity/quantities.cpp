@@ -23,7 +23,7 @@ constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 struct Quantities::EvaluationPoint {
     State state;
     Mode mode;
-    ContactSet carriers;
+    ContactSet load_bearing;
     double work = 0.0, loss = 0.0;
     std::size_t events = 0;
     // Derivatives of the state, coordinate by direction, and of the time, by direction; empty if there are none.
@@ -85,7 +85,7 @@ class Quantities::Inputs {
         const auto& slopes = place_.slopes;
         const std::vector<double>& parameters = trajectory_.run.parameters;
         ContactForces forces(model_, parameters);
-        forces.set(place_.state, place_.mode, place_.carriers);
+        forces.set(place_.state, place_.mode, place_.load_bearing);
         const TangentLayout tangent{layout_.dof, layout_.contacts, layout_.p};
         MatrixXd Z = MatrixXd::Zero(tangent.size(), K_);
         if (slopes) {
@@ -173,7 +173,7 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
     const auto K = static_cast<Index>(derivatives.refused.size());
     const EvaluationPoint end{{trajectory.end.q, trajectory.end.v, trajectory.end_time},
                               trajectory.end_mode,
-                              trajectory.phases.back().carriers,
+                              trajectory.phases.back().load_bearing,
                               trajectory.work,
                               trajectory.loss,
                               trajectory.events.size(),
@@ -183,9 +183,9 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
 }
 
 std::vector<Quantity> Quantities::at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
-                                     ContactSet carriers) const {
+                                     ContactSet load_bearing) const {
     const Event& now = trajectory.events[event];
-    EvaluationPoint place{{now.q, now.v_after, now.t}, now.mode, carriers, now.work, now.loss, event + 1};
+    EvaluationPoint place{{now.q, now.v_after, now.t}, now.mode, load_bearing, now.work, now.loss, event + 1};
     place.time_slope = RowVectorXd::Constant(static_cast<Index>(derivatives.refused.size()), nothing);
     if (event < derivatives.events.size()) {
         const Derivatives::EventSensitivity& slopes = derivatives.events[event];

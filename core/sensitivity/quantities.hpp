@@ -34,9 +34,9 @@ class Quantities {
     // Evaluates the quantities of a run of this model, with the result of differentiate().
     std::vector<Quantity> of(const Trajectory& trajectory, const Derivatives& derivatives) const;
     // The same at an event: the events until then, and the state after it, whose derivatives follow the event in time.
-    // `carriers` are the load-bearing contacts after the event.
+    // `load_bearing` are the load-bearing contacts after the event.
     std::vector<Quantity> at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
-                             ContactSet carriers) const;
+                             ContactSet load_bearing) const;
 
  private:
     struct EvaluationPoint;

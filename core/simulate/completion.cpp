@@ -219,7 +219,7 @@ void ExecutionAutomaton::enter_phase() {
     record_.open(next_.resting(), next_.held(), next_.state.t);
 }
 
-// Starts a new phase if the mode has changed; otherwise only the carriers may have.
+// Starts a new phase if the mode has changed; otherwise only the load-bearing contacts may have.
 void ExecutionAutomaton::enter_or_stay() {
     if (next_.resting() != record_.mode()) return enter_phase();
     record_.carry_on(next_.held());

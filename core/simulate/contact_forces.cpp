@@ -8,17 +8,17 @@ namespace achilles {
 ContactForces::ContactForces(const Model& model, std::span<const double> parameters)
     : model_(&model), parameters_(parameters.begin(), parameters.end()), surfaces_(model.contacts()) {}
 
-void ContactForces::set(const State& state, Mode mode, ContactSet carriers) {
+void ContactForces::set(const State& state, Mode mode, ContactSet load_bearing) {
     state_ = state;
     mode_ = mode;
-    carriers_ = carriers;
+    load_bearing_ = load_bearing;
     shared_.clear();
     motion_ = nullptr;
 }
 
 double ContactForces::force(std::size_t contact) {
     if (!mode_.is_held(contact)) return 0.0;
-    if (carriers_ != mode_.held()) {
+    if (load_bearing_ != mode_.held()) {
         if (shared_.empty()) share();
         return shared_[contact];
     }
@@ -58,7 +58,7 @@ void ContactForces::share() {
 double ContactForces::acceleration(std::size_t contact) {
     if (mode_.is_held(contact)) return 0.0;
     if (motion_ == nullptr) {
-        motion_ = &model_->lazily(motions_, mode_.only(carriers_), parameters_);
+        motion_ = &model_->lazily(motions_, mode_.only(load_bearing_), parameters_);
         set_state(*motion_, state_);
         motion_->run();
     }
@@ -72,7 +72,7 @@ const ContactTerms<Evaluator<double>>& ContactForces::surface(std::size_t contac
     return terms;
 }
 
-Vector ContactForces::generalised() {
+Vector ContactForces::generalized_force() {
     Vector Q = Vector::Zero(state_.q.size());
     for (std::size_t i = 0; i < surfaces_.size(); ++i) {
         if (!mode_.is_held(i)) continue;

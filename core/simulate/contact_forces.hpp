@@ -18,19 +18,19 @@ class ContactForces {
  public:
     ContactForces(const Model& model, std::span<const double> parameters);
 
-    // Sets the state, the mode and the carriers (the held contacts whose constraints define the motion) for the calls
-    // below.
-    void set(const State& state, Mode mode, ContactSet carriers);
+    // Sets the state, the mode and the load-bearing contacts (the held contacts whose constraints define the motion)
+    // for the calls below.
+    void set(const State& state, Mode mode, ContactSet load_bearing);
     void set(const State& state, Mode mode) { set(state, mode, mode.held()); }
-    void set(const Sample& sample) { set(sample.state, sample.mode, sample.carriers); }
+    void set(const Sample& sample) { set(sample.state, sample.mode, sample.load_bearing); }
 
-    // lambda_i of a held contact; 0 if it is open. If some held contacts are not carriers, the forces are not unique:
-    // these are the nonnegative ones of least norm (solve_complementarity).
+    // lambda_i of a held contact; 0 if it is open. If some held contacts are not load-bearing, the forces are
+    // not unique: these are the nonnegative ones of least norm (solve_complementarity).
     double force(std::size_t contact);
     // hddot_i of an open contact; 0 if it is held.
     double acceleration(std::size_t contact);
     // sum lambda_i g_i', the generalized contact force.
-    Vector generalised();
+    Vector generalized_force();
 
     // Sets the inputs of a view's program from a sample, and runs it. `reads` marks, by slot, the inputs that the
     // program depends on (Program::inputs_of); if it is empty, all are set.
@@ -44,7 +44,7 @@ class ContactForces {
     std::vector<double> parameters_;
     State state_;
     Mode mode_;
-    ContactSet carriers_;
+    ContactSet load_bearing_;
     std::vector<double> shared_;  // forces of all contacts, if they are not unique; empty until needed
     Model::MotionEvaluators motions_;
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until needed

@@ -47,7 +47,7 @@ bool ExecutionAutomaton::restart(const Run& run) {
         known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
-    stalled_ = changes_of_carriers_ = 0;
+    stalled_ = load_sharing_changes_ = 0;
     evaluations_ = 0;
     completion_.reset();
     outcome_.reset();

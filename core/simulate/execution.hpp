@@ -163,13 +163,13 @@ class ExecutionAutomaton {
         double least = 0.0;          // smallest force, as a fraction of the largest
         double most = 0.0;           // largest force
     };
-    std::vector<LoadSharing> carriers_of(const ClosedContacts& closed, const ContactVector<double>& hddot);
+    std::vector<LoadSharing> possible_load_sharings(const ClosedContacts& closed, const ContactVector<double>& hddot);
     bool hold_dependent(const ClosedContacts& closed, const ContactVector<double>& hddot, const Complementarity& forces,
                         ContactSet doubted = {});
     bool share(const ClosedContacts& closed, const ContactVector<double>& hddot, const Complementarity& forces);
     void end_sharing();
     double end_of_sharing() const;
-    bool carry(const ClosedContacts& closed, const LoadSharing& carriers);
+    bool carry(const ClosedContacts& closed, const LoadSharing& sharing);
     void hold(Mode mode, ContactSet touching);
     void note_carried(const ClosedContacts& closed, ContactSet pressed);
     bool is_stuck(const ClosedContacts& closed, ContactSet pressed);
@@ -213,8 +213,9 @@ class ExecutionAutomaton {
     TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique
-    double carriers_since_ = 0.0;  // s; time of the last change of carriers, and the number of changes at that time
-    int changes_of_carriers_ = 0;
+    // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
+    double load_sharing_since_ = 0.0;
+    int load_sharing_changes_ = 0;
     double cut_error_ = 0.0;  // error of the state by truncations so far, as certified
     double proving_ = 0.0;    // s, wall-clock time of proofs
 };

@@ -52,7 +52,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     if (impact.contacts.count() != 1 || !impact.opened.empty()) return reason;
     const std::size_t which = first_of(impact.contacts, model);
     reason.contact = which;
-    const Mode motion = reason.mode.only(carriers_of(trajectory, reason.mode, impact.t));
+    const Mode motion = reason.mode.only(load_bearing_contacts(trajectory, reason.mode, impact.t));
     ContactKinematics surface(model, run, which, motion);
     const State before{impact.q, impact.v_before, impact.t};
     const Contact contact = surface.at(before);
@@ -73,10 +73,10 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     ReleaseReason reason;
     const std::size_t which = reason.contact = first_of(release.contacts, model);
     const Mode mode = mode_before(trajectory, event);
-    const bool unique = carriers_of(trajectory, mode, release.t) == mode.held();
+    const bool unique = load_bearing_contacts(trajectory, mode, release.t) == mode.held();
     ContactKinematics surface(
         model, trajectory.run, which,
-        unique ? mode.without(which) : release.mode.only(carriers_of(trajectory, release.mode, release.t)));
+        unique ? mode.without(which) : release.mode.only(load_bearing_contacts(trajectory, release.mode, release.t)));
     const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);

@@ -87,7 +87,7 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
     piece.start = t_;
     piece.end = end_;
     piece.mode = mode_;
-    piece.carriers = mode_.held();
+    piece.load_bearing = mode_.held();
     piece.first = coefficients.size();
     piece.degree = stepper_->coefficients(coefficients);
     if (!moved_) return piece;

@@ -1,6 +1,6 @@
 // Closed contacts with linearly dependent gradients, such as a table on four legs (theory-gaps.md 2.5). The motion
-// holds some of them, the carriers, whose gradients are independent and whose forces press. The gaps of the others stay
-// 0 as a consequence.
+// holds some of them, the load-bearing contacts, whose gradients are independent and whose forces press. The gaps of
+// the others stay 0 as a consequence.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -50,8 +50,8 @@ ContactVector<double> ExecutionAutomaton::rounding_of(const ClosedContacts& clos
 // All sets of closed contacts that could carry the load at these accelerations: independent, with forces that press or
 // are uncertain, while no other gap closes. Larger sets come first; among equal sizes, those with the largest minimum
 // force.
-std::vector<ExecutionAutomaton::LoadSharing> ExecutionAutomaton::carriers_of(const ClosedContacts& closed,
-                                                                             const ContactVector<double>& hddot) {
+std::vector<ExecutionAutomaton::LoadSharing> ExecutionAutomaton::possible_load_sharings(
+    const ClosedContacts& closed, const ContactVector<double>& hddot) {
     std::vector<LoadSharing> found;
     const std::size_t count = closed.which.size();
     const ContactVector<double> unit = closed.W.diagonal().cwiseSqrt();  // makes forces comparable in any units
@@ -86,23 +86,23 @@ std::vector<ExecutionAutomaton::LoadSharing> ExecutionAutomaton::carriers_of(con
     return found;
 }
 
-// Holds contacts with linearly dependent gradients by a set of carriers. If the force of a carrier was uncertain, the
-// new carriers must differ from `doubted` and press clearly.
+// Holds contacts with linearly dependent gradients by a set of load-bearing contacts. If the force of a load-bearing
+// contact was uncertain, the new load-bearing contacts must differ from `doubted` and press clearly.
 bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const ContactVector<double>& hddot,
                                         const Complementarity& forces, ContactSet doubted) {
     const ContactSet pressed = forces.active;
-    const auto all = carriers_of(closed, hddot);
+    const auto all = possible_load_sharings(closed, hddot);
     const auto now =
         std::find_if(all.begin(), all.end(), [&](const LoadSharing& one) { return one.places == doubted; });
     const double known_to = doubted.empty() || now == all.end() ? 0.0 : now->least * now->most;
-    for (const LoadSharing& carriers : all) {
-        const bool sure = carriers.least > clearly && clearly * carriers.least * carriers.most > known_to;
+    for (const LoadSharing& sharing : all) {
+        const bool sure = sharing.least > clearly && clearly * sharing.least * sharing.most > known_to;
         if (!doubted.empty() && !sure) continue;
-        if (!carry(closed, carriers)) continue;
+        if (!carry(closed, sharing)) continue;
         note_carried(closed, pressed);
         return true;
     }
-    // At permanent rest, the forces of the carriers need not be told apart.
+    // At permanent rest, the forces of the load-bearing contacts need not be told apart.
     const ContactSet pressed_ones = closed.contacts_at(pressed);
     const bool rests = doubted.empty() && is_at_rest(Mode::holding(pressed_ones));
     if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))
@@ -115,9 +115,9 @@ bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const Cont
     return true;
 }
 
-// Handles the case that the force of every possible carrier may touch 0 although all contacts together press clearly.
-// An example is a load that moves to the middle of a table and turns back. For a short time, the carriers are not
-// checked for events.
+// Handles the case that the force of every possible load-bearing contact may touch 0 although all contacts together
+// press clearly. An example is a load that moves to the middle of a table and turns back. For a short time, the
+// load-bearing contacts are not checked for events.
 bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector<double>& hddot,
                                const Complementarity& forces) {
     const ContactVector<double> rounding = rounding_of(closed);
@@ -127,12 +127,12 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
             !(p[i] > clearly * p.maxCoeff() && clearly * forces.p[i] * closed.W(i, i) > rounding[i]))
             return false;  // otherwise all forces may vanish together
     const ContactSet all = all_places(closed);
-    const auto carriers = carriers_of(closed, hddot);
-    if (carriers.empty() || carriers.front().least > clearly || !carriers.front().opening.empty() ||
-        carriers.front().places.count() != basis_of(closed, all).count() ||
-        basis_of(closed, forces.active).count() != carriers.front().places.count())
+    const auto sharing = possible_load_sharings(closed, hddot);
+    if (sharing.empty() || sharing.front().least > clearly || !sharing.front().opening.empty() ||
+        sharing.front().places.count() != basis_of(closed, all).count() ||
+        basis_of(closed, forces.active).count() != sharing.front().places.count())
         return false;
-    const ContactSet held = closed.contacts_at(carriers.front().places);
+    const ContactSet held = closed.contacts_at(sharing.front().places);
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
     hold(Mode::holding(held), closed.contacts_at(all).without(held));
     note_carried(closed, forces.active);
@@ -140,7 +140,7 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
     return true;
 }
 
-// Ends the time during which carriers are not checked.
+// Ends the time during which load-bearing contacts are not checked.
 void ExecutionAutomaton::end_sharing() {
     const Mode resting = next_.resting();
     decide(next_.held().with(next_.touching));
@@ -150,18 +150,18 @@ void ExecutionAutomaton::end_sharing() {
                                                names_of(resting.held()), where(next_.state)));
 }
 
-// Holds these carriers if each force is proved to press, or to grow from 0. The other contacts rest with them, touch,
-// or leave.
-bool ExecutionAutomaton::carry(const ClosedContacts& closed, const LoadSharing& carriers) {
-    const Mode mode = Mode::holding(closed.contacts_at(carriers.places));
+// Holds these load-bearing contacts if each force is proved to press, or to grow from 0. The other contacts rest with
+// them, touch, or leave.
+bool ExecutionAutomaton::carry(const ClosedContacts& closed, const LoadSharing& sharing) {
+    const Mode mode = Mode::holding(closed.contacts_at(sharing.places));
     std::vector<EventStart> starts = next_.starts;
     ContactSet touching;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t contact = closed.which[i];
         EventStart& start = starts[contact];
-        const bool carried = !mode.is_held(contact) && depends(closed, i, carriers.places);
+        const bool carried = !mode.is_held(contact) && depends(closed, i, sharing.places);
         if (carried) {
-            touching = carriers.opening.contains(i) ? touching : touching.with(contact);
+            touching = sharing.opening.contains(i) ? touching : touching.with(contact);
             start = {{0.0, 0.0}, 2};  // order of its zero if it opens
             continue;
         }
@@ -218,7 +218,7 @@ bool ExecutionAutomaton::is_stuck(const ClosedContacts& closed, ContactSet press
 // if there is none.
 ContactSet ExecutionAutomaton::enough_of(const ClosedContacts& closed, const ContactVector<double>& hddot,
                                          ContactSet pressed) {
-    const auto found = carriers_of(closed, hddot);
+    const auto found = possible_load_sharings(closed, hddot);
     const auto enough = std::find_if(found.rbegin(), found.rend(), [&](const LoadSharing& one) {
         return !one.places.empty() && one.places.without(pressed).empty() && one.least > in_doubt &&
                one.opening.empty();
@@ -226,7 +226,8 @@ ContactSet ExecutionAutomaton::enough_of(const ClosedContacts& closed, const Con
     return enough == found.rend() ? pressed : enough->places;
 }
 
-// Called if the force of a carrier may touch 0 and this cannot be decided. Tries to continue with other carriers.
+// Called if the force of a load-bearing contact may touch 0 and this cannot be decided. Tries to continue with other
+// load-bearing contacts.
 bool ExecutionAutomaton::carry_on_without(std::size_t which, const State& state) {
     if (next_.carried.empty() || !next_.mode.is_held(which)) return false;
     const StepRequest before = next_;
@@ -240,20 +241,20 @@ bool ExecutionAutomaton::carry_on_without(std::size_t which, const State& state)
     return goes_on;
 }
 
-// Continues the phase: the same contacts rest, but the carriers may have changed.
+// Continues the phase: the same contacts rest, but the load-bearing contacts may have changed.
 void ExecutionAutomaton::carry_on() {
     constexpr int many = 100;  // more changes at one time would never end
-    changes_of_carriers_ = next_.state.t == carriers_since_ ? changes_of_carriers_ + 1 : 0;
-    carriers_since_ = next_.state.t;
-    if (changes_of_carriers_ > many)
+    load_sharing_changes_ = next_.state.t == load_sharing_since_ ? load_sharing_changes_ + 1 : 0;
+    load_sharing_since_ = next_.state.t;
+    if (load_sharing_changes_ > many)
         return stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} carry load, at {}",
                                                           names_of(next_.resting().held()), where(next_.state)));
     enter_or_stay();
     begin_stretch(next_.mode, run_.options.end_time);
 }
 
-// End of the time during which carriers are not checked (s): long enough for an uncertain touch to pass, and short
-// compared with the time scale of the motion.
+// End of the time during which load-bearing contacts are not checked (s): long enough for an uncertain touch to pass,
+// and short compared with the time scale of the motion.
 double ExecutionAutomaton::end_of_sharing() const {
     constexpr double part = 1.0 / 16, least = 1e-6;
     return next_.state.t + std::max(part * last_step_, least * (1.0 + std::abs(next_.state.t)));

@@ -64,19 +64,19 @@ void Recorder::go_back(const Checkpoint& mark) {
     any_gap_ = mark.any_gap;
 }
 
-void Recorder::open(Mode mode, ContactSet carriers, double t) {
+void Recorder::open(Mode mode, ContactSet load_bearing, double t) {
     Phase phase;
     phase.kind = mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained;
     phase.mode = mode;
-    phase.carriers = carriers;
+    phase.load_bearing = load_bearing;
     phase.start = phase.end = t;
     phase.first_piece = phase.last_piece = trajectory_.pieces.size();
     trajectory_.phases.push_back(phase);
 }
 
-void Recorder::carry_on(ContactSet carriers) {
+void Recorder::carry_on(ContactSet load_bearing) {
     Phase& phase = trajectory_.phases.back();
-    if (carriers != phase.mode.held()) phase.carriers = carriers;
+    if (load_bearing != phase.mode.held()) phase.load_bearing = load_bearing;
 }
 
 void Recorder::close(double t) {

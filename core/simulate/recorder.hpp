@@ -35,10 +35,10 @@ class Recorder {
     // Discards everything recorded since the checkpoint.
     void go_back(const Checkpoint& mark);
 
-    // Begins a phase. If not all held contacts are carriers, its forces are not unique.
-    void open(Mode mode, ContactSet carriers, double t);
-    // Continues the phase with other carriers.
-    void carry_on(ContactSet carriers);
+    // Begins a phase. If not all held contacts are load-bearing, its forces are not unique.
+    void open(Mode mode, ContactSet load_bearing, double t);
+    // Continues the phase with other load-bearing contacts.
+    void carry_on(ContactSet load_bearing);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
     Mode mode() const { return trajectory_.phases.back().mode; }

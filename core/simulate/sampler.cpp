@@ -16,11 +16,11 @@ Mode mode_before(const Trajectory& trajectory, std::size_t event) {
     return event == 0 ? trajectory.phases.front().mode : trajectory.events[event - 1].mode;
 }
 
-ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t) {
+ContactSet load_bearing_contacts(const Trajectory& trajectory, Mode mode, double t) {
     if (mode.held().count() < 2) return mode.held();
     const auto fits = [&](const Phase& one) { return one.start <= t && one.mode == mode; };
     const auto phase = std::find_if(trajectory.phases.rbegin(), trajectory.phases.rend(), fits);
-    return phase == trajectory.phases.rend() ? mode.held() : phase->carriers;
+    return phase == trajectory.phases.rend() ? mode.held() : phase->load_bearing;
 }
 
 // Projects samples in contact onto h = 0, hdot = 0, because dense output leaves the surface by its own error.
@@ -41,7 +41,7 @@ State Sampler::state(const DenseSegment& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
     if (!piece.mode.is_free()) {
         State projected = state;
-        if (projection_->surfaces.project(projected, piece.carriers, piece.carriers)) return projected;
+        if (projection_->surfaces.project(projected, piece.load_bearing, piece.load_bearing)) return projected;
     }
     return state;
 }
@@ -64,7 +64,7 @@ Sample Sampler::at(double t) {
     sample.phase = phase == trajectory_.phases.begin() ? trajectory_.end_phase : std::prev(phase)->kind;
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
         sample.mode = trajectory_.end_mode;
-        sample.carriers = trajectory_.phases.back().carriers;
+        sample.load_bearing = trajectory_.phases.back().load_bearing;
         sample.contact = !sample.mode.is_free();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
@@ -73,7 +73,7 @@ Sample Sampler::at(double t) {
     }
     sample.contact = !std::prev(piece)->mode.is_free();
     sample.mode = std::prev(piece)->mode;
-    sample.carriers = std::prev(piece)->carriers;
+    sample.load_bearing = std::prev(piece)->load_bearing;
     sample.state = state(*std::prev(piece), t);
     sample.work = work(*std::prev(piece), t);
     sample.loss = std::prev(piece)->loss;
@@ -82,7 +82,7 @@ Sample Sampler::at(double t) {
         const auto& events = trajectory_.events;
         if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
             sample.mode = events.back().mode;
-            sample.carriers = trajectory_.phases.back().carriers;
+            sample.load_bearing = trajectory_.phases.back().load_bearing;
             sample.contact = !sample.mode.is_free();
         }
         sample.state = trajectory_.end;
@@ -98,7 +98,7 @@ Sample Sampler::in(const DenseSegment& piece, double t, bool with_work) const {
     sample.phase = piece.mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained;
     sample.contact = !piece.mode.is_free();
     sample.mode = piece.mode;
-    sample.carriers = piece.carriers;
+    sample.load_bearing = piece.load_bearing;
     sample.state = state(piece, t);
     sample.work = with_work ? work(piece, t) : 0.0;
     sample.loss = piece.loss;
@@ -197,7 +197,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
                 const Mode mode = mode_before(trajectory_, j);
                 take({event.t, static_cast<int>(j), mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained,
                       !mode.is_free(), mode, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
-                      j == 0 ? 0.0 : events[j - 1].loss, carriers_of(trajectory_, mode, event.t)},
+                      j == 0 ? 0.0 : events[j - 1].loss, load_bearing_contacts(trajectory_, mode, event.t)},
                      nullptr);
             }
             ++j;
@@ -229,7 +229,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     if (pass_events(trajectory_.end_time) || !last)
         take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_mode.is_free(),
               trajectory_.end_mode, trajectory_.end, trajectory_.work, trajectory_.loss,
-              trajectory_.phases.back().carriers},
+              trajectory_.phases.back().load_bearing},
              nullptr);
 }
 

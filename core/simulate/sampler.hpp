@@ -18,13 +18,13 @@ struct Sample {
     Mode mode;
     State state;
     double work = 0.0, loss = 0.0;  // of the run up to t
-    ContactSet carriers{};          // held contacts whose constraints define the motion (Phase)
+    ContactSet load_bearing{};      // held contacts whose constraints define the motion (Phase)
 };
 
 // The mode just before an event: the mode after the event before, or at the start.
 Mode mode_before(const Trajectory& trajectory, std::size_t event);
-// The carriers (Phase) in this mode at time t (s).
-ContactSet carriers_of(const Trajectory& trajectory, Mode mode, double t);
+// The load-bearing contacts (Phase) in this mode at time t (s).
+ContactSet load_bearing_contacts(const Trajectory& trajectory, Mode mode, double t);
 
 // Evaluates dense output. Use one object per thread.
 class Sampler {

@@ -173,7 +173,7 @@ float widest_label(const Axis& axis, const Metrics& m) {
 }
 
 bool has_tick_labels(const Axis& axis) {
-    return axis.labelled &&
+    return axis.labeled &&
            std::any_of(axis.ticks.begin(), axis.ticks.end(), [](const Tick& tick) { return !tick.label.empty(); });
 }
 
@@ -183,27 +183,27 @@ constexpr float closest_ticks = 0.38F;
 // A tick with its position on the screen, pixels.
 struct PlacedTick {
     const Tick* tick;
-    float at;       // the first pixel of its line
-    bool labelled;  // false also if its label would touch another one
+    float at;      // the first pixel of its line
+    bool labeled;  // false also if its label would touch another one
 };
 
 // Drops labels so that only every second, third, ... tick keeps its label, if labels of this length need it. Zero keeps
 // its label, unless it would be the only one: a scale needs two.
 void drop_labels(std::vector<PlacedTick>& ticks, float length) {
-    std::vector<PlacedTick*> labelled;
+    std::vector<PlacedTick*> labeled;
     for (PlacedTick& p : ticks)
-        if (p.labelled) labelled.push_back(&p);
+        if (p.labeled) labeled.push_back(&p);
     float nearest = std::numeric_limits<float>::infinity();
     std::size_t zero = 0;
-    for (std::size_t i = 0; i < labelled.size(); ++i) {
-        if (i > 0) nearest = std::min(nearest, std::abs(labelled[i]->at - labelled[i - 1]->at));
-        if (labelled[i]->tick->value == 0.0) zero = i;
+    for (std::size_t i = 0; i < labeled.size(); ++i) {
+        if (i > 0) nearest = std::min(nearest, std::abs(labeled[i]->at - labeled[i - 1]->at));
+        if (labeled[i]->tick->value == 0.0) zero = i;
     }
     const auto every = static_cast<std::size_t>(std::clamp(std::ceil(length / std::max(nearest, 1.0F)), 1.0F,
-                                                           std::max(static_cast<float>(labelled.size()), 1.0F)));
+                                                           std::max(static_cast<float>(labeled.size()), 1.0F)));
     std::size_t first = zero % every;
-    if (first + every >= labelled.size() && every < labelled.size()) first = 0;
-    for (std::size_t i = 0; i < labelled.size(); ++i) labelled[i]->labelled = i % every == first;
+    if (first + every >= labeled.size() && every < labeled.size()) first = 0;
+    for (std::size_t i = 0; i < labeled.size(); ++i) labeled[i]->labeled = i % every == first;
 }
 
 // Drops ticks without labels if they are too dense.
@@ -285,11 +285,11 @@ void lay_x(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
     const float bottom = plot.y + plot.height + strip + m.line;
     const float below = bottom + m.tick + m.gap;
     for (const PlacedTick& p : ticks_x(panel, plot, m)) {
-        bar(sheet, p.at, bottom, m.line, p.labelled ? m.tick : m.minor_tick, style.ink);
-        if (p.labelled && panel.x.labelled)
+        bar(sheet, p.at, bottom, m.line, p.labeled ? m.tick : m.minor_tick, style.ink);
+        if (p.labeled && panel.x.labeled)
             sheet.emplace_back(TextRun{p.at + m.line / 2.0F, below, 0.5F, p.tick->label, style.ink, m.text});
     }
-    if (panel.x.label.empty() || !panel.x.labelled) return;
+    if (panel.x.label.empty() || !panel.x.labeled) return;
     const auto [label, size] = fitting(panel.x.label, m, plot.width + room.left + room.right);
     const float half = m.width(label, size) / 2.0F;
     // Centered below the plot, but within the panel.
@@ -303,18 +303,18 @@ void lay_y(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot
            const Metrics& m) {
     const float left = plot.x - m.line;
     for (const PlacedTick& p : ticks_y(panel, plot, m)) {
-        const float length = p.labelled ? m.tick : m.minor_tick;
+        const float length = p.labeled ? m.tick : m.minor_tick;
         bar(sheet, left - length, p.at, length, m.line, style.ink);
         // Digits have no descenders, so that their center is slightly above the center of the line.
-        if (p.labelled && panel.y.labelled)
+        if (p.labeled && panel.y.labeled)
             sheet.emplace_back(TextRun{left - m.tick - m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 1.0F,
                                        p.tick->label, style.ink, m.text});
     }
-    if (panel.y.label.empty() || !panel.y.labelled) return;
+    if (panel.y.label.empty() || !panel.y.labeled) return;
     const auto [label, size] = fitting(panel.y.label, m, plot.height + strip + room.top);
     const float half = m.width(label, size) / 2.0F;
     // The label ends above the x axis' label.
-    const bool above = panel.x.label.empty() || !panel.x.labelled;
+    const bool above = panel.x.label.empty() || !panel.x.labeled;
     const float lowest = plot.y + plot.height + strip + room.bottom - (above ? 0.0F : m.text * 1.3F) - half;
     const float at = std::clamp(plot.y + plot.height / 2.0F, std::min(plot.y - room.top + half, lowest), lowest);
     sheet.emplace_back(TextRun{plot.x - room.left, at, 0.5F, label, style.ink, size, true});
@@ -337,10 +337,10 @@ Margins margins(const Panel& panel, const Metrics& m) {
     room.left = m.line + m.tick;
     const float widest = std::max(has_tick_labels(panel.y) ? widest_label(panel.y, m) : 0.0F, widest_name(panel, m));
     if (has_tick_labels(panel.y) || !panel.time_bars.empty()) room.left += m.gap + widest;
-    if (!panel.y.label.empty() && panel.y.labelled) room.left += m.text * 1.1F + 2.0F * m.gap;
+    if (!panel.y.label.empty() && panel.y.labeled) room.left += m.text * 1.1F + 2.0F * m.gap;
     room.bottom = m.line + m.tick;
     if (has_tick_labels(panel.x)) room.bottom += m.gap + m.text;
-    if (!panel.x.label.empty() && panel.x.labelled) room.bottom += m.text * 1.1F + m.gap;
+    if (!panel.x.label.empty() && panel.x.labeled) room.bottom += m.text * 1.1F + m.gap;
     // The outermost labels extend by half their width.
     room.right = std::max(widest_label(panel.x, m) / 2.0F, m.line);
     room.left = std::max(room.left, room.right);
@@ -380,10 +380,10 @@ void lay_grid(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle p
     if (style.grid.a == 0) return;
     // No grid line beside the box, which has lines of its own.
     for (const PlacedTick& p : ticks_x(panel, plot, m))
-        if (p.labelled && p.at >= plot.x && p.at < plot.x + plot.width)
+        if (p.labeled && p.at >= plot.x && p.at < plot.x + plot.width)
             bar(sheet, p.at, plot.y, m.line, plot.height, style.grid);
     for (const PlacedTick& p : ticks_y(panel, plot, m))
-        if (p.labelled && p.at >= plot.y && p.at < plot.y + plot.height)
+        if (p.labeled && p.at >= plot.y && p.at < plot.y + plot.height)
             bar(sheet, plot.x, p.at, plot.width, m.line, style.grid);
 }
 
@@ -400,8 +400,8 @@ void lay_color_bar(const Panel& panel, const Figure& style, Sheet& sheet, Rectan
     beside.y = colors.axis;
     const float right = area.x + area.width + m.line;
     for (const PlacedTick& p : ticks_y(beside, area, m)) {
-        bar(sheet, right, p.at, p.labelled ? m.tick : m.minor_tick, m.line, style.ink);
-        if (p.labelled)
+        bar(sheet, right, p.at, p.labeled ? m.tick : m.minor_tick, m.line, style.ink);
+        if (p.labeled)
             sheet.emplace_back(TextRun{right + m.tick + m.gap, p.at - m.text * 0.52F + m.line / 2.0F, 0.0F,
                                        p.tick->label, style.ink, m.text});
     }

@@ -96,7 +96,7 @@ std::optional<Vector> held_at(AnchorPoint& grip, double t, State state, const Po
 Vector contact_force(const Trajectory& trajectory, const Sample& sample) {
     ContactForces forces(*trajectory.model, trajectory.run.parameters);
     forces.set(sample);
-    return forces.generalised();
+    return forces.generalized_force();
 }
 
 std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,

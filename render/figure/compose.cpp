@@ -41,7 +41,7 @@ Sample sample_at(const Trajectory& trajectory, const Event& event) {
     sample.loss = event.loss;
     sample.mode = event.mode;
     sample.contact = !event.mode.is_free();
-    sample.carriers = carriers_of(trajectory, event.mode, event.t);
+    sample.load_bearing = load_bearing_contacts(trajectory, event.mode, event.t);
     return sample;
 }
 

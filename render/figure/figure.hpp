@@ -81,7 +81,7 @@ struct Axis {
     double low = 0.0, high = 1.0;
     bool logarithmic = false;
     std::vector<Tick> ticks;
-    bool labelled = true;  // false: no labels, because a neighboring panel shows the same axis
+    bool labeled = true;  // false: no labels, because a neighboring panel shows the same axis
 };
 
 // A grid of colored cells of equal size, row by row from the top.

@@ -14,7 +14,7 @@ std::string color_text(const Color& c) { return fmt::format("#{:02x}{:02x}{:02x}
 
 std::string axis_text(const char* name, const Axis& axis) {
     std::string text = fmt::format("  {} \"{}\" [{:.9g}, {:.9g}]{}{}:", name, axis.label, axis.low, axis.high,
-                                   axis.logarithmic ? " log" : "", axis.labelled ? "" : " labelled below");
+                                   axis.logarithmic ? " log" : "", axis.labeled ? "" : " labelled below");
     for (const Tick& tick : axis.ticks)
         if (!tick.label.empty()) text += fmt::format(" {}", tick.label);
     return text + "\n";

@@ -171,7 +171,7 @@ void share_axes(Figure& figure) {
     for (std::size_t i = 0; i < cells.size(); ++i)
         if (cells[i].rows == 1)
             shared[cells[i].row] = shared.try_emplace(cells[i].row, true).first->second && shares(i);
-    for (std::size_t i = 0; i < cells.size(); ++i) panels[i].x.labelled = cells[i].rows > 1 || !shared[cells[i].row];
+    for (std::size_t i = 0; i < cells.size(); ++i) panels[i].x.labeled = cells[i].rows > 1 || !shared[cells[i].row];
 }
 
 void apply_print_style(Figure& figure, std::span<const Trajectory* const> runs, const Theme& theme) {
@@ -325,7 +325,7 @@ class BranchPanels {
 
     std::vector<BranchPanel> all() const {
         std::vector<BranchPanel> panels{of_state()};
-        if (orbit_.has_flow) panels.push_back(of("period (s)", [](const OrbitPoint& p) { return p.period; }));
+        if (orbit_.is_autonomous) panels.push_back(of("period (s)", [](const OrbitPoint& p) { return p.period; }));
         panels.push_back(of_multipliers());
         const auto has_margin = [](const OrbitPoint& point) { return point.margins.a_inf.has_value(); };
         if (std::any_of(branch_.points.begin(), branch_.points.end(), has_margin))
@@ -355,9 +355,9 @@ class BranchPanels {
     }
     BranchPanel of_state() const {
         const CoordinateDescription& first = description_.coordinates.front();
-        const std::string where = orbit_.is_at_release ? " at the release"
-                                  : orbit_.has_flow    ? " on the section"
-                                                       : fmt::format(" at t = {:.4g} s", orbit_.state.t);
+        const std::string where = orbit_.is_at_release   ? " at the release"
+                                  : orbit_.is_autonomous ? " on the section"
+                                                         : fmt::format(" at t = {:.4g} s", orbit_.state.t);
         const ShownUnit unit = shown_unit(first.unit);
         return of(with_unit(typeset(first.name) + where, unit.text),
                   [factor = unit.factor](const OrbitPoint& point) { return factor * point.state.q[0]; });
@@ -366,7 +366,7 @@ class BranchPanels {
     BranchPanel of_multipliers() const {
         Panel panel = begun("|\U0001D707|");
         panel.title = "multipliers";
-        const std::size_t first = orbit_.has_flow ? 1 : 0;
+        const std::size_t first = orbit_.is_autonomous ? 1 : 0;
         std::size_t most = 0;
         for (const OrbitPoint& point : branch_.points)
             most = std::max(most, point.multipliers.size() - point.zero_multipliers);

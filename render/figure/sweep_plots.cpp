@@ -231,8 +231,8 @@ std::optional<std::vector<Point>> changes(const SweepData& data, const Grid2& gr
             });
     }
     constexpr double most = 0.2;
-    const double neighbours = 2.0 * static_cast<double>(grid.columns() * grid.lines());
-    if (static_cast<double>(changed) > most * neighbours) return std::nullopt;
+    const double neighbors = 2.0 * static_cast<double>(grid.columns() * grid.lines());
+    if (static_cast<double>(changed) > most * neighbors) return std::nullopt;
     return lines;
 }
 

@@ -23,7 +23,7 @@ const std::vector<Command> one_of_each{
     command::SetConditions{Conditions::sharp},
     command::SetReinitialization{Reinitialization::euclidean},
     command::Seek{3.2},
-    command::ShowDependence{"zeno_time(2)"},
+    command::ShowSensitivity{"zeno_time(2)"},
     command::FindOrbit{"--from end --continue e=0.1:0.9"},
     command::StopOrbit{},
     command::SelectBranchPoint{12},

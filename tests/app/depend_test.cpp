@@ -19,7 +19,7 @@ using test::Hands;
 Session asking(const std::string& system, const std::string& quantity = {}) {
     Session session = test::session(system);
     session.apply(command::Show{"depend", true});
-    if (!quantity.empty()) session.apply(command::ShowDependence{quantity});
+    if (!quantity.empty()) session.apply(command::ShowSensitivity{quantity});
     EXPECT_EQ(session.error(), "");
     session.settle();
     return session;
@@ -97,7 +97,7 @@ TEST(SensitivityCommand, ShowsAnglesAsTheSlidersDo) {
 TEST(SensitivityCommand, SaysWhyThereIsNone) {
     Session session = asking("ball_on_sine", "work");
     EXPECT_EQ(session.sensitivities()->quantity.refused, "derivatives of work are not computed");
-    session.apply(command::ShowDependence{"zeno_time(7)"});
+    session.apply(command::ShowSensitivity{"zeno_time(7)"});
     session.settle();
     EXPECT_EQ(session.sensitivities()->quantity.refused, "the quantity does not exist in this run");
     Slider slider;
@@ -110,14 +110,14 @@ TEST(SensitivityCommand, SaysWhyThereIsNone) {
     EXPECT_EQ(session.sensitivities(), nullptr);
     EXPECT_NE(session.influences_job().problem().find("uclidean"), std::string::npos);
     session.apply(command::SetReinitialization{Reinitialization::kinetic});
-    session.apply(command::ShowDependence{"x"});
+    session.apply(command::ShowSensitivity{"x"});
     session.settle();
     EXPECT_EQ(session.influences_job().problem(), "");
     EXPECT_TRUE(session.influences_are_current());
     // At rest on the floor: derivatives for starts that leave the constraint do not exist, those along it do.
     Session resting = test::session("ball_on_floor");
     resting.apply(command::SetStart{{{"y", 0.06}, {"x'", 0.5}}});
-    resting.apply(command::ShowDependence{"x"});
+    resting.apply(command::ShowSensitivity{"x"});
     resting.settle();
     EXPECT_NE(resting.sensitivities()->find("y")->reason.find("changes the gap"), std::string::npos);
     EXPECT_TRUE(resting.sensitivities()->find("x'")->reason.empty());
@@ -126,12 +126,12 @@ TEST(SensitivityCommand, SaysWhyThereIsNone) {
 TEST(SensitivityCommand, RefusesWhatIsNoQuantityAndKeepsWhatThereIs) {
     Session session = asking("ball_on_sine", "zeno_time(1)");
     for (const char* wrong : {"zeno_tme(1)", "held", "x +", ""}) {
-        session.apply(command::ShowDependence{wrong});
+        session.apply(command::ShowSensitivity{wrong});
         EXPECT_NE(session.error(), "") << wrong;
         EXPECT_EQ(session.depend_text(), "zeno_time(1)");
     }
     // Another system may or may not have the quantity.
-    session.apply(command::ShowDependence{"y"});
+    session.apply(command::ShowSensitivity{"y"});
     session.apply(command::Open{"double_pendulum"});
     session.settle();
     EXPECT_EQ(session.depend_text(), "zeno_time(3)");
@@ -191,7 +191,7 @@ TEST(SensitivityCommand, IsInTheRecipe) {
     for (const Command& command : recipe(session)) again.apply(command);
     again.settle();
     EXPECT_EQ(to_text(again), to_text(session));
-    EXPECT_EQ(to_text(Command(command::ShowDependence{"x"})), "depend \"x\"");
+    EXPECT_EQ(to_text(Command(command::ShowSensitivity{"x"})), "depend \"x\"");
 }
 
 // ---- tangent in the sweep ----

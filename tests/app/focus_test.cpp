@@ -16,12 +16,12 @@ TEST(Focus, AnArrowGoesToWhatLiesThere) {
     const std::vector<FocusTarget> stops{stop("here", 100, 100), stop("right", 150, 104), stop("far right", 400, 100),
                                          stop("below", 90, 160), stop("elsewhere", 120, 100, 2)};
     const auto name = [&](int at) { return at < 0 ? std::string() : stops[static_cast<std::size_t>(at)].name; };
-    EXPECT_EQ(name(neighbour(stops, stops[0], 1, 0)), "right");
-    EXPECT_EQ(name(neighbour(stops, stops[1], 1, 0)), "far right");
-    EXPECT_EQ(name(neighbour(stops, stops[0], 0, 1)), "below");
-    EXPECT_EQ(name(neighbour(stops, stops[3], 0, -1)), "here");
-    EXPECT_EQ(name(neighbour(stops, stops[0], -1, 0)), "");
-    EXPECT_EQ(name(neighbour(stops, stops[0], 0, -1)), "");
+    EXPECT_EQ(name(neighbor(stops, stops[0], 1, 0)), "right");
+    EXPECT_EQ(name(neighbor(stops, stops[1], 1, 0)), "far right");
+    EXPECT_EQ(name(neighbor(stops, stops[0], 0, 1)), "below");
+    EXPECT_EQ(name(neighbor(stops, stops[3], 0, -1)), "here");
+    EXPECT_EQ(name(neighbor(stops, stops[0], -1, 0)), "");
+    EXPECT_EQ(name(neighbor(stops, stops[0], 0, -1)), "");
 }
 
 TEST(Focus, ThePlayerHasTheKeysUntilTabAndAgainAfterEscape) {

@@ -211,15 +211,15 @@ TEST(Budget, CountsAllRuns) {
     const auto forever = [&] {
         for (; runs < 10000; ++runs) session.apply(command::Set{"y", 1.0 + 1e-6 * runs});
     };
-    EXPECT_THROW(forever(), FileAccessDenied);
+    EXPECT_THROW(forever(), PermissionDenied);
     EXPECT_NEAR(runs * full_run, Budget::max_full_runs, 0.5);
     // The session stays valid and continues after the limits are lifted.
-    EXPECT_THROW(session.apply(command::SetOption("max-steps", {101})), FileAccessDenied);
+    EXPECT_THROW(session.apply(command::SetOption("max-steps", {101})), PermissionDenied);
     budget->lift();
     EXPECT_TRUE(session.apply(command::SetOption("max-steps", {101})));
     EXPECT_TRUE(session.apply(command::Undo{}));
     budget->limit();
-    EXPECT_THROW(session.apply(command::Redo{}), FileAccessDenied);
+    EXPECT_THROW(session.apply(command::Redo{}), PermissionDenied);
     EXPECT_EQ(session.trajectory().run.options.max_steps, 100);
     EXPECT_TRUE(session.apply(command::Set{"y", 1.5})) << "what ran before the limits were lifted does not count";
 }
@@ -267,7 +267,7 @@ TEST_F(UntrustedFiles, AYesIsForOneFile) {
         try {
             EXPECT_EQ(parse_trusted(text, "x.journal", trust).size(), 4U);
             break;
-        } catch (const FileAccessDenied& problem) {
+        } catch (const PermissionDenied& problem) {
             ASSERT_FALSE(problem.wants.empty());
             EXPECT_EQ(problem.wants.size(), 3U - asked.size());
             asked.push_back(problem.wants.front());
@@ -276,15 +276,15 @@ TEST_F(UntrustedFiles, AYesIsForOneFile) {
     }
     EXPECT_EQ(asked, (std::vector<std::string>{"read " + path("a.toml"), "write " + path("b.toml"),
                                                "write " + path("c.svg")}));
-    EXPECT_THROW(parse_trusted("save " + path("a.toml"), "x.journal", trust), FileAccessDenied);
+    EXPECT_THROW(parse_trusted("save " + path("a.toml"), "x.journal", trust), PermissionDenied);
     trust.answered["write " + path("b.toml")] = false;
-    EXPECT_THROW(parse_trusted(text, "x.journal", trust), FileAccessDenied);
+    EXPECT_THROW(parse_trusted(text, "x.journal", trust), PermissionDenied);
     // A permitted write still does not overwrite a file.
     trust.answered["write " + path("a.toml")] = true;
     try {
         parse_trusted("save " + path("a.toml"), "x.journal", trust);
         FAIL();
-    } catch (const FileAccessDenied& problem) {
+    } catch (const PermissionDenied& problem) {
         EXPECT_TRUE(problem.wants.empty());
         EXPECT_NE(std::string(problem.what()).find("never overwrites files"), std::string::npos);
     }
@@ -299,7 +299,7 @@ TEST_F(UntrustedFiles, APictureThatIsDroppedReadsNoFileUnasked) {
     try {
         session_in(picture, trust);
         FAIL();
-    } catch (const FileAccessDenied& question) {
+    } catch (const PermissionDenied& question) {
         EXPECT_EQ(question.wants, std::vector<std::string>{"read " + own});
     }
     trust.answered["read " + own] = true;

@@ -80,10 +80,10 @@ const PrecisionSample* fastest(const std::vector<PrecisionSample>& all, double e
     const PrecisionSample* best = nullptr;
     for (const PrecisionSample& tried : all) {
         const bool holds = std::all_of(all.begin(), all.end(), [&](const PrecisionSample& other) {
-            const bool neighbour = other.setting.cut == tried.setting.cut &&
-                                   other.setting.tolerance <= 1.01 * tried.setting.tolerance &&
-                                   other.setting.tolerance >= 0.099 * tried.setting.tolerance;
-            return !neighbour || other.error <= error;
+            const bool neighbor = other.setting.cut == tried.setting.cut &&
+                                  other.setting.tolerance <= 1.01 * tried.setting.tolerance &&
+                                  other.setting.tolerance >= 0.099 * tried.setting.tolerance;
+            return !neighbor || other.error <= error;
         });
         if (holds && (best == nullptr || tried.seconds < best->seconds)) best = &tried;
     }

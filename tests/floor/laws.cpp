@@ -435,8 +435,9 @@ Violations contact_force(const Trajectory& trajectory) {
             const double size = std::max(strongest, probe.force_scale(after(event), held.contacts[i]));
             complain(violations, std::abs(force) <= 1e-11 * size,
                      fmt::format("released while the force is {:.3g} of {:.3g} at t = {:.17g}", force, size, event.t));
-            const ContactSet carriers = carriers_of(trajectory, event.mode, event.t);
-            complain(violations, probe.surfaces.of(held.which[i], event.mode.only(carriers)).jerk(after(event)) > 0.0,
+            const ContactSet load_bearing = load_bearing_contacts(trajectory, event.mode, event.t);
+            complain(violations,
+                     probe.surfaces.of(held.which[i], event.mode.only(load_bearing)).jerk(after(event)) > 0.0,
                      fmt::format("released while h''' <= 0 at t = {:.17g}", event.t));
         }
     }

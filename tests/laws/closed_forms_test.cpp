@@ -85,9 +85,9 @@ TEST_P(ClosedForm, Incline) {
         const double g = value("g"), e = value("e"), across = g * cos(alpha), along = g * sin(alpha);
         const double h = 0.6 * cos(alpha) - value("r"), v1 = sqrt(2.0 * across * h);
         EXPECT_NEAR(only(trajectory, Event::Kind::zeno).t, v1 / across + 2.0 * e * v1 / (across * (1.0 - e)), within);
-        const double travelled = along * end_time * end_time / 2.0, speed = along * end_time;
+        const double traveled = along * end_time * end_time / 2.0, speed = along * end_time;
         const Vector &q = trajectory.end.q, &v = trajectory.end.v;
-        EXPECT_NEAR(q[0] * cos(alpha) - (q[1] - 0.6) * sin(alpha), travelled, within * travelled);
+        EXPECT_NEAR(q[0] * cos(alpha) - (q[1] - 0.6) * sin(alpha), traveled, within * traveled);
         EXPECT_NEAR(v[0] * cos(alpha) - v[1] * sin(alpha), speed, within * speed);
     }
 }

@@ -54,8 +54,8 @@ TEST(Layout, ARoundPathStandsBesideTwoRows) {
     EXPECT_EQ(figure.panels[0].title, "(a)\u00A0\u00A0path");
     EXPECT_EQ(figure.panels[0].rows, 2);
     EXPECT_EQ(figure.panels[1].title, "(b)\u00A0\u00A0gap");
-    const bool labelled[] = {true, false, false, true, true};
-    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(figure.panels[i].x.labelled, labelled[i]) << i;
+    const bool labeled[] = {true, false, false, true, true};
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_EQ(figure.panels[i].x.labeled, labeled[i]) << i;
     const auto plots = plot_areas(figure, half, {0, 0, 1200, 800}, publication_scale);
     const Rectangle &path = plots[0].plot, &gap = plots[1].plot, &force = plots[3].plot;
     EXPECT_LE(path.y + path.height + 40, force.y);  // its own axis is above the next panel

@@ -38,19 +38,19 @@ TEST_F(Publication, StackedPanelsShowASharedAxisOnce) {
     const ViewDescription x = view("x", "t", {"x"}), y = view("y", "t", {"y"}), path = view("path", "x", {"y"});
     const Figure stack = of({x, y, x});
     EXPECT_EQ(stack.columns, 1);
-    EXPECT_FALSE(stack.panels[0].x.labelled);
-    EXPECT_FALSE(stack.panels[1].x.labelled);
-    EXPECT_TRUE(stack.panels[2].x.labelled);
+    EXPECT_FALSE(stack.panels[0].x.labeled);
+    EXPECT_FALSE(stack.panels[1].x.labeled);
+    EXPECT_TRUE(stack.panels[2].x.labeled);
     for (const Panel& panel : stack.panels) {
         EXPECT_EQ(panel.x.low, 0.0);
         EXPECT_EQ(panel.x.high, 20.0);
     }
     const Figure grid = of({x, y, x, path});
     EXPECT_EQ(grid.columns, 2);
-    for (const Panel& panel : grid.panels) EXPECT_TRUE(panel.x.labelled);
+    for (const Panel& panel : grid.panels) EXPECT_TRUE(panel.x.labeled);
     const Figure even = of({x, y, y, x});
-    EXPECT_FALSE(even.panels[0].x.labelled || even.panels[1].x.labelled);
-    EXPECT_TRUE(even.panels[2].x.labelled && even.panels[3].x.labelled);
+    EXPECT_FALSE(even.panels[0].x.labeled || even.panels[1].x.labeled);
+    EXPECT_TRUE(even.panels[2].x.labeled && even.panels[3].x.labeled);
 }
 
 TEST_F(Publication, PanelsHaveLettersAndALoneOneHasNone) {

@@ -35,7 +35,7 @@ inline Axis axis(const std::string& label, double low, double high, double step)
     return result;
 }
 
-constexpr Color blue{31, 90, 160, 255}, red{200, 60, 40, 255}, grey{150, 150, 150, 255}, white{255, 255, 255, 255};
+constexpr Color blue{31, 90, 160, 255}, red{200, 60, 40, 255}, gray{150, 150, 150, 255}, white{255, 255, 255, 255};
 
 // Member by member, because GCC 12 reports nested braces here as uninitialized memory.
 inline Curve curve(const std::string& label, Color color, double width, const std::vector<double>& dash) {
@@ -68,7 +68,7 @@ inline Panel bouncing(const std::string& title = "(a)") {
         speed = 0.5 * (g * flight_time - speed);
         height = 0.0;
     }
-    panel.markers.push_back({"Zeno point", Markers::MarkerShape::bar, grey, grey, 6.0, {{t, 0.0}}});
+    panel.markers.push_back({"Zeno point", Markers::MarkerShape::bar, gray, gray, 6.0, {{t, 0.0}}});
     panel.curves.push_back(flight);
     Curve rest = curve("constrained phase", red, 2.0, {7.0, 4.0});
     rest.points = {{t, 0.02}, {5.0, 0.02}};
@@ -123,7 +123,7 @@ inline Panel decay(const std::string& title = "(d)") {
     for (int i = 0; i < 4; ++i) panel.y.ticks.push_back({std::pow(10.0, 2.0 * i - 6.0), powers[i]});
     for (int i = 0; i < 3; ++i) panel.y.ticks.push_back({std::pow(10.0, 2.0 * i - 5.0), ""});
     Markers speeds{"", Markers::MarkerShape::circle, blue, blue, 4.0, {}};
-    Curve line = curve("", grey, 1.0, {4.0, 3.0});
+    Curve line = curve("", gray, 1.0, {4.0, 3.0});
     for (int i = 0; i <= 24; ++i) {
         speeds.points.push_back({static_cast<double>(i), 3.0 * std::pow(0.55, i)});
         line.points.push_back(speeds.points.back());

@@ -24,10 +24,10 @@ double excess(const std::string& system, double radius) {
     const auto n = static_cast<std::size_t>(model->dof());
     Range range(model->evaluator<Interval>(model->bouncing().hddot, run.parameters),
                 model->evaluator<Interval>(model->bouncing().gradient, run.parameters), model->bouncing().variables);
-    std::vector<double> centre;
-    for (const Vector& part : {zeno.q, zeno.v_after}) centre.insert(centre.end(), part.begin(), part.end());
+    std::vector<double> center;
+    for (const Vector& part : {zeno.q, zeno.v_after}) center.insert(center.end(), part.begin(), part.end());
     std::vector<Interval> box;
-    for (const double x : centre) box.emplace_back(x - radius, x + radius);
+    for (const double x : center) box.emplace_back(x - radius, x + radius);
     box.emplace_back(0.0);
     const Interval enclosure = range.over(box);
     EXPECT_TRUE(enclosure.is_defined());
@@ -40,7 +40,7 @@ double excess(const std::string& system, double radius) {
     for (std::size_t trial = 0; trial < 20000; ++trial) {
         const bool corner = trial < (std::size_t{1} << (2 * n));
         for (std::size_t i = 0; i < 2 * n; ++i)
-            hddot.input(i) = centre[i] + radius * (corner ? ((trial >> i & 1u) != 0 ? 1.0 : -1.0) : inside(random));
+            hddot.input(i) = center[i] + radius * (corner ? ((trial >> i & 1u) != 0 ? 1.0 : -1.0) : inside(random));
         hddot.run();
         EXPECT_TRUE(enclosure.contains(hddot.output(0)));
         low = std::min(low, hddot.output(0));

@@ -125,10 +125,10 @@ std::vector<CutError> cuts_of(const std::string& system) {
         if (!c) continue;
         EXPECT_LE(c->zeno_low, zeno.t);
         EXPECT_GE(c->zeno_high, zeno.t);
-        const AccumulationTime wait =
-            wait_for_zeno(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
+        const AccumulationTime accumulation_time =
+            accumulation_time_bounds(e, Interval(c->a_min), Interval(c->a_max), Interval(event.impact_speed));
         cuts.push_back({event.impact_speed, std::abs(c->zeno_time - zeno.t), 0.5 * (c->zeno_high - c->zeno_low),
-                        0.5 * (wait.latest.hi() - wait.earliest.lo())});
+                        0.5 * (accumulation_time.latest.hi() - accumulation_time.earliest.lo())});
     }
     return cuts;
 }
@@ -178,7 +178,8 @@ TEST(Truncation, TheEstimateIsThatOfTheIdentity) {
     const double cB = -b * K / (2 * a * a), cC = -(b / (a * a) + c / a) / (2 * a);
     const double cD = -K * (b / (2 * a * a) + c / a) / (3 * a), cF = cB / a;
     const double cG = -cC + (cD + cF) * (1 + e * e) / (1 - e * e);
-    EXPECT_NEAR(estimated_wait(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG), 1e-17);
+    EXPECT_NEAR(estimated_accumulation_time(trend, e, w), 2 * e * w / (a * (1 - e)) + w * w * (cC - cD - cF + cG),
+                1e-17);
 }
 
 // Compares the third-order enclosure with the formulas of theory-truncation.md 4, evaluated here independently: with
@@ -203,15 +204,15 @@ void expect_third_order(double a_min, double a_max) {
                                        Interval(b - P, b + 0.5 * P), Interval(-phi_mid - phi_rad, -phi_mid + phi_rad),
                                        Interval(-xi, 0.5 * xi)};
         const double rho = start + by_sigma * w + P * T + phi_mid * h_m + phi_rad * w * T + xi * w * w * T;
-        const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), centre = estimated_wait(trend, e, w);
-        const Interval wait = third_order_wait(trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w),
-                                               Interval(0.0, T));
+        const double off = T * (2 * rho / (a * (1 - e)) + d_m * S), center = estimated_accumulation_time(trend, e, w);
+        const Interval accumulation_time = third_order_accumulation_time(
+            trend, drift, Interval(e), Interval(a_min), Interval(a_max), Interval(w), Interval(0.0, T));
         // Tolerance 1e-3, because the factor 1.09 of the theory is rounded up. Terms smaller than that beside S are
         // checked below, with b = c = d_m = 0.
-        EXPECT_LE(wait.lo(), centre - off) << term;
-        EXPECT_GE(wait.hi(), centre + off) << term;
-        EXPECT_NEAR(wait.hi() - centre, off, 1e-3 * off) << term;
-        const Interval alone = third_order_wait(
+        EXPECT_LE(accumulation_time.lo(), center - off) << term;
+        EXPECT_GE(accumulation_time.hi(), center + off) << term;
+        EXPECT_NEAR(accumulation_time.hi() - center, off, 1e-3 * off) << term;
+        const Interval alone = third_order_accumulation_time(
             {a, 0.0, 0.0}, {drift.start, drift.by_sigma - Interval(c), drift.P - Interval(b), drift.Phi, drift.Xi},
             Interval(e), Interval(a), Interval(a), Interval(w), Interval(0.0, T));
         const double h_alone = e * w * e * w / (2 * a), T0 = 2 * e * w / (a * (1 - e));

@@ -96,7 +96,7 @@ TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
         EXPECT_TRUE(contains(proof->error[0], zeno->point.q[0] - shadow.q[0]))
             << rate << ": " << zeno->point.q[0] - shadow.q[0] << " in " << proof->error[0].lo() << " "
             << proof->error[0].hi();
-        EXPECT_TRUE(contains(proof->wait, zeno->time));
+        EXPECT_TRUE(contains(proof->accumulation_time, zeno->time));
     }
 }
 
@@ -115,8 +115,8 @@ TEST(Completion, HoldsTheWaitAndTheShadow) {
             if (!proof) continue;
             State before{Vector(2), Vector(2), 3.0};
             for (std::size_t i = 0; i < 2; ++i) {
-                before.q[static_cast<Eigen::Index>(i)] = set.centre(z.q(i));
-                before.v[static_cast<Eigen::Index>(i)] = set.centre(z.v(i));
+                before.q[static_cast<Eigen::Index>(i)] = set.center(z.q(i));
+                before.v[static_cast<Eigen::Index>(i)] = set.center(z.v(i));
             }
             Point collision = motion.restart(motion.collision(before), Reinitialization::kinetic);
             const Point restart = collision;
@@ -124,7 +124,7 @@ TEST(Completion, HoldsTheWaitAndTheShadow) {
             for (std::size_t i = 0; i < 2; ++i) collision.v[i] -= w * contact.n[i];
             const auto zeno = motion.zeno(collision);
             ASSERT_TRUE(zeno);
-            EXPECT_TRUE(contains(proof->wait, zeno->time)) << w;
+            EXPECT_TRUE(contains(proof->accumulation_time, zeno->time)) << w;
             const Point shadow = motion.constrained(restart, zeno->time, 1e-28);
             for (std::size_t i = 0; i < 2; ++i) {
                 const Interval slack = Interval(-1e-14, 1e-14) * Interval(w);
@@ -164,7 +164,7 @@ TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
             const auto proof = Completion(*model, z).prove(set, model->restitution(z.parameters, 0));
             if (!proof) continue;
             ++proved;
-            EXPECT_TRUE(contains(proof->wait, trial.zeno->time));
+            EXPECT_TRUE(contains(proof->accumulation_time, trial.zeno->time));
             const Point &true_point = trial.zeno->point, &shadow = trial.kinetic.at_zeno;
             for (std::size_t k = 0; k < 2 * z.dof; ++k) {
                 const Real off = k < z.dof ? Real(true_point.q[k] - shadow.q[k])

@@ -20,12 +20,12 @@ std::array<Number, 3> bent(const std::array<Number, 3>& z, double turn) {
 
 void apply_bent(Doubleton& set, double turn) {
     using Gradient = Jet<Interval, 3>;
-    const Intervals hull = set.hull(), centre = set.centre();
+    const Intervals hull = set.hull(), center = set.center();
     std::array<Gradient, 3> over;
     std::array<Interval, 3> at;
     for (std::size_t i = 0; i < 3; ++i) {
         over[i] = Gradient::variable(hull[i], i);
-        at[i] = centre[i];
+        at[i] = center[i];
     }
     over = bent(over, turn);
     const auto value = bent(at, turn);
@@ -61,7 +61,7 @@ TEST(Doubleton, HoldsTheImagesOfItsMembersUnderMapsThatBend) {
                 }
                 for (const auto& member : members)
                     for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(contains(set.hull(i), member[i])) << half;
-                for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(set.hull(i).contains(set.centre(i)));
+                for (std::size_t i = 0; i < 3; ++i) ASSERT_TRUE(set.hull(i).contains(set.center(i)));
             }
         }
     }
@@ -77,7 +77,7 @@ TEST(Doubleton, DoesNotGrowByTurning) {
         slope(0, 1) = Interval(-c);
         Intervals at(2);
         for (std::size_t i = 0; i < 2; ++i)
-            for (std::size_t j = 0; j < 2; ++j) at[i] += slope(i, j) * Interval(set.centre(j));
+            for (std::size_t j = 0; j < 2; ++j) at[i] += slope(i, j) * Interval(set.center(j));
         set.map(at, slope);
     }
     EXPECT_LT(rad(set.hull(0)), 1.001e-3);

@@ -46,7 +46,7 @@ class SurfaceMaps : public testing::Test {
     // Width of the set in the direction of the gap's gradient.
     double across(const Doubleton& set) const {
         Intervals row(z_.size());
-        const EventMaps::GapValues surface = maps_->surface(set.centre());
+        const EventMaps::GapValues surface = maps_->surface(set.center());
         for (std::size_t i = 0; i < 2; ++i) row[z_.q(i)] = surface.gradient[i];
         return rad(set.along(row.data()));
     }

@@ -152,8 +152,9 @@ TEST(ErrorOfCompletion, ShiftIsOfThirdOrder) {
     EXPECT_NEAR(large.v.norm() / small.v.norm(), 8.0, 1e-12);
     // Integral of the gap: I = 2 (e w)^3/(3 a^2 (1 - e^3)). The ball's M is constant, so D = -n' n, and q shifts by (B
     // - ndot) I only.
-    const auto wait = of.wait({0, {}, restart, 1e-3}), shorter = of.wait({0, {}, restart, 5e-4});
-    EXPECT_NEAR(wait.error / shorter.error, 8.0, 0.05);
+    const auto accumulation_time = of.accumulation_time({0, {}, restart, 1e-3}),
+               shorter = of.accumulation_time({0, {}, restart, 5e-4});
+    EXPECT_NEAR(accumulation_time.error / shorter.error, 8.0, 0.05);
 }
 
 // Whole runs from ten starts: the estimated norm at the end is within a factor of 2, unless rounding dominates. The

@@ -34,7 +34,7 @@ TEST(ContactForces, AreWhatTheMotionShows) {
         const Sample now = sampler.at(t), before = sampler.at(t - h), after = sampler.at(t + h);
         forces.set(now);
         const Vector a = (after.state.v - before.state.v) / (2 * h);
-        Vector expected = forces.generalised();
+        Vector expected = forces.generalized_force();
         expected[1] -= 1.0;
         EXPECT_NEAR((a - expected).norm(), 0.0, 1e-6);
         for (std::size_t i = 0; i < model.contacts(); ++i) {
