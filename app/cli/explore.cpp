@@ -63,7 +63,7 @@ class Explorer {
           trust_(std::move(trust)) {
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
-        for (const Command& command : preferences_.looks()) {
+        for (const Command& command : preferences_.appearance()) {
             keep(command);
             session_.apply(command);
         }
@@ -83,12 +83,12 @@ class Explorer {
     void frame() {
         session_.update();
         state_.on_tour = tour_.runs();
-        state_.tour_said = tour_.said(), state_.tour_sentences = tour_.sentences();
+        state_.tour_captions_shown = tour_.captions_shown(), state_.tour_captions = tour_.sentences();
         pass_time();
         std::vector<Command> commands = explorer(session_, state_);
         take_dropped(commands);
         if (!commands.empty()) {
-            lead_on(PanelState::TourAction::stop);  // user input ends the tour
+            apply_tour_action(PanelState::TourAction::stop);  // user input ends the tour
             replayed_ = 0;
         }
         for (const Command& command : commands) take(command);
@@ -100,7 +100,7 @@ class Explorer {
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
             size != std::exchange(text_scale_, size))
             window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
-        lead_on(std::exchange(state_.tour_wants, PanelState::TourAction::none));
+        apply_tour_action(std::exchange(state_.tour_action, PanelState::TourAction::none));
         if (state_.editor.may_close) window_.close();
         // Redraw now and then to show the progress of a run.
         constexpr double progress_seconds = 0.25;
@@ -195,18 +195,19 @@ class Explorer {
             begin(journal);
         } catch (const PermissionDenied& problem) {
             // If nothing is left to ask, or an answer was no, the error stays.
-            const auto& wants = problem.wants;
-            if (wants.empty() || std::any_of(wants.begin(), wants.end(),
-                                             [&](const std::string& want) { return trust_.answered.contains(want); }))
+            const auto& requests = problem.requests;
+            if (requests.empty() || std::any_of(requests.begin(), requests.end(), [&](const std::string& request) {
+                    return trust_.answered.contains(request);
+                }))
                 throw;
-            state_.file_question = FileQuestion{file, wants.front(), wants.size() - 1, {}};
+            state_.file_question = FileQuestion{file, requests.front(), requests.size() - 1, {}};
         }
     }
 
     void take_answer() {
         if (!state_.file_question || !state_.file_question->answer) return;
         const FileQuestion question = *std::exchange(state_.file_question, std::nullopt);
-        trust_.answered[question.want] = *question.answer;
+        trust_.answered[question.request] = *question.answer;
         take(command::Replay{question.asker});
     }
 
@@ -251,7 +252,7 @@ class Explorer {
         state_.recent = preferences_.recent();
     }
 
-    void lead_on(PanelState::TourAction wanted) {
+    void apply_tour_action(PanelState::TourAction wanted) {
         if (wanted == PanelState::TourAction::next)
             for (const Command& command : tour_.next()) take_from_tour(command);
         if (wanted == PanelState::TourAction::back)
@@ -368,9 +369,9 @@ bool CurrentFilmJob::follow(Session& session, std::optional<FilmProgress>& progr
     else if (film->is_made())
         session.tell("wrote " + std::filesystem::absolute(film->film()).lexically_normal().string());
     else if (film->has_frames())
-        session.tell(film->said());
+        session.tell(film->output());
     else
-        session.refuse(InputError(film->film(), {}, film->said()));
+        session.refuse(InputError(film->film(), {}, film->output()));
     return true;
 }
 
@@ -410,7 +411,7 @@ std::vector<Command> opening(const Session& session, const ExploreOptions& optio
     std::vector<Command> commands{command::Open{session.system()}};
     for (const auto group : options_by_command(session.description().options, session.run().options)) {
         const bool is_given = std::any_of(group.begin(), group.end(), [&](const Option& option) {
-            return options.overrides.given(option) != nullptr;
+            return options.overrides.find(option) != nullptr;
         });
         if (is_given) commands.emplace_back(command::SetOption(group[0], session.run().options));
     }

@@ -166,7 +166,7 @@ bool is_held(const InputSource& source, const DroppedCommands& opening) {
         const std::optional<bool> may = may_read(source.name, opening.trust);
         if (!may) {
             PermissionDenied question(opening.picture, {}, fmt::format("this picture would read {}", source.name));
-            question.wants = {want(source.name, false)};
+            question.requests = {access_request(source.name, false)};
             throw question;
         }
         if (!*may) return false;
@@ -201,7 +201,7 @@ void ask(const DroppedOptions& asked, const InputSource& source, std::vector<Com
     if (!start.values.empty()) commands.emplace_back(start);
     for (const auto group : options_by_command(description.options, run.options))
         if (std::any_of(group.begin(), group.end(),
-                        [&](const Option& option) { return asked.overrides.given(option) != nullptr; }))
+                        [&](const Option& option) { return asked.overrides.find(option) != nullptr; }))
             commands.emplace_back(command::SetOption(group[0], run.options));
     if (asked.views.empty()) return;
     const std::vector<ViewDescription> views = views_of(description, asked.views);

@@ -54,7 +54,7 @@ OptionValue value_from(const Option& option, const std::string& flag, const std:
                      fmt::format("write {} {}", flag, fmt::join(choices, fmt::format(" or {} ", flag))));
 }
 
-const std::pair<const std::string, OptionValue>* OptionOverrides::given(const Option& option) const {
+const std::pair<const std::string, OptionValue>* OptionOverrides::find(const Option& option) const {
     auto found = by_flag.find(option.flag);
     if (found == by_flag.end()) found = by_flag.find(common_flag(option));
     return found == by_flag.end() ? nullptr : &*found;
@@ -71,20 +71,20 @@ void apply(const OptionOverrides& overrides, Options& options) {
     for (const Option& option : all_options()) {
         if (const auto all = overrides.by_flag.find(common_flag(option)); all != overrides.by_flag.end())
             check(option, all->first, all->second);
-        if (const auto* given = overrides.given(option)) {
+        if (const auto* given = overrides.find(option)) {
             check(option, given->first, given->second);
             option.set(options, given->second);
         }
     }
     for (const char* key : {"end_time", "start_time"})
-        if (const auto* given = overrides.given(option(key)))
+        if (const auto* given = overrides.find(option(key)))
             if (const auto fault = end_time_error(options)) throw InputError(given->first, {}, *fault);
 }
 
 Options work_options(const OptionOverrides& overrides) {
     Options options;
     for (const char* key : {"memory", "max_steps"})
-        if (const auto* given = overrides.given(option(key));
+        if (const auto* given = overrides.find(option(key));
             given != nullptr && is_valid_value(option(key), given->second))
             option(key).set(options, given->second);
     return options;

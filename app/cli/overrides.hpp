@@ -21,7 +21,7 @@ struct OptionOverrides {
     std::map<std::string, OptionValue, std::less<>> by_flag;
 
     // The flag and value given for an option; null if none was given.
-    const std::pair<const std::string, OptionValue>* given(const Option& option) const;
+    const std::pair<const std::string, OptionValue>* find(const Option& option) const;
 };
 // The flag that sets all options of one explorer command. Most commands set a single option: then it is that option's
 // flag.

@@ -177,7 +177,7 @@ bool SweepOutput::draw(const RowReader& each_rows) {
         const std::string bytes = pictures_.bytes(*figure, picture);
         make(picture,
              [&](const std::string& path) { write_file(path, picture, [&](int file) { put(file, bytes, picture); }); });
-        made_.push_back(picture);
+        written_files_.push_back(picture);
     }
     return true;
 }
@@ -185,7 +185,7 @@ bool SweepOutput::draw(const RowReader& each_rows) {
 bool SweepOutput::finish() {
     if (!log_) return true;
     if (!csv_.empty()) make(csv_, [&](const std::string& file) { write_csv(file); });
-    if (!csv_.empty() && csv_ != "-") made_.push_back(csv_);
+    if (!csv_.empty() && csv_ != "-") written_files_.push_back(csv_);
     const RowReader each_rows = [&](const std::function<void(const Rows&)>& take) {
         log_->each([&](Chunk, std::string_view bytes) { take(rows_from(rows_in(bytes), table_)); });
     };
@@ -198,7 +198,7 @@ bool SweepOutput::finish() {
                 fail(hdf5_, errno == 0 ? EIO : errno);
             }
         });
-    if (!hdf5_.empty()) made_.push_back(hdf5_);
+    if (!hdf5_.empty()) written_files_.push_back(hdf5_);
     const bool is_drawn = draw(each_rows);
     log_->remove();
     return is_drawn;
@@ -249,7 +249,7 @@ void SweepSummary::add(ColumnRange& column, const ColumnRange& more) {
     column.missing += more.missing;
 }
 
-std::string SweepSummary::behind(std::string bytes) const {
+std::string SweepSummary::append_to(std::string bytes) const {
     bytes.append(reinterpret_cast<const char*>(&totals_), sizeof totals_);
     if (!columns_.empty())
         bytes.append(reinterpret_cast<const char*>(columns_.data()), columns_.size() * sizeof(ColumnRange));
@@ -335,7 +335,7 @@ std::string SweepSummary::text() const {
     return text;
 }
 
-std::vector<std::string> SweepSummary::nowhere() const {
+std::vector<std::string> SweepSummary::undefined_everywhere() const {
     std::vector<std::string> sentences;
     for (std::size_t i = 0; i < columns_.size(); ++i)
         if (columns_[i].count == 0 && totals_.runs > 0)

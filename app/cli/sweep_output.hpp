@@ -86,7 +86,7 @@ class SweepOutput {
     // Throws std::runtime_error; the log is kept then.
     bool finish();
     // The files written by finish().
-    const std::vector<std::string>& files() const { return made_; }
+    const std::vector<std::string>& files() const { return written_files_; }
     // End of a message if rows are stored: ": the same command with --resume continues from F.part" or, if all runs are
     // done, "; the runs are kept in F.part: ...". Empty otherwise.
     std::string how_to_continue();
@@ -105,7 +105,7 @@ class SweepOutput {
     bool units_;
     SweepOrigin origin_;
     OutputFiles files_;  // tests whether the files can be written
-    std::vector<std::string> made_;
+    std::vector<std::string> written_files_;
     std::unique_ptr<SweepLog> log_;
     int stream_ = -1;  // used if there is no log
     std::uint64_t printed_ = 0;
@@ -120,16 +120,16 @@ class SweepSummary {
     explicit SweepSummary(const SweepTable& table) : table_(&table), columns_(table.measures().numbers()) {}
 
     void note(const Rows& rows);
-    // behind() appends the totals to `bytes`. take() adds the totals at the end of `bytes` to these and returns the
+    // append_to() appends the totals to `bytes`. take() adds the totals at the end of `bytes` to these and returns the
     // rest.
-    std::string behind(std::string bytes) const;
+    std::string append_to(std::string bytes) const;
     std::string take(std::string bytes);
 
     // "Ball on a sine: 9 runs, all reached the end time", then a line per quantity: its range, and where it is
     // undefined.
     std::string text() const;
     // A sentence for each quantity that is undefined in every run.
-    std::vector<std::string> nowhere() const;
+    std::vector<std::string> undefined_everywhere() const;
 
  private:
     struct ColumnRange {

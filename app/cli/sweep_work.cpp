@@ -28,7 +28,7 @@ void RunFailures::note(const Rows& rows) {
     }
 }
 
-std::string RunFailures::behind(std::string bytes) const {
+std::string RunFailures::append_to(std::string bytes) const {
     for (const auto& [code, kind] : kinds_) {
         bytes.append(reinterpret_cast<const char*>(&kind), sizeof kind);
         bytes += static_cast<char>(code);
@@ -73,7 +73,7 @@ std::string sweep_chunk(const SweepTable& table, RowStorage kept, Chunk chunk) {
     failures.note(rows);
     SweepSummary summary(table);
     summary.note(rows);
-    return summary.behind(failures.behind(serialize_rows(table, kept, rows)));
+    return summary.append_to(failures.append_to(serialize_rows(table, kept, rows)));
 }
 
 // Header lines, then the text of the system file.

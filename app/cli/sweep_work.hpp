@@ -14,9 +14,9 @@ namespace achilles {
 class RunFailures {
  public:
     void note(const Rows& rows);
-    // behind() appends the counts to `bytes`. take() adds the counts at the end of `bytes` to these and returns the
+    // append_to() appends the counts to `bytes`. take() adds the counts at the end of `bytes` to these and returns the
     // rest.
-    std::string behind(std::string bytes) const;
+    std::string append_to(std::string bytes) const;
     std::string take(std::string bytes);
     // Prints them to standard error.
     void tell(const SweepTable& table) const;

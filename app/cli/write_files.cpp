@@ -67,7 +67,7 @@ fs::path place_of(const std::string& path) {
 }
 
 // The mode of a new file, from the umask.
-mode_t usual_mode() {
+mode_t default_file_mode() {
     const mode_t mask = ::umask(0);
     ::umask(mask);
     return 0666 & ~mask;
@@ -121,7 +121,7 @@ int OutputFiles::open_temporary(File& file) {
     file.temporary = name;
     struct stat there {};
     const bool is_there = ::stat(file.target.c_str(), &there) == 0;
-    mode_t mode = is_there ? there.st_mode & 07777 : usual_mode();
+    mode_t mode = is_there ? there.st_mode & 07777 : default_file_mode();
     // If the owner cannot be kept, drop setuid and setgid bits: they must not apply to another owner.
     if (is_there && ::fchown(descriptor, there.st_uid, there.st_gid) != 0) mode &= 0777;
     if (::fchmod(descriptor, mode) != 0) ::fchmod(descriptor, mode & 0777);  // some file systems do not support modes

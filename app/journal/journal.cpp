@@ -57,7 +57,7 @@ bool is_named(const std::string& path, const FilePolicy& trust) {
 bool is_allowed(const FileUse& use, const FilePolicy& trust) {
     if (use.path.empty() || trust.files != FilePolicy::Files::refused || (is_named(use.path, trust) && !use.writes))
         return true;
-    const auto answer = trust.answered.find(want(use.path, use.writes));
+    const auto answer = trust.answered.find(access_request(use.path, use.writes));
     return answer != trust.answered.end() && answer->second;
 }
 
@@ -99,20 +99,20 @@ FilePolicy trust_of(bool allow_files, std::vector<fs::path> named, const Options
     return trust;
 }
 
-std::string want(const std::string& file, bool writes) {
+std::string access_request(const std::string& file, bool writes) {
     std::error_code problem;
     return (writes ? "write " : "read ") + fs::absolute(file, problem).lexically_normal().string();
 }
 
 std::optional<bool> may_read(const std::string& file, const FilePolicy& trust) {
     if (is_allowed({file}, trust)) return true;
-    return trust.answered.contains(want(file, false)) ? std::optional(false) : std::nullopt;
+    return trust.answered.contains(access_request(file, false)) ? std::optional(false) : std::nullopt;
 }
 
 std::vector<Command> parse_trusted(std::string_view text, const std::string& name, const FilePolicy& trust) {
     std::vector<Command> commands;
     std::optional<PermissionDenied> refused;
-    std::set<std::string> wanted;
+    std::set<std::string> requested;
     if (trust.budget) trust.budget->limit();
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
@@ -125,7 +125,8 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
         if (!is_allowed(use, trust)) {
             refuse(fmt::format("this journal would {} {}", use.writes ? "write" : "read", use.path),
                    "if you trust it: --allow-files");
-            if (wanted.insert(want(use.path, use.writes)).second) refused->wants.push_back(want(use.path, use.writes));
+            if (requested.insert(access_request(use.path, use.writes)).second)
+                refused->requests.push_back(access_request(use.path, use.writes));
         } else if (would_overwrite(use, trust)) {
             refuse(fmt::format("the file {} already exists, and a journal never overwrites files", use.path),
                    "save or export to another file");
@@ -203,7 +204,7 @@ std::size_t sentences_in(const Commands& commands) {
     return static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), says));
 }
 
-bool may_be_done_again(const Command& command) {
+bool is_repeatable(const Command& command) {
     return !std::holds_alternative<command::Save>(command) && !std::holds_alternative<command::Export>(command) &&
            !std::holds_alternative<command::Copy>(command) && !std::holds_alternative<command::Replay>(command);
 }
@@ -248,8 +249,8 @@ std::vector<Command> Tour::next() {
     return {rest};
 }
 
-std::size_t Tour::said() const { return sentences_in(done_); }
-std::size_t Tour::sentences() const { return said() + sentences_in(left_); }
+std::size_t Tour::captions_shown() const { return sentences_in(done_); }
+std::size_t Tour::sentences() const { return captions_shown() + sentences_in(left_); }
 
 void Tour::begin(const std::vector<Command>& journal) {
     const bool is_named = !done_.empty() && std::holds_alternative<command::Replay>(done_.back());
@@ -261,7 +262,7 @@ void Tour::begin(const std::vector<Command>& journal) {
 }
 
 std::vector<Command> Tour::back() {
-    const std::size_t now = said();
+    const std::size_t now = captions_shown();
     if (now < 2) return {};
     auto from = done_.begin();
     for (std::size_t count = 0; from != done_.end(); ++from)
@@ -276,7 +277,7 @@ std::vector<Command> Tour::back() {
     left_.insert(left_.begin(), from, done_.end());
     done_.erase(from, done_.end());
     std::vector<Command> again;
-    std::copy_if(done_.begin(), done_.end(), std::back_inserter(again), may_be_done_again);
+    std::copy_if(done_.begin(), done_.end(), std::back_inserter(again), is_repeatable);
     return again;
 }
 
@@ -287,7 +288,7 @@ constexpr std::string_view spaces = " \t\r";
 // Characters that would end the line or the word, and their escape letters (\n).
 constexpr std::array<std::pair<char, char>, 3> escapes{{{'n', '\n'}, {'t', '\t'}, {'r', '\r'}}};
 
-char meant_by(char letter) {
+char escaped_character(char letter) {
     for (const auto& [written, meant] : escapes)
         if (written == letter) return meant;
     return letter;
@@ -345,7 +346,7 @@ std::string JournalLine::quoted(std::size_t& at) const {
     for (++at; at < text_.size() && text_[at] != '"'; ++at) {
         const bool escaped = text_[at] == '\\' && at + 1 < text_.size();
         if (escaped) ++at;
-        result += escaped ? meant_by(text_[at]) : text_[at];
+        result += escaped ? escaped_character(text_[at]) : text_[at];
     }
     if (at == text_.size()) throw error(column, "the quotes are not closed");
     ++at;

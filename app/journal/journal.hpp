@@ -43,7 +43,7 @@ FilePolicy trust_of(bool allow_files, std::vector<std::filesystem::path> named, 
 constexpr std::size_t most_replayed = 10000;
 
 // The question to the user about a file: "read /home/me/a.toml".
-std::string want(const std::string& file, bool writes);
+std::string access_request(const std::string& file, bool writes);
 // Whether an untrusted journal may read this file; empty: ask the user.
 std::optional<bool> may_read(const std::string& file, const FilePolicy& trust);
 
@@ -87,7 +87,7 @@ class Tour {
     // Skips the rest of the current wait.
     std::vector<Command> next();
     // The number of `say` captions shown so far, and the total as far as known.
-    std::size_t said() const;
+    std::size_t captions_shown() const;
     std::size_t sentences() const;
     // Goes back to the previous caption. Returns the commands that lead there from the beginning; the later ones become
     // due again. Commands that write files, and `replay` commands already expanded, are left out. Empty if there is no

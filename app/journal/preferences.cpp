@@ -25,7 +25,7 @@ fs::path config_folder() {
     return home == nullptr || *home == '\0' ? fs::path() : fs::path(home) / ".config/achilles";
 }
 
-bool is_of_looks(const Command& command) {
+bool is_appearance_command(const Command& command) {
     return std::holds_alternative<command::SetTheme>(command) || std::holds_alternative<command::Enlarge>(command) ||
            std::holds_alternative<command::SetPanelSize>(command);
 }
@@ -42,12 +42,12 @@ std::string content_of(const fs::path& file) {
 
 }  // namespace
 
-std::vector<Command> looks_of(const Session& session) {
-    std::vector<Command> looks;
-    if (session.theme().dark) looks.emplace_back(command::SetTheme{true});
+std::vector<Command> appearance_of(const Session& session) {
+    std::vector<Command> appearance;
+    if (session.theme().dark) appearance.emplace_back(command::SetTheme{true});
     for (const Command& step : steps_to(session.scene()))
-        if (is_of_looks(step)) looks.push_back(step);
-    return looks;
+        if (is_appearance_command(step)) appearance.push_back(step);
+    return appearance;
 }
 
 Preferences::Preferences() {
@@ -60,7 +60,7 @@ Preferences::Preferences() {
             const Command command = parse_command(line);
             const auto* open = std::get_if<command::Open>(&command);
             if (open != nullptr && recent_.size() < most_recent) recent_.push_back(open->system);
-            if (is_of_looks(command)) looks_.push_back(command);
+            if (is_appearance_command(command)) appearance_.push_back(command);
         } catch (const InputError&) {
             continue;
         }
@@ -75,7 +75,7 @@ void Preferences::keep(const Session& session) {
         recent_.insert(recent_.begin(), path);
         recent_.resize(std::min(recent_.size(), most_recent));
     }
-    std::vector<Command> steps = looks_of(session);
+    std::vector<Command> steps = appearance_of(session);
     for (const std::string& file : recent_) steps.emplace_back(command::Open{file});
     const std::string text = steps.empty() ? "" : journal_text(steps);
     if (text == text_) return;

@@ -15,7 +15,7 @@ class Preferences {
     // Reads the file. Lines that are not preferences are ignored, so a damaged file does not prevent startup.
     Preferences();
     // Commands that restore the appearance of the last session.
-    const std::vector<Command>& looks() const { return looks_; }
+    const std::vector<Command>& appearance() const { return appearance_; }
     // Paths of system files, most recent first.
     const std::vector<std::string>& recent() const { return recent_; }
     // Writes the preferences of this session if they differ from the file. Write errors are ignored.
@@ -23,12 +23,12 @@ class Preferences {
 
  private:
     std::filesystem::path file_;  // empty: no home folder
-    std::vector<Command> looks_;
+    std::vector<Command> appearance_;
     std::vector<std::string> recent_;
     std::string text_;  // last known content of the file
 };
 
 // The commands for theme, scale and panel sizes that differ from the defaults.
-std::vector<Command> looks_of(const Session& session);
+std::vector<Command> appearance_of(const Session& session);
 
 }  // namespace achilles

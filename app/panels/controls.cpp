@@ -306,10 +306,10 @@ void show_difference(const RunDifference& difference, const std::string& of, Pan
         commands.push_back(difference.back);
     remember(state, "put back " + difference.name);
     const bool is_hovered = ImGui::IsItemHovered();
-    tooltip(fmt::format("{}; the {} has {}. Click to reset it", difference.told(), of, difference.other));
+    tooltip(fmt::format("{}; the {} has {}. Click to reset it", difference.text(), of, difference.other));
     const std::string file_has = of + ": " + difference.other;
     const float other = std::min(std::ceil(width_of(file_has)), 0.5F * width);
-    cell(at, difference.told(), width - other - units(8.0F), current_theme().accent);
+    cell(at, difference.text(), width - other - units(8.0F), current_theme().accent);
     cell({std::floor(at.x + width - other), at.y}, file_has, other, is_hovered ? text_color() : faint_color());
 }
 

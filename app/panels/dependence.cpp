@@ -18,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-std::string of_quantity(const Sensitivities& known, double value, const char* format = "{:.4g}") {
+std::string formatted_quantity(const Sensitivities& known, double value, const char* format = "{:.4g}") {
     const ShownUnit unit = shown_unit(known.unit);
     return number_with_unit(number(value * unit.factor, format), unit.text);
 }
@@ -44,13 +44,13 @@ std::string explanation(const Session& session, const Sensitivities& known, cons
     const SystemDescription& system = session.description();
     return fmt::format("derivative of {}: {};\nlinear change over the whole slider: {}",
                        typeset(known.quantity.expression), derivative_text(system, known, by),
-                       (by.over_slider > 0.0 ? "+" : "") + of_quantity(known, by.over_slider));
+                       (by.over_slider > 0.0 ? "+" : "") + formatted_quantity(known, by.over_slider));
 }
 
 // ---- the quantity ----
 
 // Quantities offered in the menu.
-std::vector<std::string> usual_quantities(const Session& session) {
+std::vector<std::string> offered_quantities(const Session& session) {
     constexpr int most = 6;
     std::vector<std::string> all;
     std::array<int, event_names.size()> counts{};
@@ -66,7 +66,7 @@ std::vector<std::string> usual_quantities(const Session& session) {
 
 void show_quantities(const Session& session, PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup("depend quantity")) return;
-    for (const std::string& quantity : usual_quantities(session)) {
+    for (const std::string& quantity : offered_quantities(session)) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         if (ImGui::Selectable(("##" + quantity).c_str(), session.depend_text() == quantity, 0, {units(230.0F), 0.0F}))
             commands.emplace_back(command::ShowSensitivity{quantity});
@@ -102,7 +102,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
     tooltip("quantity to differentiate; certificates do not cover derivatives");
     show_quantities(session, state, commands);
     if (const Sensitivities* const known = session.sensitivities(); known != nullptr) {
-        const std::string value = "= " + of_quantity(*known, known->quantity.value, "{:.9g}");
+        const std::string value = "= " + formatted_quantity(*known, known->quantity.value, "{:.9g}");
         const bool is_there = std::isfinite(known->quantity.value), is_old = !session.influences_are_current();
         const float width = is_there ? std::min(width_of(value), std::max(0.0F, right - x)) : 0.0F;
         if (is_there) cell({x, y}, value, width, is_old ? faint_color() : text_color());
@@ -153,7 +153,7 @@ void paint_scale(const Sensitivities& known, const Lines& lines, std::size_t fir
         const float width = width_of(text);
         cell({std::floor(x - share * width), lines.corner.y}, text, width, faint_color());
     };
-    const std::string end = of_quantity(known, known.largest(), "{:.3g}");
+    const std::string end = formatted_quantity(known, known.largest(), "{:.3g}");
     put("\u2212" + end, middle - lines.half(), 0.0F);
     put("0", middle, 0.5F);
     put("+" + end, middle + lines.half(), 1.0F);
@@ -218,7 +218,7 @@ std::string derivative_text(const SystemDescription& system, const Sensitivities
                             const Sensitivities::Sensitivity& by) {
     if (!by.reason.empty()) return "none";
     const ShownUnit unit = shown_unit_of_setting(system, by.name);
-    const std::string text = of_quantity(known, by.derivative / unit.factor);
+    const std::string text = formatted_quantity(known, by.derivative / unit.factor);
     return unit.text.empty() ? text : text + " per " + unit.text;
 }
 

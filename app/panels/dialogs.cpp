@@ -224,7 +224,7 @@ void file_dialog(PanelState& state) {
                              : question.more == 1 ? ", and one more file"
                                                   : fmt::format(", and {} more files", question.more);
     ImGui::PushTextWrapPos(0.0F);
-    for (const std::string& line : {question.asker + " wants to", "    " + question.want + more + ".",
+    for (const std::string& line : {question.asker + " wants to", "    " + question.request + more + ".",
                                     std::string("Allow it only if you trust its source. It never overwrites files.")})
         ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();

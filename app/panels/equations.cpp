@@ -323,7 +323,7 @@ bool tab(const char* title, const char* place, const char* about, bool is_seen, 
 }
 
 // "m1 = 2 kg", "theta1 = 30° now", with the description from the file.
-std::string told(const Session& session, const std::string& name) {
+std::string value_description(const Session& session, const std::string& name) {
     const SystemDescription& system = session.description();
     const auto value = [](double x, const std::string& unit, bool is_rate) {
         const bool is_angle = unit == "rad";
@@ -418,7 +418,7 @@ class PageDrawing {
                 const ImVec2 cursor = ImGui::GetCursorScreenPos();
                 ImGui::SetCursorScreenPos(low);
                 ImGui::Dummy({high.x - low.x, high.y - low.y});
-                tooltip(told(session_, name));
+                tooltip(value_description(session_, name));
                 ImGui::SetCursorScreenPos(cursor);
             }
             if (name == state_.lit || name == state_.pointed_slider)

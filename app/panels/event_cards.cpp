@@ -311,7 +311,7 @@ void lens_button(const Session& session, PanelState& state, Commands& commands) 
 }  // namespace
 
 // "; q in rad, v in rad/s": units of the bounds that follow.
-std::string units_told(const SystemDescription& description) {
+std::string bound_units_text(const SystemDescription& description) {
     const NormUnits unit = norm_units(description);
     return unit.position.empty() ? "" : fmt::format("; q in{}, v in{}", unit.position, unit.velocity);
 }
@@ -328,7 +328,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                                     : certificate.certified ? "certified"
                                                             : "not certified"),
                         fmt::format("{} conditions, {} restart{}", to_text(certificate.conditions),
-                                    to_text(certificate.reinitialization), units_told(session.description())),
+                                    to_text(certificate.reinitialization), bound_units_text(session.description())),
                         state);
     if (close) commands.emplace_back(command::Select{0});
     if (!is_plastic) lens_button(session, state, commands);

@@ -279,7 +279,7 @@ ExportNote note_on_page(const Session& session, const ExportForm& form) {
         check(page, "");
         const double shape = chosen_shape(session, form);
         on_page(page, form.ending, 1.0, shape);
-        return {fmt::format("{}, text of {:.3g} pt", told(page, form.ending, shape), page.font)};
+        return {fmt::format("{}, text of {:.3g} pt", size_text(page, form.ending, shape), page.font)};
     } catch (const InputError& problem) {
         return {problem.message + (problem.hint.empty() ? "" : ": " + problem.hint), true};
     }
@@ -402,20 +402,20 @@ void show_caption(const Session& session, PanelState& state, Commands& commands)
         return;
     }
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top});
-    const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_said > 1;
+    const bool keys = !ImGui::GetIO().WantTextInput, has_before = state.tour_captions_shown > 1;
     if (word_button("next", "go on now (Enter)", state) ||
         (keys && !has_keys(state) && takes_key(state, key::enter, false)))
-        state.tour_wants = PanelState::TourAction::next;
+        state.tour_action = PanelState::TourAction::next;
     ImGui::SameLine(0.0F, units(10.0F));
     if (word_button("stop", "end the tour here (Escape); any other action also ends it", state) || take_escape(state))
-        state.tour_wants = PanelState::TourAction::stop;
+        state.tour_action = PanelState::TourAction::stop;
     // Below the other buttons, to leave the text more width.
     ImGui::SetCursorScreenPos({high.x - units(buttons_width), top + ImGui::GetTextLineHeight()});
     if (word_button("back", "previous step (Backspace)", state, has_before) ||
         (keys && has_before && !has_keys(state) && takes_key(state, key::backspace, false)))
-        state.tour_wants = PanelState::TourAction::back;
-    if (state.tour_said == 0) return;
-    const std::string how_far = fmt::format("{}/{}", state.tour_said, state.tour_sentences);
+        state.tour_action = PanelState::TourAction::back;
+    if (state.tour_captions_shown == 0) return;
+    const std::string how_far = fmt::format("{}/{}", state.tour_captions_shown, state.tour_captions);
     list->AddText({std::floor(high.x - units(tour_padding) - ImGui::CalcTextSize(how_far.c_str()).x),
                    std::floor(high.y - units(tour_padding - 2.0F) - ImGui::GetTextLineHeight())},
                   packed(faint_color()), how_far.c_str());

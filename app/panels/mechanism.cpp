@@ -68,7 +68,7 @@ Drawing seen_world(const Session& session, const Rectangle& area) {
     const double arrow = longest_arrow * std::min(width, height);
     const CameraPicture picture{width, height, scene.shows("velocity") ? arrow : 0.0,
                                 scene.shows("force") ? arrow : 0.0};
-    Drawing drawing = session.stage().camera().at(scene.camera(), session.now(), picture);
+    Drawing drawing = session.mechanism_scene().camera().at(scene.camera(), session.now(), picture);
     if (scene.camera() == CameraMode::fit) keep_clear(drawing, area, double{switches_height()});
     return widened(drawing, width, height);
 }
@@ -118,7 +118,7 @@ void show_scale_bar(const Session& session, const Rectangle& area, double unit, 
     const double most = beside ? std::min(0.22 * double{area.width}, double{room}) : 0.22 * double{area.width};
     const float bottom = area.y + area.height - units(beside ? 11.0F : 11.0F) - (beside ? 0.0F : switches_height());
     const double length = paint_scale_bar(ImGui::GetWindowDrawList(), {left, bottom}, most, unit,
-                                          session.stage().unit(), faint_color(), double{units(1.0F)});
+                                          session.mechanism_scene().unit(), faint_color(), double{units(1.0F)});
     const float high = ImGui::GetTextLineHeight();
     state.places["scale bar"] = {left, bottom - high, static_cast<float>(length), high};
 }
@@ -287,7 +287,8 @@ Picture paint_picture(const Session& session, const Rectangle& area, const Mecha
     Drawing seen = seen_world(session, area);
     if (held.what == DragTarget::body || held.what == DragTarget::arrow) stand_still(seen, held.placement, area);
     const Scene& scene = session.scene();
-    Drawing drawing = session.stage().draw(now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe")});
+    Drawing drawing =
+        session.mechanism_scene().draw(now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe")});
     add_ghosts(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};
@@ -309,7 +310,7 @@ double distance(const Point& a, const ImVec2& b) { return std::hypot(a.x - doubl
 ImVec2 pixel(const Point& point) { return {static_cast<float>(point.x), static_cast<float>(point.y)}; }
 
 // The view after zooming by `factor` about the mouse position and panning by `moved` pixels.
-command::LookAt look_again(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
+command::LookAt zoomed_view(const Picture& picture, const ImVec2& mouse, double factor, const ImVec2& moved) {
     const Rectangle& a = picture.area;
     const Point middle{a.x + 0.5 * a.width, a.y + 0.5 * a.height};
     const Point center = picture.placement.world(
@@ -393,7 +394,7 @@ void drag(const Session& session, const Picture& picture, MechanismDrag& held, C
     if (delta.x == 0.0F && delta.y == 0.0F) return;
     if (held.what == DragTarget::background) {
         if (ImGui::IsMouseDragging(ImGuiMouseButton_Left))
-            commands.emplace_back(look_again(picture, mouse, 1.0, delta));
+            commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
         return;
     }
     held.has_moved = true;
@@ -422,7 +423,7 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     const bool is_hovered = ImGui::IsItemHovered();
     const Aim under = aim(session, picture, mouse);
     if (is_hovered && ImGui::GetIO().MouseWheel != 0.0F)
-        commands.emplace_back(look_again(picture, mouse, std::pow(0.85, double{ImGui::GetIO().MouseWheel}), {}));
+        commands.emplace_back(zoomed_view(picture, mouse, std::pow(0.85, double{ImGui::GetIO().MouseWheel}), {}));
     if (is_hovered && under.what != DragTarget::background) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(under.at), static_cast<float>(under.reach) + units(2.0F),
                                               packed(text_color(), 0.5F), 32, units(1.5F));
@@ -430,7 +431,7 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
-        commands.emplace_back(look_again(picture, mouse, 1.0, delta));
+        commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
     if (ImGui::IsItemActivated()) take_hold(session, picture, under, state.held);
     if (is_hovered && ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left) && state.held.what == DragTarget::background)
         commands.emplace_back(command::LookAll{});

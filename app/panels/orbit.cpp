@@ -183,7 +183,7 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
 // ---- result ----
 
 // Index of the point to describe: that of the run or, without one, the first found.
-std::size_t told_point(const Session& session, const OrbitJobResult& found) {
+std::size_t described_point(const Session& session, const OrbitJobResult& found) {
     return session.orbit_point().value_or(found.first());
 }
 
@@ -227,7 +227,7 @@ void show_happenings(const OrbitJobResult& found, PanelState& state, Commands& c
 }
 
 void show_slider(const Session& session, const OrbitJobResult& found, PanelState& state, Commands& commands) {
-    const std::size_t now = told_point(session, found);
+    const std::size_t now = described_point(session, found);
     int point = static_cast<int>(now) + 1;
     const float width = remaining().width;
     ImGui::Dummy({0.0F, units(2.0F)});
@@ -241,7 +241,7 @@ void show_slider(const Session& session, const OrbitJobResult& found, PanelState
 
 void show_numbers(const Session& session, const OrbitJobResult& found, PanelState& state, Commands& commands) {
     const float width = remaining().width;
-    const OrbitPoint& point = found.point(told_point(session, found));
+    const OrbitPoint& point = found.point(described_point(session, found));
     const auto line = [&](const std::string& text, const Color& color) { paragraph(with_minus(text), width, color); };
     line(fmt::format("period {:.10g} s, from {}", point.period,
                      found.answer.orbit->is_at_release ? "release to release" : "flight to flight"),

@@ -50,7 +50,7 @@ struct EditorState {
 // A file that a journal or a picture requests, and the user's answer.
 struct FileQuestion {
     std::string asker;           // the journal or the picture
-    std::string want;            // "write /home/me/a.toml"
+    std::string request;         // "write /home/me/a.toml"
     std::size_t more = 0;        // number of further files that it requests
     std::optional<bool> answer;  // whether access is allowed
 };
@@ -104,7 +104,7 @@ struct PaletteState {
 // A value being typed in place of its slider.
 struct TypedValue {
     std::string id;  // of the slider; empty: none
-    std::string text, as_it_was;
+    std::string text, previous;
     std::string wrong;  // why the text was refused; empty: not submitted yet
     bool is_new = false;
 };
@@ -184,9 +184,9 @@ struct SweepState {
     std::optional<Run> measured_run;
     std::vector<std::string> measured;  // the printed quantities
     std::optional<double> measure;      // the first of them for `measured_run`
-    const SweepData* told_of = nullptr;
-    std::uint64_t told_point = 0;
-    std::string told;
+    const SweepData* described_data = nullptr;
+    std::uint64_t described_point = 0;
+    std::string tooltip;
 };
 
 // Scroll position of the strip of results after the user moved it.
@@ -212,9 +212,9 @@ struct PanelState {
     std::function<std::string(const std::string& topic)> manual_page;  // returns the text of a page
     std::string manual_text;                                           // text of the selected page
     bool opens_manual = false;
-    bool on_tour = false;                           // a tour is running: its caption has buttons
-    std::size_t tour_said = 0, tour_sentences = 0;  // number of captions shown so far, and in total
-    enum class TourAction { none, back, next, stop } tour_wants = TourAction::none;  // button pressed
+    bool on_tour = false;                                    // a tour is running: its caption has buttons
+    std::size_t tour_captions_shown = 0, tour_captions = 0;  // number of captions shown so far, and in total
+    enum class TourAction { none, back, next, stop } tour_action = TourAction::none;  // button pressed
     int copies = 0;                    // Session::copies() at the last copy to the clipboard
     double width = 0.0, height = 0.0;  // surface in the last frame, pixels
     bool reads_folders = true;         // false in a picture, which must not show private folders

@@ -163,12 +163,12 @@ class OccupiedCells {
                 const double length = std::hypot(to.x - from.x, to.y - from.y) / side_;
                 const int steps = length < 1.0 ? 1 : length < 400.0 ? static_cast<int>(length) + 1 : 0;
                 for (int k = 0; k < steps; ++k)
-                    tread(to.x + (from.x - to.x) * k / steps, to.y + (from.y - to.y) * k / steps);
+                    mark_occupied(to.x + (from.x - to.x) * k / steps, to.y + (from.y - to.y) * k / steps);
             }
         for (const Markers& markers : panel.markers)
             for (const Point& point : markers.points) {
                 const Point at = map(point);
-                tread(at.x, at.y);
+                mark_occupied(at.x, at.y);
             }
     }
     bool is_free(const LabelBox& box) const {
@@ -187,7 +187,7 @@ class OccupiedCells {
         if (!(column >= 0.0 && column < columns_ && row >= 0.0 && row < rows_)) return std::nullopt;
         return static_cast<std::size_t>(static_cast<int>(row) * columns_ + static_cast<int>(column));
     }
-    void tread(double x, double y) {
+    void mark_occupied(double x, double y) {
         if (const auto at = square(x, y)) squares_[*at] = true;
     }
     Rectangle plot_;

@@ -226,7 +226,7 @@ void use_click(const Session& session, const PlotPlace& place, Commands& command
 }
 
 // A part of the card that reacts to the mouse. It uses the wheel, so that no panel scrolls.
-bool hot(const std::string& name, const Rectangle& area) {
+bool hoverable_area(const std::string& name, const Rectangle& area) {
     if (area.width < 1.0F || area.height < 1.0F) return false;
     ImGui::SetCursorScreenPos({area.x, area.y});
     ImGui::InvisibleButton(name.c_str(), {area.width, area.height},
@@ -237,10 +237,10 @@ bool hot(const std::string& name, const Rectangle& area) {
 void use_mouse(const Session& session, const PlotPlace& place, PanelState& state, Commands& commands) {
     const Rectangle &a = place.area, &c = place.cell;
     const std::string name = "plot " + std::to_string(place.plot);
-    if (hot("x axis of " + name, {a.x, a.y + a.height, a.width, c.y + c.height - a.y - a.height}))
+    if (hoverable_area("x axis of " + name, {a.x, a.y + a.height, a.width, c.y + c.height - a.y - a.height}))
         use_wheel(place, true, false, commands);
-    if (hot("y axis of " + name, {c.x, a.y, a.x - c.x, a.height})) use_wheel(place, false, true, commands);
-    const bool hovered = hot(name, a);
+    if (hoverable_area("y axis of " + name, {c.x, a.y, a.x - c.x, a.height})) use_wheel(place, false, true, commands);
+    const bool hovered = hoverable_area(name, a);
     remember(state, name);
     if (hovered) use_wheel(place, true, true, commands);
     if (ImGui::IsItemActive()) use_drag(place, commands);

@@ -243,7 +243,7 @@ void show_comparison(const Session& session, PanelState& state, Commands& comman
         was_cause = row.is_cause;
         show_row(row, columns);
     }
-    for (const auto& [run, sentence] : table.partings)
+    for (const auto& [run, sentence] : table.divergences)
         show_parting(session.pinned()[run - 1], sentence, width, session);
     ImGui::EndChild();
     ImGui::PopStyleVar();

@@ -147,7 +147,7 @@ double held_share(const Slider& slider, double absolute, float width, PressedSli
 
 // The value selected by the mouse, in the file's units: the current value or the file's value if within half a pixel,
 // else the roundest number within it.
-double meant_at(const Slider& slider, double share, float width, bool is_fine) {
+double value_at_mouse(const Slider& slider, double share, float width, bool is_fine) {
     const double half = 0.5 / usable(width) * (is_fine ? fine_gain : 1.0);
     for (const double sticky : {slider.value, slider.original})
         if (std::abs(share_of(slider, sticky * slider.factor) - share) <= half) return sticky;
@@ -175,7 +175,7 @@ bool dragged(Slider& slider, float width, PressedSlider& pressed) {
     double target = slider.value;
     if (ImGui::IsItemActive()) {
         const double share = held_share(slider, share_of(slider, value), width, pressed);
-        target = meant_at(slider, share, width, pressed.is_fine);
+        target = value_at_mouse(slider, share, width, pressed.is_fine);
     }
     if (is_ours) {
         const float x = grab_at(at.x, width, pressed.share), half = 0.5F * ImGui::GetStyle().GrabMinSize;
@@ -216,7 +216,7 @@ bool moved_by_keys(Slider& slider, PanelState& state) {
 void begin_typing(const Slider& slider, TypedValue& typed) {
     typed.id = slider.id;
     typed.text = fmt::format("{}", slider.factor == 1.0 ? slider.value : rounded(slider.value * slider.factor, 12));
-    typed.as_it_was = typed.text;
+    typed.previous = typed.text;
     typed.wrong.clear();
     typed.is_new = true;
 }
@@ -235,7 +235,7 @@ bool clicked(Slider& slider, PanelState& state) {
     return slider.value != now;
 }
 
-double meant(const Slider& slider, const std::string& text) {
+double typed_value(const Slider& slider, const std::string& text) {
     const bool is_angle = slider.factor != 1.0;
     const bool is_rate = is_angle && slider.unit.ends_with("/s");
     return typed_number(text, is_rate ? "rad/s" : is_angle ? "rad" : slider.unit, slider.factor);
@@ -264,14 +264,14 @@ bool typed_over(Slider& slider, PanelState& state, float width) {
     const bool is_entered = ImGui::IsItemDeactivated(), is_active = ImGui::IsItemActive();
     if (ImGui::IsItemEdited()) typed.wrong.clear();
     const bool gives_up = !is_active && takes_key(state, key::escape);
-    if (gives_up || (is_entered && typed.text == typed.as_it_was)) {
+    if (gives_up || (is_entered && typed.text == typed.previous)) {
         typed.id.clear();
         return false;
     }
     double value = slider.value;
     if (is_entered) {
         try {
-            value = meant(slider, typed.text);
+            value = typed_value(slider, typed.text);
             typed.id.clear();
         } catch (const ParseError& problem) {
             typed.wrong = problem.what();

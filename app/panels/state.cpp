@@ -267,7 +267,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
 }
 
 // Tooltip: the energies at the time under the mouse, and the loss of the last event before it.
-std::string told(const Session& session, const EnergyCourse& course, double t) {
+std::string energy_tooltip(const Session& session, const EnergyCourse& course, double t) {
     const auto its = values(course.before(t));
     const auto all = parts(session.theme());
     std::string text = fmt::format("t = {:.6g} s", t);
@@ -317,7 +317,8 @@ void show_energy(const Session& session, PanelState& state, Commands& commands) 
     paint_course(session, course, rest, start, end);
     const double share = (double{ImGui::GetIO().MousePos.x} - double{rest.x}) / double{rest.width};
     if (ImGui::IsItemHovered())
-        tooltip(told(session, course, std::clamp(start + share * (end - start), start, session.trajectory().end_time)),
+        tooltip(energy_tooltip(session, course,
+                               std::clamp(start + share * (end - start), start, session.trajectory().end_time)),
                 area);
     double time = 0.0;
     if (dragged_to(start, end, rest.x, rest.width, time) && time != session.time())

@@ -31,7 +31,7 @@ constexpr std::uint64_t finest_points = 512;
 constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
 
 // Quantities offered in the menu, and the derivative of the first with respect to the x axis.
-std::vector<std::string> usual_prints(const SystemDescription& description, const SweepSpec& sweep) {
+std::vector<std::string> offered_prints(const SystemDescription& description, const SweepSpec& sweep) {
     const bool is_section = sweep.at.has_value();
     std::vector<std::string> prints;
     if (!is_section) prints = {"zeno_time(1)", "zeno_time(2)", "zeno_points", "impacts", "releases", "least_gap"};
@@ -167,7 +167,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
         if (is_alone && sweep.prints.front() != print) changed.prints = {sweep.prints.front(), print};
         commands.emplace_back(showing(changed, description));
     };
-    for (const std::string& print : usual_prints(description, sweep)) {
+    for (const std::string& print : offered_prints(description, sweep)) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         if (ImGui::Selectable(("##" + print).c_str(), sweep.prints.back() == print, 0, {units(230.0F), 0.0F}))
             ask(print);
@@ -353,14 +353,14 @@ void go_to(const SweepData& data, const std::vector<double>& values, Commands& c
 // "3 impacts before the cut, Zeno point at 2.7251 s, release at 3.7318 s": the events of the run at a point. For a
 // tooltip within one frame, only the beginning of a long run is simulated.
 std::string events_of(const Session& session, const Run& run) {
-    constexpr int most_impacts = 2000, most_steps = 20000, most_told = 6;
+    constexpr int most_impacts = 2000, most_steps = 20000, max_listed = 6;
     Run shorter = run;
     shorter.options.max_impacts = std::min(shorter.options.max_impacts, most_impacts);
     shorter.options.max_steps = std::min(shorter.options.max_steps, most_steps);
-    std::vector<std::string> told;
+    std::vector<std::string> listed;
     int impacts = 0;
     const auto tell_impacts = [&](const char* before) {
-        if (impacts > 0) told.push_back((impacts == 1 ? "an impact" : fmt::format("{} impacts", impacts)) + before);
+        if (impacts > 0) listed.push_back((impacts == 1 ? "an impact" : fmt::format("{} impacts", impacts)) + before);
         impacts = 0;
     };
     try {
@@ -371,19 +371,19 @@ std::string events_of(const Session& session, const Run& run) {
                 continue;
             }
             tell_impacts(event.truncation && !is_plastic_landing(event) ? " before the cut" : "");
-            told.push_back(fmt::format("{} at {} s", names_of(event).name, number(event.t, "{:.5g}")));
+            listed.push_back(fmt::format("{} at {} s", names_of(event).name, number(event.t, "{:.5g}")));
         }
         tell_impacts("");
-        if (trajectory.outcome.kind != Outcome::Kind::end_time) told.emplace_back("\u2026");
+        if (trajectory.outcome.kind != Outcome::Kind::end_time) listed.emplace_back("\u2026");
     } catch (const InputError& problem) {
         return problem.message;
     }
-    if (told.empty()) return "no event";
+    if (listed.empty()) return "no event";
     std::string text;
     // Two per line: if ImGui wrapped the line, it could break within a number.
-    for (std::size_t i = 0; i < told.size() && i < most_told; ++i)
-        text += (i == 0 ? "" : i % 2 == 0 ? ",\n" : ", ") + told[i];
-    return told.size() > most_told ? text + ", \u2026" : text;
+    for (std::size_t i = 0; i < listed.size() && i < max_listed; ++i)
+        text += (i == 0 ? "" : i % 2 == 0 ? ",\n" : ", ") + listed[i];
+    return listed.size() > max_listed ? text + ", \u2026" : text;
 }
 
 // The row of the grid point nearest to the mouse, if it is computed.
@@ -403,18 +403,18 @@ std::optional<std::size_t> row_at(const SweepData& data, const std::vector<doubl
     return static_cast<std::size_t>(found - points.begin());
 }
 
-std::string told_number(double value, const ShownUnit& unit) {
+std::string quantity_text(double value, const ShownUnit& unit) {
     return number_with_unit(number(unit.factor * value), unit.text);
 }
 
-std::string told_of(const SweepData& data, std::size_t row) {
+std::string row_text(const SweepData& data, std::size_t row) {
     std::size_t number_place = 0;
     std::string text;
     for (const RunMeasures::Column& column : data.columns) {
         std::string value;
         if (column.kind == RunMeasures::Column::Kind::number) {
             const double x = data.number(row, number_place++);
-            value = std::isfinite(x) ? told_number(x, shown_unit(column.unit)) : "no value";
+            value = std::isfinite(x) ? quantity_text(x, shown_unit(column.unit)) : "no value";
         } else if (column.kind == RunMeasures::Column::Kind::outcome) {
             value = data.rows.ends[row].text();
         } else {
@@ -431,20 +431,20 @@ void tell(const Session& session, const SweepData& data, const std::vector<doubl
     const std::optional<std::size_t> row = row_at(data, values);
     if (!row) return;
     const std::uint64_t point = data.rows.points[*row];
-    if (state.told_of != &data || state.told_point != point) {
-        state.told_of = &data;
-        state.told_point = point;
+    if (state.described_data != &data || state.described_point != point) {
+        state.described_data = &data;
+        state.described_point = point;
         SweepSpec sweep = data.sweep;
-        state.told.clear();
+        state.tooltip.clear();
         for (std::size_t i = 0; i < sweep.axes.size(); ++i)
-            state.told += fmt::format("{} = {}\n", data.names[i],
-                                      told_number(sweep.value(i, point), shown_unit_of_axis(data, i)));
+            state.tooltip += fmt::format("{} = {}\n", data.names[i],
+                                         quantity_text(sweep.value(i, point), shown_unit_of_axis(data, i)));
         if (!data.is_section()) {
-            if (const std::string measured = told_of(data, *row); !measured.empty()) state.told += measured + "\n";
+            if (const std::string measured = row_text(data, *row); !measured.empty()) state.tooltip += measured + "\n";
         }
-        state.told += events_of(session, SweepPoints(sweep, session.description()).run(point));
+        state.tooltip += events_of(session, SweepPoints(sweep, session.description()).run(point));
     }
-    tooltip(state.told);
+    tooltip(state.tooltip);
 }
 
 // A slider's name dropped on an axis becomes the quantity along that axis.

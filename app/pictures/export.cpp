@@ -186,9 +186,9 @@ Drawing mechanism_of(const Session& session, const Theme& theme) {
         seen.x_low = look->x - 0.5 * look->width, seen.x_high = look->x + 0.5 * look->width;
         seen.y_low = look->y - 0.5 * look->width / shape, seen.y_high = look->y + 0.5 * look->width / shape;
     } else {
-        seen = session.stage().camera().at(scene.camera(), now, {width, width / shape});
+        seen = session.mechanism_scene().camera().at(scene.camera(), now, {width, width / shape});
     }
-    return session.stage().draw(now, seen, theme, {scene.shows("trail"), scene.shows("strobe")});
+    return session.mechanism_scene().draw(now, seen, theme, {scene.shows("trail"), scene.shows("strobe")});
 }
 
 Figure figure_of(const Session& session, const PublicationStyle& style) {

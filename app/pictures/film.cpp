@@ -222,7 +222,7 @@ FilmJob::FilmJob(std::string film, std::vector<std::string> words, const std::st
 
 FilmJob::~FilmJob() { cancel(); }
 
-bool FilmJob::is_made() const { return said_.starts_with(fs::absolute(film_).string() + ": "); }
+bool FilmJob::is_made() const { return output_.starts_with(fs::absolute(film_).string() + ": "); }
 
 bool FilmJob::has_frames() const {
     constexpr int stopped_early = 3;
@@ -255,13 +255,13 @@ void FilmJob::take_lines() {
 bool FilmJob::update() {
     if (process_ < 0) return true;
     read(err_, unread_);
-    read(out_, said_);
+    read(out_, output_);
     take_lines();
     int status = 0;
     if (::waitpid(process_, &status, WNOHANG) != process_) return false;
     process_ = -1;
     read(err_, unread_);
-    read(out_, said_);
+    read(out_, output_);
     take_lines();
     finish(WIFEXITED(status) ? WEXITSTATUS(status) : -1);
     return true;
@@ -269,7 +269,7 @@ bool FilmJob::update() {
 
 void FilmJob::finish(int status) {
     status_ = status;
-    said_ += problems_ + unread_;
+    output_ += problems_ + unread_;
     for (int* end : {&out_, &err_})
         if (*end >= 0) ::close(std::exchange(*end, -1));
     std::error_code ignored;

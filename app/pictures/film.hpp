@@ -70,7 +70,7 @@ class FilmJob {
     bool is_made() const;                    // the animation exists, even if the run stopped early
     bool has_frames() const;                 // only frames exist: they could not be joined
     // Its other output: where the animation is, or what went wrong.
-    const std::string& said() const { return said_; }
+    const std::string& output() const { return output_; }
 
  private:
     void read(int descriptor, std::string& into);
@@ -82,7 +82,7 @@ class FilmJob {
     bool had_frames_ = false;       // frames of an earlier attempt existed
     pid_t process_ = -1;            // -1: it has ended
     int out_ = -1, err_ = -1;
-    std::string said_, unread_, progress_, problems_;
+    std::string output_, unread_, progress_, problems_;
     double share_ = 0.0;
     int status_ = -1;
 };

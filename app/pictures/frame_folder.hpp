@@ -24,7 +24,7 @@ class OutputFolder {
 
  private:
     std::filesystem::path path_;
-    bool made_ = false;
+    bool is_created_ = false;
 };
 
 // The folder for the numbered pictures of an animation. Valid pictures of the same animation are kept.

@@ -99,7 +99,7 @@ std::string shell_word(const std::string& word) {
 namespace {
 
 // Options for output files and execution that do not change the picture.
-bool is_where(const std::string& option) {
+bool is_output_option(const std::string& option) {
     return option == "--out" || option == "--jobs" || option == "--record" || option == "--overwrite" ||
            option == "--progress" || option == "--csv" || option == "--json" || option == "--hdf5" ||
            option == "--units" || option == "--resume" || option == "--threads";
@@ -122,7 +122,7 @@ std::string prove_line(const std::string& system, const std::vector<std::string>
     std::vector<std::string> words{"prove", system};
     for (const std::string& setting : settings) words.insert(words.end(), {"--set", setting});
     for (const char* key : {"start_time", "end_time"})
-        if (const auto* given = overrides.given(option(key)))
+        if (const auto* given = overrides.find(option(key)))
             words.insert(words.end(), {given->first, to_text(given->second)});
     return shell_line(words);
 }
@@ -133,7 +133,7 @@ std::string command_line(const std::vector<std::string>& words) {
     for (std::size_t i = 0; i < words.size(); ++i) {
         const std::string name = words[i].substr(0, words[i].find('='));
         options_end = options_end || words[i] == "--";
-        if (!options_end && is_where(name)) {
+        if (!options_end && is_output_option(name)) {
             if (name == words[i] && !is_flag(name)) ++i;  // skip its value, the next word
             continue;
         }

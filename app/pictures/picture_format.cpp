@@ -219,7 +219,7 @@ PaperSize page_for(PaperSize page, const std::string& format) {
     return page;
 }
 
-std::string told(const PaperSize& page, const std::string& format, double shape) {
+std::string size_text(const PaperSize& page, const std::string& format, double shape) {
     const PictureSize size = on_page(page, format, 1.0, shape);
     const std::string mm = fmt::format("{:.4g} \u00d7 {:.4g} mm", page.width, height_of(page, shape));
     if (format != "png") return mm;

@@ -66,7 +66,7 @@ constexpr double tallest_shape = 0.7;
 double height_of(const PaperSize& page, double shape);
 
 // "85 × 57 mm, 1004 × 669 px at 300 dpi".
-std::string told(const PaperSize& page, const std::string& format, double shape);
+std::string size_text(const PaperSize& page, const std::string& format, double shape);
 
 // Width over height of a figure whose plots have height/width = 2/3, and of a mechanism.
 double shape_of(const Figure& figure);

@@ -74,9 +74,9 @@ void work(std::size_t count, Counter& next, int pipe, const std::function<std::f
         }
         return;
     } catch (const InputError& error) {
-        const std::string told = error.what(), place = error.file + ": ";
-        const bool has_place = !error.file.empty() && told.rfind(place, 0) == 0;
-        say_problem(pipe, of_input, has_place ? error.file : "", has_place ? told.substr(place.size()) : told);
+        const std::string message = error.what(), place = error.file + ": ";
+        const bool has_place = !error.file.empty() && message.rfind(place, 0) == 0;
+        say_problem(pipe, of_input, has_place ? error.file : "", has_place ? message.substr(place.size()) : message);
     } catch (const NotEnoughMemory& error) {
         say_problem(pipe, of_memory, "", error.what());
     } catch (const std::bad_alloc&) {
@@ -90,7 +90,7 @@ void work(std::size_t count, Counter& next, int pipe, const std::function<std::f
 struct Process {
     pid_t id = 0;
     int pipe = -1;
-    std::string said;  // text after task_failed
+    std::string message;  // text after task_failed
     bool failed = false;
 };
 
@@ -121,7 +121,7 @@ bool listen(Process& process, std::size_t& done) {
     if (count < 0) return errno == EINTR;
     for (ssize_t i = 0; i < count; ++i) {
         if (process.failed)
-            process.said += buffer[i];
+            process.message += buffer[i];
         else if (buffer[i] == task_failed)
             process.failed = true;
         else
@@ -131,19 +131,19 @@ bool listen(Process& process, std::size_t& done) {
 }
 
 // Reads from all workers until they have ended.
-std::size_t listen_to(std::vector<Process>& processes, const std::function<void(std::size_t)>& told) {
+std::size_t read_from_workers(std::vector<Process>& processes, const std::function<void(std::size_t)>& report) {
     std::size_t done = 0;
-    std::vector<pollfd> ears;
-    for (const Process& process : processes) ears.push_back({process.pipe, POLLIN, 0});
-    for (std::size_t talking = ears.size(); talking > 0;) {
-        if (::poll(ears.data(), ears.size(), -1) < 0 && errno != EINTR) break;
+    std::vector<pollfd> pipes;
+    for (const Process& process : processes) pipes.push_back({process.pipe, POLLIN, 0});
+    for (std::size_t open_pipes = pipes.size(); open_pipes > 0;) {
+        if (::poll(pipes.data(), pipes.size(), -1) < 0 && errno != EINTR) break;
         const std::size_t before = done;
-        for (std::size_t i = 0; i < ears.size(); ++i) {
-            if (ears[i].fd < 0 || ears[i].revents == 0 || listen(processes[i], done)) continue;
-            ears[i].fd = -1;  // poll ignores it
-            --talking;
+        for (std::size_t i = 0; i < pipes.size(); ++i) {
+            if (pipes[i].fd < 0 || pipes[i].revents == 0 || listen(processes[i], done)) continue;
+            pipes[i].fd = -1;  // poll ignores it
+            --open_pipes;
         }
-        if (done > before) told(done);
+        if (done > before) report(done);
     }
     return done;
 }
@@ -175,15 +175,15 @@ CrewOutcome share_work(std::size_t count, int jobs, const std::function<std::fun
         if (processes.empty()) throw;
     }
     CrewOutcome outcome;
-    outcome.done = listen_to(processes, done);
+    outcome.done = read_from_workers(processes, done);
     outcome.signal = wait_for(processes);
     for (const Process& process : processes) {
         if (!process.failed) continue;
-        const char kind = process.said.empty() ? of_input : process.said.front();
-        const std::string said = process.said.empty() ? "" : process.said.substr(1);
-        const std::size_t end = said.find('\0');
-        const std::string file = said.substr(0, end);
-        std::string message = end == std::string::npos ? "" : said.substr(end + 1);
+        const char kind = process.message.empty() ? of_input : process.message.front();
+        const std::string text = process.message.empty() ? "" : process.message.substr(1);
+        const std::size_t end = text.find('\0');
+        const std::string file = text.substr(0, end);
+        std::string message = end == std::string::npos ? "" : text.substr(end + 1);
         if (!message.empty() && message.back() == '\0') message.pop_back();
         if (kind == of_memory) throw NotEnoughMemory(message);
         throw InputError(file, {}, message);

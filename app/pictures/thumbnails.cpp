@@ -16,7 +16,7 @@ namespace {
 constexpr double thumbnail_shape = 2.3;  // width over height of the widest card; the ground extends to its sides
 
 // Time of the first Zeno point; else a third of the run.
-double telling_time(const Trajectory& trajectory) {
+double representative_time(const Trajectory& trajectory) {
     const auto zeno = std::find_if(trajectory.events.begin(), trajectory.events.end(),
                                    [](const Event& event) { return event.is_zeno(); });
     const double start = trajectory.run.options.start_time;
@@ -31,7 +31,7 @@ Thumbnail drawn(const std::filesystem::path& system) {
     const Mechanism mechanism(*model);
     if (mechanism.is_empty()) return {};
     const std::vector<Sample> samples = plot_samples(trajectory);
-    const Sample now = Sampler(trajectory).at(telling_time(trajectory));
+    const Sample now = Sampler(trajectory).at(representative_time(trajectory));
     // View of the part of the world used so far.
     std::vector<Sample> past;
     for (const Sample& sample : samples)
@@ -56,7 +56,7 @@ Thumbnails::Thumbnails(std::function<std::filesystem::path(const std::string&)> 
     : find_(std::move(find)), waits_(waits) {}
 
 const Thumbnail* Thumbnails::find(const std::string& system) {
-    if (const auto found = made_.find(system); found != made_.end()) return &found->second;
+    if (const auto found = thumbnails_.find(system); found != thumbnails_.end()) return &found->second;
     const auto file = [&]() -> std::filesystem::path {
         try {
             return find_(system);
@@ -64,24 +64,24 @@ const Thumbnail* Thumbnails::find(const std::string& system) {
             return {};
         }
     };
-    if (waits_) return &made_.emplace(system, thumbnail_of(file())).first->second;
-    if (system != making_ && std::find(wanted_.begin(), wanted_.end(), system) == wanted_.end())
-        wanted_.push_back(system);
+    if (waits_) return &thumbnails_.emplace(system, thumbnail_of(file())).first->second;
+    if (system != in_progress_ && std::find(queue_.begin(), queue_.end(), system) == queue_.end())
+        queue_.push_back(system);
     return nullptr;
 }
 
 void Thumbnails::update() {
-    if (!making_.empty()) {
+    if (!in_progress_.empty()) {
         const auto ready = worker_.take(0.0);
         if (!ready) return;
-        made_.emplace(std::exchange(making_, {}), **ready);
+        thumbnails_.emplace(std::exchange(in_progress_, {}), **ready);
     }
-    if (wanted_.empty()) return;
-    making_ = wanted_.front();
-    wanted_.clear();  // systems still visible are requested again in the next frame
+    if (queue_.empty()) return;
+    in_progress_ = queue_.front();
+    queue_.clear();  // systems still visible are requested again in the next frame
     std::filesystem::path file;
     try {
-        file = find_(making_);
+        file = find_(in_progress_);
     } catch (const std::exception&) {
     }
     worker_.start([file](const std::stop_token&) { return std::make_shared<Thumbnail>(thumbnail_of(file)); });

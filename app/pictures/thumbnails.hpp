@@ -35,14 +35,14 @@ class Thumbnails {
     const Thumbnail* find(const std::string& system);
     // Receives a finished thumbnail and starts the next; call once per frame.
     void update();
-    bool is_busy() const { return !making_.empty() || !wanted_.empty(); }
+    bool is_busy() const { return !in_progress_.empty() || !queue_.empty(); }
 
  private:
     std::function<std::filesystem::path(const std::string&)> find_;
     bool waits_;
-    std::map<std::string, Thumbnail> made_;
-    std::vector<std::string> wanted_;
-    std::string making_;
+    std::map<std::string, Thumbnail> thumbnails_;
+    std::vector<std::string> queue_;
+    std::string in_progress_;
     Worker<std::shared_ptr<Thumbnail>> worker_;
 };
 

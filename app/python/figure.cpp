@@ -8,7 +8,7 @@ namespace py = pybind11;
 
 namespace achilles::python {
 
-FigureStyle look_of(const FigureStyleTuple& asked, const std::string& format) {
+FigureStyle figure_style(const FigureStyleTuple& asked, const std::string& format) {
     const auto& [views, size, scale, page, columns, dark, transparent] = asked;
     FigureStyle look;
     look.views = views;

@@ -56,7 +56,7 @@ struct FigureStyle {
 using FigureStyleTuple =
     std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
 // Converts it for a picture format. Throws InputError.
-FigureStyle look_of(const FigureStyleTuple& asked, const std::string& format);
+FigureStyle figure_style(const FigureStyleTuple& asked, const std::string& format);
 // Appends the equivalent options of the command line.
 void add(std::vector<std::string>& words, const FigureStyle& look);
 // The picture as file content, with the command line that reproduces it and the files which that reads, the system
@@ -68,7 +68,7 @@ pybind11::bytes without_gil(const std::function<std::string()>& make);
 
 // For classes whose objects only this module creates. The default __new__ would leave their value uninitialized, and
 // any method call would read invalid memory. Construction, copying and unpickling raise TypeError instead.
-inline pybind11::custom_type_setup made_here_alone() {
+inline pybind11::custom_type_setup not_constructible() {
     return pybind11::custom_type_setup([](PyHeapTypeObject* type) {
         type->ht_type.tp_new = [](PyTypeObject* of, PyObject*, PyObject*) -> PyObject* {
             PyErr_Format(PyExc_TypeError,

@@ -40,8 +40,8 @@ std::vector<std::string> words_of(const PythonSystem& system, const OrbitOptions
 }
 
 // `json`: the content of the file named by `from`, if the search starts at a state.
-std::shared_ptr<PythonOrbit> found_by(const std::shared_ptr<const PythonSystem>& system, OrbitOptions asked,
-                                      const std::optional<std::string>& json, const RunArguments& of_run) {
+std::shared_ptr<PythonOrbit> search_orbit(const std::shared_ptr<const PythonSystem>& system, OrbitOptions asked,
+                                          const std::optional<std::string>& json, const RunArguments& of_run) {
     const Model& model = *system->model;
     const auto found = std::make_shared<PythonOrbit>();
     found->system = system;
@@ -50,7 +50,7 @@ std::shared_ptr<PythonOrbit> found_by(const std::shared_ptr<const PythonSystem>&
     asked.settings = of_run.settings;
     const OptionOverrides overrides = overrides_of(of_run);
     for (const Option& option : all_options())
-        if (overrides.given(option) != nullptr) asked.options.insert(option.key);
+        if (overrides.find(option) != nullptr) asked.options.insert(option.key);
     if (json) {
         asked.guess = orbit_guess(*json, asked.from, model.description().coordinates.size());
         found->sources.push_back({InputSource::Kind::system, asked.from, *json});
@@ -71,7 +71,7 @@ std::shared_ptr<PythonOrbit> found_by(const std::shared_ptr<const PythonSystem>&
 
 // The same picture as `achilles orbit --out`.
 std::string draw(const PythonOrbit& found, const FigureStyleTuple& asked, const std::string& format) {
-    const FigureStyle look = look_of(asked, format);
+    const FigureStyle look = figure_style(asked, format);
     const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
     const Figure figure = found.branch() != nullptr ? compose_branch(found.orbit(), *found.branch(), views, look.style)
                                                     : publication(found.orbit().run, views, look.style);
@@ -81,7 +81,7 @@ std::string draw(const PythonOrbit& found, const FigureStyleTuple& asked, const 
 }
 
 // The arguments that turn the file's run into one period of the orbit.
-RunArguments of_period(const PythonOrbit& found) {
+RunArguments one_period_arguments(const PythonOrbit& found) {
     const Model& model = *found.system->model;
     const std::vector<std::string> words = run_options(model.description(), model.default_run(), found.orbit().run.run);
     RunArguments asked;
@@ -98,14 +98,14 @@ RunArguments of_period(const PythonOrbit& found) {
 
 void bind_orbits(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<PythonOrbit, std::shared_ptr<PythonOrbit>>(module, "Orbit", made_here_alone())
+    py::class_<PythonOrbit, std::shared_ptr<PythonOrbit>>(module, "Orbit", not_constructible())
         .def_readonly("warnings", &PythonOrbit::warnings)
         // If no orbit was found: the reason. The other properties must not be used then.
         .def_property_readonly("why", [](const PythonOrbit& f) { return f.answer.orbit ? "" : f.answer.reason; })
         .def_property_readonly("command", [](const PythonOrbit& f) { return shell_line(f.words); })
         .def("of_period",
              [](const PythonOrbit& f) {
-                 const RunArguments asked = of_period(f);
+                 const RunArguments asked = one_period_arguments(f);
                  return std::pair(asked.settings, asked.options);
              })
         .def(
@@ -115,13 +115,13 @@ void bind_orbits(py::module_& module) {
         .def("figure", [](const PythonOrbit& f, const FigureStyleTuple& look, const std::string& format) {
             return without_gil([&] { return draw(f, look, format); });
         });
-    module.def("orbit",
-               [](const std::shared_ptr<const PythonSystem>& system, std::string from,
-                  const std::optional<std::string>& json, std::string period, std::vector<std::string> shifts,
-                  std::string along, std::vector<std::string> settings, std::map<std::string, std::string> options) {
-                   return found_by(system, {std::move(from), std::move(period), std::move(shifts), std::move(along)},
-                                   json, {std::move(settings), std::move(options)});
-               });
+    module.def(
+        "orbit", [](const std::shared_ptr<const PythonSystem>& system, std::string from,
+                    const std::optional<std::string>& json, std::string period, std::vector<std::string> shifts,
+                    std::string along, std::vector<std::string> settings, std::map<std::string, std::string> options) {
+            return search_orbit(system, {std::move(from), std::move(period), std::move(shifts), std::move(along)}, json,
+                                {std::move(settings), std::move(options)});
+        });
 }
 
 }  // namespace achilles::python

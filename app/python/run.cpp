@@ -48,7 +48,7 @@ using Times = py::array_t<double, py::array::c_style | py::array::forcecast>;
 
 // A read-only array that refers to `data` without a copy and keeps its owner alive.
 template <class Number>
-py::array looking_at(const std::shared_ptr<const StateTable>& owner, const std::vector<Number>& data,
+py::array array_view(const std::shared_ptr<const StateTable>& owner, const std::vector<Number>& data,
                      py::ssize_t columns) {
     const py::capsule keeper(new std::shared_ptr<const StateTable>(owner),
                              [](void* kept) { delete static_cast<std::shared_ptr<const StateTable>*>(kept); });
@@ -84,11 +84,11 @@ py::dict arrays_of(const std::shared_ptr<PythonRun>& made, const std::optional<T
                          times ? samples_at(made->trajectory, instants) : samples_of_curve(made->trajectory));
     }
     py::dict arrays;
-    arrays["t"] = looking_at(table, table->t, -1);
-    arrays["q"] = looking_at(table, table->q, table->coordinates);
-    arrays["v"] = looking_at(table, table->v, table->coordinates);
-    arrays["j"] = looking_at(table, table->j, -1);
-    arrays["constrained"] = looking_at(table, table->is_constrained, -1).attr("view")("bool");
+    arrays["t"] = array_view(table, table->t, -1);
+    arrays["q"] = array_view(table, table->q, table->coordinates);
+    arrays["v"] = array_view(table, table->v, table->coordinates);
+    arrays["j"] = array_view(table, table->j, -1);
+    arrays["constrained"] = array_view(table, table->is_constrained, -1).attr("view")("bool");
     return arrays;
 }
 
@@ -146,7 +146,7 @@ std::string command_of(const PythonRun& made, const FigureStyle& look) {
 
 // The same picture as `achilles figure`.
 std::string draw(const PythonRun& made, const FigureStyleTuple& asked, const std::string& format) {
-    const FigureStyle look = look_of(asked, format);
+    const FigureStyle look = figure_style(asked, format);
     const SystemDescription& description = made.system->model->description();
     return picture_of(publication(made.trajectory, views_of(description, look.views), look.style, nullptr,
                                   horizon_before_end(made.trajectory, made.estimate())),
@@ -158,7 +158,7 @@ std::string draw(const PythonRun& made, const FigureStyleTuple& asked, const std
 
 void bind_runs(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
-    py::class_<PythonRun, std::shared_ptr<PythonRun>>(module, "Run", made_here_alone())
+    py::class_<PythonRun, std::shared_ptr<PythonRun>>(module, "Run", not_constructible())
         .def_readonly("warnings", &PythonRun::warnings)
         .def_property_readonly("settings", [](const PythonRun& m) { return m.asked.settings; })
         .def_property_readonly("given", [](const PythonRun& m) { return m.asked.options; })

@@ -79,7 +79,7 @@ py::list axes_of(const SweepTable& table, const SweepColumnData& columns) {
     return axes;
 }
 
-py::dict told(const PythonSystem& system, const SweepTable& table, SweepColumnData columns) {
+py::dict as_dict(const PythonSystem& system, const SweepTable& table, SweepColumnData columns) {
     constexpr std::array<const char*, 3> kinds{"number", "held", "outcome"};
     py::list prints;
     for (const RunMeasures::Column& column : table.measures().columns())
@@ -118,7 +118,7 @@ py::dict swept(const std::shared_ptr<const PythonSystem>& system, SweepOptions s
     };
     run_interruptibly([&] { do_chunks(0, points, threads, task, write, stop); }, [&] { stop = true; }, tick);
     tick();
-    return told(*system, table, std::move(columns));
+    return as_dict(*system, table, std::move(columns));
 }
 
 }  // namespace

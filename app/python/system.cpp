@@ -132,7 +132,7 @@ std::vector<std::pair<std::string, std::string>> equations_of(const PythonSystem
 }  // namespace
 
 void bind_systems(py::module_& module) {
-    py::class_<PythonSystem, std::shared_ptr<PythonSystem>>(module, "System", made_here_alone())
+    py::class_<PythonSystem, std::shared_ptr<PythonSystem>>(module, "System", not_constructible())
         .def_readonly("name", &PythonSystem::name)
         .def_property_readonly("title", [](const PythonSystem& s) { return s.model->description().title; })
         .def_property_readonly("source", [](const PythonSystem& s) { return s.model->description().source; })

@@ -456,7 +456,8 @@ inline InputError refusal(const std::string& message, const std::string& hint = 
 // ordinary rejected command is reported and the session continues; this error also stops the rendering of a picture.
 struct PermissionDenied : InputError {
     using InputError::InputError;
-    std::vector<std::string> wants;  // results of want(), without duplicates, if the user may allow the file access
+    // Results of access_request(), without duplicates, if the user may allow the file access.
+    std::vector<std::string> requests;
 };
 
 // Calls `perform`. An InputError is rethrown as the refusal of a Command with its usage as the hint; Forbidden passes

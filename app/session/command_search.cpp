@@ -24,13 +24,13 @@ std::string first_word(const std::string& line) { return line.substr(0, line.fin
 // Matches sorted by rank; non-matches are left out.
 class MatchRanking {
  public:
-    void offer(int misfit, CommandMatch found) {
-        if (misfit >= 0) all_.emplace_back(misfit, std::move(found));
+    void offer(int match_rank, CommandMatch found) {
+        if (match_rank >= 0) all_.emplace_back(match_rank, std::move(found));
     }
     std::vector<CommandMatch> take() {
         std::stable_sort(all_.begin(), all_.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
         std::vector<CommandMatch> result;
-        for (auto& [misfit, found] : all_) result.push_back(std::move(found));
+        for (auto& [match_rank, found] : all_) result.push_back(std::move(found));
         return result;
     }
 
@@ -38,9 +38,9 @@ class MatchRanking {
     std::vector<std::pair<int, CommandMatch>> all_;
 };
 
-int misfit(const std::string& typed, const std::string& name, const std::string& more) {
+int match_rank(const std::string& typed, const std::string& name, const std::string& more) {
     constexpr int apart = 4, around = 1000;
-    const int in_name = achilles::misfit(typed, name), in_more = achilles::misfit(typed, more);
+    const int in_name = achilles::match_rank(typed, name), in_more = achilles::match_rank(typed, more);
     return in_name >= 0 ? in_name : in_more >= 0 && in_more < apart ? around + in_more : -1;
 }
 
@@ -56,7 +56,7 @@ bool is_command(const std::string& line) {
 
 }  // namespace
 
-int misfit(const std::string& typed, const std::string& text) {
+int match_rank(const std::string& typed, const std::string& text) {
     const std::string a = lower(typed), b = lower(text);
     if (a == b) return 0;
     const std::size_t at = b.find(a);
@@ -84,7 +84,8 @@ std::vector<CommandMatch> find_commands(const std::string& typed, const std::vec
             // Whether or not arguments are possible: a command that needs none is complete.
             const std::string line = is_command(usage) ? usage : its_name;
             const bool alone = is_command(line);
-            best.offer(typed.empty() ? 0 : misfit(typed, its_name, usage), {usage, alone ? line : line + " ", alone});
+            best.offer(typed.empty() ? 0 : match_rank(typed, its_name, usage),
+                       {usage, alone ? line : line + " ", alone});
         }
         return best.take();
     }
@@ -97,7 +98,7 @@ std::vector<CommandMatch> find_commands(const std::string& typed, const std::vec
             std::string shown = line;
             if (!about.empty()) shown.append("    ").append(about);
             if (!some.is_last) line += ' ';
-            best.offer(value.empty() ? 0 : misfit(value, word, about), {shown, line, some.is_last});
+            best.offer(value.empty() ? 0 : match_rank(value, word, about), {shown, line, some.is_last});
         }
     }
     return best.take();

@@ -9,7 +9,7 @@ namespace achilles {
 
 // How well `typed` matches a text, ignoring case: smaller is better, negative if it is not a subsequence. In order of
 // rank: the text itself, a prefix, the start of a word, a substring, separate letters.
-int misfit(const std::string& typed, const std::string& text);
+int match_rank(const std::string& typed, const std::string& text);
 
 // Possible arguments of a command, each with additional search text, e.g. "open" with {"ball_on_sine", its title}.
 struct Completions {

@@ -137,7 +137,7 @@ std::vector<Command> time_steps(const Session& session) {
 }
 
 // Commands to the view state and the playback position.
-std::vector<Command> sight_steps(const Session& session) {
+std::vector<Command> view_steps(const Session& session) {
     std::vector<Command> steps = steps_to(session.plotted());
     if (session.theme().dark) steps.emplace_back(command::SetTheme{true});
     append(steps, steps_to(session.scene()));
@@ -164,7 +164,7 @@ std::vector<Command> recipe(const Session& session) {
     append(steps, run_steps(session, session.file_run()));
     append(steps, proof_steps(session));
     append(steps, orbit_steps(session));
-    append(steps, sight_steps(session));
+    append(steps, view_steps(session));
     // A text that is not a valid system yet, edited over one that runs.
     const Document& document = session.document();
     if (document.name != session.system()) steps.emplace_back(command::Open{name_anywhere(document.name)});
@@ -227,7 +227,7 @@ std::vector<Command> explorer_steps(const Session& session) {
     std::vector<Command> steps = run_steps(session, session.run());
     append(steps, proof_steps(session));
     append(steps, orbit_steps(session));
-    append(steps, sight_steps(session));
+    append(steps, view_steps(session));
     return steps;
 }
 

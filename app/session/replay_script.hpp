@@ -22,7 +22,7 @@ struct RunDifference {
     std::string name, now, other;  // "x(0)", "2 m", "1 m"
     bool is_option = false;        // `name` is then the command that sets it
     Command back;                  // sets the value of the other run
-    std::string told() const { return name + (is_option ? " " : " = ") + now; }
+    std::string text() const { return name + (is_option ? " " : " = ") + now; }
 };
 std::vector<RunDifference> differences(const SystemDescription& description, const Run& run, const Run& other);
 // Commands, after these options, that pin the pinned runs and restore the plots.

@@ -68,7 +68,7 @@ std::vector<std::string> names_of_runs(std::span<const Run* const> runs, const S
 
 namespace {
 
-std::string told(double value, double error, int digits) {
+std::string value_text(double value, double error, int digits) {
     std::string text = known_digits(value, error, digits);
     for (std::size_t at = text.find('-'); at != std::string::npos; at = text.find('-', at + 1))
         text.replace(at, 1, "\u2212");
@@ -103,8 +103,8 @@ struct RunDivergence {
     std::string after;     // the last common event: "release 2"; empty: they differ from the start
     std::string sentence;  // the next event of each run
 };
-std::optional<RunDivergence> parting(const std::vector<RunStep>& present, double present_end,
-                                     const std::vector<RunStep>& other, double other_end) {
+std::optional<RunDivergence> divergence(const std::vector<RunStep>& present, double present_end,
+                                        const std::vector<RunStep>& other, double other_end) {
     std::size_t same = 0;
     while (same < present.size() && same < other.size() && present[same].name == other[same].name) ++same;
     if (same == present.size() && same == other.size()) return std::nullopt;
@@ -117,8 +117,8 @@ std::optional<RunDivergence> parting(const std::vector<RunStep>& present, double
     }
     const auto goes_on = [&](const std::vector<RunStep>& steps, double end) {
         return same < steps.size()
-                   ? fmt::format("{} at {} s", steps[same].name, told(steps[same].t, steps[same].error, 5))
-                   : fmt::format("no further event until {} s", told(end, 0.0, 5));
+                   ? fmt::format("{} at {} s", steps[same].name, value_text(steps[same].t, steps[same].error, 5))
+                   : fmt::format("no further event until {} s", value_text(end, 0.0, 5));
     };
     result.sentence =
         fmt::format("{}: {}; the present run: {}", same > 0 ? "after " + result.after : std::string("from the start"),
@@ -138,7 +138,7 @@ class RunTableBuilder {
 
     RunTable made() {
         inputs();
-        partings();
+        divergences();
         courses();
         std::vector<ValueWithError> impacts, ends;
         for (const Trajectory* run : runs_) {
@@ -174,22 +174,22 @@ class RunTableBuilder {
         RunTable::Row& row = table_.rows.emplace_back();
         row.name = name;
         for (const auto& [x, error] : values) {
-            row.values.push_back(std::isfinite(x) ? told(x, error, digits_) : nothing);
+            row.values.push_back(std::isfinite(x) ? value_text(x, error, digits_) : nothing);
             row.differs.push_back(x != values[0].x && !(std::isnan(x) && std::isnan(values[0].x)));
         }
         if (values.size() == 2 && std::isfinite(values[0].x) && std::isfinite(values[1].x))
-            row.change = told(values[0].x - values[1].x, values[0].error + values[1].error, 3);
+            row.change = value_text(values[0].x - values[1].x, values[0].error + values[1].error, 3);
     }
 
-    void partings() {
+    void divergences() {
         RunTable::Row row{"same events until", {nothing}, {false}, "", false};
         for (std::size_t i = 1; i < runs_.size(); ++i) {
-            const auto found = parting(courses_[0], runs_[0]->end_time, courses_[i], runs_[i]->end_time);
+            const auto found = divergence(courses_[0], runs_[0]->end_time, courses_[i], runs_[i]->end_time);
             row.values.push_back(!found ? "the end" : found->after.empty() ? "the start" : found->after);
             row.differs.push_back(found.has_value());
-            if (found) table_.partings.emplace_back(i, found->sentence);
+            if (found) table_.divergences.emplace_back(i, found->sentence);
         }
-        if (!table_.partings.empty()) table_.rows.push_back(std::move(row));
+        if (!table_.divergences.empty()) table_.rows.push_back(std::move(row));
     }
 
     // Event by event in the order of the current run, then those that only other runs have. No rows beyond `most`
@@ -271,7 +271,7 @@ std::string to_text(const RunTable& table) {
             text += fmt::format(" | {}{}", row.values[i], row.differs[i] ? " *" : "");
         text += (row.change.empty() ? "" : " | " + row.change) + "\n";
     }
-    for (const auto& [run, sentence] : table.partings) text += fmt::format("run {} {}\n", run, sentence);
+    for (const auto& [run, sentence] : table.divergences) text += fmt::format("run {} {}\n", run, sentence);
     return text;
 }
 

@@ -68,7 +68,7 @@ struct RunTable {
     };
     std::vector<Row> rows;
     // For each run whose sequence of events differs from the current run's: its index and the explanation.
-    std::vector<std::pair<std::size_t, std::string>> partings;
+    std::vector<std::pair<std::size_t, std::string>> divergences;
 };
 
 // A run and the estimate of its error; null: not available (yet).

@@ -38,16 +38,16 @@ Session::FinishedRun::FinishedRun(std::shared_ptr<const OpenSystem> of, Trajecto
       remarks(achilles::remarks(trajectory)),
       sentences(trajectory, nullptr, EventDescriptions::Angles::degrees),
       quantity(default_quantity(trajectory)),
-      stage(std::make_unique<MechanismScene>(system->mechanism, trajectory, samples)),
+      mechanism_scene(std::make_unique<MechanismScene>(system->mechanism, trajectory, samples)),
       revision(plotted.revision()),
       dark(theme.dark),
       plots(plotted.compose(trajectory, samples, theme)) {}
 
 Session::FinishedRun::~FinishedRun() = default;
 
-const Trail& Session::trail() const { return simulated_->stage->trail(); }
+const Trail& Session::trail() const { return simulated_->mechanism_scene->trail(); }
 
-const Drawing& Session::limits() const { return simulated_->stage->limits(); }
+const Drawing& Session::limits() const { return simulated_->mechanism_scene->limits(); }
 
 Session::Session(const std::string& name, const SystemDescription& first, const Run& run, SystemSource library,
                  Timeout patience)
@@ -93,7 +93,7 @@ void Session::restore(UndoState back) {
     document_ = std::move(back.document);
     placed_ = command::Seek{time_};
     if (!same_system(back.system->model->description(), description())) {
-        let_pins_go();
+        cancel_pins();
         pinned_ = std::move(back.pinned);
     }
     if (back.system != system_) return change_system(back.system, back.plots, back.run);
@@ -142,7 +142,7 @@ void Session::begin_document(Document document) {
         time_ = run.options.start_time;
         scene_.forget_place();
         placed_.reset();
-        let_go();
+        drop_pinned_runs();
         change_system(system, Plots(system->model), run);
         for (const std::string& told : outside_ranges(description, run)) warn(told);
         for (const std::string& told : unseen_lines(description)) warn(told);
@@ -185,7 +185,7 @@ void Session::read_document() {
             system->model->check(run);
         }
         placed_ = command::Seek{time_};
-        if (!same_system(description, this->description())) let_go();
+        if (!same_system(description, this->description())) drop_pinned_runs();
         change_system(system, plots_.carried_over(system->model), run);
     } catch (const PermissionDenied&) {
         throw;
@@ -329,7 +329,7 @@ void Session::receive_estimate(Timeout patience) {
     try {
         simulated_->estimate = estimator_->take(patience);
     } catch (const std::bad_alloc&) {
-        simulated_->estimate.emplace().none_since = "there was not enough memory for it";
+        simulated_->estimate.emplace().no_estimate_reason = "there was not enough memory for it";
     }
     if (simulated_->estimate) use_horizon();
 }

@@ -179,7 +179,7 @@ class Session {
     // The world extent that the mechanism needs during the whole run.
     const Drawing& limits() const;
     // The camera and mechanism view along the run that is shown.
-    MechanismScene& stage() const { return *simulated_->stage; }
+    MechanismScene& mechanism_scene() const { return *simulated_->mechanism_scene; }
     // The selected plots, and their panels for the run that is shown.
     const Plots& plotted() const { return plots_; }
     const std::vector<Panel>& plots() const { return simulated_->plots; }
@@ -219,7 +219,7 @@ class Session {
     struct FinishedRun {
         FinishedRun(std::shared_ptr<const OpenSystem> of, Trajectory made, const Plots& plotted, const Theme& theme);
         ~FinishedRun();
-        FinishedRun(const FinishedRun&) = delete;  // `stage` refers to other members
+        FinishedRun(const FinishedRun&) = delete;  // `mechanism_scene` refers to other members
         FinishedRun& operator=(const FinishedRun&) = delete;
         Trajectory trajectory;
         std::shared_ptr<const OpenSystem> system;
@@ -231,7 +231,7 @@ class Session {
         EventDescriptions sentences;
         std::optional<ErrorEstimate> estimate;  // computed after everything else
         std::string quantity;                   // default_quantity() of the run
-        std::unique_ptr<MechanismScene> stage;
+        std::unique_ptr<MechanismScene> mechanism_scene;
         int revision = 0;   // revision of the plots shown in `plots`
         bool dark = false;  // theme of `plots`
         std::vector<Panel> plots;
@@ -293,10 +293,10 @@ class Session {
     void pin(int place, int number, const std::shared_ptr<FinishedRun>& run);
     bool waits_at(int place) const;
     void put_aside_pin();
-    void let_pins_go();
+    void cancel_pins();
     void stop_pin(std::size_t i);
     void receive_pins(Timeout patience);
-    void let_go();
+    void drop_pinned_runs();
     void begin_document(Document document);
     void read_document();
     // Each of these throws InputError if this system lacks a name that is used.

@@ -44,8 +44,8 @@ void Session::perform(const command::Export& command) {
     }
     film->wait();
     if (film->is_made()) return;
-    if (film->has_frames()) return warn(film->said());  // ffmpeg failed
-    throw InputError(command.file, {}, film->said());
+    if (film->has_frames()) return warn(film->output());  // ffmpeg failed
+    throw InputError(command.file, {}, film->output());
 }
 
 void Session::perform(const command::Copy& command) {

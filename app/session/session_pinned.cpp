@@ -159,14 +159,14 @@ void Session::stop_pin(std::size_t i) {
     pins_.erase(pins_.begin() + static_cast<std::ptrdiff_t>(i));
 }
 
-void Session::let_pins_go() {
+void Session::cancel_pins() {
     pin_waits_.reset();
     while (!pins_.empty()) stop_pin(0);
 }
 
 // Drops the pinned runs when the system changes, since they cannot be compared.
-void Session::let_go() {
-    let_pins_go();
+void Session::drop_pinned_runs() {
+    cancel_pins();
     if (pinned_.empty()) return;
     const bool one = pinned_.size() == 1;
     notice_ += fmt::format("{}{} of {} {} unpinned; undo restores {}", notice_.empty() ? "" : "; ",
@@ -194,7 +194,7 @@ void Session::perform(const command::Unpin& command) {
 }
 
 void Session::perform(const command::UnpinAll&) {
-    let_pins_go();
+    cancel_pins();
     pinned_.clear();
     compose_pinned();
 }

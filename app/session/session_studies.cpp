@@ -221,7 +221,7 @@ std::optional<TangentLine> Session::sweep_tangent() const {
 
 namespace {
 
-bool begin_alike(const Run& a, const Run& b) {
+bool have_same_start(const Run& a, const Run& b) {
     return a.q == b.q && a.v == b.v && a.parameters == b.parameters && a.options.start_time == b.options.start_time;
 }
 
@@ -259,14 +259,14 @@ void Session::perform(const command::SelectBranchPoint& command) {
 std::optional<std::size_t> Session::orbit_point() const {
     const auto found = orbit();
     for (std::size_t i = 0; found != nullptr && i < found->count(); ++i)
-        if (begin_alike(run_on(found->point(i), asked_), asked_)) return i;
+        if (have_same_start(run_on(found->point(i), asked_), asked_)) return i;
     return std::nullopt;
 }
 
 std::optional<command::FindOrbit> Session::orbit_command() const {
     const auto found = orbit();
     if (found == nullptr) return std::nullopt;
-    if (begin_alike(found->base, asked_)) return command::FindOrbit{found->text};
+    if (have_same_start(found->base, asked_)) return command::FindOrbit{found->text};
     if (!orbit_point()) return std::nullopt;
     OrbitOptions asked = read_orbit(found->text);
     asked.from = "start";

@@ -30,8 +30,8 @@ class BranchContinuation {
         point_ = orbit_of(map_, at_);
         double ds = first_step;
         while (points_.size() < most_points) {
-            if (about_to_be_lost(ds)) {
-                if (const auto why = lose()) return *why;
+            if (nears_zeno_loss(ds)) {
+                if (const auto why = find_zeno_loss()) return *why;
             }
             std::optional<ConvergedOrbit> next;
             try {
@@ -200,8 +200,8 @@ class BranchContinuation {
     // ---- the loss of a Zeno point ----
 
     // Whether psi, which is linear in the parameter, would reach zero within a few steps.
-    bool about_to_be_lost(double ds) const {
-        if (!before_ || !point_.psi || not_lost_) return false;
+    bool nears_zeno_loss(double ds) const {
+        if (!before_ || !point_.psi || no_loss_found_) return false;
         const double x0 = (*before_)[0], psi0 = (*before_)[1], x1 = value_of(at_), psi1 = *point_.psi;
         if (!(psi1 < psi0) || x0 == x1) return false;
         const double left = psi1 * (x1 - x0) / (psi0 - psi1);  // change of the parameter until psi is 0
@@ -212,7 +212,7 @@ class BranchContinuation {
 
     // Finds the loss of a Zeno point by the secant method, from the side where the orbit exists. Returns nullopt if
     // there is no loss.
-    std::optional<std::string> lose() {
+    std::optional<std::string> find_zeno_loss() {
         double x0 = (*before_)[0], psi0 = (*before_)[1], x1 = value_of(at_), psi1 = *point_.psi;
         ConvergedOrbit near = at_;
         OrbitPoint point = point_, first = point_;
@@ -250,7 +250,7 @@ class BranchContinuation {
         // At a loss, the contact time vanishes together with psi. Otherwise something else vanishes, such as the whole
         // motion.
         if (psi1 > 1e-3 * *first.psi || !(point.shortest_contact < 0.2 * first.shortest_contact)) {
-            not_lost_ = true;
+            no_loss_found_ = true;
             return std::nullopt;
         }
         // The other data are extrapolated linearly to the loss, from points as close as can be computed.
@@ -312,7 +312,7 @@ class BranchContinuation {
     ConvergedOrbit at_;
     OrbitPoint point_;
     std::optional<std::array<double, 2>> before_;  // parameter value and psi of the last point
-    bool not_lost_ = false;
+    bool no_loss_found_ = false;
     std::vector<OrbitPoint> points_;
 };
 

@@ -55,7 +55,10 @@ Value take(std::string_view& bytes) {
 class Crew {
  public:
     Crew(Messages& messages, ChunkQueue& queue, const std::string& order)
-        : messages_(messages), queue_(queue), wanted_(static_cast<std::size_t>(messages.size())), out_(wanted_) {
+        : messages_(messages),
+          queue_(queue),
+          requested_(static_cast<std::size_t>(messages.size())),
+          in_progress_(requested_) {
         for (int rank = 1; rank < messages.size(); ++rank) messages.send(rank, message(MessageKind::order, order));
     }
 
@@ -64,11 +67,11 @@ class Crew {
         while (const auto letter = messages_.receive()) read(*letter);
         for (bool goes_on = true; goes_on;) {  // in turn: each rank gets one chunk before any gets two
             goes_on = false;
-            for (std::size_t rank = 1; rank < wanted_.size(); ++rank) goes_on = hand_to(rank) || goes_on;
+            for (std::size_t rank = 1; rank < requested_.size(); ++rank) goes_on = send_chunk(rank) || goes_on;
         }
     }
-    bool is_waited_for() const {
-        for (const int out : out_)
+    bool has_chunks_in_progress() const {
+        for (const int out : in_progress_)
             if (out > 0) return true;
         return false;
     }
@@ -80,14 +83,14 @@ class Crew {
         switch (kind_of(letter)) {
             case MessageKind::ready: {
                 const int threads = take<int>(content);
-                wanted_[from] = 2 * threads;
+                requested_[from] = 2 * threads;
                 return queue_.add_threads(threads);
             }
             case MessageKind::done: {
                 const auto chunk = take<Chunk>(content);
                 const auto taken = take<double>(content);
-                --out_[from];
-                ++wanted_[from];
+                --in_progress_[from];
+                ++requested_[from];
                 return queue_.put(chunk, std::string(content), taken);
             }
             default:
@@ -95,19 +98,19 @@ class Crew {
         }
     }
 
-    bool hand_to(std::size_t rank) {
-        if (wanted_[rank] == 0) return false;
+    bool send_chunk(std::size_t rank) {
+        if (requested_[rank] == 0) return false;
         const std::optional<Chunk> chunk = queue_.take_at_once();
         if (!chunk) return false;
         messages_.send(static_cast<int>(rank), message(MessageKind::chunk, as_bytes(*chunk)));
-        --wanted_[rank];
-        ++out_[rank];
+        --requested_[rank];
+        ++in_progress_[rank];
         return true;
     }
 
     Messages& messages_;
     ChunkQueue& queue_;
-    std::vector<int> wanted_, out_;  // numbers of chunks: that each rank could take, and that it has
+    std::vector<int> requested_, in_progress_;  // numbers of chunks: that each rank could take, and that it has
 };
 
 // The chunks received by another rank for its threads, and their results to be sent.
@@ -137,7 +140,7 @@ class Inbox final : public ChunkSource {
         std::string header(as_bytes(chunk));
         header += as_bytes(seconds);
         const std::scoped_lock lock(mutex_);
-        out_.push_back(message(MessageKind::done, header + bytes));
+        outbox_.push_back(message(MessageKind::done, header + bytes));
     }
     void fail(std::exception_ptr problem) override {
         std::string text = "stopped with an unknown error";
@@ -150,16 +153,16 @@ class Inbox final : public ChunkSource {
         std::array<char, 256> host{};
         if (::gethostname(host.data(), host.size() - 1) != 0) host[0] = '\0';
         const std::scoped_lock lock(mutex_);
-        out_.push_back(message(MessageKind::failed, fmt::format("on {}: {}", host.data(), text)));
+        outbox_.push_back(message(MessageKind::failed, fmt::format("on {}: {}", host.data(), text)));
         is_closed_ = true;
         changed_.notify_all();
     }
 
     std::optional<std::string> next_out() {
         const std::scoped_lock lock(mutex_);
-        if (out_.empty()) return {};
-        std::string bytes = std::move(out_.front());
-        out_.pop_front();
+        if (outbox_.empty()) return {};
+        std::string bytes = std::move(outbox_.front());
+        outbox_.pop_front();
         return bytes;
     }
 
@@ -167,7 +170,7 @@ class Inbox final : public ChunkSource {
     std::mutex mutex_;
     std::condition_variable changed_;
     std::deque<Chunk> chunks_;
-    std::deque<std::string> out_;
+    std::deque<std::string> outbox_;
     bool is_closed_ = false;
 };
 
@@ -222,7 +225,7 @@ bool do_chunks(Messages& messages, const std::string& order, std::uint64_t first
         is_working = false;
     });
     std::optional<Clock::time_point> stopped;
-    while (is_working || (crew.is_waited_for() && !queue.has_failed())) {
+    while (is_working || (crew.has_chunks_in_progress() && !queue.has_failed())) {
         try {
             crew.serve();
         } catch (...) {

@@ -135,7 +135,7 @@ void refuse_late(const SweepSpec& sweep) {
 // such.
 Program section_program(const Model& model, const std::string& zero) {
     try {
-        return behind("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
+        return compile_option("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
     } catch (const InputError&) {
         std::vector<std::string> events;
         for (const EventNames& names : event_names) events.emplace_back(names.word);
@@ -170,7 +170,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
         names.insert(names.end(), more.begin(), more.end());
     }
     for (const Text& text : texts)  // one by one, so that an error refers to its text
-        behind("--print", text.text, [&](std::span<const Text> one) { return model_->compile_measures(one); });
+        compile_option("--print", text.text, [&](std::span<const Text> one) { return model_->compile_measures(one); });
     measures_ = model_->compile_measures(texts);
     if (!quantities.empty()) quantities_.emplace(model_, quantities, "--print");
     if (sweep.at && !sweep.at->event) {

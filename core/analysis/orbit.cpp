@@ -60,7 +60,7 @@ void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
 }
 
 // Number of zero multipliers: two for every contact held at one time, and two for a plastic impact.
-std::size_t forgotten(const Model& model, const Trajectory& run) {
+std::size_t count_zero_multipliers(const Model& model, const Trajectory& run) {
     int most = 0;
     for (const Phase& phase : run.phases) most = std::max(most, phase.mode.held().count());
     for (const Event& event : run.events)
@@ -74,7 +74,7 @@ std::size_t forgotten(const Model& model, const Trajectory& run) {
 std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const ShootingResult& shot,
                                                    std::size_t& zeros) {
     const Index m = shot.M.rows();
-    zeros = forgotten(*map.model(), shot.run);
+    zeros = count_zero_multipliers(*map.model(), shot.run);
     const Index r = m - static_cast<Index>(zeros), flow = map.is_driven() ? 0 : 1;
     if (r <= flow) return {};
     // The image of M has r dimensions and contains all nonzero multipliers. The direction of the flow comes first; its

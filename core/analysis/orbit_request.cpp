@@ -88,7 +88,7 @@ void make_exact(Options& options, const std::set<std::string_view>& said) {
 
 void read_closing(const OrbitOptions& asked, const Model& model, ReturnCondition& closing) {
     const auto check = [&](const char* flag, const std::string& text) {
-        behind(flag, text, [&](std::span<const Text> one) { return model.compile_of_parameters(one); });
+        compile_option(flag, text, [&](std::span<const Text> one) { return model.compile_of_parameters(one); });
     };
     if (!asked.period.empty()) {
         check("--period", asked.period);

@@ -324,7 +324,7 @@ ShootingPoint in_flight(const ReturnMap& map, const Trajectory& run, double peri
 }
 
 // The distance between state b and state a moved by the shift, relative to the size of the states.
-double missed(const ReturnMap& map, const State& scale, const State& a, const State& b) {
+double return_distance(const ReturnMap& map, const State& scale, const State& a, const State& b) {
     double sum = 0.0;
     const double q = std::max(scale.q.maxCoeff(), 1e-300), v = std::max(scale.v.maxCoeff(), 1e-300);
     for (Index i = 0; i < a.q.size(); ++i) {
@@ -351,7 +351,7 @@ std::optional<ShootingPoint> from_releases(const ReturnMap& map, const Trajector
     const auto each = [&](const auto& take) {
         for (std::size_t between = 1; between < releases.size(); ++between)
             for (std::size_t i = releases.size() - between; i-- > 0;)
-                if (take(i, i + between, missed(map, scale, state(i), state(i + between)))) return;
+                if (take(i, i + between, return_distance(map, scale, state(i), state(i + between)))) return;
     };
     each([&](std::size_t, std::size_t, double distance) {
         least = std::min(least, distance);
@@ -378,7 +378,8 @@ ShootingPoint from_recurrence(const ReturnMap& map, const Trajectory& run) {
     std::vector<double> distance;
     const double length = run.end_time - begin.start_time;
     for (int i = 1; i <= instants; ++i)
-        distance.push_back(missed(map, scale, first, sampler.at(begin.start_time + length * i / instants).state));
+        distance.push_back(
+            return_distance(map, scale, first, sampler.at(begin.start_time + length * i / instants).state));
     const double far = *std::max_element(distance.begin(), distance.end());
     auto from = std::find_if(distance.begin(), distance.end(), [&](double d) { return d > 0.5 * far; });
     const double near = *std::min_element(from, distance.end());

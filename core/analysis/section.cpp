@@ -54,7 +54,7 @@ Interval PathBounds::rate() {
 
 namespace {
 
-bool is_asked(const Section& section, double t) { return !section.after || t >= *section.after; }
+bool is_after_start(const Section& section, double t) { return !section.after || t >= *section.after; }
 
 // Evaluates the function along a run at sufficiently many points.
 class SectionSampler {
@@ -76,11 +76,11 @@ class SectionSampler {
             for (const double t : {trajectory_.pieces[i].start, trajectory_.pieces[i].end}) ends.push_back(at(i, t));
         for (const SampledPoint& end : ends)
             if (std::isfinite(end.value)) rounding_ = std::max(rounding_, relative_rounding * std::abs(end.value));
-        if (is_nothing(ends)) return {};
-        left_ = most_looks + looks_per_piece * pieces_.size();
+        if (is_zero_everywhere(ends)) return {};
+        left_ = max_evaluations + evaluations_per_piece * pieces_.size();
         for (std::size_t i = 0; i < ends.size(); i += 2) {
             points_.push_back(ends[i]);
-            look_between(ends[i], ends[i + 1]);
+            search_between(ends[i], ends[i + 1]);
             points_.push_back(ends[i + 1]);
         }
         return std::move(points_);
@@ -96,10 +96,10 @@ class SectionSampler {
  private:
     static constexpr double relative_rounding = 1e-13;
     static constexpr int deepest = 40, deepest_by_bend = 6;
-    static constexpr std::size_t most_looks = std::size_t{1} << 18, looks_per_piece = 32;
+    static constexpr std::size_t max_evaluations = std::size_t{1} << 18, evaluations_per_piece = 32;
 
     // Whether all values are zero within rounding, also inside the steps, because steps may all end at zeros.
-    bool is_nothing(const std::vector<SampledPoint>& ends) {
+    bool is_zero_everywhere(const std::vector<SampledPoint>& ends) {
         if (function_.bounds == nullptr) return false;
         constexpr double share = 0.382;
         const auto rounds_to = [&](const SampledPoint& point) {
@@ -114,7 +114,7 @@ class SectionSampler {
                std::all_of(pieces_.begin(), pieces_.end(), is_zero_in);
     }
 
-    void look_between(const SampledPoint& a, const SampledPoint& b) {
+    void search_between(const SampledPoint& a, const SampledPoint& b) {
         if (function_.bounds != nullptr) return divide(a, b, deepest);
         constexpr int parts = 8;
         SampledPoint before = a;
@@ -190,7 +190,7 @@ std::vector<SectionPoint> events_of(const Trajectory& trajectory, const Section&
     std::vector<SectionPoint> moments;
     for (std::size_t i = 0; i < trajectory.events.size(); ++i) {
         const Event& event = trajectory.events[i];
-        if (section.event != event.kind || !is_asked(section, event.t)) continue;
+        if (section.event != event.kind || !is_after_start(section, event.t)) continue;
         SectionPoint moment;
         moment.events = i + 1;
         moment.contacts = event.contacts;
@@ -227,7 +227,7 @@ std::vector<SectionPoint> zeros_of(const Trajectory& trajectory, const Section& 
         const std::optional<double> t =
             below->piece == point.piece ? zero_between(along, *below, point) : trajectory.pieces[point.piece].start;
         below = nullptr;
-        if (!t || !is_asked(section, *t)) continue;
+        if (!t || !is_after_start(section, *t)) continue;
         SectionPoint moment;
         moment.sample = along.sample(point.piece, *t);
         moment.events = events_until(trajectory, *t);

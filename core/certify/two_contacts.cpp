@@ -145,7 +145,7 @@ PairConditions::PairConditions(const Model& model, const Run& run, const std::ar
 }
 
 // Evaluates the terms over a box of q, s, the two sigma and t.
-bool PairConditions::look(const std::vector<Interval>& box) {
+bool PairConditions::evaluate_terms(const std::vector<Interval>& box) {
     set_box(terms_, box);
     terms_.run();
     return certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
@@ -157,7 +157,7 @@ std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision&
     for (const double q : tangential.q) here.emplace_back(q);
     for (const double s : tangential.v) here.emplace_back(s);
     here.insert(here.end(), {Interval(0.0), Interval(0.0), Interval(tangential.t)});
-    if (!look(here)) return std::nullopt;
+    if (!evaluate_terms(here)) return std::nullopt;
     PairAtCollision pair;
     pair.e = e_;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -300,7 +300,7 @@ std::optional<PairConditions::PairCompletion> PairConditions::certify(const Pair
             box.all[2 * dof_ + k] = {-most, most};
         }
         box.all.back() = box.time();
-        if (!look(box.all)) return std::nullopt;
+        if (!evaluate_terms(box.all)) return std::nullopt;
         const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
         pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
         // Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, computed from K = W^-1 (W(q) - W).
@@ -317,7 +317,7 @@ std::optional<PairConditions::PairCompletion> PairConditions::certify(const Pair
         if (!contain(box, *bound, *pair)) continue;
         std::optional<Certificate::OtherContactBounds> others;
         if (!prove_other_contacts_stay(box.all, others)) return std::nullopt;
-        look(box.all);
+        evaluate_terms(box.all);
         PairCompletion result{certificate_of(box, *bound, *pair, collision), tangential};
         result.certificate.others = std::move(others);
         result.certificate.cut_at_resolution = cut_at_resolution;

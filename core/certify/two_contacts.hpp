@@ -56,7 +56,7 @@ class PairConditions : protected ConditionsBase {
         explicit PairBox(std::size_t dof) : CollisionBox(dof), all(2 * dof + 3) {}
     };
     // Evaluates the terms of the pair over a box. Returns whether both W_ii are proved positive.
-    bool look(const std::vector<Interval>& box);
+    bool evaluate_terms(const std::vector<Interval>& box);
     std::optional<PairAtCollision> at_collision(const PairCollision& collision, const State& shifted);
     bool contain(PairBox& box, const PairBound& bound, const PairAtCollision& pair);
     Certificate certificate_of(const PairBox& box, const PairBound& bound, const PairAtCollision& pair,

@@ -28,7 +28,7 @@ class Report : EquationsOnPage {
         const bool forces = has_forces(model_.equations());
         page_.heading(fmt::format("Energies, {}{}, restitution{}", forces ? "forces, " : "", is_one() ? "gap" : "gaps",
                                   is_one() ? "" : "s"));
-        given();
+        write_given_quantities();
         page_.heading(fmt::format("Free motion: M q'' + bias = {}", forces ? "Q" : "0"));
         matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);
         matrix({"bias", "b"}, simplified_.bias, model_.equations().bias, 1);
@@ -92,7 +92,7 @@ class Report : EquationsOnPage {
     }
 
     // The quantities as given in the file.
-    void given() {
+    void write_given_quantities() {
         const Equations& e = model_.equations();
         const SystemDescription& system = model_.description();
         const auto show = [&](const TextAndLatex& left, Expression expression, const Text& text) {

@@ -33,7 +33,7 @@ std::optional<double> newton_step(ContactTerms<Evaluator<double>>& terms, State&
 // True if the last few Newton steps reduced |h| as at a zero of order m > 1: by the factor (1 - 1/m)^m, which is
 // between 1/4 and 1/e, the factor of a gap that never closes. At a simple zero |h| decreases faster and faster. If
 // true, `state` is moved close to the zero; the steps shorten by 1 - 1/m.
-bool falls_to_flat(const Model& model, const Run& run, std::size_t contact, State& state) {
+bool converges_to_multiple_zero(const Model& model, const Run& run, std::size_t contact, State& state) {
     constexpr int steps = 12, looked_at = 4, until_near = 60;
     constexpr double least = 0.2, most = 0.35;
     auto terms = model.evaluator(model.programs_of(contact).contact_terms, run.parameters);
@@ -65,7 +65,7 @@ std::optional<State> flat_place(const Model& model, const Run& run, std::size_t 
             const auto& range = model.description().coordinates[static_cast<std::size_t>(k)].range;
             state.q[k] = range[0] + (range[1] - range[0]) * (static_cast<double>(engine() >> 11) * 0x1p-53);
         }
-        if (falls_to_flat(model, run, contact, state)) return state;
+        if (converges_to_multiple_zero(model, run, contact, state)) return state;
     }
     return std::nullopt;
 }

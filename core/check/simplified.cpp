@@ -62,7 +62,7 @@ class SimplificationSearch {
     std::optional<ZenoCondition> best() try {
         for (const Solution& coordinate : coordinates(on_held_surfaces()))
             for (const Solution& solution : with_rates(coordinate))
-                for (const bool expand_angles : {false, true}) consider(solution, expand_angles);
+                for (const bool expand_angles : {false, true}) try_solution(solution, expand_angles);
         if (best_) decide(*best_);
         return std::move(best_);
     } catch (const ExpressionTooLarge&) {
@@ -180,7 +180,7 @@ class SimplificationSearch {
         return hddot;
     }
 
-    void consider(const Solution& solution, bool expand_angles) {
+    void try_solution(const Solution& solution, bool expand_angles) {
         if (work_ <= 0) return;
         auto algebra = std::make_unique<Algebra>(graph_, Work{std::min(work_, work_of_a_try)}, expand_angles);
         const long before = algebra->work().left;

@@ -15,7 +15,7 @@ using Vector = ContactVector<double>;
 using Eigen::Index;
 
 // The only contact of `colliding` with hdot != 0; -1 if there is none or more than one.
-Index lonely_landing(const Vector& hdot, ContactSet colliding) {
+Index only_closing_contact(const Vector& hdot, ContactSet colliding) {
     Index landing = -1;
     for (Index j = 0; j < hdot.size(); ++j) {
         if (!contains(colliding, j) || hdot[j] == 0.0) continue;
@@ -67,7 +67,7 @@ std::optional<Complementarity> solve_among(const Matrix& W, const Vector& b, Con
 // The impulses p of Moreau's law, and y = hdot+ + e hdot-. nullopt if no solution is found.
 std::optional<Complementarity> solve_impact(const Matrix& W, const Vector& hdot, const Vector& e,
                                             ContactSet colliding) {
-    if (const Index i = lonely_landing(hdot, colliding); i >= 0)
+    if (const Index i = only_closing_contact(hdot, colliding); i >= 0)
         if (const auto p = passed_on(W, e[i], hdot[i], i, without(colliding, i)))
             return Complementarity{*p, Vector::Zero(hdot.size()), {}, true};
     return solve_among(W, hdot + e.cwiseProduct(hdot), colliding);
@@ -124,7 +124,7 @@ class Turns {
     std::optional<ImpactSequence> from(Index first) {
         ImpactSequence result;
         result.first = first;
-        for (ContactSet landing = with({}, first); !landing.empty(); landing = foremost()) {
+        for (ContactSet landing = with({}, first); !landing.empty(); landing = fastest_closing()) {
             if (result.impacts == ImpactSequence::most_impacts) {
                 result.end = ImpactSequence::SequenceEnd::cut;
                 break;
@@ -146,7 +146,7 @@ class Turns {
     double approach(Index j) const { return hdot_[j] < 0.0 ? -hdot_[j] / std::sqrt(W_(j, j)) : 0.0; }
 
     // The contacts with the largest closing speed (ties within rounding); empty if all are within rounding of zero.
-    ContactSet foremost() const {
+    ContactSet fastest_closing() const {
         double most = 0.0;
         for (Index j = 0; j < hdot_.size(); ++j) most = std::max(most, approach(j));
         ContactSet set;

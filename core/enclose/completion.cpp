@@ -52,7 +52,7 @@ Completion::Completion(const Model& model, const Coordinates& coordinates, std::
 }
 
 // Evaluates other_contact_program_ over a box of the variables of BouncingModel.
-void Completion::look(const Intervals& box) {
+void Completion::evaluate_other_contacts(const Intervals& box) {
     for (std::size_t i = 0; i < box.size(); ++i) other_contact_program_.input(other_contact_variables_[i]) = box[i];
     other_contact_program_.run();
 }
@@ -60,7 +60,7 @@ void Completion::look(const Intervals& box) {
 // A kappa that is 0 only within rounding is not accepted as a proof.
 bool Completion::other_contacts_stay(const Intervals& box) {
     if (other_contact_terms_ == nullptr) return true;
-    look(box);
+    evaluate_other_contacts(box);
     const auto others = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
     return others && !others->rounded_zero;
 }
@@ -71,7 +71,7 @@ std::map<std::size_t, Interval> Completion::passed_on(const Doubleton& set) {
     const double w = mag(set.hull(u_));
     box.emplace_back(-w, w);
     if (!z_.autonomous) box.push_back(set.hull(Coordinates::t()));
-    look(box);
+    evaluate_other_contacts(box);
     std::map<std::size_t, Interval> result;
     for (std::size_t i = 0; i < other_contact_terms_->held.size(); ++i)
         result[other_contact_terms_->held[i]] = transmission(*other_contact_terms_, other_contact_program_, i);

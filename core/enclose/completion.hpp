@@ -46,7 +46,7 @@ class Completion {
     Intervals variables(const Box& box) const;
 
     bool other_contacts_stay(const Intervals& box);
-    void look(const Intervals& box);  // evaluates other_contact_program_
+    void evaluate_other_contacts(const Intervals& box);  // evaluates other_contact_program_
 
     Coordinates z_;
     Layout layout_;

@@ -42,44 +42,44 @@ class Programs {
     }
 
     void measure_gap(std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         z[h_] = terms_.h();
         z[u_] = terms_.hdot();
     }
     void take_rate_out(std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         strike(z, z[u_]);
     }
     void impact(std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         restitution_.run();
         const Number e = restitution_.output(0);
         strike(z, newton::removed_rate(e, z[u_]));
         z[u_] = newton::rate_after(e, z[u_]);
     }
     void retract(std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         shift(z, Number(terms_.h()));
         push(z, Number(terms_.hdot()));
     }
     void project(std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         shift(z, terms_.h() - z[h_]);
         push(z, terms_.hdot() - z[u_]);
     }
 
     const ContactTerms<Evaluator<Number>>& terms(const std::vector<Number>& z) {
-        look(terms_, z);
+        evaluate(terms_, z);
         return terms_;
     }
     const ReleaseTerms<Evaluator<Number>>& release(const std::vector<Number>& z) {
-        look(release_, z);
+        evaluate(release_, z);
         return release_;
     }
 
  private:
     template <class Terms>
-    void look(Terms& terms, const std::vector<Number>& z) {
+    void evaluate(Terms& terms, const std::vector<Number>& z) {
         for (std::size_t i = 0; i < 2 * z_.dof; ++i) terms.input(i) = z[z_.q(i)];
         terms.clock() = z[Coordinates::t()];
         terms.run();
@@ -87,7 +87,7 @@ class Programs {
     // q -= n h; the terms are then evaluated at the new position.
     void shift(std::vector<Number>& z, const Number& h) {
         move_along(z[z_.q(0)], h);
-        look(terms_, z);
+        evaluate(terms_, z);
     }
     // v -= n rate.
     void push(std::vector<Number>& z, const Number& rate) { move_along(z[z_.v(0)], rate); }
@@ -100,7 +100,7 @@ class Programs {
     void strike(std::vector<Number>& z, const Number& rate) {
         push(z, rate);
         for (OpenContact& other : others_) {
-            look(other.terms, z);
+            evaluate(other.terms, z);
             Number passed(0.0);
             for (std::size_t i = 0; i < z_.dof; ++i)
                 passed = passed + other.terms.gradient(i) * terms_.impulse_direction(i);

@@ -121,7 +121,7 @@ void Prover::capture(std::size_t contact, const Interval& time, const Intervals&
     retract(mode_.with(contact, ContactState::held));
     const Interval hddot = maps(contact).normal(set_.hull()).hddot;
     const bool may_vanish = !certainly_negative(hddot) && !certainly_positive(hddot);
-    if (may_vanish && model_->is_carried(contact, mode_)) unpressed_ = unpressed_.with(contact);
+    if (may_vanish && model_->stays_closed_without_force(contact, mode_)) unpressed_ = unpressed_.with(contact);
     if (certainly_negative(hddot) || unpressed_.contains(contact)) {
         enter(mode_.with(contact, ContactState::held));
         note_event(Event::Kind::zeno, contact, time, v_before, velocities(set_.hull()));

@@ -151,7 +151,8 @@ void Prover::enter(Mode mode) {
     const ContactSet before = unpressed_;
     unpressed_ = {};
     for (const std::size_t i : before)
-        if (mode_.is_held(i) && model_->is_carried(i, mode_.without(i))) unpressed_ = unpressed_.with(i);
+        if (mode_.is_held(i) && model_->stays_closed_without_force(i, mode_.without(i)))
+            unpressed_ = unpressed_.with(i);
     motion().forget();
 }
 
@@ -229,7 +230,7 @@ CrossingSurface Prover::section_of(std::size_t contact, WatchedFunction watched)
     return CrossingSurface::of_gap(z_, contact);
 }
 
-void Prover::happen(Transition transition, std::size_t contact, const Interval& time) {
+void Prover::handle_event(Transition transition, std::size_t contact, const Interval& time) {
     switch (transition) {
         case Transition::impact:
             return land(contact, time);
@@ -256,7 +257,7 @@ void Prover::move() {
         doubts_ = 0;
         last_ = contact;
         motion().forget();
-        happen(law.transition, contact, set_.hull(Coordinates::t()));
+        handle_event(law.transition, contact, set_.hull(Coordinates::t()));
         settle();
         return;
     }
@@ -348,7 +349,7 @@ void Prover::begin_on_surface(const Intervals& start, std::size_t contact) {
     maps.retract(set_);
     measure_other_gaps(ContactSet::of(contact));
     const Interval hddot = maps.normal(set_.hull()).hddot;
-    if (!certainly_positive(hddot) && !certainly_negative(hddot) && model_->is_carried(contact, {}))
+    if (!certainly_positive(hddot) && !certainly_negative(hddot) && model_->stays_closed_without_force(contact, {}))
         unpressed_ = ContactSet::of(contact);
     if (certainly_negative(hddot) || unpressed_.contains(contact)) {
         enter(Mode::holding(ContactSet::of(contact)));

@@ -47,7 +47,7 @@ class Prover {
     ContactSet opened_by(std::size_t contact);
     void check_opened(ContactSet opened);
     CrossingSurface section_of(std::size_t contact, WatchedFunction watched);
-    void happen(Transition transition, std::size_t contact, const Interval& time);
+    void handle_event(Transition transition, std::size_t contact, const Interval& time);
     void land(std::size_t contact, const Interval& time);
     void capture(std::size_t contact, const Interval& time, const Intervals& v_before, ContactSet opened);
     bool complete(std::size_t contact, const Interval& time, const Interval& e, double radius);

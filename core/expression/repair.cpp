@@ -495,7 +495,7 @@ constexpr Habit corners[] = {
 };
 
 struct OtherName {
-    std::string_view written, known, told;
+    std::string_view written, known, hint;
 };
 
 // A hint is given if the scope has the name `known`; if `known` is empty, always.
@@ -550,7 +550,7 @@ std::string instead_of_sign(std::string_view rest) {
 std::string instead_of_name(std::string_view name, const std::function<bool(std::string_view)>& is_known) {
     for (const OtherName& other : names)
         if (name == other.written && (other.known.empty() || is_known(other.known)))
-            return "; " + std::string(other.told);
+            return "; " + std::string(other.hint);
     return "";
 }
 

@@ -146,8 +146,9 @@ const Program& Model::power(Mode mode) const {
     });
 }
 
-bool Model::is_carried(std::size_t contact, Mode mode) const {
-    return derived(carried_, {mode, contact}, [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });
+bool Model::stays_closed_without_force(std::size_t contact, Mode mode) const {
+    return derived(closed_without_force_, {mode, contact},
+                   [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });
 }
 
 const BouncingModel& Model::bouncing(std::size_t contact, Mode mode) const {

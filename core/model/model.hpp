@@ -61,7 +61,7 @@ class Model {
     const ContactPrograms& programs_of(std::size_t contact, Mode mode = {}) const;
     // Whether hddot of a contact in a mode is proved to be 0 wherever h = hdot = 0 for this contact and the held ones,
     // for all parameters. Its gap then stays 0 while theirs do, and its force is 0 (theory-gaps.md 2.7).
-    bool is_carried(std::size_t contact, Mode mode) const;
+    bool stays_closed_without_force(std::size_t contact, Mode mode) const;
 
     // Programs of the free motion; compiled once.
     const Program& gap(std::size_t contact = 0) const { return programs_of(contact).gap; }
@@ -173,7 +173,7 @@ class Model {
     mutable std::map<ContactInMode, ContactPrograms> programs_;
     mutable std::map<ContactInMode, BouncingModel> bouncings_;
     mutable std::map<ContactInMode, OtherContactTerms> other_contact_terms_;
-    mutable std::map<ContactInMode, bool> carried_;
+    mutable std::map<ContactInMode, bool> closed_without_force_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;

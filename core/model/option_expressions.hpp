@@ -14,7 +14,7 @@ namespace achilles {
 // Calls `compile` on the text. An InputError in the text is rethrown with the option's name and the text in its
 // message.
 template <class Compile>
-auto behind(const char* flag, const std::string& text, const Compile& compile) {
+auto compile_option(const char* flag, const std::string& text, const Compile& compile) {
     const Text given{text, {}};
     try {
         return compile(std::span(&given, 1));

@@ -35,8 +35,8 @@ class ExpressionReader {
             } catch (const ParseError& error) {
                 // After a substituted name only further unknown names are reported: other errors may follow from the
                 // substitution.
-                const bool is_told = error.name.empty() ? !is_certain : excuse(error.name, scope);
-                if (!is_told) mistakes_.add({place_in(text, error.offset), error.what(), error.hint});
+                const bool is_reported = error.name.empty() ? !is_certain : needs_no_message(error.name, scope);
+                if (!is_reported) mistakes_.add({place_in(text, error.offset), error.what(), error.hint});
                 // A hint proposes the whole text as intended, so parsing need not continue.
                 if (error.name.empty() || !error.hint.empty() || !go_on(error.name, scope)) return std::nullopt;
             }
@@ -45,18 +45,18 @@ class ExpressionReader {
 
  private:
     // Whether this name needs no message. An unknown name is reported once.
-    bool excuse(const std::string& name, const Scope& scope) {
+    bool needs_no_message(const std::string& name, const Scope& scope) {
         const std::string bare = without_primes(name);
-        if (names_.excused.contains(bare)) return true;
+        if (names_.reported.contains(bare)) return true;
         if (scope.forbidden.contains(name) || is_reserved(bare)) return false;
-        names_.excused.insert(bare);
+        names_.reported.insert(bare);
         return !names_.complete;
     }
 
     // Replaces an unknown name by a symbol, so that parsing can continue. Returns false if that does not help.
     bool go_on(const std::string& name, Scope& scope) {
         constexpr int most = 100;  // limit for one file: each replacement parses the text again
-        if (!names_.excused.contains(without_primes(name)) || ++guesses_ > most) return false;
+        if (!names_.reported.contains(without_primes(name)) || ++guesses_ > most) return false;
         return scope.allowed.emplace(name, graph_.symbol(0)).second;
     }
 
@@ -111,7 +111,8 @@ Mistake not_polynomial(const Text& kinetic, const TextParts& parts, Expression o
 Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePolynomial& whole, const Layout& layout,
                       const std::vector<std::string>& names) {
     const auto is_wrong = [](const RatePolynomial::value_type& entry) { return degree(entry.first) != 2; };
-    const auto told = [&](const RatePolynomial::key_type& exponents, const std::string& term, std::size_t offset) {
+    const auto mistake_of = [&](const RatePolynomial::key_type& exponents, const std::string& term,
+                                std::size_t offset) {
         const int d = degree(exponents);
         return Mistake{place_in(kinetic, offset),
                        fmt::format("the term {} of the kinetic energy has degree {} in the rates", term, d),
@@ -123,12 +124,12 @@ Mistake not_quadratic(const Text& kinetic, const TextParts& parts, const RatePol
         for (const auto& entry : expanded.value_or(RatePolynomial{})) {
             if (!is_wrong(entry) || !whole.contains(entry.first)) continue;
             const bool is_all = expanded->size() == 1;
-            return told(entry.first, is_all ? written(kinetic, part) : to_text(term_of(entry, layout), names),
-                        part.offset);
+            return mistake_of(entry.first, is_all ? written(kinetic, part) : to_text(term_of(entry, layout), names),
+                              part.offset);
         }
     }
     const auto wrong = std::find_if(whole.begin(), whole.end(), is_wrong);
-    return told(wrong->first, to_text(term_of(*wrong, layout), names), 0);
+    return mistake_of(wrong->first, to_text(term_of(*wrong, layout), names), 0);
 }
 
 // M from T = v'Mv/2, expanded in the rates. Throws Mistake.

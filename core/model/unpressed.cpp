@@ -133,7 +133,7 @@ KnownValues UnpressedContacts::at_rest(Mode mode, const State& state) {
 }
 
 bool UnpressedContacts::needs_no_force(std::size_t contact, Mode mode) {
-    if (model_->is_carried(contact, mode)) return true;
+    if (model_->stays_closed_without_force(contact, mode)) return true;
     const ContactInMode key(mode, contact);
     const auto known = at_all_states_.find(key);
     if (known != at_all_states_.end()) return known->second;

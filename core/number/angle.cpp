@@ -15,7 +15,7 @@ struct CachedAngle {
 };
 
 // Not inlined, so that a cache hit needs no saved registers.
-[[gnu::noinline]] SineCosine get_to_know(double angle, CachedAngle& known) {
+[[gnu::noinline]] SineCosine compute_and_cache(double angle, CachedAngle& known) {
     known = {angle, {std::sin(angle), std::cos(angle)}};
     return known.value;
 }
@@ -26,7 +26,7 @@ SineCosine sine_and_cosine(double angle) {
     static thread_local constinit std::array<CachedAngle, 8> memory{};
     const auto bits = std::bit_cast<std::uint64_t>(angle);
     CachedAngle& known = memory[bits * 0x9E3779B97F4A7C15u >> 61];
-    if (std::bit_cast<std::uint64_t>(known.angle) != bits) return get_to_know(angle, known);
+    if (std::bit_cast<std::uint64_t>(known.angle) != bits) return compute_and_cache(angle, known);
     return known.value;
 }
 

@@ -17,19 +17,19 @@ namespace {
 
 // Bits of MXCSR: the rounding mode (0: to nearest) and the two flags that flush denormals to zero.
 constexpr unsigned rounding = 0x6000, flush_to_zero = 0x8000, denormals_are_zero = 0x0040;
-constexpr unsigned ours = rounding | flush_to_zero | denormals_are_zero;
+constexpr unsigned controlled_bits = rounding | flush_to_zero | denormals_are_zero;
 
 }  // namespace
 
 FloatEnvironmentGuard::FloatEnvironmentGuard() : control_(_mm_getcsr()), rounding_(std::fegetround()) {
     if (rounding_ != FE_TONEAREST) std::fesetround(FE_TONEAREST);
-    if ((control_ & ours) != 0) _mm_setcsr(control_ & ~ours);
+    if ((control_ & controlled_bits) != 0) _mm_setcsr(control_ & ~controlled_bits);
 }
 
 // Exception flags that were raised in between stay raised.
 FloatEnvironmentGuard::~FloatEnvironmentGuard() {
     if (rounding_ != FE_TONEAREST) std::fesetround(rounding_);
-    if ((control_ & ours) != 0) _mm_setcsr((_mm_getcsr() & ~ours) | (control_ & ours));
+    if ((control_ & controlled_bits) != 0) _mm_setcsr((_mm_getcsr() & ~controlled_bits) | (control_ & controlled_bits));
 }
 
 #else

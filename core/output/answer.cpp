@@ -174,7 +174,7 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
 
 std::string end_line(const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
-                                           : "no error estimate, because " + estimate.none_since;
+                                           : "no error estimate, because " + estimate.no_estimate_reason;
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
 

@@ -60,7 +60,7 @@ std::string other_contacts_text(const Model& model, const Certificate::OtherCont
     return fmt::format("{}", fmt::join(parts, "; "));
 }
 
-std::string given(const Trajectory& trajectory, std::size_t event) {
+std::string assumed_impact_law(const Trajectory& trajectory, std::size_t event) {
     const auto& events = trajectory.events;
     for (std::size_t i = 0; i < event; ++i)
         if (events[i].joint && events[i].joint->order_matters)

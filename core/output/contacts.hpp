@@ -38,7 +38,7 @@ std::string other_contacts_text(const Model& model, const Certificate::OtherCont
 
 // "Moreau's law at event k", for the first event before this one whose order matters but is unknown. Later proofs
 // depend on this choice (theory-gaps.md 2.4). Empty if there is no such event.
-std::string given(const Trajectory& trajectory, std::size_t event);
+std::string assumed_impact_law(const Trajectory& trajectory, std::size_t event);
 
 // For each phase, the index after its last event. A phase includes the event that changes its mode.
 std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory);

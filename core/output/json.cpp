@@ -254,7 +254,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
                                 {"impact_speed", number_json(event.truncation->impact_speed)}};
     if (event.certificate) {
         Json& certificate = result["certificate"] = certificate_of(trajectory, *event.certificate);
-        if (const std::string convention = given(trajectory, index); !convention.empty())
+        if (const std::string convention = assumed_impact_law(trajectory, index); !convention.empty())
             certificate["given"] = convention;
     }
     return result;
@@ -274,7 +274,7 @@ void add_error_estimate(Json& result, const Trajectory& trajectory, const ErrorE
                   {"sigma", number_json(estimate.end->sigma)},
                   {"reach", number_json(estimate.end->reach())}};
     else
-        result["end"]["no_error_estimate"] = estimate.none_since;
+        result["end"]["no_error_estimate"] = estimate.no_estimate_reason;
 }
 
 }  // namespace

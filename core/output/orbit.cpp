@@ -96,7 +96,7 @@ std::string named(const SystemDescription& description, const Vector& values, co
     return text;
 }
 
-std::string told(const std::complex<double>& mu, int digits) {
+std::string multiplier_text(const std::complex<double>& mu, int digits) {
     if (mu.imag() == 0.0) return fmt::format("{:.{}g}", mu.real() + 0.0, digits);
     return fmt::format("{:.{}g} {} {:.{}g}i", mu.real() + 0.0, digits, mu.imag() < 0.0 ? "-" : "+", std::abs(mu.imag()),
                        digits);
@@ -108,7 +108,7 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
     std::string text;
     const std::size_t rest = point.multipliers.size() - point.zero_multipliers;
     for (std::size_t i = 0; i < point.multipliers.size(); ++i) {
-        text += fmt::format("{}{}", i > 0 ? ", " : "", told(point.multipliers[i], digits));
+        text += fmt::format("{}{}", i > 0 ? ", " : "", multiplier_text(point.multipliers[i], digits));
         if (i == 0 && point.is_autonomous) text += " (along the motion)";
         if (i + 1 == point.multipliers.size() && i >= rest)
             text += fmt::format(" (the last {} exactly)", point.zero_multipliers);

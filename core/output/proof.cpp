@@ -41,9 +41,9 @@ std::string list(const std::vector<std::string>& names, const Intervals& all, st
     return result;
 }
 
-bool is_landing(const EnclosedEvent& event) { return event.is_zeno() && event.most_impacts == 0; }
+bool is_plastic_impact(const EnclosedEvent& event) { return event.is_zeno() && event.most_impacts == 0; }
 const EventNames& names_of(const EnclosedEvent& event) {
-    return is_landing(event) ? landing_names : names_of(event.kind);
+    return is_plastic_impact(event) ? landing_names : names_of(event.kind);
 }
 
 // True if a time, as typed, is not exactly a double.
@@ -104,7 +104,7 @@ class ProofText {
     // The line for the other impacts after the first; `next` is the event after them, or null at the end.
     static std::string more_impacts(int impacts, const EnclosedEvent* next) {
         const int after_first = std::max(impacts - 1, 0);
-        const bool is_cut = next != nullptr && next->is_zeno() && !is_landing(*next);
+        const bool is_cut = next != nullptr && next->is_zeno() && !is_plastic_impact(*next);
         const int more_in_some = is_cut ? next->most_impacts - next->impacts : 0;
         if (after_first + more_in_some == 0) return "";
         std::string count = fmt::format("{}", after_first);
@@ -275,7 +275,7 @@ class ProofAnswer {
         std::vector<Row> rows;
         for (const EnclosedEvent& event : proof_.events) {
             if (event.is_impact() && event.opened.empty()) continue;
-            std::string name(names_of(is_landing(event) ? Event::Kind::impact : event.kind).label);
+            std::string name(names_of(is_plastic_impact(event) ? Event::Kind::impact : event.kind).label);
             if (description_.constraints.size() > 1) name += " of " + description_.constraints[event.contact].name;
             rows.push_back(row(std::move(name), cell(event.t), event.q));
         }

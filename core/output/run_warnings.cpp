@@ -70,7 +70,7 @@ std::optional<RunWarning> cut_too_soon(const Trajectory& trajectory) {
 
 // Between a cut and its Zeno point the motion holds contacts that the phase does not hold yet. If a phase has no
 // pieces, the last piece belongs to the phase before it.
-std::optional<RunWarning> ended_on_the_way(const Trajectory& trajectory) {
+std::optional<RunWarning> ended_during_completion(const Trajectory& trajectory) {
     if (trajectory.phases.empty() || trajectory.events.empty()) return std::nullopt;
     const Phase& phase = trajectory.phases.back();
     if (phase.first_piece == phase.last_piece || trajectory.end_time < trajectory.pieces.back().end)
@@ -109,7 +109,7 @@ std::optional<RunWarning> integration_outweighs(const Trajectory& trajectory) {
 }
 
 // Flights too short for double precision are not computed, even if the requested tolerance needs them.
-std::optional<RunWarning> missed(const Trajectory& trajectory) {
+std::optional<RunWarning> unresolved_flights(const Trajectory& trajectory) {
     for (const Event& event : trajectory.events) {
         if (!event.is_zeno() || !event.certificate || !event.certificate->cut_at_resolution ||
             !event.certificate->decision)
@@ -132,9 +132,9 @@ std::vector<RunWarning> remarks(const Trajectory& trajectory) {
     std::vector<RunWarning> all;
     if (trajectory.rerun_options) all.push_back(made_again(trajectory));
     if (auto remark = cut_too_soon(trajectory)) all.push_back(std::move(*remark));
-    if (auto remark = missed(trajectory)) all.push_back(std::move(*remark));
+    if (auto remark = unresolved_flights(trajectory)) all.push_back(std::move(*remark));
     if (auto remark = integration_outweighs(trajectory)) all.push_back(std::move(*remark));
-    if (auto remark = ended_on_the_way(trajectory)) all.push_back(std::move(*remark));
+    if (auto remark = ended_during_completion(trajectory)) all.push_back(std::move(*remark));
     return all;
 }
 

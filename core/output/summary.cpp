@@ -63,7 +63,7 @@ class RunTimeline {
           precision_(sentences_.precision()),
           ends_(ends_of_phases(trajectory)) {}
 
-    std::string told() const {
+    std::string text() const {
         std::string text;
         const std::vector<ChatterPhases> chatters = chatters_of(trajectory_);
         auto chatter = chatters.begin();
@@ -232,7 +232,7 @@ NormUnits norm_units(const SystemDescription& description) {
 std::string sentence(const Trajectory& trajectory, const ErrorEstimate& estimate) {
     if (const auto horizon = horizon_before_end(trajectory, estimate))
         return fmt::format("the error at the end is not known: the run is trusted until t = {:.6g} s", *horizon);
-    if (!estimate.end) return "no estimate of the error at the end: " + estimate.none_since;
+    if (!estimate.end) return "no estimate of the error at the end: " + estimate.no_estimate_reason;
     return fmt::format("estimated error {:.1g} at the end: an estimate, not a proof", estimate.end->size());
 }
 
@@ -277,7 +277,7 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += "\n";
     const Precision precision(trajectory, &estimate);
     const State errors = precision.of_state(trajectory.end_time);
-    text += RunTimeline(trajectory, estimate).told();
+    text += RunTimeline(trajectory, estimate).text();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
     text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,

@@ -11,15 +11,15 @@ namespace achilles {
 
 namespace {
 
-bool is_wanted() {
+bool is_enabled_by_environment() {
     const char* const given = std::getenv("ACHILLES_MACHINE_CODE");
     return given == nullptr || std::string_view(given) != "0";
 }
-std::atomic<bool> wanted = is_wanted();
+std::atomic<bool> is_enabled = is_enabled_by_environment();
 
 }  // namespace
 
-void ask_environment_for_code() { wanted = is_wanted(); }
+void ask_environment_for_code() { is_enabled = is_enabled_by_environment(); }
 
 // The memory is first written, then made executable; it is never both at once.
 std::shared_ptr<const MachineCode> MachineCode::of(std::span<const std::uint8_t> bytes) {
@@ -35,7 +35,7 @@ std::shared_ptr<const MachineCode> MachineCode::of(std::span<const std::uint8_t>
 MachineCode::~MachineCode() { munmap(memory_, size_); }
 
 std::optional<Width> best_width() {
-    if (!wanted) return std::nullopt;
+    if (!is_enabled) return std::nullopt;
     __builtin_cpu_init();
     if (!__builtin_cpu_supports("avx2")) return std::nullopt;
     return __builtin_cpu_supports("avx512f") ? Width::eight : Width::four;

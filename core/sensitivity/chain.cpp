@@ -139,8 +139,8 @@ void Chain::set_gaps() {
 }
 
 ChainLink& Chain::add(ChainLink::Kind kind, std::optional<std::size_t> event) {
-    if (made_ == links_.size()) links_.emplace_back();
-    ChainLink& link = links_[made_++];
+    if (link_count_ == links_.size()) links_.emplace_back();
+    ChainLink& link = links_[link_count_++];
     link.kind = kind;
     link.event = event;
     link.length = 0.0;
@@ -153,18 +153,18 @@ ChainLink& Chain::add(ChainLink::Kind kind, std::optional<std::size_t> event) {
 }
 
 const ChainLink* Chain::next() {
-    if (given_ == made_) given_ = made_ = 0;
-    while (made_ == 0 && broken_.empty()) {
+    if (next_link_ == link_count_) next_link_ = link_count_ = 0;
+    while (link_count_ == 0 && broken_.empty()) {
         const auto& pieces = trajectory_->pieces;
         const auto& events = trajectory_->events;
         const bool any_piece = next_piece_ < pieces.size(), any_event = next_event_ < events.size();
         if (!any_piece && !any_event) return nullptr;
         if (any_event && (!any_piece || events[next_event_].t <= pieces[next_piece_].start))
-            happen(next_event_++);
+            handle_event(next_event_++);
         else
             step();
     }
-    return given_ < made_ ? &links_[given_++] : nullptr;
+    return next_link_ < link_count_ ? &links_[next_link_++] : nullptr;
 }
 
 // ---- steps ----

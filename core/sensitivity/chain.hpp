@@ -99,7 +99,7 @@ class Chain {
 
  private:
     void step();
-    void happen(std::size_t event);
+    void handle_event(std::size_t event);
     void land(std::size_t event);
     void reach_zeno_point(std::size_t event);
     void release(std::size_t event);
@@ -137,7 +137,7 @@ class Chain {
     bool waiting_ = false;         // between a truncation and its Zeno point
     std::vector<double> h_, u_;    // of every contact, at state_
     std::deque<ChainLink> links_;  // reused storage
-    std::size_t made_ = 0, given_ = 0;
+    std::size_t link_count_ = 0, next_link_ = 0;
     std::string broken_;
     DerivativeMargins margins_;
 };

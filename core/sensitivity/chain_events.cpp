@@ -40,7 +40,7 @@ void take_out(const ValueWithGradient& rate, const ContactGradient& surface, con
 
 }  // namespace
 
-void Chain::happen(std::size_t event) {
+void Chain::handle_event(std::size_t event) {
     const Event& now = trajectory_->events[event];
     state_ = {now.q, now.v_before, now.t};
     switch (now.kind) {
@@ -186,7 +186,7 @@ RowVectorXd Chain::accumulation_time_row(const RowMatrix& J, std::size_t contact
     const double e = surfaces_.restitution(contact).value;
     const auto e_row = restitutions_[contact]->row(0);
     if (e == 0.0 && e_row.isZero(0.0)) return RowVectorXd::Zero(J.cols());  // no flight follows
-    if (e == 0.0 && model_->is_carried(contact, others))
+    if (e == 0.0 && model_->stays_closed_without_force(contact, others))
         break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
     using Number = Jet<double, 5>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
@@ -205,7 +205,7 @@ void Chain::reach_zeno_point(std::size_t event) {
     const std::size_t i = now.contacts.only();
     const double a = -surfaces_.of(i, mode_.without(i)).normal_acceleration(state_);
     const bool may_be_unpressed = is_plastic_landing(now) && now.certificate->a_max == 0.0;
-    if (!may_be_unpressed || !model_->is_carried(i, mode_.without(i))) take_least(margins_.a_inf, a);
+    if (!may_be_unpressed || !model_->stays_closed_without_force(i, mode_.without(i))) take_least(margins_.a_inf, a);
     // Perturbed runs with a longer accumulation time continue for the difference.
     ChainLink& link = add(ChainLink::Kind::jump, event);
     link.J.col(tangent_.accumulation_time()) += rate();

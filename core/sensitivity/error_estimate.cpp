@@ -101,7 +101,7 @@ State sizes_at_fixed_time(const Transport& carried, const TangentLayout& tangent
 
 ErrorEstimate none(std::string reason) {
     ErrorEstimate result;
-    result.none_since = std::move(reason);
+    result.no_estimate_reason = std::move(reason);
     return result;
 }
 
@@ -174,15 +174,16 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         result.course.add(event, sizes_at_fixed_time(carried, tangent, chain.rate()));
     }
     if (!chain.broken().empty()) {
-        result.none_since = chain.broken();
+        result.no_estimate_reason = chain.broken();
     } else if (cut) {
-        result.none_since =
+        result.no_estimate_reason =
             "the run ends between a cut and its Zeno point, where the computed motion leaves out the remaining impacts";
     } else {
         result.end = at_end(carried, tangent, chain.rate());
         if (!is_finite(*result.end)) {
             result.end.reset();
-            result.none_since = "the estimated errors overflow by the end of the run; a shorter run has an estimate";
+            result.no_estimate_reason =
+                "the estimated errors overflow by the end of the run; a shorter run has an estimate";
         }
     }
     result.trusted_until = result.course.horizon();

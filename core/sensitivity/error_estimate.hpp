@@ -78,7 +78,7 @@ struct ErrorEstimate {
     // range so far (ErrorCourse). It is the end of the run if that never happens; nullopt only if there is no estimate.
     std::optional<double> trusted_until;
     // The reason why there is no estimate at the end; else empty.
-    std::string none_since;
+    std::string no_estimate_reason;
 };
 
 // Estimates the errors of a run that was recorded in full. There is no estimate if steps are not made by Taylor's

@@ -255,22 +255,22 @@ FlowDifference::FlowDifference(const Model& model, Mode mode, const TangentLayou
     : tangent_(tangent), motion_(model, mode, parameters), part_(model, mode, parameters) {
     const bool has_clock = model.motion(mode).series.inputs()[model.layout().t()];
     for (std::size_t k = 0; k < 2 * tangent.dof; ++k)
-        beside_.push_back({tangent.variable(k), 0.0, MotionSeries(model, mode, parameters)});
-    if (has_clock) beside_.push_back({TangentLayout::t(), 0.0, MotionSeries(model, mode, parameters)});
+        nearby_motions_.push_back({tangent.variable(k), 0.0, MotionSeries(model, mode, parameters)});
+    if (has_clock) nearby_motions_.push_back({TangentLayout::t(), 0.0, MotionSeries(model, mode, parameters)});
 }
 
-void FlowDifference::expand_beside(const State& state) {
+void FlowDifference::expand_nearby(const State& state) {
     constexpr double relative = 0x1p-20;
-    for (NearbyMotion& beside : beside_) {
+    for (NearbyMotion& nearby : nearby_motions_) {
         State other = state;
-        const Eigen::Index column = beside.column;
+        const Eigen::Index column = nearby.column;
         double& x = column == TangentLayout::t() ? other.t
                     : column < tangent_.v(0)     ? other.q[column - tangent_.q(0)]
                                                  : other.v[column - tangent_.v(0)];
         const double here = x;
         x += relative * (1.0 + std::abs(here));
-        beside.distance = x - here;
-        beside.motion.expand(other, slope_order_);
+        nearby.distance = x - here;
+        nearby.motion.expand(other, slope_order_);
     }
 }
 
@@ -279,11 +279,11 @@ void FlowDifference::expand_beside(const State& state) {
 double FlowDifference::last_terms(double length) const {
     double most = 0.0, rate = 0.0;
     for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) rate = std::max(rate, std::abs(motion_.coefficient(1, i)));
-    for (const NearbyMotion& beside : beside_) {
-        double largest = beside.column == TangentLayout::t() ? rate : 0.0, last = 0.0, power = 1.0;
+    for (const NearbyMotion& nearby : nearby_motions_) {
+        double largest = nearby.column == TangentLayout::t() ? rate : 0.0, last = 0.0, power = 1.0;
         for (int k = 0; k <= slope_order_; ++k, power *= length)
             for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
-                const double term = std::abs(slope(beside, k, i)) * power;
+                const double term = std::abs(slope(nearby, k, i)) * power;
                 largest = std::max(largest, term);
                 if (k >= slope_order_ - 1) last = std::max(last, term);
             }
@@ -295,7 +295,7 @@ double FlowDifference::last_terms(double length) const {
 // The minimum over the motion and the neighboring ones.
 int FlowDifference::finite_order() const {
     int order = motion_.finite_order();
-    for (const NearbyMotion& beside : beside_) order = std::min(order, beside.motion.finite_order());
+    for (const NearbyMotion& nearby : nearby_motions_) order = std::min(order, nearby.motion.finite_order());
     return order;
 }
 
@@ -306,7 +306,7 @@ double FlowDifference::expand(const State& state, double length, int least_order
     order_ = std::min(std::max(least_order, slope_order_), highest);
     motion_.expand(state, order_);
     for (;;) {
-        expand_beside(state);
+        expand_nearby(state);
         if (const int finite = finite_order(); finite < slope_order_) {
             if (finite < lowest) return length;  // the derivative is NaN, which is visible
             slope_order_ = finite;
@@ -322,23 +322,23 @@ double FlowDifference::expand(const State& state, double length, int least_order
 }
 
 void FlowDifference::slope_after(double span, Mode mode, RowMatrix& S) {
-    for (const NearbyMotion& beside : beside_) {
+    for (const NearbyMotion& nearby : nearby_motions_) {
         for (std::size_t i = 0; i < 2 * tangent_.dof; ++i) {
             double sum = 0.0;
-            for (int k = slope_order_; k >= 0; --k) sum = sum * span + slope(beside, k, i);
-            S(tangent_.q(i), beside.column) = sum;
+            for (int k = slope_order_; k >= 0; --k) sum = sum * span + slope(nearby, k, i);
+            S(tangent_.q(i), nearby.column) = sum;
         }
         // h and u from order 2 on; the orders 0 and 1 are set below.
         for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {
             if (mode.is_held(contact)) continue;
             double h = 0.0, u = 0.0;
             for (int k = slope_order_; k >= 2; --k) {
-                const double c = slope(beside, k, 2 * tangent_.dof + contact);
+                const double c = slope(nearby, k, 2 * tangent_.dof + contact);
                 h = h * span + c;
                 u = u * span + k * c;
             }
-            S(tangent_.h(contact), beside.column) = h * span * span;
-            S(tangent_.u(contact), beside.column) = u * span;
+            S(tangent_.h(contact), nearby.column) = h * span * span;
+            S(tangent_.u(contact), nearby.column) = u * span;
         }
     }
     for (std::size_t contact = 0; contact < tangent_.contacts; ++contact) {

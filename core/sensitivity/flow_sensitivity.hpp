@@ -79,7 +79,7 @@ class FlowDifference : public FlowSensitivity {
         MotionSeries motion;
     };
     // Expands the neighboring motions, each with one coordinate x of this state changed by about 2^-20 (1 + |x|).
-    void expand_beside(const State& state);
+    void expand_nearby(const State& state);
     bool by_halves(int degree, double span, RowMatrix& delta);
     void by_parts(int degree, double span, RowMatrix& delta);
     double open_terms(const MotionSeries& motion, double span) const;
@@ -87,14 +87,14 @@ class FlowDifference : public FlowSensitivity {
     double last_terms(double length) const;
     int finite_order() const;
     // Difference quotient of coefficient k.
-    double slope(const NearbyMotion& beside, int k, std::size_t i) const {
-        return (beside.motion.coefficient(k, i) - motion_.coefficient(k, i)) / beside.distance;
+    double slope(const NearbyMotion& nearby, int k, std::size_t i) const {
+        return (nearby.motion.coefficient(k, i) - motion_.coefficient(k, i)) / nearby.distance;
     }
 
     TangentLayout tangent_;
     MotionSeries motion_, part_;
     State state_;  // of the last expansion
-    std::vector<NearbyMotion> beside_;
+    std::vector<NearbyMotion> nearby_motions_;
     int order_ = 0;        // of the motion
     int slope_order_ = 6;  // of the neighboring motions; at least that of the step before minus 1
 };

@@ -163,7 +163,7 @@ Quantities::Quantities(std::shared_ptr<const Model> model, std::vector<std::stri
     : model_(std::move(model)), expressions_(std::move(expressions)) {
     std::vector<Text> texts;
     for (const std::string& expression : expressions_) {
-        behind(option, expression, [&](std::span<const Text> one) { return model_->compile_measures(one); });
+        compile_option(option, expression, [&](std::span<const Text> one) { return model_->compile_measures(one); });
         texts.push_back({expression, {}});
     }
     if (!texts.empty()) measures_ = model_->compile_measures(texts);

@@ -227,7 +227,7 @@ class SeriesCompiler {
     Operand make(Seed seed, const Operand& a, const Operand& b, std::uint32_t value,
                  std::optional<std::uint32_t> partner_value = {}) {
         const auto key = std::tuple(seed.kind, seed.function, seed.sign, a.value, a.series, b.value, b.series);
-        if (const auto found = made_.find(key); found != made_.end()) return found->second;
+        if (const auto found = operands_.find(key); found != operands_.end()) return found->second;
         seed.a = a;
         seed.b = b;
         seed.rule = static_cast<std::uint32_t>(series_.plan_.rules.size());
@@ -281,7 +281,7 @@ class SeriesCompiler {
                 break;
         }
         series_.seeds_.push_back(seed);
-        made_.emplace(key, result);
+        operands_.emplace(key, result);
         partners_.emplace(result.series, partner);
         return result;
     }
@@ -400,7 +400,7 @@ class SeriesCompiler {
     std::vector<Form> forms_;  // by moving register of the program
     std::map<std::tuple<Operation, std::uint32_t, std::uint32_t>, std::uint32_t> coefficient_ids_;
     std::map<std::tuple<Kind, Operation, double, std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>, Operand>
-        made_;
+        operands_;
     std::map<std::uint32_t, Operand> partners_;                                        // by series of the result
     std::map<std::pair<Operation, std::uint32_t>, std::uint32_t> function_registers_;  // by function and operand
     InnerSumLanes sums_;

@@ -222,7 +222,7 @@ class LaneStepperOver final : public LaneStepper {
     // ---- contact quantities ----
 
     // Evaluates the contact quantities at the end of a step of length `span` (s).
-    void look(LaneStep& step, const Number& span) {
+    void evaluate_contact(LaneStep& step, const Number& span) {
         for (std::size_t i = 0; i < 2 * dof_; ++i) contact_terms_.input(i) = step.q_and_v[i];
         contact_terms_.clock() = Number(step.t) + span;
         contact_terms_.run();
@@ -241,12 +241,12 @@ class LaneStepperOver final : public LaneStepper {
 
     // The first two iterations of ContactKinematics::project(). Returns the lanes in which they suffice.
     Mask project(LaneStep& step, const Number& span) {
-        look(step, span);
+        evaluate_contact(step, span);
         const Mask regular = Number(step.end_W) > 0.0;
         const Mask far = ~(abs(Number(step.end_h)) <= 0.5 * Number(step.rounding));
         if (!any(far)) return regular;
         move_along_normal(step, far);
-        look(step, span);
+        evaluate_contact(step, span);
         return regular & (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
     }
 
@@ -258,13 +258,13 @@ class LaneStepperOver final : public LaneStepper {
 
     // Projects the runs that land to h = 0; the others keep their state.
     void land(LaneStep& step, const Number& span, Mask& none, Mask& falls) {
-        look(step, span);
+        evaluate_contact(step, span);
         none &= (Number(step.end_W) > 0.0) & ~(step.end_h < -4.0 * Number(step.rounding));
         falls &= Number(step.end_W) > 0.0;
         const Mask far = falls & (abs(Number(step.end_h)) > 0.5 * Number(step.rounding));
         if (!any(far)) return;
         move_along_normal(step, far);
-        look(step, span);
+        evaluate_contact(step, span);
         falls &= (Number(step.end_W) > 0.0) & (abs(Number(step.end_h)) <= 4.0 * Number(step.rounding));
     }
 

@@ -219,7 +219,7 @@ void BatchSimulator::gather(bool flying) {
             step_.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
             step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
         }
-        const auto& [gap, multiplicity, asked_again] = request.starts.front();
+        const auto& [gap, multiplicity, is_shortened] = request.starts.front();
         step_.t[lane] = request.state.t;
         step_.until[lane] = request.until;
         step_.state_error[lane] = gap.state_error;

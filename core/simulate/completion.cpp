@@ -222,7 +222,7 @@ void ExecutionAutomaton::enter_phase() {
 // Starts a new phase if the mode has changed; otherwise only the load-bearing contacts may have.
 void ExecutionAutomaton::enter_or_stay() {
     if (next_.resting() != record_.mode()) return enter_phase();
-    record_.carry_on(next_.held());
+    record_.continue_phase(next_.held());
 }
 
 // ---- release ----
@@ -242,7 +242,7 @@ void ExecutionAutomaton::release(std::size_t which) {
         decide(mode.held().with(next_.touching), vanishing);
         if (outcome_) return;
         const ContactSet gone = resting.without(next_.resting().held());
-        return gone.empty() ? carry_on() : leave(gone);
+        return gone.empty() ? continue_phase() : leave(gone);
     }
     if (!leaves) {
         const std::string hint = product_hint(*model_, which);

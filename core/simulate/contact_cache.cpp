@@ -142,7 +142,7 @@ std::optional<double> ContactCache::project_several(State& state, ContactSet ont
     }
 }
 
-bool ContactCache::land_beside(State& state, std::size_t contact, Mode mode, Contact& landed) {
+bool ContactCache::land_while_held(State& state, std::size_t contact, Mode mode, Contact& landed) {
     if (!project(state, mode.held().with(contact), mode.held())) return false;
     landed = of(contact, mode).at(state);
     return true;

@@ -60,13 +60,14 @@ class ContactCache {
     // Projects an impacting contact and the held contacts onto their surfaces; its hdot is kept. Returns its contact
     // quantities in this mode in `landed`; false if it fails.
     bool land(State& state, std::size_t contact, Mode mode, Contact& landed) {
-        return mode.is_free() ? free_[contact].project(state, true, landed) : land_beside(state, contact, mode, landed);
+        return mode.is_free() ? free_[contact].project(state, true, landed)
+                              : land_while_held(state, contact, mode, landed);
     }
 
  private:
     std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
     UnpressedContacts& unpressed();
-    bool land_beside(State& state, std::size_t contact, Mode mode, Contact& landed);
+    bool land_while_held(State& state, std::size_t contact, Mode mode, Contact& landed);
 
     const Model* model_;
     Run run_;

@@ -174,7 +174,7 @@ ContactSet ExecutionAutomaton::vanishing_with(std::size_t which) {
 // Whether a contact with h = hdot = hddot = 0 stays closed in a mode: hddot is 0 everywhere, or the system is at
 // permanent rest.
 bool ExecutionAutomaton::stays_closed(std::size_t contact, Mode mode) {
-    return (surfaces_->count() > 1 && model_->is_carried(contact, mode)) || is_at_rest(mode);
+    return (surfaces_->count() > 1 && model_->stays_closed_without_force(contact, mode)) || is_at_rest(mode);
 }
 
 // Ends the run if a touching contact has opened or penetrated.

@@ -29,7 +29,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     result_.flow = flow_;
     result_.steps = 0;
     result_.state = &request.state;
-    asked_again_ = known_ = {};
+    shortened_ = known_ = {};
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
@@ -96,7 +96,7 @@ StepResult::StepOutcome EventStepper::end_without_event() {
 }
 
 // Whether the segment's start is as accurate as possible, because the run uses exact_tolerance or less.
-bool EventStepper::knows_its_start() const { return run_.options.tolerance <= exact_tolerance; }
+bool EventStepper::has_exact_start() const { return run_.options.tolerance <= exact_tolerance; }
 
 // Whether the step reaches the time `until`.
 bool EventStepper::is_last() const { return flow_->end_time() >= request_->until; }

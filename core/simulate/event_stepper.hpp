@@ -19,9 +19,9 @@ inline constexpr double exact_tolerance = 1e-14;
 
 // Initial data of a contact's event function in a step: of its gap if it is open, of its force if it is held.
 struct EventStart {
-    Gap gap;                   // for a held contact, only state_error is used
-    int multiplicity = 0;      // order of its zero at the start: of h if open; 1 for a force that starts at 0
-    bool asked_again = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
+    Gap gap;                    // for a held contact, only state_error is used
+    int multiplicity = 0;       // order of its zero at the start: of h if open; 1 for a force that starts at 0
+    bool is_shortened = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
 };
 
 // Request for a smooth step from state.t to `until` at the latest, or to the first event in (t, until]. Events are the
@@ -32,7 +32,7 @@ struct StepRequest {
     ContactSet touching;  // open in `mode`, but their gap stays 0: not checked for events
     // Touching contacts that stay closed because their gradients depend on those of the held ones: they may share the
     // load (theory-gaps.md 2.5). The other touching contacts carry no load.
-    ContactSet carried;
+    ContactSet load_sharing_candidates;
     ContactSet unwatched;  // held contacts not checked for events: the load may be shared otherwise
     ContactSet unpressed;  // held, not checked for events: nothing presses them (theory-gaps.md 2.7)
     State state;
@@ -45,7 +45,7 @@ struct StepRequest {
     bool plain = false;              // may be answered by fast steps that detect only "no event" and plain impacts
 
     ContactSet held() const { return mode.held(); }
-    Mode resting() const { return mode.with(carried, ContactState::held); }
+    Mode resting() const { return mode.with(load_sharing_candidates, ContactState::held); }
 };
 
 // Result of a request: the state reached, with no event before it, and how the step ended there.
@@ -121,7 +121,7 @@ class EventStepper {
     bool end_step_after(double duration);
     void end_step(double gap);
     StepOutcome fail(StepFailure failure);
-    bool knows_its_start() const;
+    bool has_exact_start() const;
     bool is_last() const;
     ContactSet held() const { return request_->held(); }
     WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
@@ -139,7 +139,7 @@ class EventStepper {
     const StepRequest* request_ = nullptr;
     Flow* flow_ = nullptr;     // the integrator in use
     std::size_t contact_ = 0;  // whose event function is examined
-    ContactSet asked_again_;   // contacts at whose remainder the step was shortened
+    ContactSet shortened_;     // contacts at whose remainder the step was shortened
     StepResult result_;
     State landed_;                   // state of an impact without a step
     std::vector<Gap> gaps_;          // at the start of a segment

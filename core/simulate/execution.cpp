@@ -131,7 +131,7 @@ const StepRequest* ExecutionAutomaton::next() {
     next_.most = run_.options.max_steps - record_.steps();
     const EventStart& start = next_.starts.front();  // of the only contact; used only if there is one
     next_.plain =
-        stalled_ == 0 && !start.asked_again && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
+        stalled_ == 0 && !start.is_shortened && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
     if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
@@ -170,7 +170,7 @@ double ExecutionAutomaton::state_error() const {
 void ExecutionAutomaton::accept(const StepResult& result) {
     using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
-    const bool shared = result.end == StepOutcome::ambiguous && carry_on_without(result.which, *result.state);
+    const bool shared = result.end == StepOutcome::ambiguous && continue_without(result.which, *result.state);
     if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
@@ -184,7 +184,7 @@ void ExecutionAutomaton::accept(const StepResult& result) {
         case StepOutcome::force_vanishes:
             return release(result.which);
         case StepOutcome::ambiguous:
-            return shared ? carry_on() : stop(Outcome::Kind::undecided, ambiguity_text(result));
+            return shared ? continue_phase() : stop(Outcome::Kind::undecided, ambiguity_text(result));
         case StepOutcome::off_surface:
             return fail_projection();
         case StepOutcome::step_failed:

@@ -169,17 +169,17 @@ class ExecutionAutomaton {
     bool share(const ClosedContacts& closed, const ContactVector<double>& hddot, const Complementarity& forces);
     void end_sharing();
     double end_of_sharing() const;
-    bool carry(const ClosedContacts& closed, const LoadSharing& sharing);
+    bool hold_load_sharing(const ClosedContacts& closed, const LoadSharing& sharing);
     void hold(Mode mode, ContactSet touching);
-    void note_carried(const ClosedContacts& closed, ContactSet pressed);
+    void update_load_sharing_candidates(const ClosedContacts& closed, ContactSet pressed);
     bool is_stuck(const ClosedContacts& closed, ContactSet pressed);
     ContactSet enough_of(const ClosedContacts& closed, const ContactVector<double>& hddot, ContactSet pressed);
-    bool carry_on_without(std::size_t which, const State& state);
+    bool continue_without(std::size_t which, const State& state);
     void forget_held() {
         next_.mode = {};
-        next_.touching = next_.carried = next_.unwatched = next_.unpressed = {};
+        next_.touching = next_.load_sharing_candidates = next_.unwatched = next_.unpressed = {};
     }
-    void carry_on();
+    void continue_phase();
 
     StepRequest next_;        // the current state and the next step
     double last_step_ = 0.0;  // s

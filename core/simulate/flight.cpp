@@ -43,7 +43,7 @@ FirstCrossing EventStepper::gap_descent() {
 
 // Returns nullopt if the gap stays open along the step, which may have been shortened.
 std::optional<StepResult::StepOutcome> EventStepper::meet_gap(FirstCrossing descent) {
-    const bool asked_before = start_of(contact_).asked_again;
+    const bool was_shortened = start_of(contact_).is_shortened;
     if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta))  // its remainder is smaller
         descent = gap_descent();
     switch (descent.kind) {
@@ -53,16 +53,16 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_gap(FirstCrossing desc
             if (descent.theta == 0.0) return land_here();
             return locate_impact(descent.theta);  // nullopt: no impact, or the step was shortened
         case FirstCrossing::Kind::increasing:
-            if (!knows_its_start() || asked_before) return doubt_gap(0.0);
+            if (!has_exact_start() || was_shortened) return doubt_gap(0.0);
             break;
         case FirstCrossing::Kind::open:
             // Try again from where the gap enters its remainder: an event near the end of this step is then inside the
             // next one.
-            if (!asked_before && end_step_at(descent.theta)) {
-                asked_again_ = asked_again_.with(contact_);
+            if (!was_shortened && end_step_at(descent.theta)) {
+                shortened_ = shortened_.with(contact_);
             } else if (surely_closes_at_start()) {
                 return land_here();
-            } else if (!(knows_its_start() && is_last() && gap_along(contact_)(1.0) >= 0.0)) {
+            } else if (!(has_exact_start() && is_last() && gap_along(contact_)(1.0) >= 0.0)) {
                 return doubt_gap(descent.theta);
             }
             break;
@@ -78,7 +78,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i)) continue;
         if (watched_of(i) != WatchedFunction::gap) {
-            result_.starts[i] = {{}, 0, asked_again_.contains(i)};
+            result_.starts[i] = {{}, 0, shortened_.contains(i)};
             continue;
         }
         if (!is_watched(i)) {
@@ -99,7 +99,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         }
         flow_->add_error(i, h, gap);
         flow_->move_gap(i, gap);
-        result_.starts[i] = {gap, 0, asked_again_.contains(i)};
+        result_.starts[i] = {gap, 0, shortened_.contains(i)};
         least = std::min(least, end.h);
     }
     return true;
@@ -193,7 +193,7 @@ StepResult::StepOutcome EventStepper::end_flight() {
 
 // Returns nullopt if the force stays positive along the step, which may have been shortened.
 std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing descent) {
-    const bool asked_before = start_of(contact_).asked_again;
+    const bool was_shortened = start_of(contact_).is_shortened;
     if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta)) descent = force_descent();
     switch (descent.kind) {
         case FirstCrossing::Kind::none:
@@ -202,13 +202,13 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
             if (descent.theta == 0.0) return StepOutcome::force_vanishes;
             return locate_release(descent.theta);  // nullopt: the step was shortened
         case FirstCrossing::Kind::increasing:
-            if (!knows_its_start() || asked_before) return doubt_force(0.0);
+            if (!has_exact_start() || was_shortened) return doubt_force(0.0);
             break;
         case FirstCrossing::Kind::open:
             // As for gaps: an event near the end of this step is then inside the next one.
-            if (!asked_before && end_step_at(descent.theta)) {
-                asked_again_ = asked_again_.with(contact_);
-            } else if (!(knows_its_start() && is_last())) {
+            if (!was_shortened && end_step_at(descent.theta)) {
+                shortened_ = shortened_.with(contact_);
+            } else if (!(has_exact_start() && is_last())) {
                 return doubt_force(descent.theta);
             }
             break;

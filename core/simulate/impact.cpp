@@ -49,11 +49,11 @@ ContactKinematics::ContactKinematics(const Model& model, const Run& run, std::si
 
 Contact ContactKinematics::at(const State& state) {
     Contact contact;
-    look(state, contact);
+    evaluate(state, contact);
     return contact;
 }
 
-void ContactKinematics::look(const State& state, Contact& contact) {
+void ContactKinematics::evaluate(const State& state, Contact& contact) {
     set_state(terms_, state);
     terms_.run();
     contact.h = terms_.h();
@@ -97,7 +97,7 @@ bool ContactKinematics::project(State& state, bool keep_velocity, Contact& conta
     constexpr int rounds = 8;  // two or three are usual; more help only with rounding
     double before = std::numeric_limits<double>::infinity();
     for (int round = 0;; ++round) {
-        look(state, contact);
+        evaluate(state, contact);
         if (!(contact.W > 0.0) || !std::isfinite(contact.h)) break;
         // The error bound costs more than an iteration, so the first one evaluates it only if h is tiny at once. One
         // iteration usually leaves a few roundings of q, which further ones do not improve; that is accepted.

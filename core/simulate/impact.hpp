@@ -61,7 +61,7 @@ class ContactKinematics {
 
  private:
     // Evaluates the terms of the contact at a state and stores them in `contact`.
-    void look(const State& state, Contact& contact);
+    void evaluate(const State& state, Contact& contact);
     const Model* model_;
     const Model::ContactPrograms* programs_;
     std::vector<double> parameters_;

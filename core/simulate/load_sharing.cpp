@@ -98,8 +98,8 @@ bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const Cont
     for (const LoadSharing& sharing : all) {
         const bool sure = sharing.least > clearly && clearly * sharing.least * sharing.most > known_to;
         if (!doubted.empty() && !sure) continue;
-        if (!carry(closed, sharing)) continue;
-        note_carried(closed, pressed);
+        if (!hold_load_sharing(closed, sharing)) continue;
+        update_load_sharing_candidates(closed, pressed);
         return true;
     }
     // At permanent rest, the forces of the load-bearing contacts need not be told apart.
@@ -111,7 +111,7 @@ bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const Cont
     if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
     hold(Mode::holding(carrying), closed.contacts_at(all_places(closed)).without(carrying));
-    note_carried(closed, pressed);
+    update_load_sharing_candidates(closed, pressed);
     return true;
 }
 
@@ -135,7 +135,7 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
     const ContactSet held = closed.contacts_at(sharing.front().places);
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
     hold(Mode::holding(held), closed.contacts_at(all).without(held));
-    note_carried(closed, forces.active);
+    update_load_sharing_candidates(closed, forces.active);
     next_.unwatched = held;
     return true;
 }
@@ -145,22 +145,22 @@ void ExecutionAutomaton::end_sharing() {
     const Mode resting = next_.resting();
     decide(next_.held().with(next_.touching));
     if (outcome_) return;
-    if (next_.resting() == resting) return carry_on();
+    if (next_.resting() == resting) return continue_phase();
     stop(Outcome::Kind::undecided, fmt::format("cannot decide which of {} were released just before, at {}",
                                                names_of(resting.held()), where(next_.state)));
 }
 
 // Holds these load-bearing contacts if each force is proved to press, or to grow from 0. The other contacts rest with
 // them, touch, or leave.
-bool ExecutionAutomaton::carry(const ClosedContacts& closed, const LoadSharing& sharing) {
+bool ExecutionAutomaton::hold_load_sharing(const ClosedContacts& closed, const LoadSharing& sharing) {
     const Mode mode = Mode::holding(closed.contacts_at(sharing.places));
     std::vector<EventStart> starts = next_.starts;
     ContactSet touching;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t contact = closed.which[i];
         EventStart& start = starts[contact];
-        const bool carried = !mode.is_held(contact) && depends(closed, i, sharing.places);
-        if (carried) {
+        const bool is_candidate = !mode.is_held(contact) && depends(closed, i, sharing.places);
+        if (is_candidate) {
             touching = sharing.opening.contains(i) ? touching : touching.with(contact);
             start = {{0.0, 0.0}, 2};  // order of its zero if it opens
             continue;
@@ -194,15 +194,15 @@ void ExecutionAutomaton::hold(Mode mode, ContactSet touching) {
         if (touching.contains(i)) next_.starts[i] = {{0.0, 0.0}, 1};
 }
 
-// Sets next_.carried: the touching contacts that may share the load, because their gradients depend on those of other
-// load-bearing contacts.
-void ExecutionAutomaton::note_carried(const ClosedContacts& closed, ContactSet pressed) {
+// Sets next_.load_sharing_candidates: the touching contacts that may share the load, because their gradients depend on
+// those of other load-bearing contacts.
+void ExecutionAutomaton::update_load_sharing_candidates(const ClosedContacts& closed, ContactSet pressed) {
     const ContactSet bearing = closed.places_of(next_.held()).with(pressed);
-    next_.carried = {};
+    next_.load_sharing_candidates = {};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         if (next_.touching.contains(closed.which[i]) &&
             depends(closed, i, basis_of(closed, bearing.without(ContactSet::of(i)))))
-            next_.carried = next_.carried.with(closed.which[i]);
+            next_.load_sharing_candidates = next_.load_sharing_candidates.with(closed.which[i]);
 }
 
 // Whether these contacts, if pressed, leave no motion: velocities are 0, no contact surface moves, and the gradients
@@ -228,8 +228,8 @@ ContactSet ExecutionAutomaton::enough_of(const ClosedContacts& closed, const Con
 
 // Called if the force of a load-bearing contact may touch 0 and this cannot be decided. Tries to continue with other
 // load-bearing contacts.
-bool ExecutionAutomaton::carry_on_without(std::size_t which, const State& state) {
-    if (next_.carried.empty() || !next_.mode.is_held(which)) return false;
+bool ExecutionAutomaton::continue_without(std::size_t which, const State& state) {
+    if (next_.load_sharing_candidates.empty() || !next_.mode.is_held(which)) return false;
     const StepRequest before = next_;
     next_.state = state;
     const ClosedContacts closed = surfaces_->at(state, before.held().with(before.touching));
@@ -242,7 +242,7 @@ bool ExecutionAutomaton::carry_on_without(std::size_t which, const State& state)
 }
 
 // Continues the phase: the same contacts rest, but the load-bearing contacts may have changed.
-void ExecutionAutomaton::carry_on() {
+void ExecutionAutomaton::continue_phase() {
     constexpr int many = 100;  // more changes at one time would never end
     load_sharing_changes_ = next_.state.t == load_sharing_since_ ? load_sharing_changes_ + 1 : 0;
     load_sharing_since_ = next_.state.t;

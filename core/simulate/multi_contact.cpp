@@ -307,7 +307,7 @@ bool ExecutionAutomaton::complete_pair(std::size_t first, std::size_t second, Mo
     event.contacts = two;
     event.mode = mode;
     next_.state = restart;
-    next_.touching = next_.carried = next_.unwatched = {};
+    next_.touching = next_.load_sharing_candidates = next_.unwatched = {};
     next_.unpressed = unpressed_of(next_.unpressed, mode);
     for (std::size_t i = 0; i < next_.starts.size(); ++i)
         if (all.contains(i)) next_.starts[i] = {};

@@ -74,7 +74,7 @@ void Recorder::open(Mode mode, ContactSet load_bearing, double t) {
     trajectory_.phases.push_back(phase);
 }
 
-void Recorder::carry_on(ContactSet load_bearing) {
+void Recorder::continue_phase(ContactSet load_bearing) {
     Phase& phase = trajectory_.phases.back();
     if (load_bearing != phase.mode.held()) phase.load_bearing = load_bearing;
 }

@@ -38,7 +38,7 @@ class Recorder {
     // Begins a phase. If not all held contacts are load-bearing, its forces are not unique.
     void open(Mode mode, ContactSet load_bearing, double t);
     // Continues the phase with other load-bearing contacts.
-    void carry_on(ContactSet load_bearing);
+    void continue_phase(ContactSet load_bearing);
     void close(double t);
     Phase::Kind phase() const { return trajectory_.phases.back().kind; }
     Mode mode() const { return trajectory_.phases.back().mode; }

@@ -124,7 +124,7 @@ std::string full_message(const std::string& file, Location at, const std::string
     return full;
 }
 
-std::string told(const std::vector<InputError>& all, std::size_t more) {
+std::string joined_messages(const std::vector<InputError>& all, std::size_t more) {
     std::string text;
     for (const InputError& error : all) text += fmt::format("{}{}", text.empty() ? "" : "\n\n", error.what());
     return more == 0 ? text : fmt::format("{}\n\nand {} more", text, more);
@@ -140,11 +140,11 @@ InputError::InputError(std::string file_, Location at_, std::string message_, st
       hint(std::move(hint_)),
       at(at_) {}
 
-InputError::InputError(const InputError& first, const std::string& told)
-    : std::runtime_error(told), file(first.file), message(first.message), hint(first.hint), at(first.at) {}
+InputError::InputError(const InputError& first, const std::string& what)
+    : std::runtime_error(what), file(first.file), message(first.message), hint(first.hint), at(first.at) {}
 
 InputErrors::InputErrors(std::vector<InputError> all_, std::size_t more_)
-    : InputError(all_.front(), told(all_, more_)), all(std::move(all_)), more(more_) {}
+    : InputError(all_.front(), joined_messages(all_, more_)), all(std::move(all_)), more(more_) {}
 
 std::vector<InputError> each_of(const InputError& error) {
     const auto* several = dynamic_cast<const InputErrors*>(&error);
@@ -197,28 +197,28 @@ Location place_in(const Text& text, std::size_t offset) {
 
 namespace {
 
-constexpr std::size_t most_kept = 1000;  // in the order of reading; more are of no use
-constexpr std::size_t most_told = 10;
+constexpr std::size_t max_stored = 1000;  // in the order of reading; more are of no use
+constexpr std::size_t max_printed = 10;
 
 }  // namespace
 
 void ErrorCollector::add(Mistake mistake) {
     ++count_;
-    if (kept_.size() < most_kept) kept_.push_back(std::move(mistake));
+    if (stored_.size() < max_stored) stored_.push_back(std::move(mistake));
 }
 
 void ErrorCollector::raise(const SystemDescription& system) const {
     if (count_ == 0) return;
-    std::vector<Mistake> sorted = kept_;
+    std::vector<Mistake> sorted = stored_;
     const auto place = [](const Mistake& mistake) { return std::tuple(mistake.at.line, mistake.at.column); };
     std::stable_sort(sorted.begin(), sorted.end(),
                      [&](const Mistake& a, const Mistake& b) { return place(a) < place(b); });
-    std::vector<InputError> told;
-    for (std::size_t i = 0; i < std::min(sorted.size(), most_told); ++i)
-        told.emplace_back(system.file, sorted[i].at, sorted[i].message, sorted[i].hint,
-                          sorted[i].has_line ? line_of(system.source_text, sorted[i].at.line) : "");
-    const std::size_t more = count_ - told.size();
-    throw InputErrors(std::move(told), more);
+    std::vector<InputError> reported;
+    for (std::size_t i = 0; i < std::min(sorted.size(), max_printed); ++i)
+        reported.emplace_back(system.file, sorted[i].at, sorted[i].message, sorted[i].hint,
+                              sorted[i].has_line ? line_of(system.source_text, sorted[i].at.line) : "");
+    const std::size_t more = count_ - reported.size();
+    throw InputErrors(std::move(reported), more);
 }
 
 }  // namespace achilles

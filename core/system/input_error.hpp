@@ -26,7 +26,7 @@ struct InputError : std::runtime_error {
 
  protected:
     // For a collection of errors: the data of the first, with its own what().
-    InputError(const InputError& first, const std::string& told);
+    InputError(const InputError& first, const std::string& what);
 };
 
 // The mistakes of one file, ordered by position. As an InputError it is the first of them. what() lists all, separated
@@ -85,7 +85,7 @@ class ErrorCollector {
     void raise(const SystemDescription& system) const;
 
  private:
-    std::vector<Mistake> kept_;
+    std::vector<Mistake> stored_;
     std::size_t count_ = 0;
 };
 

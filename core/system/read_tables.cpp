@@ -71,7 +71,7 @@ Text read_name(Names& names, const Fields& fields) {
         names.has_several_gaps && (name.text.starts_with("gap_") || name.text.starts_with("lambda_"));
     if (is_reserved(name.text) || is_of_a_gap) {
         names.complete = was_complete;
-        names.excused.insert(name.text);
+        names.reported.insert(name.text);
         throw Mistake{
             name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
             is_of_a_gap

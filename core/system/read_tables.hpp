@@ -15,9 +15,9 @@ namespace achilles {
 // The names of the coordinates and parameters in a file, which may contain mistakes.
 struct Names {
     std::map<std::string, Location> places;
-    bool complete = true;           // false: some names could not be read, so no name is reported as unknown
-    bool has_several_gaps = false;  // names that start with gap_ or lambda_ are then reserved
-    std::set<std::string> excused;  // rejected or unknown names, reported once; they may stand for anything
+    bool complete = true;            // false: some names could not be read, so no name is reported as unknown
+    bool has_several_gaps = false;   // names that start with gap_ or lambda_ are then reserved
+    std::set<std::string> reported;  // rejected or unknown names, reported once; they may stand for anything
 };
 
 // The contents of a file and its mistakes so far.

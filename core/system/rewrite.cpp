@@ -28,23 +28,23 @@ class DefinitionSorter {
 
     void visit(std::size_t i) {
         if (states_[i] == VisitState::done) return;
-        if (states_[i] == VisitState::on_the_way) return tell_circle(i);
+        if (states_[i] == VisitState::on_the_way) return report_circular_definition(i);
         states_[i] = VisitState::on_the_way;
         way_.push_back(i);
         for (const std::string& name : names_in(derived_[i].definition.text))
             if (const auto other = places_.find(name); other != places_.end()) visit(other->second);
         way_.pop_back();
         states_[i] = VisitState::done;
-        if (!names_.excused.contains(derived_[i].name)) ordered.push_back(derived_[i]);
+        if (!names_.reported.contains(derived_[i].name)) ordered.push_back(derived_[i]);
     }
 
     // Reports a circular definition, from the parameter that comes first in the file: "J -> K -> J".
-    void tell_circle(std::size_t again) {
+    void report_circular_definition(std::size_t again) {
         std::vector<std::size_t> circle(std::find(way_.begin(), way_.end(), again), way_.end());
-        const bool is_told = std::any_of(circle.begin(), circle.end(),
-                                         [&](std::size_t i) { return names_.excused.contains(derived_[i].name); });
-        for (const std::size_t i : circle) names_.excused.insert(derived_[i].name);
-        if (is_told) return;
+        const bool is_reported = std::any_of(circle.begin(), circle.end(),
+                                             [&](std::size_t i) { return names_.reported.contains(derived_[i].name); });
+        for (const std::size_t i : circle) names_.reported.insert(derived_[i].name);
+        if (is_reported) return;
         std::rotate(circle.begin(), std::min_element(circle.begin(), circle.end()), circle.end());
         const DerivedDescription& first = derived_[circle.front()];
         std::string way;

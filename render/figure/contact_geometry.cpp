@@ -273,8 +273,8 @@ PlaneFunction ContactGeometry::function_of(const Solid& solid, double t, const S
     };
 }
 
-const ContactGeometry::CachedGround& ContactGeometry::look(std::size_t which, const Drawing& drawing, double t,
-                                                           const State& state) const {
+const ContactGeometry::CachedGround& ContactGeometry::cached_ground(std::size_t which, const Drawing& drawing, double t,
+                                                                    const State& state) const {
     seen_.resize(solids_.size());
     auto& seen = seen_[which];
     const auto same = [](const Drawing& a, const Drawing& b) {
@@ -300,7 +300,7 @@ void ContactGeometry::add_ground(Drawing& drawing, double t, const State& state,
                                  const Theme& theme) const {
     std::vector<DrawnShape> ground, lit;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
-        const CachedGround& seen = look(i, drawing, t, state);
+        const CachedGround& seen = cached_ground(i, drawing, t, state);
         DrawnShape& shape = ground.emplace_back();
         shape.kind = DrawnShape::Kind::area;
         shape.fill_color = theme.ground;

@@ -69,7 +69,7 @@ class ContactGeometry {
         double t = 0.0;
         std::vector<Point> area, line;
     };
-    const CachedGround& look(std::size_t solid, const Drawing& drawing, double t, const State& state) const;
+    const CachedGround& cached_ground(std::size_t solid, const Drawing& drawing, double t, const State& state) const;
     void find_discs(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<Shape>& shapes);
     void find_tips(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<Shape>& shapes,
                    double size);

@@ -44,7 +44,7 @@ std::vector<Point> standing_apart(const std::vector<Point>& places, double apart
 }
 
 // The first marker in each square of this side, unless one in an adjacent square is closer than that.
-std::vector<Point> far_apart(const std::vector<Point>& places, double side) {
+std::vector<Point> spaced_apart(const std::vector<Point>& places, double side) {
     std::map<std::array<long, 2>, Point> taken;
     std::vector<Point> laid;
     for (const Point& at : places) {
@@ -123,7 +123,7 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
         return;
     }
     constexpr double between = 1.3;  // distance in marker sizes
-    const std::vector<Point> laid = far_apart(places, std::max(between * markers.size, markers.apart) * m.scale);
+    const std::vector<Point> laid = spaced_apart(places, std::max(between * markers.size, markers.apart) * m.scale);
     if (laid.size() > most_markers || places.size() > most_events * laid.size())
         return lay_band(markers, places, sheet, plot, m);
     Markers bare = markers;

@@ -376,7 +376,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         const bool is_lit = d.contact ? held.contains(*d.contact) : !of_body.empty() && &item == body();
         if (d.shape == DrawingShape::ground) {
             DrawnShape& earth = add(drawing, DrawnShape::Kind::area, theme.ground, 0.0);
-            earth.points = beneath(
+            earth.points = strip_right_of(
                 placed.points.front(), placed.points.back(),
                 ends_are_outside(limits, placed.points) ? 2.0 * diagonal(limits) : hatch_of_world * limits.size);
             earth.moves = item.moves;

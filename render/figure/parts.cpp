@@ -103,7 +103,7 @@ std::vector<Point> hatching(const Point& from, const Point& to, double apart) {
     return points;
 }
 
-std::vector<Point> beneath(const Point& from, const Point& to, double deep) {
+std::vector<Point> strip_right_of(const Point& from, const Point& to, double deep) {
     const auto at = way(from, to);
     if (!at || !(deep > 0.0)) return {};
     return {(*at)(0.0, 0.0), (*at)(at->length, 0.0), (*at)(at->length, -deep), (*at)(0.0, -deep)};

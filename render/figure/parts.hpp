@@ -33,6 +33,6 @@ std::vector<Point> damper_line(const Point& from, const Point& to, const PartSiz
 std::vector<Point> hatching(const Point& from, const Point& to, double apart);
 
 // The strip of depth `deep` on the right of from -> to, as a polygon.
-std::vector<Point> beneath(const Point& from, const Point& to, double deep);
+std::vector<Point> strip_right_of(const Point& from, const Point& to, double deep);
 
 }  // namespace achilles

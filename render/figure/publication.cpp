@@ -253,7 +253,7 @@ Markers marked(const Theme& theme, const char* label, Markers::MarkerShape shape
     return markers;
 }
 
-std::vector<BranchEvents> happenings(const Branch& branch, const Theme& theme) {
+std::vector<BranchEvents> branch_events(const Branch& branch, const Theme& theme) {
     using MarkerShape = Markers::MarkerShape;
     return {{&branch.folds, marked(theme, "fold", MarkerShape::square, 7.0)},
             {&branch.flips, marked(theme, "period doubling, \U0001D707 = \u22121", MarkerShape::circle, 8.0)},
@@ -284,8 +284,8 @@ void trace(Panel& panel, const Branch& branch, const Color& color, const Value& 
         if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
 }
 
-void add_happenings(Panel& panel, const Branch& branch, const Theme& theme, const Value& value) {
-    for (BranchEvents& happening : happenings(branch, theme)) {
+void add_branch_events(Panel& panel, const Branch& branch, const Theme& theme, const Value& value) {
+    for (BranchEvents& happening : branch_events(branch, theme)) {
         for (const OrbitPoint& point : *happening.points)
             happening.markers.points.push_back({branch.value(point), value(point)});
         happening.markers.label.clear();
@@ -350,7 +350,7 @@ class BranchPanels {
         Panel panel = begun(label);
         trace(panel, branch_, phase_color(theme_, Phase::Kind::hybrid), value);
         fit(panel, x_);
-        add_happenings(panel, branch_, theme_, value);
+        add_branch_events(panel, branch_, theme_, value);
         return with_values(std::move(panel), value);
     }
     BranchPanel of_state() const {
@@ -379,7 +379,7 @@ class BranchPanels {
             const Value size = size_of(i);
             trace(panel, branch_, phase_stroke(theme_, Phase::Kind::constrained, i - first, most - first + 1).color,
                   size);
-            if (i == first) add_happenings(panel, branch_, theme_, size);
+            if (i == first) add_branch_events(panel, branch_, theme_, size);
         }
         fit(panel, x_);
         if (panel.y.low < 1.0 && panel.y.high > 1.0)
@@ -408,7 +408,7 @@ std::vector<Key> branch_keys(const Branch& branch, const Theme& theme) {
                         [&](const OrbitPoint& point) { return point.stable == stable; }))
             keys.push_back({stable ? "stable" : "not stable",
                             Stroke{theme.ink, 1.6, stable ? std::vector<double>{} : unstable_dash}});
-    for (const BranchEvents& happening : happenings(branch, theme))
+    for (const BranchEvents& happening : branch_events(branch, theme))
         if (!happening.points->empty()) keys.push_back({happening.markers.label, happening.markers});
     return keys;
 }

@@ -11,7 +11,7 @@ TEST(EstimateInTheExplorer, IsThatOfTheRunThatIsShown) {
     const auto is_of_the_run = [&] {
         const ErrorEstimate expected = estimate_error(session.trajectory());
         ASSERT_NE(session.error_estimate(), nullptr);
-        EXPECT_EQ(session.error_estimate()->none_since, expected.none_since);
+        EXPECT_EQ(session.error_estimate()->no_estimate_reason, expected.no_estimate_reason);
         ASSERT_EQ(session.error_estimate()->end.has_value(), expected.end.has_value());
         if (expected.end) {
             EXPECT_EQ(session.error_estimate()->end->norm, expected.end->norm);

@@ -147,7 +147,7 @@ TEST(Film, OfASessionIsFollowedAndStopped) {
     const auto film = begin_film(session, what);
     for (int i = 0; i < 600 && film->progress().empty() && !film->update(); ++i)
         std::this_thread::sleep_for(std::chrono::milliseconds(50));
-    EXPECT_NE(film->progress().find("/2001 frames"), std::string::npos) << film->progress() << film->said();
+    EXPECT_NE(film->progress().find("/2001 frames"), std::string::npos) << film->progress() << film->output();
     film->cancel();
     EXPECT_TRUE(film->update());
     EXPECT_TRUE(folder.files().empty()) << "a film that is given up leaves something";

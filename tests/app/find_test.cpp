@@ -108,13 +108,13 @@ std::vector<std::string> lines_for(const std::string& typed, const std::vector<C
 }
 
 TEST(Finder, OrdersByHowWellLettersFit) {
-    EXPECT_EQ(misfit("grid", "grid"), 0);
-    EXPECT_EQ(misfit("GR", "grid"), 1);
-    EXPECT_EQ(misfit("imp", "max-impacts"), 2);
-    EXPECT_EQ(misfit("id", "grid"), 3);
-    EXPECT_EQ(misfit("gd", "grid"), 6);
-    EXPECT_EQ(misfit("dg", "grid"), -1);
-    EXPECT_EQ(misfit("gridd", "grid"), -1);
+    EXPECT_EQ(match_rank("grid", "grid"), 0);
+    EXPECT_EQ(match_rank("GR", "grid"), 1);
+    EXPECT_EQ(match_rank("imp", "max-impacts"), 2);
+    EXPECT_EQ(match_rank("id", "grid"), 3);
+    EXPECT_EQ(match_rank("gd", "grid"), 6);
+    EXPECT_EQ(match_rank("dg", "grid"), -1);
+    EXPECT_EQ(match_rank("gridd", "grid"), -1);
 }
 
 TEST(Finder, FindsCommandsByNameThenByUsage) {

@@ -26,7 +26,7 @@ TEST(Page, IsAsLargeAsItSays) {
     const PictureSize svg = on_page({170.0, 100.0, 10.0, 0.0}, "svg", 14.0, 1.5);
     EXPECT_EQ(svg.width, 1200);
     EXPECT_NEAR(14.0 * svg.scale * 170.0 / 1200.0, 10.0 / 72.0 * 25.4, 1e-9);  // 10 pt in mm
-    EXPECT_EQ(told({85.0, 0.0, 8.0, 300.0}, "png", 1.5), "85 \u00d7 56.67 mm, 1004 \u00d7 669 px at 300 dpi");
+    EXPECT_EQ(size_text({85.0, 0.0, 8.0, 300.0}, "png", 1.5), "85 \u00d7 56.67 mm, 1004 \u00d7 669 px at 300 dpi");
     for (const PaperSize& wrong :
          {PaperSize{5.0, 0.0, 0.0, 0.0}, PaperSize{85.0, 0.0, 100.0, 0.0}, PaperSize{0.0, 0.0, 8.0, 0.0},
           PaperSize{85.0, 0.0, 0.0, 5.0}, PaperSize{85.0, 3.0, 0.0, 0.0}, PaperSize{NAN, 0.0, 0.0, 0.0}})

@@ -65,7 +65,7 @@ TEST(Preferences, AreTheLooksAndTheFilesThatWereOpen) {
     const std::string a = (systems.path() / "a.toml").string(), b = (systems.path() / "b c.toml").string();
     {
         Preferences none;
-        EXPECT_TRUE(none.looks().empty());
+        EXPECT_TRUE(none.appearance().empty());
         Session session = test::session("ball_on_sine");
         none.keep(session);
         EXPECT_FALSE(std::filesystem::exists(home.folder.path() / "achilles")) << "there is nothing to remember";
@@ -83,7 +83,7 @@ TEST(Preferences, AreTheLooksAndTheFilesThatWereOpen) {
     const Preferences again;
     EXPECT_EQ(again.recent(), (std::vector<std::string>{a, b}));
     Session next = test::session("ball_on_sine");
-    for (const Command& command : again.looks()) next.apply(command);
+    for (const Command& command : again.appearance()) next.apply(command);
     EXPECT_TRUE(next.theme().dark);
     EXPECT_EQ(next.scene().enlarged(), 1.5);
     EXPECT_EQ(next.scene().share("plots"), 0.4);
@@ -97,7 +97,7 @@ TEST(Preferences, TakesNothingElseFromTheFile) {
     std::ofstream(home.folder.path() / "achilles/preferences.journal")
         << "theme blue\nsave stolen.toml overwrite\nnonsense\n\ntheme dark\nreplay evil\n\"\n\x01\xff\n";
     const Preferences read;
-    EXPECT_EQ(read.looks(), std::vector<Command>{command::SetTheme{true}});
+    EXPECT_EQ(read.appearance(), std::vector<Command>{command::SetTheme{true}});
     EXPECT_TRUE(read.recent().empty());
 }
 

@@ -194,11 +194,11 @@ TEST(RunTable, SaysWhatDiffersAndWhatFollows) {
 TEST(RunTable, SaysInWordsWhereRunsPart) {
     Session session = test::session("ball_on_sine");
     apply(session, "pin\nset e 0.3\n");
-    EXPECT_TRUE(session.run_table().partings.empty()) << to_text(session.run_table());
+    EXPECT_TRUE(session.run_table().divergences.empty()) << to_text(session.run_table());
     apply(session, "end 3\n");
-    ASSERT_EQ(session.run_table().partings.size(), 1U) << to_text(session.run_table());
-    EXPECT_EQ(session.run_table().partings[0].first, 1U);
-    EXPECT_EQ(session.run_table().partings[0].second,
+    ASSERT_EQ(session.run_table().divergences.size(), 1U) << to_text(session.run_table());
+    EXPECT_EQ(session.run_table().divergences[0].first, 1U);
+    EXPECT_EQ(session.run_table().divergences[0].second,
               "after Zeno 1: release at 3.7318 s; the present run: no further event until 3 s");
     EXPECT_NE(to_text(session.run_table()).find("same events until | \u2013 | Zeno 1 *\n"), std::string::npos)
         << to_text(session.run_table());

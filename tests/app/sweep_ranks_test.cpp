@@ -180,10 +180,10 @@ TEST(SweepWork, IsTheSameFromItsOrder) {
     EXPECT_EQ(bytes, serialize_rows(table, kept, table.rows(0, 120)));
     whole.note(table.rows(0, 120));
     EXPECT_EQ(summary.text(), whole.text());
-    EXPECT_EQ(none.behind("a"), std::string("a\0", 2));
-    EXPECT_GT(failures.behind("").size(), 1u) << "some cannot start";
-    EXPECT_EQ(none.take(failures.behind("rows")), "rows");
-    EXPECT_EQ(none.behind(""), failures.behind(""));
+    EXPECT_EQ(none.append_to("a"), std::string("a\0", 2));
+    EXPECT_GT(failures.append_to("").size(), 1u) << "some cannot start";
+    EXPECT_EQ(none.take(failures.append_to("rows")), "rows");
+    EXPECT_EQ(none.append_to(""), failures.append_to(""));
 }
 
 TEST(SweepAlone, IsNotLinkedWithMpi) {

@@ -114,7 +114,8 @@ TEST(TenTasks, TheLastBouncesAreSeenInTheMechanism) {
     EXPECT_EQ(hands.session.scene().camera(), CameraMode::zeno);
     // The view is at most a thousandth as wide as that of the whole run.
     const auto width = [&](CameraMode mode) {
-        const Drawing seen = hands.session.stage().camera().at(mode, hands.session.now(), {400.0, 300.0, 0.0, 0.0});
+        const Drawing seen =
+            hands.session.mechanism_scene().camera().at(mode, hands.session.now(), {400.0, 300.0, 0.0, 0.0});
         return seen.x_high - seen.x_low;
     };
     EXPECT_LT(width(CameraMode::zeno), 1e-3 * width(CameraMode::fit));

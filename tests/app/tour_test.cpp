@@ -109,14 +109,14 @@ TEST(Tour, GoesBackASentence) {
                             "seek 1", "say \"3\"", "wait 3", "say \"\""});
     Tour tour(all);
     tour.advance(0.5);
-    EXPECT_EQ(tour.said(), 1U);
+    EXPECT_EQ(tour.captions_shown(), 1U);
     EXPECT_EQ(tour.sentences(), 3U);
     EXPECT_TRUE(tour.back().empty()) << "there is none before the first";
     tour.advance(3.0);  // half a second into the third
-    EXPECT_EQ(tour.said(), 3U);
+    EXPECT_EQ(tour.captions_shown(), 3U);
     EXPECT_EQ(tour.back(), lines({"unpin", "open ball_on_sine", "say \"1\"", "wait 1", "set e 0.4"}));
     EXPECT_EQ(tour.advance(0.0), lines({"say \"2\""}));
-    EXPECT_EQ(tour.said(), 2U);
+    EXPECT_EQ(tour.captions_shown(), 2U);
     EXPECT_EQ(tour.advance(1.5), lines({"wait 1.5"}));
     EXPECT_EQ(tour.advance(0.5), lines({"wait 0.5", "seek 1", "say \"3\""}));
     EXPECT_EQ(tour.advance(3.5), lines({"wait 3", "say \"\""})) << "the wait is whole again";
@@ -131,7 +131,7 @@ TEST(Tour, GoesBackWithoutWritingAgain) {
     tour.advance(0.0);
     tour.begin(lines({"export a.svg", "set e 0.3"}));
     tour.advance(1.5);
-    EXPECT_EQ(tour.said(), 3U);
+    EXPECT_EQ(tour.captions_shown(), 3U);
     EXPECT_EQ(tour.back(), lines({"say \"1\"", "set e 0.3"}));
 }
 
@@ -141,13 +141,13 @@ TEST_P(Tours, LeadBackToWhatWas) {
     Tour tour(journal(GetParam()));
     std::vector<std::string> states;
     const auto until_the_next = [&] {
-        const std::size_t said = tour.said();
-        while (tour.runs() && tour.said() == said) {
+        const std::size_t captions_shown = tour.captions_shown();
+        while (tour.runs() && tour.captions_shown() == captions_shown) {
             for (const Command& command : tour.next()) forward.apply(command);
             for (const Command& command : tour.advance(0.0)) forward.apply(command);
         }
     };
-    while (tour.runs() && tour.said() < tour.sentences()) {
+    while (tour.runs() && tour.captions_shown() < tour.sentences()) {
         until_the_next();
         states.push_back(to_text(forward));
     }
@@ -163,18 +163,18 @@ TEST(Tour, HasButtonsAndSaysHowFarItIs) {
     test::Hands hands("ball_on_sine");
     hands.session.apply(command::Say{"A sentence."});
     hands.state.on_tour = true;
-    hands.state.tour_said = 4, hands.state.tour_sentences = 12;
+    hands.state.tour_captions_shown = 4, hands.state.tour_captions = 12;
     hands.rest(2);
     EXPECT_TRUE(hands.says("4/12"));
     hands.click("tour back");
-    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::back);
-    hands.state.tour_wants = PanelState::TourAction::none;
+    EXPECT_EQ(hands.state.tour_action, PanelState::TourAction::back);
+    hands.state.tour_action = PanelState::TourAction::none;
     hands.press(key::backspace);
-    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::back);
-    hands.state.tour_wants = PanelState::TourAction::none;
-    hands.state.tour_said = 1;
+    EXPECT_EQ(hands.state.tour_action, PanelState::TourAction::back);
+    hands.state.tour_action = PanelState::TourAction::none;
+    hands.state.tour_captions_shown = 1;
     hands.click("tour back");
-    EXPECT_EQ(hands.state.tour_wants, PanelState::TourAction::none) << "there is none before the first";
+    EXPECT_EQ(hands.state.tour_action, PanelState::TourAction::none) << "there is none before the first";
 }
 
 // A panel is framed until the next caption.

@@ -53,12 +53,12 @@ TEST_F(UntrustedFiles, JournalsUseNoFiles) {
         {"replay victim", "read victim"},
     };
     const std::size_t before = folder.files().size() + 1;
-    for (const auto& [line, wants] : cases) {
+    for (const auto& [line, requests] : cases) {
         for (const char* command : {"screenshot", "figure ball_on_sine"}) {
             folder.put("x.journal", "# a tour\ngrid 2 2\n  " + line + "\n");
             const Answer answer = folder.run(std::string(command) + " --journal x.journal --out a.png");
             EXPECT_EQ(answer.status, 2) << line;
-            EXPECT_EQ(answer.err.find("x.journal:3:3: this journal would " + wants), 0U) << answer.err;
+            EXPECT_EQ(answer.err.find("x.journal:3:3: this journal would " + requests), 0U) << answer.err;
             EXPECT_NE(answer.err.find("--allow-files"), std::string::npos) << answer.err;
             EXPECT_EQ(folder.files().size(), before) << line;
         }
@@ -268,10 +268,10 @@ TEST_F(UntrustedFiles, AYesIsForOneFile) {
             EXPECT_EQ(parse_trusted(text, "x.journal", trust).size(), 4U);
             break;
         } catch (const PermissionDenied& problem) {
-            ASSERT_FALSE(problem.wants.empty());
-            EXPECT_EQ(problem.wants.size(), 3U - asked.size());
-            asked.push_back(problem.wants.front());
-            trust.answered[problem.wants.front()] = true;
+            ASSERT_FALSE(problem.requests.empty());
+            EXPECT_EQ(problem.requests.size(), 3U - asked.size());
+            asked.push_back(problem.requests.front());
+            trust.answered[problem.requests.front()] = true;
         }
     }
     EXPECT_EQ(asked, (std::vector<std::string>{"read " + path("a.toml"), "write " + path("b.toml"),
@@ -285,7 +285,7 @@ TEST_F(UntrustedFiles, AYesIsForOneFile) {
         parse_trusted("save " + path("a.toml"), "x.journal", trust);
         FAIL();
     } catch (const PermissionDenied& problem) {
-        EXPECT_TRUE(problem.wants.empty());
+        EXPECT_TRUE(problem.requests.empty());
         EXPECT_NE(std::string(problem.what()).find("never overwrites files"), std::string::npos);
     }
 }
@@ -300,7 +300,7 @@ TEST_F(UntrustedFiles, APictureThatIsDroppedReadsNoFileUnasked) {
         session_in(picture, trust);
         FAIL();
     } catch (const PermissionDenied& question) {
-        EXPECT_EQ(question.wants, std::vector<std::string>{"read " + own});
+        EXPECT_EQ(question.requests, std::vector<std::string>{"read " + own});
     }
     trust.answered["read " + own] = true;
     EXPECT_EQ(session_in(picture, trust).front(), Command(command::Open{own}));

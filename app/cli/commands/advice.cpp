@@ -159,9 +159,9 @@ class CommandLine {
         const Words rest = program_.remaining(true);
         const auto unknown = std::find_if(rest.begin(), rest.end(), is_option);
         if (unknown != rest.end()) return of_option(*unknown);
-        if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return of_missing(error.what());
-        if (!rest.empty()) return of_extra(rest.front());
-        if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return of_mismatch(error.what());
+        if (dynamic_cast<const CLI::RequiredError*>(&error) != nullptr) return missing_option_error(error.what());
+        if (!rest.empty()) return unexpected_word_error(rest.front());
+        if (dynamic_cast<const CLI::ArgumentMismatch*>(&error) != nullptr) return mismatch_error(error.what());
         const std::string what = error.what();
         const CLI::Option* option = named_in(what);
         if (dynamic_cast<const CLI::ValidationError*>(&error) != nullptr && option != nullptr) {
@@ -286,7 +286,7 @@ class CommandLine {
                        advice_for(option, value));
     }
 
-    InputError of_missing(const std::string& what) const {
+    InputError missing_option_error(const std::string& what) const {
         const std::string missing = what.substr(0, what.find(' '));
         const CLI::Option* option = named_in(what);
         if (missing == "SYSTEM")
@@ -302,7 +302,7 @@ class CommandLine {
         return message(fmt::format("{} is missing", missing), "write " + with_value(*option, ""));
     }
 
-    InputError of_mismatch(const std::string& what) const {
+    InputError mismatch_error(const std::string& what) const {
         const CLI::Option* option = named_in(what);
         if (option == nullptr) return message(what, help());
         const std::string name = option->get_name();
@@ -314,7 +314,7 @@ class CommandLine {
                                    is_stream ? fmt::format(", or {} - for standard output", name) : ""));
     }
 
-    InputError of_extra(const std::string& word) const {
+    InputError unexpected_word_error(const std::string& word) const {
         const std::string what = fmt::format("'{}' is not expected here", shown(word));
         const Words commands = command_names(program_);
         if (std::find(commands.begin(), commands.end(), word) != commands.end()) {

@@ -50,7 +50,7 @@ void add_option(CLI::App& command, const Option& option, const std::string& flag
 
 }  // namespace
 
-int told_of(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate* estimate) {
+int print_notes(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate* estimate) {
     const bool is_whole = trajectory.outcome.kind == Outcome::Kind::end_time;
     if (!is_whole)
         print_clean(stderr, "achilles: the run stopped early: {}\n",
@@ -61,7 +61,7 @@ int told_of(const Trajectory& trajectory, bool with_reasons, const ErrorEstimate
     return is_whole ? reached_end : stopped_early;
 }
 
-int told_of(const Enclosure& proof, bool with_reason) {
+int print_notes(const Enclosure& proof, bool with_reason) {
     if (proof.end) return reached_end;
     print_clean(stderr, "achilles: undecided at t = {}{}\n", reach_text(proof, 10),
                 with_reason ? ": " + proof.outcome.message : "");

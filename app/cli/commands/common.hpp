@@ -48,8 +48,8 @@ void add_page_options(CLI::App& command, PaperSize& page);
 // Prints notes about a finished run to standard error: why it stopped early, and its remarks. Without `with_reasons`:
 // only that it stopped, for callers that print the reasons elsewhere. With an estimate: also the time after which the
 // run is inaccurate. Returns the exit status.
-int told_of(const Trajectory& trajectory, bool with_reasons = true, const ErrorEstimate* estimate = nullptr);
+int print_notes(const Trajectory& trajectory, bool with_reasons = true, const ErrorEstimate* estimate = nullptr);
 // The same for a proof: where it ends undecided and, unless printed elsewhere, why.
-int told_of(const Enclosure& proof, bool with_reason = true);
+int print_notes(const Enclosure& proof, bool with_reason = true);
 
 }  // namespace achilles

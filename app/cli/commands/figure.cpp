@@ -45,7 +45,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Er
     job.put(arguments.out, "", {{arguments.system, &trajectory}},
             [&](const Notes& notes) { return draw(page_for(arguments.page, format), notes); });
     job.commit();
-    return told_of(trajectory, true, estimate);
+    return print_notes(trajectory, true, estimate);
 }
 
 int put(const FigureArguments& arguments, const Trajectory& trajectory, const ErrorEstimate* estimate,
@@ -56,7 +56,7 @@ int put(const FigureArguments& arguments, const Trajectory& trajectory, const Er
             job.check_size(size.width, size.height);
             return picture_of(figure, size, notes, format);
         });
-    return proof == nullptr ? status : std::max(status, told_of(proof->enclosure));
+    return proof == nullptr ? status : std::max(status, print_notes(proof->enclosure));
 }
 
 int put_mechanism(const FigureArguments& arguments, const Session& session, const std::string& format,

@@ -204,7 +204,7 @@ int draw_frames(const FramesArguments& arguments, PictureJob& job) {
                            [&](const std::string& name) { return job.notes_of(name, shown); });
         if (status == reached_end && is_film(arguments.out)) status = join(arguments, clock.count(), job);
     }
-    return status == reached_end ? told_of(trajectory) : status;
+    return status == reached_end ? print_notes(trajectory) : status;
 }
 
 CameraMode camera_from(const std::string& text) {

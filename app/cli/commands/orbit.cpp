@@ -38,7 +38,7 @@ int run(const OrbitArguments& arguments, PictureJob& job) {
     validate_overrides(*model, run, asked.settings);
     warn(description, run);
     for (const Option& option : all_options())
-        if (arguments.overrides.given(option) != nullptr) asked.options.insert(option.key);
+        if (arguments.overrides.find(option) != nullptr) asked.options.insert(option.key);
     if (!asked.from.empty() && asked.from != "start" && asked.from != "end")
         asked.guess = orbit_guess(job.inputs().data(asked.from), asked.from, description.coordinates.size());
     const OrbitRequest question = parse_orbit_request(asked, run, model);

@@ -36,7 +36,7 @@ EnclosureProblem problem_of(const ProveArguments& arguments, const SystemDescrip
                             std::vector<std::string>& points) {
     const InitialUncertainty spread = parse_uncertainty(arguments.settings, arguments.width, description, points);
     EnclosureProblem claim = problem_of(description, requested_run(description, points, arguments.overrides), spread);
-    if (const auto* given = arguments.overrides.given(option("eps_t"))) claim.eps_t = std::get<double>(given->second);
+    if (const auto* given = arguments.overrides.find(option("eps_t"))) claim.eps_t = std::get<double>(given->second);
     return claim;
 }
 
@@ -69,7 +69,7 @@ int run(const ProveArguments& arguments) {
     files.put(out, arguments.json.empty() ? printable(text()) : to_json(*model, claim, proof));
     files.commit();
     if (arguments.verbose || arguments.timing) print_clean(stderr, "achilles: {:.3g} s\n", proof.statistics.seconds);
-    return told_of(proof, !arguments.json.empty());
+    return print_notes(proof, !arguments.json.empty());
 }
 
 }  // namespace

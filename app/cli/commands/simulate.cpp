@@ -123,7 +123,7 @@ int run(const SimulateArguments& arguments) {
     if (arguments.verbose || arguments.timing)
         print_clean(stderr, "achilles: {:.3g} s, of these {:.3g} s for certificates\n", trajectory.statistics.seconds,
                     trajectory.statistics.certificate_seconds);
-    return told_of(trajectory, !is_summed_up, known);
+    return print_notes(trajectory, !is_summed_up, known);
 }
 
 }  // namespace

@@ -33,13 +33,13 @@ struct SweepArguments {
     int threads = 0;
 };
 
-std::atomic<bool> asked_to_stop{false};
+std::atomic<bool> stop_requested{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 // The first SIGINT or SIGTERM lets running chunks finish; a second one terminates at once.
-void stop_when_asked() {
+void stop_on_signal() {
     struct sigaction action {};
-    action.sa_handler = [](int) { asked_to_stop = true; };
+    action.sa_handler = [](int) { stop_requested = true; };
     action.sa_flags = static_cast<int>(SA_RESETHAND);
     for (const int signal : {SIGINT, SIGTERM}) ::sigaction(signal, &action, nullptr);
 }
@@ -72,7 +72,8 @@ void warn_of(const SystemDescription& description, const SweepSpec& sweep) {
 void print_summary(const SweepSummary& summary, const SweepOutput& output) {
     const std::vector<std::string> files = output.files();
     if (files.empty() && ::isatty(STDERR_FILENO) == 0) {
-        for (const std::string& sentence : summary.nowhere()) print_clean(stderr, "achilles: warning: {}\n", sentence);
+        for (const std::string& sentence : summary.undefined_everywhere())
+            print_clean(stderr, "achilles: warning: {}\n", sentence);
         return;
     }
     print_clean(stderr, "{}", summary.text());
@@ -95,7 +96,7 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     warn_of(description, sweep);
     const SweepPictures pictures(table, arguments.pictures, job);
     SweepOutput output(table, arguments.output, pictures, job.inputs().files_read().front(), arguments.system);
-    stop_when_asked();
+    stop_on_signal();
     const std::uint64_t points = sweep.count();
     Progress progress(points - output.done(), "runs");
     const std::uint64_t before = output.done();
@@ -107,9 +108,9 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
         progress.show(chunk.first + chunk.count - before);
     };
     const auto do_all = [&] {
-        if (ranks == nullptr) return do_chunks(before, points, arguments.threads, task, write, asked_to_stop);
+        if (ranks == nullptr) return do_chunks(before, points, arguments.threads, task, write, stop_requested);
         const std::string order = sweep_order(table, output.kept(), arguments.threads);
-        return do_chunks(*ranks, order, before, points, arguments.threads, task, write, asked_to_stop);
+        return do_chunks(*ranks, order, before, points, arguments.threads, task, write, stop_requested);
     };
     try {
         if (do_all()) {
@@ -129,7 +130,7 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
         progress.end();
         print_clean(stderr, "achilles: there is not enough memory for this\n");
     }
-    if (ranks != nullptr && asked_to_stop) ranks->leave();
+    if (ranks != nullptr && stop_requested) ranks->leave();
     progress.end();
     const std::string how = output.how_to_continue();
     if (output.done() == points)

@@ -282,7 +282,7 @@ TEST(EstimatedError, SaysWhereAFunctionOverflows) {
     auto run = with(model->default_run(), 1e-9, 1e-6);
     const ErrorEstimate estimate = estimate_error(simulate(model, run));
     EXPECT_FALSE(estimate.end);
-    EXPECT_NE(estimate.none_since.find("cosh(u)^2"), std::string::npos) << estimate.none_since;
+    EXPECT_NE(estimate.no_estimate_reason.find("cosh(u)^2"), std::string::npos) << estimate.no_estimate_reason;
 }
 
 // The drift is relative to the largest energy of the whole run. Before the drive begins the energy is zero.
@@ -301,7 +301,7 @@ TEST(EstimatedError, IsNoneWhereNothingIsKnown) {
         const Trajectory trajectory = simulate(model, run);
         const ErrorEstimate estimate = estimate_error(trajectory);
         EXPECT_FALSE(estimate.end);
-        return estimate.none_since;
+        return estimate.no_estimate_reason;
     };
     EXPECT_EQ(why([](Options& o) { o.method = Method::dopri5; }),
               "errors are estimated only for Taylor's method (--method taylor)");

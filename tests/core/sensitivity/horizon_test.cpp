@@ -102,7 +102,7 @@ TEST(Horizon, IsNoneWithoutAnEstimate) {
     run.options.method = Method::dopri5;
     const ErrorEstimate estimate = estimate_error(simulate(model, run));
     EXPECT_FALSE(estimate.trusted_until);
-    EXPECT_FALSE(estimate.none_since.empty());
+    EXPECT_FALSE(estimate.no_estimate_reason.empty());
 }
 
 // Rounding errors of q and t grow like the perturbations of the run. Regression: on the shaken floor sigma was 1.8e-4
