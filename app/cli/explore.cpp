@@ -190,8 +190,8 @@ class Explorer {
             const std::vector<Command> journal =
                 is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
             replayed_ += journal.size();
-            if (replayed_ > most_replayed)
-                throw PermissionDenied(file, {}, fmt::format("a session replays at most {} commands", most_replayed));
+            if (replayed_ > max_replayed)
+                throw PermissionDenied(file, {}, fmt::format("a session replays at most {} commands", max_replayed));
             begin(journal);
         } catch (const PermissionDenied& problem) {
             // If nothing is left to ask, or an answer was no, the error stays.

@@ -85,14 +85,14 @@ std::vector<Command> Inputs::steps(const std::vector<std::string>& lines) {
 // Counts commands as they are read, so that journals which replay each other are stopped.
 void Inputs::count(const std::string& name, const std::vector<Command>& commands) {
     replayed_ += commands.size();
-    if (replayed_ > most_replayed)
-        throw PermissionDenied(name, {}, fmt::format("a session replays at most {} commands", most_replayed));
+    if (replayed_ > max_replayed)
+        throw PermissionDenied(name, {}, fmt::format("a session replays at most {} commands", max_replayed));
     changes_ += static_cast<std::size_t>(std::count_if(commands.begin(), commands.end(), [](const Command& command) {
         return undo_policy_of(command) == command::UndoPolicy::merge_with_previous ||
                undo_policy_of(command) == command::UndoPolicy::own_step;
     }));
-    if (from_picture_ && changes_ > most_changes)
-        throw PermissionDenied(name, {}, fmt::format("a picture is reproduced with at most {} changes", most_changes));
+    if (from_picture_ && changes_ > max_changes)
+        throw PermissionDenied(name, {}, fmt::format("a picture is reproduced with at most {} changes", max_changes));
 }
 
 std::string Inputs::first_system() const {

@@ -15,7 +15,7 @@ namespace achilles {
 
 // Maximum number of commands that start a new run, in a picture's journals. It is lower than the limit for a session,
 // since pictures may come from untrusted sources.
-constexpr std::size_t most_changes = 1000;
+constexpr std::size_t max_changes = 1000;
 
 struct InputSource {
     enum class Kind { system, journal };

@@ -386,7 +386,7 @@ void SweepPictures::try_to_draw() const {
 std::optional<Figure> SweepPictures::figure(const RowReader& each_rows) const {
     std::uint64_t count = 0;
     each_rows([&](const Rows& rows) { count += rows.count(); });
-    const std::uint64_t every = (count + most_drawn_rows - 1) / most_drawn_rows;
+    const std::uint64_t every = (count + max_drawn_rows - 1) / max_drawn_rows;
     SweepData data(table_);
     std::uint64_t next = 0;
     each_rows([&](const Rows& rows) {
@@ -398,7 +398,7 @@ std::optional<Figure> SweepPictures::figure(const RowReader& each_rows) const {
         print_clean(
             stderr,
             "achilles: warning: the table has {} rows; every {}th is drawn, because a figure holds at most {}\n", count,
-            every, most_drawn_rows);
+            every, max_drawn_rows);
     SweepLook look = asked_.look;
     look.columns = columns_with_values(data, asked_.look);
     const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one is drawn over the other

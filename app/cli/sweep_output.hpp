@@ -33,7 +33,7 @@ class SweepPictures {
     SweepPictures(const SweepTable& table, const SweepPictureOptions& asked, const PictureJob& job);
 
     const std::vector<std::string>& files() const { return asked_.files; }
-    // Draws all rows at the end. Holds at most most_drawn_rows rows: if there are more, uses every second, third, ...
+    // Draws all rows at the end. Holds at most max_drawn_rows rows: if there are more, uses every second, third, ...
     // row. Columns without values are left out. If no column has a value, returns nothing and prints a warning to
     // standard error. Throws std::runtime_error if drawing fails.
     std::optional<Figure> figure(const RowReader& each_rows) const;
@@ -134,11 +134,11 @@ class SweepSummary {
  private:
     struct ColumnRange {
         std::uint64_t count = 0, missing = 0;
-        std::uint64_t first = most_points, last = 0, first_missing = most_points, last_missing = 0;  // points
+        std::uint64_t first = max_sweep_points, last = 0, first_missing = max_sweep_points, last_missing = 0;  // points
         double low = 0.0, high = 0.0;
     };
     struct Totals {
-        std::uint64_t runs = 0, whole = 0, rows = 0, last_point = most_points;
+        std::uint64_t runs = 0, whole = 0, rows = 0, last_point = max_sweep_points;
     };
     static void add(ColumnRange& column, const ColumnRange& more);
     std::string where_missing(const ColumnRange& column) const;

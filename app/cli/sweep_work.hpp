@@ -23,7 +23,7 @@ class RunFailures {
 
  private:
     struct FailureCount {
-        std::uint64_t count = 0, first = most_points;
+        std::uint64_t count = 0, first = max_sweep_points;
     };
     void add(std::uint8_t code, FailureCount more);
     std::map<std::uint8_t, FailureCount> kinds_;

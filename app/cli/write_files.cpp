@@ -59,8 +59,8 @@ void keep_names(const fs::path& folder) {
 fs::path place_of(const std::string& path) {
     std::error_code problem;
     fs::path place = fs::absolute(path, problem);
-    constexpr int most_links = 40;
-    for (int i = 0; i < most_links && !fs::exists(place, problem) && fs::is_symlink(place, problem); ++i)
+    constexpr int max_links = 40;
+    for (int i = 0; i < max_links && !fs::exists(place, problem) && fs::is_symlink(place, problem); ++i)
         place = place.parent_path() / fs::read_symlink(place, problem);
     const fs::path whole = fs::weakly_canonical(place, problem);
     return problem ? fs::path(path) : whole;

@@ -116,8 +116,8 @@ std::vector<Command> parse_trusted(std::string_view text, const std::string& nam
     if (trust.budget) trust.budget->limit();
     for_each_command(text, name, [&](Command command, int number, std::string_view line) {
         const Location at{number, static_cast<int>(line.find_first_not_of(" \t")) + 1};
-        if (commands.size() == most_replayed)
-            throw PermissionDenied(name, at, fmt::format("a session replays at most {} commands", most_replayed));
+        if (commands.size() == max_replayed)
+            throw PermissionDenied(name, at, fmt::format("a session replays at most {} commands", max_replayed));
         const FileUse use = file_use(command);
         const auto refuse = [&](const std::string& reason, const char* hint) {
             if (!refused) refused.emplace(name, at, reason, hint, std::string(line));

@@ -40,7 +40,7 @@ struct FilePolicy {
 FilePolicy trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
 
 // Maximum number of commands in all journals that one session replays. It stops a journal that replays itself.
-constexpr std::size_t most_replayed = 10000;
+constexpr std::size_t max_replayed = 10000;
 
 // The question to the user about a file: "read /home/me/a.toml".
 std::string access_request(const std::string& file, bool writes);

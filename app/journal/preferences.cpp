@@ -15,7 +15,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t most_recent = 8;
+constexpr std::size_t max_recent = 8;
 
 // $XDG_CONFIG_HOME/achilles, else ~/.config/achilles; empty without a home folder.
 fs::path config_folder() {
@@ -59,7 +59,7 @@ Preferences::Preferences() {
         try {
             const Command command = parse_command(line);
             const auto* open = std::get_if<command::Open>(&command);
-            if (open != nullptr && recent_.size() < most_recent) recent_.push_back(open->system);
+            if (open != nullptr && recent_.size() < max_recent) recent_.push_back(open->system);
             if (is_appearance_command(command)) appearance_.push_back(command);
         } catch (const InputError&) {
             continue;
@@ -73,7 +73,7 @@ void Preferences::keep(const Session& session) {
         const std::string path = name_anywhere(file);
         recent_.erase(std::remove(recent_.begin(), recent_.end(), path), recent_.end());
         recent_.insert(recent_.begin(), path);
-        recent_.resize(std::min(recent_.size(), most_recent));
+        recent_.resize(std::min(recent_.size(), max_recent));
     }
     std::vector<Command> steps = appearance_of(session);
     for (const std::string& file : recent_) steps.emplace_back(command::Open{file});

@@ -8,9 +8,9 @@ namespace achilles {
 namespace {
 
 // Lengths at scale 1. The minimum sizes keep panels readable.
-constexpr float margin = 10.0F, gap = 10.0F, least_controls = 240.0F, least_editor = 320.0F, least_center = 340.0F,
-                least_plots = 240.0F, least_events = 110.0F, least_top = 240.0F, least_picture = 90.0F,
-                least_plane = 230.0F, least_world = 90.0F, least_plot = 110.0F;
+constexpr float margin = 10.0F, gap = 10.0F, min_controls = 240.0F, min_editor = 320.0F, min_center = 340.0F,
+                min_plots = 240.0F, min_events = 110.0F, min_top = 240.0F, min_picture = 90.0F, min_plane = 230.0F,
+                min_world = 90.0F, min_plot = 110.0F;
 
 // The size set by the user or, without one, the preferred size; rounded down to whole pixels and clamped to [least,
 // most].
@@ -22,7 +22,7 @@ float size_of(double share, float whole, float fitting, float least, float most)
 // The energy panel: with its time plot, without it if the picture above would be too low, or hidden.
 float energy_in(const Measures& m, float room) {
     if (m.energy <= room) return m.energy;
-    return m.least_energy <= room ? m.least_energy : 0.0F;
+    return m.min_energy <= room ? m.min_energy : 0.0F;
 }
 
 // Presentation mode: the mechanism beside one plot, the results and the player below, nothing else.
@@ -40,7 +40,7 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     const float top = std::min(below(parts.caption), bottom);
     const float timeline = std::min(m.timeline, bottom - top), lower = bottom - timeline;
     const float all_results = m.results ? m.results(inside) : 0.0F;
-    const float left_over = lower - 1.4F * between - top - least_picture * m.unit;
+    const float left_over = lower - 1.4F * between - top - min_picture * m.unit;
     const float results = all_results <= left_over ? all_results : 0.0F;
     const float above = results > 0.0F ? results + 0.4F * between : 0.0F;
     const float energy = energy_in(m, left_over - above),
@@ -74,24 +74,22 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float inside = std::max(0.0F, m.width - 2.0F * edge), all = bottom - top;
 
     const std::string left_panel = editor ? "editor" : "controls";
-    const float least_left = (editor ? least_editor : least_controls) * u;
-    const float others = (least_center + (has_plots ? least_plots : 0.0F)) * u + 2.0F * between;
+    const float min_left = (editor ? min_editor : min_controls) * u;
+    const float others = (min_center + (has_plots ? min_plots : 0.0F)) * u + 2.0F * between;
     // Room for the lines of the text.
     const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
-    const float left =
-        has_left ? size_of(scene.share(left_panel), m.width, fitting, least_left, inside - others) : 0.0F;
+    const float left = has_left ? size_of(scene.share(left_panel), m.width, fitting, min_left, inside - others) : 0.0F;
     // Space for a certificate without scrolling, if available. Equations and plots are taller than lines of text.
     const float fitting_events = lower_panel == "equations" || lower_panel == "orbit"
                                      ? std::max(180.0F * u, 0.38F * m.height)
                                      : std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
     const float low =
-        has_events ? size_of(scene.share("events"), m.height, fitting_events, least_events * u, all - least_top * u)
-                   : 0.0F;
+        has_events ? size_of(scene.share("events"), m.height, fitting_events, min_events * u, all - min_top * u) : 0.0F;
     const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));
     const float x = edge + (left > 0.0F ? left + between : 0.0F), width = std::max(0.0F, m.width - edge - x);
-    const float right = has_plots ? size_of(scene.share("plots"), m.width, 0.54F * width, least_plots * u,
-                                            width - between - least_center * u)
+    const float right = has_plots ? size_of(scene.share("plots"), m.width, 0.54F * width, min_plots * u,
+                                            width - between - min_center * u)
                                   : 0.0F;
     const float center = std::max(0.0F, width - (right > 0.0F ? right + between : 0.0F));
 
@@ -106,13 +104,13 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     };
     const float caption = m.caption ? m.caption(center) : 0.0F;
     // Minimum height: numbers and heading above the axes, and the picture itself.
-    const float least = std::max((scene.shows("plane") ? least_plane : least_picture) * u,
-                                 (m.state ? m.state(center) : 0.0F) + least_world * u);
+    const float least = std::max((scene.shows("plane") ? min_plane : min_picture) * u,
+                                 (m.state ? m.state(center) : 0.0F) + min_world * u);
     // The error message is above the picture or, if that would become too low, above the plots.
     float error = std::min(m.error ? m.error(center) : 0.0F, height);
     const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;
     const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
-    const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= least_plot * u;
+    const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= min_plot * u;
     if (over_plots) error = 0.0F;
     parts.error = over_plots ? Rectangle{x + center + between, top, right, beside} : Rectangle{x, top, center, error};
     const float said_at = below(top, error), said = std::min(caption, top + height - said_at);
@@ -133,9 +131,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     parts.plots = {x + center + between, plots_at, right, plots_height};
     if (has_sweep) {
         // The sweep alone, if the plots are hidden or there is no room for both.
-        const bool with_plots = scene.shows("plots") && plots_height > 2.0F * least_plot * u + between;
+        const bool with_plots = scene.shows("plots") && plots_height > 2.0F * min_plot * u + between;
         const float sweep = with_plots ? size_of(scene.share("sweep"), m.height, 0.5F * (plots_height - between),
-                                                 least_plot * u, plots_height - between - least_plot * u)
+                                                 min_plot * u, plots_height - between - min_plot * u)
                                        : plots_height;
         parts.sweep = {parts.plots.x, plots_at + plots_height - sweep, right, sweep};
         parts.plots.height = with_plots ? plots_height - sweep - between : 0.0F;

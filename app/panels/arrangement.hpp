@@ -32,7 +32,7 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // the surface
     float unit = 1.0F;                  // one pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
-    float energy = 0.0F, least_energy = 0.0F;  // with and without its time plot; 0: not shown
+    float energy = 0.0F, min_energy = 0.0F;  // with and without its time plot; 0: not shown
     // Heights, for a given width, of the error message, the tour caption, the results, and the numbers over the
     // mechanism; 0: not shown.
     std::function<float(float width)> error, caption, results, state;

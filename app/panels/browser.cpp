@@ -43,10 +43,9 @@ std::vector<FolderEntry> entries_of(const std::string& folder, const std::vector
     std::vector<FolderEntry> entries;
     std::error_code problem;
     fs::directory_iterator at(folder.empty() ? "." : folder, fs::directory_options::skip_permission_denied, problem);
-    constexpr std::size_t most_visited = 20000;  // limits the time spent in a frame
-    for (std::size_t n = 0; !problem && at != fs::directory_iterator() && n < most_visited;
-         at.increment(problem), ++n) {
-        if (entries.size() == most_entries) break;
+    constexpr std::size_t max_visited = 20000;  // limits the time spent in a frame
+    for (std::size_t n = 0; !problem && at != fs::directory_iterator() && n < max_visited; at.increment(problem), ++n) {
+        if (entries.size() == max_entries) break;
         const std::string name = at->path().filename().string();
         std::error_code gone;
         const bool is_folder = at->is_directory(gone);

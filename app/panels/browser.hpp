@@ -22,9 +22,9 @@ PathParts parts_of(const std::string& path);
 // Expands "~/a.toml" as a shell does.
 std::string expanded(const std::string& path);
 
-// Folders, then files with one of these extensions (".toml"), each sorted by name; at most `most_entries`. Hidden
+// Folders, then files with one of these extensions (".toml"), each sorted by name; at most `max_entries`. Hidden
 // entries only if `hidden`. Empty if the folder cannot be read.
-constexpr std::size_t most_entries = 2000;
+constexpr std::size_t max_entries = 2000;
 std::vector<FolderEntry> entries_of(const std::string& folder, const std::vector<std::string>& endings, bool hidden);
 // Entries whose name contains these letters, ignoring case; those that start with them come first.
 std::vector<FolderEntry> filtered(const std::vector<FolderEntry>& entries, std::string_view letters);

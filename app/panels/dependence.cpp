@@ -118,19 +118,18 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
 // ---- the bars ----
 
 // Widths of the parts of a line: name, bar, derivative.
-constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, least_bar = 120.0F,
-                most_bar = 560.0F;
+constexpr float slider_name_width = 62.0F, number_width = 140.0F, between = 28.0F, min_bar = 120.0F, max_bar = 560.0F;
 
 struct Lines {
     Lines(std::size_t count, const Rectangle& room, float high) : height(high) {
         const auto fit = std::max<std::size_t>(static_cast<std::size_t>(std::max(0.0F, room.height / high - 1.0F)), 1);
-        const float least = units(slider_name_width + least_bar + number_width + between);
+        const float least = units(slider_name_width + min_bar + number_width + between);
         const auto most = std::max<std::size_t>(static_cast<std::size_t>(room.width / least), 1);
         const std::size_t columns = std::clamp<std::size_t>((count + fit - 1) / fit, 1, most);
         each = (count + columns - 1) / columns;
         // Limit the length of bars; longer ones are not easier to read.
         const float others = units(slider_name_width + number_width + between);
-        width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(most_bar));
+        width = std::min((room.width + units(between)) / static_cast<float>(columns), others + units(max_bar));
         bar = std::max(units(8.0F), width - others);
         corner = {room.x, room.y};
     }

@@ -25,8 +25,8 @@ using Ink = TypesetSheet::Ink;
 
 // Relative to the letter size.
 constexpr float caption_size = 0.867F, leading = 0.38F, before_heading = 1.0F, before_caption = 0.3F,
-                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, least_column = 20.0F;
-constexpr int most_columns = 3;
+                before_now = 0.25F, now_height = 1.25F, between_columns = 2.2F, min_column = 20.0F;
+constexpr int max_columns = 3;
 
 // A block of lines that must stay together, positioned from (0, 0).
 struct SheetBlock {
@@ -231,10 +231,10 @@ TypesetSheet in_columns(const std::vector<SheetBlock>& units, int columns, float
 
 TypesetSheet set_sheet(const EquationSheet& sheet, float size, const FormulaFont& font, float width, float height) {
     TypesetSheet page;
-    for (int columns = 1; columns <= most_columns; ++columns) {
+    for (int columns = 1; columns <= max_columns; ++columns) {
         const float gaps = static_cast<float>(columns - 1) * between_columns * size;
         const float column = std::floor((width - gaps) / static_cast<float>(columns));
-        if (columns > 1 && column < least_column * size) break;
+        if (columns > 1 && column < min_column * size) break;
         TypesetSheet next =
             in_columns(Setter(sheet, size, font, std::max(column, 1.0F)).units(), columns, column, size);
         if (columns > 1 && (next.height >= page.height || next.width > width)) break;

@@ -21,7 +21,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float list_padding = 4.0F, list_beside_card = 300.0F, least_card = 540.0F;
+constexpr float list_padding = 4.0F, list_beside_card = 300.0F, min_card = 540.0F;
 
 // Index of the selected event, for which a card is shown; or none.
 std::optional<std::size_t> chosen(const Session& session) {
@@ -385,7 +385,7 @@ void show_events(const Session& session, PanelState& state, Commands& commands) 
     const bool with_card = has_card(session);
     // A card needs a minimum width; if there is no room for both, the list is hidden until the card is closed.
     const float width = ImGui::GetContentRegionAvail().x, gap = units(8.0F);
-    const float least = chosen(session) ? units(least_card) : std::max(units(least_card), comparison_width(session));
+    const float least = chosen(session) ? units(min_card) : std::max(units(min_card), comparison_width(session));
     const bool with_list = !with_card || width - units(list_beside_card) - gap >= least;
     if (with_list) show_list(session, {with_card ? units(list_beside_card) : 0.0F, height}, state, commands);
     if (with_list && with_card) ImGui::SameLine(0.0F, gap);

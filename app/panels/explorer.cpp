@@ -55,7 +55,7 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     measures.results = [&](float) { return results_height(session); };
     if (session.scene().shows("energy")) {
         measures.energy = energy_height(true);
-        measures.least_energy = energy_height(false);
+        measures.min_energy = energy_height(false);
     }
     measures.state = [&](float width) { return state_height(session, width); };
     measures.error = [&](float width) { return card_height(message, width); };

@@ -258,8 +258,8 @@ namespace {
 ExportNote note_on_film(const Session& session, const ExportForm& form) {
     if (!(form.fps > 0.0)) return {fmt::format("the frames per second must be above 0, not {:g}", form.fps), true};
     const FilmExtent extent = extent_of(session, take_away_command(form, "a.mp4", false));
-    if (!(extent.frames <= most_film_frames))
-        return {fmt::format("more than {:.0f} frames: raise the speed, or use fewer per second", most_film_frames),
+    if (!(extent.frames <= max_film_frames))
+        return {fmt::format("more than {:.0f} frames: raise the speed, or use fewer per second", max_film_frames),
                 true};
     if (extent.width < 320 || extent.width > 3840)
         return {fmt::format("a film must be 320 to 3840 pixels wide, not {}", extent.width), true};

@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* palette_title = "Command";
 constexpr float wide = 620.0F;
-constexpr int most_rows = 10;
+constexpr int max_rows = 10;
 
 std::vector<std::pair<std::string, std::string>> names_of(const std::vector<SystemEntry>& entries) {
     std::vector<std::pair<std::string, std::string>> names;
@@ -91,8 +91,8 @@ void choose(PanelState& state, int count) {
     PaletteState& palette = state.palette;
     if (takes_key(state, key::down)) ++palette.chosen;
     if (takes_key(state, key::up)) --palette.chosen;
-    if (takes_key(state, key::page_down)) palette.chosen = std::min(palette.chosen + most_rows, count - 1);
-    if (takes_key(state, key::page_up)) palette.chosen = std::max(palette.chosen - most_rows, 0);
+    if (takes_key(state, key::page_down)) palette.chosen = std::min(palette.chosen + max_rows, count - 1);
+    if (takes_key(state, key::page_up)) palette.chosen = std::max(palette.chosen - max_rows, 0);
     if (count > 0) palette.chosen = (palette.chosen + count) % count;
 }
 
@@ -119,8 +119,8 @@ bool show_line(PanelState& state) {
 int show_rows(const std::vector<CommandMatch>& found, PanelState& state) {
     PaletteState& palette = state.palette;
     int clicked = -1;
-    const int count = static_cast<int>(found.size()), first = std::clamp(palette.chosen - most_rows + 1, 0, count);
-    for (int i = first; i < std::min(count, first + most_rows); ++i) {
+    const int count = static_cast<int>(found.size()), first = std::clamp(palette.chosen - max_rows + 1, 0, count);
+    for (int i = first; i < std::min(count, first + max_rows); ++i) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const float width = ImGui::GetContentRegionAvail().x;
         ImGui::PushID(i);

@@ -19,7 +19,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, most_of_strip = 0.6F, arrow_width = 30.0F;
+constexpr float padding = 6.0F, sign_width = 18.0F, between = 18.0F, max_of_strip = 0.6F, arrow_width = 30.0F;
 
 // A result in the strip: its name above its time.
 struct Result {
@@ -93,7 +93,7 @@ ResultCell cell_of(const Session& session, const Result& result, const StripLayo
     if (const EnclosedEvent* enclosed = session.enclosed(result.event))
         cell.name += ", proved", cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
-    const float room = (strip.is_low ? 1.0F : most_of_strip) * strip.room - units(sign_width);
+    const float room = (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width);
     cell.name = fitted(cell.name, room), cell.time = fitted(cell.time, room);
     cell.width = units(sign_width) + std::max(width_of(cell.name), width_of(cell.time));
     return cell;

@@ -146,7 +146,7 @@ void show_runs(const Session& session, PanelState& state, Commands& commands) {
 
 namespace {
 
-constexpr float run_name_width = 132.0F, widest_column = 190.0F, least_column = 74.0F, table_sign_width = 15.0F;
+constexpr float run_name_width = 132.0F, widest_column = 190.0F, min_column = 74.0F, table_sign_width = 15.0F;
 
 // Columns as wide as the panel allows.
 struct RunColumns {
@@ -215,7 +215,7 @@ void show_parting(const PinnedRun& run, const std::string& sentence, float width
 
 float comparison_width(const Session& session) {
     const std::size_t runs = session.pinned().size() + 1;
-    return units(run_name_width + least_column * static_cast<float>(runs == 2 ? 3 : runs));
+    return units(run_name_width + min_column * static_cast<float>(runs == 2 ? 3 : runs));
 }
 
 void show_comparison(const Session& session, PanelState& state, Commands& commands) {

@@ -271,8 +271,8 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
     if (extent.width < 320 || extent.width > 3840)
         throw InputError(what.file, {}, fmt::format("a film cannot be {} pixels wide", extent.width),
                          "use 320 to 3840");
-    if (!(extent.frames <= most_film_frames))
-        throw InputError(what.file, {}, fmt::format("this would take more than {:.0f} frames", most_film_frames),
+    if (!(extent.frames <= max_film_frames))
+        throw InputError(what.file, {}, fmt::format("this would take more than {:.0f} frames", max_film_frames),
                          "use a higher speed or fewer frames per second");
     const std::string system = name_anywhere(session.system());
     need_film_joiner(what.file, system, what.file);

@@ -35,9 +35,9 @@ Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, co
 void take_away(const Session& session, const command::Export& what);
 
 // Starts an export to .mp4 or .gif in another process: the mechanism in motion beside the plots, at most
-// `most_film_frames` frames. Throws InputError before drawing if it is not possible.
+// `max_film_frames` frames. Throws InputError before drawing if it is not possible.
 std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Export& what);
-constexpr double most_film_frames = 20000.0;
+constexpr double max_film_frames = 20000.0;
 // Number and size of the frames of an animation.
 struct FilmExtent {
     double frames = 0.0;

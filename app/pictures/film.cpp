@@ -36,7 +36,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr const char* joiner = "ffmpeg";
-constexpr double most_gif_fps = 50.0;  // GIF delays are multiples of 1/100 s, and players do not support a delay of 1
+constexpr double max_gif_fps = 50.0;  // GIF delays are multiples of 1/100 s, and players do not support a delay of 1
 
 std::string content(const fs::path& file) {
     std::ifstream stream(file, std::ios::binary);
@@ -122,7 +122,7 @@ std::vector<std::string> join_words(const FrameSeries& frames, const std::string
                                    (frames.folder / "frame_%05d.png").string()};
     const auto add = [&](const std::vector<std::string>& more) { words.insert(words.end(), more.begin(), more.end()); };
     if (ending_of(film) == "gif") {
-        const std::string rate = frames.fps > most_gif_fps ? fmt::format("fps={},", most_gif_fps) : "";
+        const std::string rate = frames.fps > max_gif_fps ? fmt::format("fps={},", max_gif_fps) : "";
         add({"-filter_complex", rate + "split[a][b];[a]palettegen[p];[b][p]paletteuse", "-loop", "0"});
     } else {
         // Players need even numbers of pixels.

@@ -31,7 +31,7 @@ class OutputFolder {
 
 // "frame_00042".
 std::string frame_name(std::size_t number);
-constexpr std::size_t most_frames = 100000;  // five digits, as in the file pattern for ffmpeg
+constexpr std::size_t max_frames = 100000;  // five digits, as in the file pattern for ffmpeg
 
 class FrameFolder {
  public:

@@ -166,7 +166,7 @@ std::string pdf_of_svg(const std::string& svg, double width_mm) {
 namespace {
 
 constexpr double inch = 25.4, point = inch / 72.0;  // mm
-constexpr int most_pixels = 16384;                  // per side, as for --size
+constexpr int max_pixels = 16384;                   // per side, as for --size
 
 void need(bool is_good, const std::string& what, const char* name, double value, double low, double high,
           const char* unit) {
@@ -187,10 +187,10 @@ double shape_of_grid(std::size_t rows, int columns) {
 
 void check(const PaperSize& page, const std::string& what) {
     const auto within = [](double x, double low, double high) { return x == 0.0 || (x >= low && x <= high); };
-    need(within(page.width, least_width, most_width), what, "width", page.width, least_width, most_width, "mm");
-    need(within(page.height, least_width, most_width), what, "height", page.height, least_width, most_width, "mm");
-    need(within(page.font, least_font, most_font), what, "font", page.font, least_font, most_font, "pt");
-    need(within(page.dpi, least_dpi, most_dpi), what, "resolution", page.dpi, least_dpi, most_dpi, "dpi");
+    need(within(page.width, min_width, max_width), what, "width", page.width, min_width, max_width, "mm");
+    need(within(page.height, min_width, max_width), what, "height", page.height, min_width, max_width, "mm");
+    need(within(page.font, min_font, max_font), what, "font", page.font, min_font, max_font, "pt");
+    need(within(page.dpi, min_dpi, max_dpi), what, "resolution", page.dpi, min_dpi, max_dpi, "dpi");
     if (page.width == 0.0 && (page.height != 0.0 || page.font != 0.0 || page.dpi != 0.0))
         throw InputError(what, {}, "a height, a font size or a resolution needs a width in mm");
 }
@@ -203,9 +203,9 @@ double height_of(const PaperSize& page, double shape) {
 PictureSize on_page(const PaperSize& page, const std::string& format, double text_size, double shape) {
     const double per_mm = pixels_per_mm(page, format), height = height_of(page, shape);
     const double longest = std::max(page.width, height) * per_mm;
-    if (longest > most_pixels)
+    if (longest > max_pixels)
         throw InputError({}, {}, fmt::format("a side of this picture would be {:.0f} pixels long", longest),
-                         fmt::format("at most {} are possible: use fewer dots per inch", most_pixels));
+                         fmt::format("at most {} are possible: use fewer dots per inch", max_pixels));
     PictureSize size;
     size.width = static_cast<int>(std::lround(page.width * per_mm));
     size.height = static_cast<int>(std::lround(height * per_mm));

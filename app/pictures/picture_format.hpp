@@ -46,8 +46,8 @@ struct PaperSize {
     double dpi = 0.0;                  // pixels per inch of a PNG; default_dpi
 };
 constexpr double default_font = 8.0, default_dpi = 300.0;
-constexpr double least_width = 20.0, most_width = 1200.0;  // mm; includes A0
-constexpr double least_font = 3.0, most_font = 72.0, least_dpi = 50.0, most_dpi = 1200.0;
+constexpr double min_width = 20.0, max_width = 1200.0;  // mm; includes A0
+constexpr double min_font = 3.0, max_font = 72.0, min_dpi = 50.0, max_dpi = 1200.0;
 
 // Throws InputError, about `what`, for a size outside these limits.
 void check(const PaperSize& page, const std::string& what);

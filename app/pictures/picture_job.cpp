@@ -21,12 +21,12 @@ PictureJob::PictureJob(const Origin& origin)
     : inputs_(origin.sources, origin.command), command_(origin.command), wanted_(origin.picture), reproduces_(true) {}
 
 void PictureJob::check_size(int width, int height) const {
-    constexpr double most_pixels = 32e6;  // takes a few seconds and 400 MB
-    if (reproduces_ && double{1} * width * height > most_pixels)
+    constexpr double max_pixels = 32e6;  // takes a few seconds and 400 MB
+    if (reproduces_ && double{1} * width * height > max_pixels)
         throw InputError({}, {}, fmt::format("a picture of {} x {} pixels is too large to reproduce", width, height),
                          fmt::format("at most {:.0f} million pixels are drawn for a picture of unknown source; to make "
                                      "it without this limit, run:\n{}",
-                                     most_pixels / 1e6, command_));
+                                     max_pixels / 1e6, command_));
 }
 
 void PictureJob::check(const Options& options) const {

@@ -15,7 +15,7 @@ namespace achilles {
 
 namespace {
 
-constexpr int most_columns = 4, most_rows = 4;
+constexpr int max_columns = 4, max_rows = 4;
 
 ViewDescription view_of(const std::string& name, const std::string& x, const std::vector<std::string>& y) {
     ViewDescription view{name, {x, {}}, {}};
@@ -69,7 +69,7 @@ Plots::Plots(std::shared_ptr<const Model> model) : model_(std::move(model)), cho
     offer(view_of("energy", "t", {"energy"}));
     // Enough distinct views for the largest grid.
     for (const ViewDescription& view : more_views(*model_))
-        if (choices_.size() < most_columns * most_rows) offer(view);
+        if (choices_.size() < max_columns * max_rows) offer(view);
     const std::size_t own = model_->description().views.size();
     columns_ = own > 2 ? 2 : 1;
     rows_ = own > 1 ? 2 : 1;
@@ -142,9 +142,9 @@ Plot& Plots::at(int number) {
 }
 
 void Plots::perform(const command::SetGrid& command) {
-    if (command.columns < 1 || command.columns > most_columns || command.rows < 1 || command.rows > most_rows)
+    if (command.columns < 1 || command.columns > max_columns || command.rows < 1 || command.rows > max_rows)
         throw refusal(fmt::format("a grid of {} by {} plots cannot be shown", command.columns, command.rows),
-                      fmt::format("there can be up to {} columns and {} rows", most_columns, most_rows));
+                      fmt::format("there can be up to {} columns and {} rows", max_columns, max_rows));
     columns_ = command.columns;
     rows_ = command.rows;
     fill();

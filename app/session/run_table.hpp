@@ -19,7 +19,7 @@ namespace achilles {
 // A run kept beside the current one, as it was when pinned.
 
 struct PinnedRun {
-    int place = 1;   // from 1 to most_pinned; determines its color
+    int place = 1;   // from 1 to max_pinned; determines its color
     int number = 0;  // order of the pin requests, from 0, whichever run finishes first
     bool shown = true;
     std::shared_ptr<const Trajectory> trajectory;

@@ -58,12 +58,12 @@ void Session::perform(const command::Pin& command) {
     if (pin_waits_ || made != pins_.end())
         throw refusal(fmt::format("this run will be pinned, as {}, when it has finished",
                                   pin_waits_ ? *pin_waits_ : made->place));
-    if (pinned_.size() + pins_.size() >= most_pinned)
-        throw refusal(fmt::format("{} runs are pinned, and no more can be pinned", most_pinned),
+    if (pinned_.size() + pins_.size() >= max_pinned)
+        throw refusal(fmt::format("{} runs are pinned, and no more can be pinned", max_pinned),
                       "unpin one first: unpin 1, or: unpin all");
     int place = command.place;
-    if (place > most_pinned)
-        throw refusal(fmt::format("there is no place {} for a run: the places are 1 to {}", place, most_pinned));
+    if (place > max_pinned)
+        throw refusal(fmt::format("there is no place {} for a run: the places are 1 to {}", place, max_pinned));
     const auto is_taken = [this](int at) { return pinned_at(at) != nullptr || waits_at(at); };
     if (place > 0 && is_taken(place))
         throw refusal(fmt::format("a run is already pinned at {}", place),

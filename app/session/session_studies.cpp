@@ -26,9 +26,9 @@ SweepSpec sweep_of(const std::string& text, const SystemDescription& description
     if (sweep.base != default_run(description))
         throw refusal("--set and the options of a run are not allowed here", "the sliders set what does not vary");
     if (sweep.axes.size() > 2) throw refusal("at most two axes can be shown");
-    if (sweep.count() > most_drawn_rows)
+    if (sweep.count() > max_drawn_rows)
         throw refusal(
-            fmt::format("a sweep of {} points cannot be drawn: at most {} can be", sweep.count(), most_drawn_rows),
+            fmt::format("a sweep of {} points cannot be drawn: at most {} can be", sweep.count(), max_drawn_rows),
             "achilles sweep --csv F writes it as a table");
     return sweep;
 }

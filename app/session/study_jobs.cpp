@@ -193,9 +193,9 @@ SweepData table_of(const std::shared_ptr<const Model>& model, const SweepSpec& s
     const auto write = [&](Chunk chunk, const std::string&) {
         const std::scoped_lock lock(mutex);
         data.add(waiting.extract(chunk.first).mapped().rows);
-        if (data.count() > most_drawn_rows)
+        if (data.count() > max_drawn_rows)
             throw InputError("sweep", {},
-                             fmt::format("there are more than {} rows, the most that can be drawn", most_drawn_rows),
+                             fmt::format("there are more than {} rows, the most that can be drawn", max_drawn_rows),
                              "use shorter runs, or fewer; achilles sweep --csv F writes the whole table");
     };
     do_chunks(0, sweep.count(), 0, task, write, never);

@@ -38,7 +38,7 @@ std::optional<std::size_t> Algebra::find(Expression expression) const {
 
 std::size_t Algebra::atom_of(Expression expression) {
     if (const auto known = find(expression)) return *known;
-    if (atoms_.size() == most_atoms) throw SimplificationLimit("it has too many symbols and functions");
+    if (atoms_.size() == max_atoms) throw SimplificationLimit("it has too many symbols and functions");
     const std::size_t index = atoms_.size();
     atoms_.push_back({expression, {}, {}});
     index_.emplace(expression.id(), index);
@@ -228,7 +228,7 @@ class FactorSplitter {
                                                                           : polynomial.number_content();
         const Monomial powers = polynomial.monomial_content();
         scale(result_, number, exponent);
-        for (std::size_t i = 0; i < most_atoms; ++i)
+        for (std::size_t i = 0; i < max_atoms; ++i)
             if (powers[i] > 0) put(result_, Multinomial::atom(i), powers[i] * exponent);
         split_primitive(quotient(polynomial, Multinomial({Term{powers, number}}), work_), exponent);
     }
@@ -323,7 +323,7 @@ bool Positivity::is_positive(const Multinomial& polynomial, bool not_zero) {
         bool signs_known = true, dropped = false;
         Term largest = term;  // bound on its absolute value, by |sin|, |cos| <= 1
         bool bounded = true;
-        for (std::size_t i = 0; i < most_atoms; ++i) {
+        for (std::size_t i = 0; i < max_atoms; ++i) {
             if (term.powers[i] == 0) continue;
             const Operation operation = Builder::node(algebra_.atom(i)).operation;
             const bool odd = term.powers[i] % 2 == 1, known = odd && sign(i) != Sign::unknown;

@@ -8,11 +8,11 @@ namespace {
 
 using Term = Multinomial::Term;
 
-constexpr unsigned most_coefficient_bits = 4096;
+constexpr unsigned max_coefficient_bits = 4096;
 
 Monomial product(const Monomial& a, const Monomial& b) {
     Monomial result;
-    for (std::size_t i = 0; i < most_atoms; ++i) {
+    for (std::size_t i = 0; i < max_atoms; ++i) {
         const int sum = a[i] + b[i];
         if (sum > 255) throw SimplificationLimit("a power beyond 255");
         result[i] = static_cast<std::uint8_t>(sum);
@@ -22,7 +22,7 @@ Monomial product(const Monomial& a, const Monomial& b) {
 
 std::optional<Monomial> ratio(const Monomial& a, const Monomial& b) {
     Monomial result;
-    for (std::size_t i = 0; i < most_atoms; ++i) {
+    for (std::size_t i = 0; i < max_atoms; ++i) {
         if (a[i] < b[i]) return std::nullopt;
         result[i] = static_cast<std::uint8_t>(a[i] - b[i]);
     }
@@ -65,7 +65,7 @@ Multinomial::Multinomial(std::vector<Term> terms) {
     }
     if (!terms_.empty() && terms_.back().coefficient == 0) terms_.pop_back();
     for (const Term& term : terms_)
-        if (msb(abs(term.coefficient)) > most_coefficient_bits)
+        if (msb(abs(term.coefficient)) > max_coefficient_bits)
             throw SimplificationLimit("a coefficient of too many digits");
 }
 
@@ -84,9 +84,9 @@ int Multinomial::degree(std::size_t atom) const {
 std::vector<std::size_t> Multinomial::atoms() const {
     Monomial all{};
     for (const Term& term : terms_)
-        for (std::size_t i = 0; i < most_atoms; ++i) all[i] = std::max(all[i], term.powers[i]);
+        for (std::size_t i = 0; i < max_atoms; ++i) all[i] = std::max(all[i], term.powers[i]);
     std::vector<std::size_t> result;
-    for (std::size_t i = 0; i < most_atoms; ++i)
+    for (std::size_t i = 0; i < max_atoms; ++i)
         if (all[i] > 0) result.push_back(i);
     return result;
 }
@@ -115,7 +115,7 @@ Monomial Multinomial::monomial_content() const {
     if (terms_.empty()) return {};
     Monomial content = terms_.front().powers;
     for (const Term& term : terms_)
-        for (std::size_t i = 0; i < most_atoms; ++i) content[i] = std::min(content[i], term.powers[i]);
+        for (std::size_t i = 0; i < max_atoms; ++i) content[i] = std::min(content[i], term.powers[i]);
     return content;
 }
 
@@ -211,7 +211,7 @@ std::vector<std::uint64_t> image(const Multinomial& a, std::size_t atom) {
         Integer residue = term.coefficient % prime;
         if (residue < 0) residue += prime;
         auto value = residue.convert_to<std::uint64_t>();
-        for (std::size_t i = 0; i < most_atoms; ++i)
+        for (std::size_t i = 0; i < max_atoms; ++i)
             if (i != atom && term.powers[i] > 0) value = value * power_mod(value_of(i), term.powers[i]) % prime;
         std::uint64_t& place = result[term.powers[atom]];
         place = (place + value) % prime;
@@ -248,7 +248,7 @@ Multinomial stripped(const Multinomial& a) {
     std::vector<Term> terms = a.terms();
     for (Term& term : terms) {
         term.coefficient /= number;
-        for (std::size_t i = 0; i < most_atoms; ++i)
+        for (std::size_t i = 0; i < max_atoms; ++i)
             term.powers[i] = static_cast<std::uint8_t>(term.powers[i] - powers[i]);
     }
     return positive(Multinomial(std::move(terms)));
@@ -300,10 +300,10 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     if (a.is_number() || b.is_number()) return Multinomial(1);
     work.spend(a.terms().size() + b.terms().size());
     if (a == b) return a;
-    std::size_t best = most_atoms;
+    std::size_t best = max_atoms;
     int least = 256;
     bool common = false;
-    std::size_t absent = most_atoms;  // an atom that the gcd does not contain
+    std::size_t absent = max_atoms;  // an atom that the gcd does not contain
     std::vector<std::size_t> atoms = a.atoms();
     for (const std::size_t atom : b.atoms())
         if (a.degree(atom) == 0) atoms.push_back(atom);
@@ -321,7 +321,7 @@ Multinomial core_gcd(const Multinomial& a, const Multinomial& b, Work& work) {
         }
     }
     if (!common) return Multinomial(1);
-    if (absent != most_atoms) {
+    if (absent != max_atoms) {
         // The gcd divides every coefficient of the powers of that atom.
         std::vector<Multinomial> parts = a.coefficients(absent);
         const std::vector<Multinomial> more = b.coefficients(absent);
@@ -340,7 +340,7 @@ Multinomial gcd(const Multinomial& a, const Multinomial& b, Work& work) {
     if (b.is_zero()) return positive(a);
     Term shared{a.monomial_content(), gcd(a.number_content(), b.number_content())};
     const Monomial other = b.monomial_content();
-    for (std::size_t i = 0; i < most_atoms; ++i) shared.powers[i] = std::min(shared.powers[i], other[i]);
+    for (std::size_t i = 0; i < max_atoms; ++i) shared.powers[i] = std::min(shared.powers[i], other[i]);
     return positive(times(core_gcd(stripped(a), stripped(b), work), shared));
 }
 

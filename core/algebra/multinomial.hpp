@@ -1,7 +1,7 @@
 // Polynomials in several atoms with exact integer coefficients, the basis of simplification. For the files of this
 // library only, because it needs Boost.Multiprecision.
 //
-// An atom is an index from 0 to most_atoms - 1. Algebra knows what it stands for (a symbol, a sine).
+// An atom is an index from 0 to max_atoms - 1. Algebra knows what it stands for (a symbol, a sine).
 #pragma once
 
 #include <array>
@@ -26,10 +26,10 @@ struct Work {
     void spend(std::size_t products);  // throws SimplificationLimit
 };
 
-inline constexpr std::size_t most_atoms = 48;
+inline constexpr std::size_t max_atoms = 48;
 
 // The exponents of a product of powers, by atom.
-using Monomial = std::array<std::uint8_t, most_atoms>;
+using Monomial = std::array<std::uint8_t, max_atoms>;
 
 class Multinomial {
  public:

@@ -11,7 +11,7 @@ namespace achilles {
 
 namespace {
 
-constexpr long most_work = 400000;
+constexpr long max_work = 400000;
 
 // Solution of number atom + rest = 0.
 struct LinearSolution {
@@ -22,7 +22,7 @@ struct LinearSolution {
 class Elimination {
  public:
     Elimination(Graph& graph, std::span<const std::uint32_t> unknowns)
-        : algebra_(graph, Work{most_work}), unknowns_(unknowns) {}
+        : algebra_(graph, Work{max_work}), unknowns_(unknowns) {}
 
     bool proves(Expression expression, std::vector<Expression> zeros) {
         for (std::size_t i = 0; i < zeros.size(); ++i) {
@@ -106,7 +106,7 @@ bool is_proved(const Proof& proof) {
 bool vanishes(Expression expression) {
     if (expression.is_zero()) return true;
     Graph graph(expression.graph());
-    Algebra algebra(graph, Work{most_work});
+    Algebra algebra(graph, Work{max_work});
     return is_proved([&] { return algebra.simplify(graph.adopt(expression)).is_zero(); });
 }
 

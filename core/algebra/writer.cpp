@@ -15,7 +15,7 @@ using boost::multiprecision::denominator, boost::multiprecision::numerator;
 
 Monomial common(const Monomial& a, const Monomial& b) {
     Monomial result;
-    for (std::size_t i = 0; i < most_atoms; ++i) result[i] = std::min(a[i], b[i]);
+    for (std::size_t i = 0; i < max_atoms; ++i) result[i] = std::min(a[i], b[i]);
     return result;
 }
 
@@ -84,7 +84,7 @@ AlgebraWriter::Piece AlgebraWriter::collected(std::vector<SumTerm> items, const 
     bool alike = true, whole = true;
     boost::multiprecision::cpp_int divisor = 0;
     for (SumTerm& item : items) {
-        for (std::size_t i = 0; i < most_atoms; ++i)
+        for (std::size_t i = 0; i < max_atoms; ++i)
             item.powers[i] = static_cast<std::uint8_t>(item.powers[i] - shared[i]);
         alike = alike && abs(item.number) == abs(items.front().number);
         whole = whole && denominator(item.number) == 1;
@@ -104,7 +104,7 @@ std::vector<std::size_t> AlgebraWriter::next_group(const std::vector<SumTerm>& i
                                                    const std::vector<std::size_t>& left) const {
     const auto rates = [&](std::size_t item) {
         Monomial powers = items[item].powers;
-        for (std::size_t i = 0; i < most_atoms; ++i)
+        for (std::size_t i = 0; i < max_atoms; ++i)
             if (i >= highest_.size() || !highest_[i]) powers[i] = 0;
         return powers;
     };
@@ -219,7 +219,7 @@ FormattedTerm AlgebraWriter::write(const FactoredForm& given) const {
         FractionSide& side = exponent > 0 ? top : bottom;
         const int size = std::abs(exponent);
         if (base.terms().size() == 1) {
-            for (std::size_t i = 0; i < most_atoms; ++i)
+            for (std::size_t i = 0; i < max_atoms; ++i)
                 side.powers[i] = static_cast<std::uint8_t>(side.powers[i] + base.terms().front().powers[i] * size);
         } else {
             const FormattedTerm written = bracket(base);

@@ -17,7 +17,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 namespace {
 
 constexpr double first_step = 0.02, longest_step = 0.04, shortest_step = 1e-7;
-constexpr std::size_t most_points = 2000;
+constexpr std::size_t max_branch_points = 2000;
 
 class BranchContinuation {
  public:
@@ -29,7 +29,7 @@ class BranchContinuation {
         at_ = std::move(from);
         point_ = orbit_of(map_, at_);
         double ds = first_step;
-        while (points_.size() < most_points) {
+        while (points_.size() < max_branch_points) {
             if (nears_zeno_loss(ds)) {
                 if (const auto why = find_zeno_loss()) return *why;
             }
@@ -66,7 +66,7 @@ class BranchContinuation {
             rebase();
             if (turn > 0.975 && at_.iterations <= 5) ds = std::min(1.6 * ds, longest_step);
         }
-        return fmt::format("the branch has more than {} points", most_points);
+        return fmt::format("the branch has more than {} points", max_branch_points);
     }
     std::vector<OrbitPoint>& points() { return points_; }
 

@@ -26,7 +26,7 @@ std::vector<Flag> read_flags(std::string_view text, const std::string& whose);
 std::string to_text(const std::vector<Flag>& flags);
 
 // Upper limit on the number of points in one sweep.
-inline constexpr std::uint64_t most_points = 1'000'000'000;
+inline constexpr std::uint64_t max_sweep_points = 1'000'000'000;
 
 // A varied quantity: a parameter, an initial coordinate x or initial rate x', or a numeric option, by its flag without
 // the dashes (end, tolerance, eps).

@@ -83,7 +83,7 @@ double number(std::string_view flag, std::string_view whole, std::string_view te
     }
 }
 
-// Parses a whole number from `least` to most_points.
+// Parses a whole number from `least` to max_sweep_points.
 std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::string_view text, double least) {
     const double value = number(flag, whole, text);
     if (!(value >= least) || value != std::floor(value))
@@ -91,8 +91,8 @@ std::uint64_t whole_number(std::string_view flag, std::string_view whole, std::s
             flag, whole,
             fmt::format("the number of values must be a whole number of at least {}, not {}", least, trimmed(text)),
             least > 1.0 ? "for one value use --set" : "");
-    if (value > static_cast<double>(most_points))
-        throw refusal(flag, whole, fmt::format("a sweep has at most {} points", most_points));
+    if (value > static_cast<double>(max_sweep_points))
+        throw refusal(flag, whole, fmt::format("a sweep has at most {} points", max_sweep_points));
     return static_cast<std::uint64_t>(value);
 }
 
@@ -329,8 +329,8 @@ SweepSpec make_sweep(const SweepOptions& asked, const Run& base, const SystemDes
     sweep.random = read_random(asked, sweep.axes);
     double points = 1.0;
     for (const SweepAxis& axis : sweep.axes) points *= sweep.random ? 1.0 : static_cast<double>(axis.count);
-    if (points > static_cast<double>(most_points))
-        throw InputError("--over", {}, fmt::format("too many points: {:.3g} (maximum {})", points, most_points));
+    if (points > static_cast<double>(max_sweep_points))
+        throw InputError("--over", {}, fmt::format("too many points: {:.3g} (maximum {})", points, max_sweep_points));
     for (const std::string& text : asked.prints) {
         const std::string print = read_print(text);
         if (std::find(sweep.prints.begin(), sweep.prints.end(), print) != sweep.prints.end())

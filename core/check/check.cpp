@@ -174,7 +174,7 @@ class CheckReport : EquationsOnPage {
 
     std::string first_line(const MaxDifference& disagreement) const {
         const SystemDescription& system = model_.description();
-        if (disagreement.largest() > most_disagreement)
+        if (disagreement.largest() > max_disagreement)
             return fmt::format("{}: FAILED, the derived equations differ from finite differences by {:.1e}",
                                system.title, disagreement.largest());
         return fmt::format("{}: OK    {}, {}, {}", system.title, counted(system.coordinates.size(), "coordinate"),
@@ -186,7 +186,7 @@ class CheckReport : EquationsOnPage {
             return "Equations not verified: at none of the random states were all terms defined and M positive "
                    "definite";
         return fmt::format("Equations {}: finite differences at {} random states agree to {:.1e}",
-                           disagreement.largest() > most_disagreement ? "wrong" : "verified", disagreement.states,
+                           disagreement.largest() > max_disagreement ? "wrong" : "verified", disagreement.states,
                            disagreement.largest());
     }
 

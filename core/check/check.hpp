@@ -28,7 +28,7 @@ std::string check_answer(const Model& model, const Run& run, const SimplifiedEqu
 
 // A larger difference is an error in the derivation: with 50 digits and steps of 1e-11, less than 1e-15 remains for a
 // sufficiently smooth system.
-constexpr double most_disagreement = 1e-9;
+constexpr double max_disagreement = 1e-9;
 
 // The equations of `achilles check` for callers with their own layout: the same formulas in LaTeX, each below words
 // that name it, and the Zeno conditions as programs.

@@ -75,10 +75,10 @@ std::optional<State> flat_place(const Model& model, const Run& run, std::size_t 
 namespace {
 
 // Longer formulas, in terms, are not printed.
-constexpr std::size_t most_terms = 150;
+constexpr std::size_t max_terms = 150;
 
 // Longer unsimplified expressions, in symbols, are not printed.
-constexpr double most_symbols = 400.0;
+constexpr double max_symbols = 400.0;
 
 // Number of symbols of an expression in full, where shared parts count repeatedly.
 double written_size(Expression expression) {
@@ -172,7 +172,7 @@ void EquationsOnPage::matrix(const TextAndLatex& left, const std::vector<std::op
     bool complete = true;
     for (std::size_t i = 0; i < entries.size(); ++i) {
         if (i % columns == 0) rows.emplace_back();
-        complete = complete && entries[i] && terms(*entries[i]) <= most_terms;
+        complete = complete && entries[i] && terms(*entries[i]) <= max_terms;
         rows.back().push_back(complete ? written(*entries[i]) : std::string());
         widths[i % columns] = std::max(widths[i % columns], visible_length(rows.back().back(), page_.notation()) + 3);
     }
@@ -192,7 +192,7 @@ void EquationsOnPage::matrix(const TextAndLatex& left, const std::vector<std::op
 void EquationsOnPage::formula(const TextAndLatex& left, const std::optional<Fraction>& fraction, Expression derived,
                               const TextAndLatex& definition) {
     if (!fraction) return unsimplified(left, derived, definition);
-    if (terms(*fraction) <= most_terms) return long_formula(page_, left, factor_or_sum(*fraction));
+    if (terms(*fraction) <= max_terms) return long_formula(page_, left, factor_or_sum(*fraction));
     page_.formula(left, is_text() ? definition.text : definition.latex);
     const std::string why = fmt::format("not printed: {} terms", terms(*fraction));
     page_.sentence({"  (" + why + ")", "\\quad (" + why + ")"});
@@ -201,7 +201,7 @@ void EquationsOnPage::formula(const TextAndLatex& left, const std::optional<Frac
 // The derived expression if it is short enough, else the definition.
 void EquationsOnPage::unsimplified(const TextAndLatex& left, Expression derived, const TextAndLatex& definition) {
     const double size = written_size(derived);
-    const bool short_enough = size <= most_symbols;
+    const bool short_enough = size <= max_symbols;
     page_.formula(left, short_enough ? achilles::write(derived, model_.slot_names(), page_.notation()).text
                         : is_text()  ? definition.text
                                      : definition.latex);

@@ -32,9 +32,9 @@ class Problem {
 
     // A solution on a set of contacts over which W is positive definite. One exists if there is any solution.
     std::optional<Vector> basic() const {
-        for (const double least_pivot : {HeldBlock<double>::clear, 0x1p-46}) {
-            if (const auto p = pivoted(least_pivot)) return p;
-            if (const auto p = enumerated(least_pivot)) return p;
+        for (const double min_pivot : {HeldBlock<double>::clear, 0x1p-46}) {
+            if (const auto p = pivoted(min_pivot)) return p;
+            if (const auto p = enumerated(min_pivot)) return p;
         }
         return std::nullopt;
     }
@@ -80,8 +80,8 @@ class Problem {
     }
 
     // p with y = 0 over a set, of any sign; after one step of iterative refinement.
-    std::optional<Vector> on(ContactSet set, double least_pivot) const {
-        const auto block = HeldBlock<double>::of(W_, set, least_pivot);
+    std::optional<Vector> on(ContactSet set, double min_pivot) const {
+        const auto block = HeldBlock<double>::of(W_, set, min_pivot);
         if (!block) return std::nullopt;
         Vector p = block->solve(-b_);
         p -= block->solve(residual(p));
@@ -89,13 +89,13 @@ class Problem {
     }
 
     // Block pivoting: every contact of the wrong sign changes sides, up to 8 times. This finds nearly all solutions.
-    std::optional<Vector> pivoted(double least_pivot) const {
+    std::optional<Vector> pivoted(double min_pivot) const {
         constexpr int rounds = 8;
         ContactSet set;
         for (Index j = 0; j < size(); ++j)
             if (b_[j] < 0.0) set = with(set, j);
         for (int round = 0; round < rounds; ++round) {
-            const auto p = on(set, least_pivot);
+            const auto p = on(set, min_pivot);
             if (!p) return std::nullopt;
             if (const Vector positive = p->cwiseMax(0.0); solves(positive)) return positive;
             const Vector y = residual(*p), bound = bounds(*p);
@@ -110,10 +110,10 @@ class Problem {
         return std::nullopt;
     }
 
-    std::optional<Vector> enumerated(double least_pivot) const {
+    std::optional<Vector> enumerated(double min_pivot) const {
         const unsigned count = 1u << size();
         for (unsigned bits = 0; bits < count; ++bits) {
-            const auto p = on(set_of(bits), least_pivot);
+            const auto p = on(set_of(bits), min_pivot);
             if (!p) continue;
             if (const Vector positive = p->cwiseMax(0.0); solves(positive)) return positive;
         }

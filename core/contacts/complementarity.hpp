@@ -12,8 +12,8 @@ struct Complementarity {
     bool unique = true;       // whether p is unique, see below
 };
 
-// Solves it for a symmetric W, positive definite or semidefinite, with at most most_contacts rows. For impulses, b is
-// (1 + e) hdot-. For contact forces, b is hddot in free flight, p is lambda and y is hddot with these forces.
+// Solves it for a symmetric W, positive definite or semidefinite, with at most max_closed_contacts rows. For impulses,
+// b is (1 + e) hdot-. For contact forces, b is hddot in free flight, p is lambda and y is hddot with these forces.
 //
 // The solution is checked: p >= 0 and |y_j| (p_j > 0), -y_j (p_j = 0) <= 5e-13 (|b_j| + sum |W_jk| p_k). An entry of W
 // below 64 ulp of sqrt(W_ii W_kk) counts as 0, so that rounding opens no contact. The bounds are for each contact and

@@ -41,7 +41,7 @@ ContactMatrix<Interval> enclosure(const ContactMatrix<double>& W, const ContactM
 
 template <class Number>
 std::optional<HeldBlock<Number>> HeldBlock<Number>::of(const ContactMatrix<Number>& W, ContactSet held,
-                                                       double least_pivot) {
+                                                       double min_pivot) {
     HeldBlock block;
     block.held_ = held;
     block.factor_ = W;
@@ -54,7 +54,7 @@ std::optional<HeldBlock<Number>> HeldBlock<Number>::of(const ContactMatrix<Numbe
             for (Eigen::Index k = 0; k < j; ++k)
                 if (contains(held, k)) L(i, j) -= product(L(i, k), product(L(j, k), L(k, k)));
         }
-        if (!is_clear(L(j, j), W(j, j), least_pivot)) return std::nullopt;
+        if (!is_clear(L(j, j), W(j, j), min_pivot)) return std::nullopt;
         for (Eigen::Index i = j + 1; i < size; ++i)
             if (contains(held, i) && !is_zero(L(i, j))) L(i, j) /= L(j, j);
     }

@@ -10,12 +10,13 @@
 
 namespace achilles {
 
-inline constexpr Eigen::Index most_contacts = 8;  // largest number of contacts closed at one time
+inline constexpr Eigen::Index max_closed_contacts = 8;  // largest number of contacts closed at one time
 
 template <class Number>
-using ContactMatrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic, 0, most_contacts, most_contacts>;
+using ContactMatrix =
+    Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic, 0, max_closed_contacts, max_closed_contacts>;
 template <class Number>
-using ContactVector = Eigen::Matrix<Number, Eigen::Dynamic, 1, 0, most_contacts, 1>;
+using ContactVector = Eigen::Matrix<Number, Eigen::Dynamic, 1, 0, max_closed_contacts, 1>;
 
 inline bool contains(ContactSet set, Eigen::Index contact) { return set.contains(static_cast<std::size_t>(contact)); }
 inline ContactSet with(ContactSet set, Eigen::Index contact) { return set.with(static_cast<std::size_t>(contact)); }
@@ -51,9 +52,9 @@ class HeldBlock {
     // A pivot below this fraction of its diagonal entry is not clearly positive.
     static constexpr double clear = 0x1p-33;
 
-    // Returns nullopt if W_AA is not positive definite. For doubles: a pivot is at most `least_pivot` times its
+    // Returns nullopt if W_AA is not positive definite. For doubles: a pivot is at most `min_pivot` times its
     // diagonal entry. For intervals: the pivots are not proved positive for every symmetric matrix inside.
-    static std::optional<HeldBlock> of(const ContactMatrix<Number>& W, ContactSet held, double least_pivot = clear);
+    static std::optional<HeldBlock> of(const ContactMatrix<Number>& W, ContactSet held, double min_pivot = clear);
 
     // x_A = W_AA^-1 b_A, and 0 outside of A.
     ContactVector<Number> solve(const ContactVector<Number>& b) const;

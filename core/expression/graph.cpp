@@ -61,7 +61,7 @@ std::uint32_t Graph::Table::intern(const Node& node) {
     node_ids.room(nodes.size(), [&](std::uint32_t id) { return hash(nodes[id]); });
     std::uint32_t& id = node_ids.find(hash(node), [&](std::uint32_t other) { return same(nodes[other], node); });
     if (id == IdSet::none) {
-        if (nodes.size() == most_nodes) throw ExpressionTooLarge(fmt::format("more than {} operations", most_nodes));
+        if (nodes.size() == max_nodes) throw ExpressionTooLarge(fmt::format("more than {} operations", max_nodes));
         id = static_cast<std::uint32_t>(nodes.size());
         nodes.push_back(node);
     }
@@ -70,10 +70,10 @@ std::uint32_t Graph::Table::intern(const Node& node) {
 
 std::uint32_t Graph::Table::intern(const Rational& value) {
     const std::size_t size = bits(value);
-    if (size > most_bits) throw ExpressionTooLarge(fmt::format("an exact number has more than {} bits", most_bits));
+    if (size > max_bits) throw ExpressionTooLarge(fmt::format("an exact number has more than {} bits", max_bits));
     bits_in_all += size;
-    if (bits_in_all > most_bits_in_all)
-        throw ExpressionTooLarge(fmt::format("the exact numbers have more than {} bits in total", most_bits_in_all));
+    if (bits_in_all > max_bits_in_all)
+        throw ExpressionTooLarge(fmt::format("the exact numbers have more than {} bits in total", max_bits_in_all));
     number_ids.room(numbers.size(), [&](std::uint32_t id) { return hash(numbers[id]); });
     std::uint32_t& id = number_ids.find(hash(value), [&](std::uint32_t other) { return numbers[other] == value; });
     if (id == IdSet::none) {

@@ -49,10 +49,10 @@ std::pair<Expression, int> as_power(Expression e) {
 
 // Folds a power exactly only while the result is small; nested powers would otherwise fill the memory with digits.
 bool can_fold(const Rational& base, int exponent) {
-    constexpr std::size_t most_bits = 4096;
+    constexpr std::size_t max_bits = 4096;
     using boost::multiprecision::denominator, boost::multiprecision::numerator;
     const auto bits = msb(abs(numerator(base))) + msb(denominator(base)) + 2;
-    return bits * static_cast<std::size_t>(std::abs(static_cast<long>(exponent))) <= most_bits;
+    return bits * static_cast<std::size_t>(std::abs(static_cast<long>(exponent))) <= max_bits;
 }
 
 bool fits(int exponent) { return exponent > -1000 && exponent < 1000; }

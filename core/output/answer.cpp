@@ -18,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t most_coordinates = 4;  // columns of the table
+constexpr std::size_t max_state_columns = 4;  // columns of the table
 
 // Half-width of the certified Zeno time (s), to the farther end of the interval; 0 if it is not certified.
 double half_width(const Event& event) { return proved_time(event).value_or(0.0); }
@@ -73,7 +73,7 @@ class ContactChanges {
 
  private:
     std::size_t coordinates() const { return model_.description().coordinates.size(); }
-    std::size_t columns() const { return std::min(coordinates(), most_coordinates); }
+    std::size_t columns() const { return std::min(coordinates(), max_state_columns); }
 
     std::string heading(std::size_t i) const {
         const CoordinateDescription& coordinate = model_.description().coordinates[i];

@@ -33,7 +33,7 @@ std::vector<std::pair<std::size_t, double>> Impulses::of(std::size_t event) {
     if (impact.joint && !impact.joint->impulses.empty()) return impact.joint->impulses;
     // Solves G (v+ - v-) = W p for the held and the impacting contacts.
     const ContactSet all = mode_before(trajectory_, event).held().with(impact.contacts);
-    if (all.count() > most_contacts) return {};
+    if (all.count() > max_closed_contacts) return {};
     const ClosedContacts closed = surfaces_.at({impact.q, impact.v_before, impact.t}, all);
     const auto block = HeldBlock<double>::of(closed.W, closed.places_of(all));
     if (!block) return {};

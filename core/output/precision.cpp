@@ -20,7 +20,7 @@ namespace achilles {
 
 namespace {
 
-constexpr int most_digits = 17;  // enough to distinguish any two doubles
+constexpr int max_digits = 17;  // enough to distinguish any two doubles
 
 // The digits of a number, and the power of ten of the first digit.
 struct Digits {
@@ -109,7 +109,7 @@ std::string shortened(Decimal x) {
 std::string shortest_in(double low, double high) {
     if (low <= 0.0 && high >= 0.0) return "0";
     const double large = std::max(std::abs(low), std::abs(high));
-    for (int unit = leading(large) + 1; unit > leading(large) - most_digits; --unit) {
+    for (int unit = leading(large) + 1; unit > leading(large) - max_digits; --unit) {
         const Decimal inside = ceil_of(low, unit);
         if (!is_less({-inside.number, unit}, -high)) return shortened(inside);
     }
@@ -125,10 +125,10 @@ struct Centered {
     std::int64_t off = 0;
 };
 
-Centered centered(const Interval& x, int least_unit, int most_unit) {
+Centered centered(const Interval& x, int min_unit, int max_unit) {
     const double middle = mid(x), half = std::max(x.hi() - middle, middle - x.lo()), large = mag(x);
-    int unit = std::clamp(half > 0.0 ? leading(half) - 1 : least_unit, least_unit, most_unit);
-    if (large > 0.0) unit = std::max(unit, leading(large) + 1 - most_digits);
+    int unit = std::clamp(half > 0.0 ? leading(half) - 1 : min_unit, min_unit, max_unit);
+    if (large > 0.0) unit = std::max(unit, leading(large) + 1 - max_digits);
     const Decimal below = floor_of(middle, unit), low = floor_of(x.lo(), unit), high = ceil_of(x.hi(), unit);
     Centered result{below, 0};
     // Of the two neighboring decimals, takes the one nearer to the center.
@@ -179,15 +179,15 @@ std::string interval_text(double low, double high) {
     if (large == 0.0) return "[0, 0]";
     constexpr int few = 8, more = 2;
     int unit = leading(large) + 1 - few;
-    unit = std::min(unit, high > low ? leading(high - low) - more : leading(large) - most_digits);
-    unit = std::max(unit, leading(large) + 1 - most_digits);
+    unit = std::min(unit, high > low ? leading(high - low) - more : leading(large) - max_digits);
+    unit = std::max(unit, leading(large) + 1 - max_digits);
     return fmt::format("[{}, {}]", shortened(floor_of(low, unit)), shortened(ceil_of(high, unit)));
 }
 
 std::string short_text(const Interval& x) {
     if (!is_finite(x)) return fmt::format("[{}, {}]", x.lo(), x.hi());
-    constexpr int least_unit = -15;  // finer than the spacing of doubles of a few seconds
-    const Centered value = centered(x, least_unit, 0);
+    constexpr int min_unit = -15;  // finer than the spacing of doubles of a few seconds
+    const Centered value = centered(x, min_unit, 0);
     return value.off == 0 ? shortened(value.center) : fmt::format("{}({})", to_text(value.center), value.off);
 }
 
@@ -267,7 +267,7 @@ Precision::Precision(const Trajectory& trajectory, const ErrorEstimate* estimate
     const Vector none = Vector::Zero(trajectory.run.q.size());
     range_ = estimate != nullptr && !estimate->course.entries().empty() ? estimate->course.range() : State{none, none};
     for (Vector* ranges : {&range_.q, &range_.v})
-        for (double& range : *ranges) range = std::max(range, ErrorCourse::least_range);
+        for (double& range : *ranges) range = std::max(range, ErrorCourse::min_range);
     if (estimate == nullptr) return;
     const double duration = trajectory.end_time - trajectory.run.options.start_time;
     const std::optional<double> horizon = estimate->course.horizon();

@@ -230,7 +230,7 @@ std::vector<const EnclosedEvent*> enclosed_events(const Trajectory& run, const E
 
 namespace {
 
-constexpr std::size_t most_coordinates = 4;  // columns of the table
+constexpr std::size_t max_enclosure_columns = 4;  // columns of the table
 
 // "2.5 +- 1e-9", without the equals sign.
 std::string cell(const Interval& x) {
@@ -253,7 +253,7 @@ class ProofAnswer {
     using Row = std::vector<std::string>;
 
     bool is_whole() const { return proof_.end.has_value(); }
-    std::size_t columns() const { return std::min(description_.coordinates.size(), most_coordinates); }
+    std::size_t columns() const { return std::min(description_.coordinates.size(), max_enclosure_columns); }
 
     std::string first_lines() const {
         const std::string reach = reach_text(proof_);

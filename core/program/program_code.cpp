@@ -16,7 +16,7 @@ namespace {
 using Xbyak::Xmm;
 using Function = double (*)(double);
 
-constexpr std::size_t most_instructions = 20000;
+constexpr std::size_t max_instructions = 20000;
 
 double whole_power(double x, int n) { return integer_power(x, n); }
 double sine(double x) { return sine_and_cosine(x).sine; }
@@ -246,7 +246,7 @@ bool can_work(Width of_number, Width of_vector) {
 // A function call processes all parts of a number at once. The arithmetic between two calls is emitted part by part.
 std::shared_ptr<const MachineCode> machine_code(std::span<const Instruction> instructions, std::uint32_t first,
                                                 Width of_number, Width of_vector) {
-    if (!can_work(of_number, of_vector) || instructions.empty() || instructions.size() > most_instructions)
+    if (!can_work(of_number, of_vector) || instructions.empty() || instructions.size() > max_instructions)
         return nullptr;
     Assembler code(Xbyak::util::rbx, 2, of_number, of_vector);
     code.prologue();

@@ -27,7 +27,7 @@ Vector known_or_infinite(Vector sizes) {
 // The first size that exceeds its share of the range; -1 if there is none.
 Eigen::Index first_excess(const Vector& sizes, const Vector& range) {
     for (Eigen::Index i = 0; i < sizes.size(); ++i)
-        if (sizes[i] > ErrorCourse::largest_share * std::max(range[i], ErrorCourse::least_range)) return i;
+        if (sizes[i] > ErrorCourse::largest_share * std::max(range[i], ErrorCourse::min_range)) return i;
     return -1;
 }
 
@@ -132,10 +132,10 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         return none("errors are estimated only with the kinetic reinitialization, not with the Euclidean one");
     if (trajectory.pieces.empty() && trajectory.end_time > options.start_time)
         return none("only the final state of this run was stored");
-    if (trajectory.pieces.size() > most_estimated_steps)
+    if (trajectory.pieces.size() > max_estimated_steps)
         return none(
             fmt::format("the run has more than {} steps, and an estimate would take several times as long as the run",
-                        most_estimated_steps));
+                        max_estimated_steps));
     Chain chain(trajectory, {.errors = true});
     const TangentLayout& tangent = chain.tangent();
     Transport carried(tangent);

@@ -21,8 +21,8 @@ namespace achilles {
 class ErrorCourse {
  public:
     // An error is acceptable up to this share of the range so far, the largest minus the smallest value; the range
-    // counts as `least_range` or more.
-    static constexpr double largest_share = 1e-3, least_range = 1e-9;
+    // counts as `min_range` or more.
+    static constexpr double largest_share = 1e-3, min_range = 1e-9;
 
     // Estimated sizes at a fixed time, combining the error and the standard deviation of rounding. Infinite: unknown.
     struct Entry {
@@ -82,14 +82,14 @@ struct ErrorEstimate {
 };
 
 // Estimates the errors of a run that was recorded in full. There is no estimate if steps are not made by Taylor's
-// method, truncations were restarted by the Euclidean projection, or there are more than most_estimated_steps steps.
+// method, truncations were restarted by the Euclidean projection, or there are more than max_estimated_steps steps.
 // The estimate ends where the run has no derivative. There is none for an end between a truncation and its Zeno point,
 // or after a stop request.
 //
 // An estimate takes up to eight times as long as the run (bench_estimate). Call it on demand, once the runs are
 // finished. The limit is a number of steps, not of seconds, so that a run either always has an estimate or never.
 ErrorEstimate estimate_error(const Trajectory& trajectory, const std::stop_token& stop = {});
-inline constexpr std::size_t most_estimated_steps = 100'000;
+inline constexpr std::size_t max_estimated_steps = 100'000;
 
 // The horizon of a run if it is before the end (s); else nullopt.
 std::optional<double> horizon_before_end(const Trajectory& trajectory, const ErrorEstimate& estimate);

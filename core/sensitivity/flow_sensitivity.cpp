@@ -50,7 +50,7 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         limits_.resize(series_.size() * rows());
     }
 
-    double expand(const State& state, double length, int least_order) override {
+    double expand(const State& state, double length, int min_order) override {
         const std::size_t n = tangent_.dof;
         for (std::size_t group = 0; group < series_.size(); ++group) {
             for (std::size_t i = 0; i < n; ++i) {
@@ -61,7 +61,7 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         }
         order_ = 0;
         // Stop when the last term is small compared with the first few, and the one before nearly.
-        const int least = std::clamp(least_order, first_few + 1, highest);
+        const int least = std::clamp(min_order, first_few + 1, highest);
         raise_to_powers(length);
         bool before = false;
         while (order_ < highest) {
@@ -74,8 +74,8 @@ class FlowSensitivityBySeries : public FlowSensitivity {
         }
         // Otherwise shorten the step, at which the last terms fall at least this fast; but not below the length where
         // errors of the run's own steps dominate.
-        const double least_length = 1e-3 * length;
-        for (double excess = last_terms(); excess > 1.0 && length > least_length; excess = last_terms()) {
+        const double min_length = 1e-3 * length;
+        for (double excess = last_terms(); excess > 1.0 && length > min_length; excess = last_terms()) {
             length *= std::isfinite(excess) ? std::clamp(std::pow(excess, -1.0 / (highest - 1)), 0.05, 0.9) : 0.05;
             raise_to_powers(length);
             set_limits();
@@ -299,11 +299,11 @@ int FlowDifference::finite_order() const {
     return order;
 }
 
-double FlowDifference::expand(const State& state, double length, int least_order) {
+double FlowDifference::expand(const State& state, double length, int min_order) {
     constexpr int highest = MotionSeries::highest_order;
     state_ = state;
     slope_order_ = std::max(lowest, slope_order_ - 1);
-    order_ = std::min(std::max(least_order, slope_order_), highest);
+    order_ = std::min(std::max(min_order, slope_order_), highest);
     motion_.expand(state, order_);
     for (;;) {
         expand_nearby(state);
@@ -410,15 +410,15 @@ double FlowDifference::reach(const MotionSeries& motion, int order, std::size_t 
 // within the tolerance in the terms that the run keeps. The terms that follow, however, grow without bound before they
 // fall.
 void FlowDifference::by_parts(int degree, double span, RowMatrix& delta) {
-    constexpr int most_parts = 5000, least_order = 24;
+    constexpr int max_parts = 5000, min_order = 24;
     const std::size_t n = tangent_.dof;
     State at = state_;
     double left = span;
     for (int part = 0; left > 0.0; ++part) {
-        part_.expand(at, std::max(order_, least_order));
+        part_.expand(at, std::max(order_, min_order));
         const int order = part_.finite_order();
         const double length = std::min(left, reach(part_, order, 2 * n, size_of(at)));
-        if (part == most_parts || !(length > 0x1p-40 * span)) {
+        if (part == max_parts || !(length > 0x1p-40 * span)) {
             delta.setConstant(std::numeric_limits<double>::quiet_NaN());
             return;
         }

@@ -18,7 +18,7 @@ class FlowSensitivity {
     // Expands values and derivatives at a state, at least to this order. Orders are added until, after `length` (s),
     // the last term is below the tolerance and the one before nearly. Returns the length for which this holds, which
     // may be shorter.
-    virtual double expand(const State& state, double length, int least_order) = 0;
+    virtual double expand(const State& state, double length, int min_order) = 0;
     // Order of the last expansion.
     virtual int order() const = 0;
     // Coefficient k of q and v, then of the gap of each open contact (from k = 2 on).
@@ -59,7 +59,7 @@ class FlowDifference : public FlowSensitivity {
  public:
     FlowDifference(const Model& model, Mode mode, const TangentLayout& tangent, std::span<const double> parameters);
 
-    double expand(const State& state, double length, int least_order) override;
+    double expand(const State& state, double length, int min_order) override;
     int order() const override { return order_; }
     // Coefficients of the motion itself, not of a neighboring one.
     double coefficient(int k, std::size_t i) const override { return motion_.coefficient(k, i); }

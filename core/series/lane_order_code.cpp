@@ -217,7 +217,7 @@ class LaneOrderWriter {
 
 std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, const LanePlan& lanes, Width vectors) {
     const auto best = best_width();
-    if (!best || vectors > *best || plan.rules.size() > most_rules_in_code) return nullptr;
+    if (!best || vectors > *best || plan.rules.size() > max_rules_in_code) return nullptr;
     LaneOrderWriter writer(plan, lanes, vectors);
     writer.write();
     auto orders = std::make_shared<LaneOrderCode>();

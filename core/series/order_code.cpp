@@ -242,7 +242,7 @@ class OrderWriter {
 
 std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width width) {
     const auto best = best_width();
-    if (!best || width > *best || plan.rules.empty() || plan.rules.size() > most_rules_in_code) return nullptr;
+    if (!best || width > *best || plan.rules.empty() || plan.rules.size() > max_rules_in_code) return nullptr;
     OrderWriter writer(plan, width);
     const std::size_t first = writer.write_first();
     const std::optional<std::size_t> later = plan.outputs.empty() ? std::nullopt : std::optional(writer.write_later());

@@ -6,7 +6,7 @@
 
 namespace achilles {
 
-constexpr std::size_t most_rules_in_code = 10000;
+constexpr std::size_t max_rules_in_code = 10000;
 
 // The three factors of a rule are contiguous at (factors, first). Overwrites register 0.
 class RuleWriter {

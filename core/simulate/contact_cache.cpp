@@ -107,7 +107,7 @@ UnpressedContacts& ContactCache::unpressed() {
 
 // Newton's method, as in ContactKinematics::project().
 std::optional<double> ContactCache::project_several(State& state, ContactSet onto, ContactSet still) {
-    if (onto.count() > most_contacts) return std::nullopt;
+    if (onto.count() > max_closed_contacts) return std::nullopt;
     constexpr int rounds = 8;
     double before = std::numeric_limits<double>::infinity();
     ContactVector<double> p = ContactVector<double>::Zero(onto.count());  // of the last correction

@@ -40,7 +40,7 @@ class ContactCache {
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }
     ContactKinematics& of(std::size_t contact, Mode mode);
 
-    // `contacts` must contain at most most_contacts.
+    // `contacts` must contain at most max_closed_contacts.
     ClosedContacts at(const State& state, ContactSet contacts);
     // Whether hddot of a contact in this mode may be 0 within rounding. `scale` has the largest coordinates, rates and
     // time so far.
@@ -51,7 +51,7 @@ class ContactCache {
     bool never_needs_force(std::size_t contact, Mode mode) { return unpressed().needs_no_force(contact, mode); }
     // Projects q onto the surfaces of the contacts `onto` in one solve, until every |h| is at rounding level, and v so
     // that hdot = 0 for the contacts `still`. Returns the smallest gap of `onto`. Returns nullopt if it fails: dh = 0,
-    // contradicting gaps, or more than most_contacts.
+    // contradicting gaps, or more than max_closed_contacts.
     std::optional<double> project(State& state, ContactSet onto, ContactSet still) {
         if (!onto.has_one()) return project_several(state, onto, still);
         Contact contact;

@@ -14,10 +14,10 @@ void ExecutionAutomaton::decide(ContactSet closed, ContactSet vanishing) {
     forget_held();
     not_unique_ = false;
     if (closed.empty()) return;
-    if (closed.count() > most_contacts)
+    if (closed.count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
-                                closed.count(), most_contacts, names_of(closed), where(next_.state)));
+                                closed.count(), max_closed_contacts, names_of(closed), where(next_.state)));
     const ClosedContacts all = surfaces_->at(next_.state, closed);
     const ContactVector<double> hddot = accelerations(all);
     const auto forces = solve_complementarity(all.W, hddot);

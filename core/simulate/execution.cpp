@@ -20,7 +20,7 @@ std::string where(const State& state) {
 
 namespace {
 
-constexpr int most_stalled = 100;
+constexpr int max_stalled = 100;
 
 }  // namespace
 
@@ -121,7 +121,7 @@ const StepRequest* ExecutionAutomaton::next() {
              fmt::format("{} steps and {} impacts by t = {:.9g} use all of the {:.4g} MB allowed; increase the memory "
                          "limit or choose an earlier end time",
                          record_.steps(), record_.impacts(), next_.state.t, run_.options.memory / 1e6));
-    } else if (stalled_ > most_stalled) {
+    } else if (stalled_ > max_stalled) {
         // Consecutive steps at the resolution of time would return to the same state forever.
         stop_at(StepFailure::step_too_small);
     }

@@ -66,7 +66,7 @@ std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, co
         const double rounding = few * rounding_so_far(other) - other.hdot * resolved * time;
         if (other.h <= std::max(own, rounding)) {
             landing = landing.with(i);
-        } else if (other.h <= next_.starts[i].gap.error && next_.held().count() + 2 <= most_contacts &&
+        } else if (other.h <= next_.starts[i].gap.error && next_.held().count() + 2 <= max_closed_contacts &&
                    !is_order_independent(ContactSet::of(which).with(i))) {
             in_doubt = in_doubt.with(i);
         }
@@ -81,7 +81,7 @@ std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, co
 // forces with the velocities after it.
 bool ExecutionAutomaton::stays_held(std::size_t which, const Contact& contact) {
     if (next_.mode.is_free()) return true;
-    if (next_.held().count() >= most_contacts) return false;
+    if (next_.held().count() >= max_closed_contacts) return false;
     const ClosedContacts closed = surfaces_->at(next_.state, next_.held().with(which));
     const auto held = closed.places_of(next_.held()), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
@@ -148,10 +148,10 @@ double ExecutionAutomaton::plastic_work(const State& before, ContactSet contacts
 void ExecutionAutomaton::collide(ContactSet landing) {
     const ContactSet held = next_.held(), resting = next_.resting().held(), still = held.with(next_.touching),
                      all = still.with(landing);
-    if (all.count() > most_contacts)
+    if (all.count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
-                                all.count(), most_contacts, names_of(all), where(next_.state)));
+                                all.count(), max_closed_contacts, names_of(all), where(next_.state)));
     if (completing())
         return stop(Outcome::Kind::undecided, fmt::format("impact of {} before the Zeno time of another contact, at {}",
                                                           names_of(landing), where(next_.state)));

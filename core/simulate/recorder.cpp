@@ -35,14 +35,14 @@ namespace {
 // Reserves room for `more` elements. Growing a vector briefly needs twice its memory. A large vector therefore reserves
 // address space for all that the run may record; the system provides memory only for pages that are written.
 template <class Element>
-void make_room(std::vector<Element>& vector, std::size_t more, double most_bytes) {
+void make_room(std::vector<Element>& vector, std::size_t more, double max_bytes) {
     constexpr std::size_t large = std::size_t{8} << 20;  // bytes
     if (vector.capacity() - vector.size() >= more) return;
     const std::size_t doubled = 2 * vector.size() + more;
     if (doubled * sizeof(Element) > large && vector.size() * sizeof(Element) < large) {
         try {
-            constexpr double most_address_space = 1e12;
-            const double elements = std::min(most_bytes, most_address_space) / sizeof(Element);
+            constexpr double max_address_space = 1e12;
+            const double elements = std::min(max_bytes, max_address_space) / sizeof(Element);
             return vector.reserve(std::max(doubled, static_cast<std::size_t>(elements) + more));
         } catch (const std::bad_alloc&) {  // the process may not have that much address space: grow stepwise
         }
@@ -104,9 +104,9 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     if (keep_ == Recording::final_state) return;
     Statistics& statistics = trajectory_.statistics;
     // An upper bound on the coefficients of one step.
-    const std::size_t most_coefficients = 128 * static_cast<std::size_t>(trajectory_.run.q.size());
+    const std::size_t max_coefficients = 128 * static_cast<std::size_t>(trajectory_.run.q.size());
     const double memory = trajectory_.run.options.memory;
-    make_room(trajectory_.coefficients, most_coefficients, memory);
+    make_room(trajectory_.coefficients, max_coefficients, memory);
     make_room(trajectory_.pieces, 1, memory);
     DenseSegment& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
     piece.mode = mode;

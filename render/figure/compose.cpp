@@ -532,8 +532,8 @@ PreparedView::PreparedView(const Model& model, const ViewDescription& view)
     program_ = model.compile_view(texts);
     for (const Text& text : texts)
         quantities_.push_back(quantity(model.description(), text.text, quantities_.empty() ? "" : view.unit));
-    constexpr std::size_t most_names = 3;
-    for (std::size_t i = 1; i < quantities_.size() && view.label.empty() && view.y.size() <= most_names; ++i)
+    constexpr std::size_t max_names = 3;
+    for (std::size_t i = 1; i < quantities_.size() && view.label.empty() && view.y.size() <= max_names; ++i)
         label_ += (i > 1 ? ", " : "") + quantities_[i].label;
     if (!view.label.empty() && view.y.size() == 1) quantities_[1].label = view.label;
 }

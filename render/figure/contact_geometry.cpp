@@ -45,7 +45,7 @@ const DrawnShape* line_through(const std::vector<DrawnShape>& shapes, const std:
 
 // Smallest displacement of a disc that gives it the wanted distance from every gap. It is found by relaxation, with a
 // limit on the rounds because walls may leave no space.
-Point least_way(const std::vector<std::pair<Point, double>>& wanted) {
+Point min_way(const std::vector<std::pair<Point, double>>& wanted) {
     constexpr int rounds = 60;
     std::vector<double> pushes(wanted.size(), 0.0);
     Point way;
@@ -240,7 +240,7 @@ void ContactGeometry::rest(Drawing& drawing, double t, const State& state) const
                 const double far = std::max(0.0, near->distance) / (2.0 * radius);
                 wanted.emplace_back(near->away, radius * std::exp(-far * far));
             }
-        const Point way = least_way(wanted);
+        const Point way = min_way(wanted);
         for (DrawnShape& shape : drawing.shapes)
             if (shape.item == disc.item && shape.kind == DrawnShape::Kind::disc)
                 shape.points[0] = {shape.points[0].x + way.x, shape.points[0].y + way.y};

@@ -130,8 +130,8 @@ Panel difference(const Trajectory& present, std::span<const ComparedRun> others,
     if (panel.curves.empty()) return panel;
     panel.legend = panel.legend_above = framing.for_print;
     // On a screen, which has less space, the legend of many runs is shown elsewhere.
-    constexpr std::size_t most_named = 4;
-    if (!framing.for_print && panel.curves.size() <= most_named) place_legend(panel);
+    constexpr std::size_t max_named = 4;
+    if (!framing.for_print && panel.curves.size() <= max_named) place_legend(panel);
     return panel;
 }
 

@@ -155,7 +155,7 @@ Margins Grid::room(std::size_t i) const {
     return {across_[cell.column].left, right, down_[cell.row].top, bottom};
 }
 
-float Grid::least_side() const {
+float Grid::min_side() const {
     return std::min(*std::min_element(widths_.begin(), widths_.end()),
                     *std::min_element(heights_.begin(), heights_.end()));
 }

@@ -32,7 +32,7 @@ class Grid {
     Rectangle plot(std::size_t i) const;
     // The margins around that area, for ticks, labels and a color scale.
     Margins room(std::size_t i) const;
-    float least_side() const;  // smallest width of a column or height of a row
+    float min_side() const;  // smallest width of a column or height of a row
 
  private:
     void add_margins(const std::vector<Panel>& panels, const Metrics& metrics);

@@ -111,9 +111,9 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     for (const Tube& tube : panel.tubes) lay_tube(tube, sheet, plot, map, m);
     for (const Markers& markers : panel.markers)
         if (markers.shape == Markers::MarkerShape::bar) lay_bars(markers, sheet, plot, map, m);
-    const auto lay = [&](const Curve& curve, double least_width = 0.0) {
+    const auto lay = [&](const Curve& curve, double min_width = 0.0) {
         Path path{{}, scaled(curve.stroke, m.scale), plot};
-        path.stroke.width = std::max(path.stroke.width, least_width);
+        path.stroke.width = std::max(path.stroke.width, min_width);
         path.points.reserve(curve.points.size());
         for (const Point& point : curve.points) path.points.push_back(map(point));
         sheet.emplace_back(std::move(path));
@@ -322,8 +322,8 @@ Grid grid_of(const Figure& figure, Rectangle area, const Metrics& m) {
 KeyLines take_legend(const Figure& figure, Rectangle& area, const Metrics& m) {
     const KeyLines keys(figure.keys, area.width - 2.0F * m.text, m);
     // A small picture shows data rather than a legend.
-    constexpr float most_of_height = 0.3F;
-    if (figure.keys.empty() || keys.height(m) >= most_of_height * area.height) return KeyLines({}, area.width, m);
+    constexpr float max_of_height = 0.3F;
+    if (figure.keys.empty() || keys.height(m) >= max_of_height * area.height) return KeyLines({}, area.width, m);
     const float above = std::round(m.text * 0.5F) + keys.height(m);
     area.y += above;
     area.height -= above;
@@ -340,7 +340,7 @@ Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double 
     const float top = area.y + std::round(m.text * 0.5F);
     take_legend(figure, area, m).lay(sheet, area.x + area.width / 2.0F, top, 0.5F, figure, m);
     const Grid grid = grid_of(figure, area, m);
-    if (grid.least_side() < m.text) return sheet;  // too small for anything but labels
+    if (grid.min_side() < m.text) return sheet;  // too small for anything but labels
     for (std::size_t i = 0; i < figure.panels.size(); ++i)
         lay_at(figure.panels[i], figure, sheet, on_pixels(grid.plot(i)), grid.room(i), m);
     return sheet;

@@ -11,9 +11,9 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t few_markers = 150;   // up to this number, all are drawn with edges
-constexpr std::size_t most_markers = 250;  // maximum in a plot
-constexpr std::size_t most_events = 8;     // events per marker; more of them are drawn as a band
+constexpr std::size_t few_markers = 150;  // up to this number, all are drawn with edges
+constexpr std::size_t max_markers = 250;  // maximum in a plot
+constexpr std::size_t most_events = 8;    // events per marker; more of them are drawn as a band
 
 // Positions of the markers inside the plot area. Markers are drawn entirely or not at all, because half a marker at the
 // edge would look like another shape. Positions may miss the edge by rounding.
@@ -124,7 +124,7 @@ void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const Pan
     }
     constexpr double between = 1.3;  // distance in marker sizes
     const std::vector<Point> laid = spaced_apart(places, std::max(between * markers.size, markers.apart) * m.scale);
-    if (laid.size() > most_markers || places.size() > most_events * laid.size())
+    if (laid.size() > max_markers || places.size() > most_events * laid.size())
         return lay_band(markers, places, sheet, plot, m);
     Markers bare = markers;
     bare.edge.a = 0;

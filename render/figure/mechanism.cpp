@@ -14,8 +14,8 @@ namespace achilles {
 
 namespace {
 
-constexpr int most_halvings = 56;
-constexpr std::size_t most_points = 20000;  // limit for a curve that never ends inside the picture
+constexpr int max_halvings = 56;
+constexpr std::size_t max_curve_points = 20000;  // limit for a curve that never ends inside the picture
 
 struct CurveSample {
     double s;
@@ -44,7 +44,7 @@ class Refiner {
     // Adds the points between a and b, including b but not a.
     void add(const CurveSample& a, const CurveSample& b, int halvings) {
         const bool is_short = std::hypot(b.p.x - a.p.x, b.p.y - a.p.y) <= 0.1 * size_;
-        if (halvings < most_halvings && points_.size() < most_points && is_near(a.p, b.p, seen_)) {
+        if (halvings < max_halvings && points_.size() < max_curve_points && is_near(a.p, b.p, seen_)) {
             const double s = 0.5 * (a.s + b.s);
             const CurveSample middle{s, curve_(s)};
             constexpr double flat = 5e-5;  // of the diagonal: a twentieth of a pixel
@@ -253,8 +253,8 @@ std::vector<Point> Mechanism::line_between(const Item& item, Evaluator<double>& 
     PartSize size{std::hypot(b.x - a.x, b.y - a.y), placed.sizes.back()};
     if (!(size.across > 0.0)) size.across = fitting_across(size.rest, world);
     if (shape == DrawingShape::damper) return damper_line(from, to, size);
-    constexpr double most_coils = 1000.0;
-    const double coils = std::min(std::round(placed.sizes.front()), most_coils);
+    constexpr double max_coils = 1000.0;
+    const double coils = std::min(std::round(placed.sizes.front()), max_coils);
     return spring_line(from, to, coils >= 1.0 ? static_cast<int>(coils) : fitting_coils(size), size);
 }
 

@@ -10,7 +10,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::size_t most_poses = 40;
+constexpr std::size_t max_poses = 40;
 constexpr double apart = 0.035;  // fraction of the world: closer poses would merge into a blot
 constexpr std::uint8_t pose = 55;
 
@@ -62,7 +62,7 @@ void MechanismScene::find_poses() {
     auto grips = mechanism_.grips(trajectory_.run.parameters);
     std::vector<std::vector<Point>> kept;
     const auto keep = [&](double t, const State& state) {
-        if (kept.size() >= most_poses) return;
+        if (kept.size() >= max_poses) return;
         std::vector<Point> places;
         for (AnchorPoint& grip : grips) places.push_back(grip.at(t, state).at);
         const auto is_near = [&](const std::vector<Point>& other) {

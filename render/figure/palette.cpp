@@ -131,12 +131,12 @@ Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std
 
 Color run_color(const Theme& theme, int place) {
     // None of these colors has the hue of a phase, an event marker or an error.
-    const std::array<Color, most_pinned> light{{{118, 52, 200, 255},
-                                                {140, 84, 12, 255},
-                                                {225, 30, 180, 255},
-                                                {0, 140, 165, 255},
-                                                {92, 122, 0, 255},
-                                                {176, 20, 52, 255}}},
+    const std::array<Color, max_pinned> light{{{118, 52, 200, 255},
+                                               {140, 84, 12, 255},
+                                               {225, 30, 180, 255},
+                                               {0, 140, 165, 255},
+                                               {92, 122, 0, 255},
+                                               {176, 20, 52, 255}}},
         dark{{{170, 130, 255, 255},
               {205, 150, 85, 255},
               {245, 105, 215, 255},

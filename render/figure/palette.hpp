@@ -38,9 +38,9 @@ Color on_theme(const Color& color, const Theme& theme);
 // phase. One of several has its own hue (repeated after eight), and the dash shows the phase.
 Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
 Color phase_color(const Theme& theme, Phase::Kind kind);
-// Color of a run in a comparison, by its place from 1 to most_pinned. In a comparison the present run is drawn in ink,
+// Color of a run in a comparison, by its place from 1 to max_pinned. In a comparison the present run is drawn in ink,
 // and only stroke and dash show its phases.
-inline constexpr int most_pinned = 6;
+inline constexpr int max_pinned = 6;
 Color run_color(const Theme& theme, int place);
 // Stroke of a compared run that lies below `above` others and the present one. It is wide enough to be visible where
 // they coincide.

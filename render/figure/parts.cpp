@@ -51,8 +51,8 @@ int fitting_coils(const PartSize& size) {
 std::vector<Point> spring_line(const Point& from, const Point& to, int coils, const PartSize& size) {
     const auto at = way(from, to);
     if (!at) return {from, to};
-    constexpr double end_of_across = 0.5, most_of_length = 0.15;
-    const double end = std::min(end_of_across * size.across, most_of_length * at->length);
+    constexpr double end_of_across = 0.5, max_of_length = 0.15;
+    const double end = std::min(end_of_across * size.across, max_of_length * at->length);
     const int turns = 2 * coils;
     std::vector<Point> points{from, (*at)(end, 0.0)};
     for (int i = 0; i < turns; ++i)

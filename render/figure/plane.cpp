@@ -386,9 +386,9 @@ std::vector<Point> boundary(const Trajectory& trajectory, std::span<const Sample
     }
     // A crest narrower than a few cells would be cut off.
     constexpr double cell = 2.5;  // pixels
-    constexpr int least_columns = 160, least_rows = 120, most = 640;
-    const int columns = std::clamp(static_cast<int>(size.width / cell), least_columns, most),
-              rows = std::clamp(static_cast<int>(size.height / cell), least_rows, most);
+    constexpr int min_columns = 160, min_rows = 120, most = 640;
+    const int columns = std::clamp(static_cast<int>(size.width / cell), min_columns, most),
+              rows = std::clamp(static_cast<int>(size.height / cell), min_rows, most);
     std::vector<ScalarField> fields;
     for (const PlaneFunction& gap : gaps) fields.emplace_back(part->box, gap, columns, rows);
     const std::vector<std::vector<Point>> lines = borders(fields, gaps);

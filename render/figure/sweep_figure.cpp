@@ -56,14 +56,14 @@ void check_drawn(const SweepData& data, const SweepLook& look) {
     if (axes > 2 || (axes == 0 && form != Form::section))
         refuse(fmt::format("a sweep over {} axes cannot be drawn", axes),
                "one --over is drawn as curves, two as a map");
-    if (!data.is_section() && data.sweep.count() > most_drawn_rows)
+    if (!data.is_section() && data.sweep.count() > max_drawn_rows)
         refuse(fmt::format("{} runs are too many for a figure", data.sweep.count()),
-               fmt::format("at most {} can be drawn", most_drawn_rows));
+               fmt::format("at most {} can be drawn", max_drawn_rows));
     if (form != Form::map) return;
     for (const SweepAxis& axis : data.sweep.axes)
-        if (axis.count > most_map_side)
+        if (axis.count > max_map_side)
             refuse(fmt::format("{} values of {} are too many for one side of a map", axis.count, axis.name),
-                   fmt::format("at most {} can be drawn", most_map_side));
+                   fmt::format("at most {} can be drawn", max_map_side));
 }
 
 std::vector<std::string> left_out(const SweepData& data, const SweepLook& look) {
@@ -161,10 +161,10 @@ void share_keys(Figure& figure) {
 }
 
 // In layout points: 300 and 110 pixels of a picture 1200 pixels wide, the width of a page.
-constexpr double least_map_width = 300.0 / publication_scale, least_panel_height = 110.0 / publication_scale;
+constexpr double min_map_width = 300.0 / publication_scale, min_panel_height = 110.0 / publication_scale;
 
 // Minimum width and height over all panels.
-std::array<double, 2> least_sides(const Figure& figure, double width, double height, double scale) {
+std::array<double, 2> min_sides(const Figure& figure, double width, double height, double scale) {
     const auto measure = [](const std::string& label, float size) {
         return 0.5F * size * static_cast<float>(letters(label).size());
     };
@@ -185,11 +185,11 @@ void fit_columns(Figure& figure, const SweepLook& look) {
     if (figure.columns < 2 || look.width <= 0.0) return;
     const bool is_free = look.height <= 0.0;
     const double height = is_free ? look.width * static_cast<double>(figure.panels.size()) : look.height;
-    const auto beside = least_sides(figure, look.width, height, 1.0);
-    if (beside[0] >= least_map_width) return;
+    const auto beside = min_sides(figure, look.width, height, 1.0);
+    if (beside[0] >= min_map_width) return;
     set_columns(figure, 1);
     if (is_free) return;
-    const auto below = least_sides(figure, look.width, height, 1.0);
+    const auto below = min_sides(figure, look.width, height, 1.0);
     if (std::min(below[0], below[1]) < std::min(beside[0], beside[1])) set_columns(figure, 2);
 }
 
@@ -201,7 +201,7 @@ int readable_height(const Figure& figure, int width, int height, double scale) {
     for (const Cell& cell : cells_of(figure)) rows = std::max(rows, cell.row + cell.rows);
     // For a panel without any height the deficit is only approximate, hence the iteration.
     for (int i = 0; i < 4 && height < most; ++i) {
-        const double lack = least_panel_height * scale - least_sides(figure, width, height, scale)[1];
+        const double lack = min_panel_height * scale - min_sides(figure, width, height, scale)[1];
         if (lack < 0.5) break;
         height = std::min(height + static_cast<int>(std::ceil(lack * static_cast<double>(rows))), most);
     }

@@ -15,7 +15,7 @@ namespace achilles {
 // Pseudo column: the sequences of events, as classes.
 inline constexpr std::size_t sequence_column = ~std::size_t{0};
 // Limits of a figure: rows of the table, and values on an axis of a map.
-inline constexpr std::uint64_t most_drawn_rows = std::uint64_t{1} << 24, most_map_side = 4096;
+inline constexpr std::uint64_t max_drawn_rows = std::uint64_t{1} << 24, max_map_side = 4096;
 
 struct SweepLook {
     std::vector<std::size_t> columns;  // of the data; empty: all columns, or the outcome if there are none

@@ -343,7 +343,7 @@ Panel map_panel(const SweepData& data, const ColumnView& column, const Theme& th
 
 namespace {
 
-constexpr std::size_t most_markers = 3000;  // more points are drawn as dots
+constexpr std::size_t max_markers = 3000;  // more points are drawn as dots
 
 std::string word_of(const Section& section) {
     return section.event ? std::string(names_of(*section.event).name) : "upward zero of " + typeset(section.expression);
@@ -363,7 +363,7 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
     markers.fill = color;
     markers.edge.a = 0;
     markers.size = points.size() > 500 ? 2.2 : 3.5;
-    const bool are_few = points.size() <= most_markers;
+    const bool are_few = points.size() <= max_markers;
     if (are_few) markers.points = std::move(points);
     if (!what.empty()) {
         markers.label = are_few ? what : what + "; color strength: number of points (log scale)";
@@ -392,7 +392,7 @@ Panel diagram_panel(const SweepData& data, const ColumnView& column, const Theme
     add_points(std::move(points), theme.ink, theme, panel, "at every " + word_of(*data.sweep.at));
     const SweepAxis axis = shown_axis(data, 0);
     if (axis.count > 0) {
-        panel.dots.columns = static_cast<int>(std::min<std::uint64_t>(axis.count, most_map_side));
+        panel.dots.columns = static_cast<int>(std::min<std::uint64_t>(axis.count, max_map_side));
         const double first = edge_of(axis, 0.0), last = edge_of(axis, static_cast<double>(axis.count));
         panel.dots.left = std::min(first, last);
         panel.dots.right = std::max(first, last);
@@ -419,7 +419,7 @@ struct ColoredMarkers {
     std::vector<Color> colors;
 
     void add_to(Panel& panel) {
-        if (points.size() > most_markers) {
+        if (points.size() > max_markers) {
             panel.dots = {std::move(points), std::move(colors), {}, 0, 0.0, 0.0};
             return;
         }

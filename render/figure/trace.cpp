@@ -140,7 +140,7 @@ class PathThinner : public Thinner {
         if (!cells_.empty()) return add_if_new(point);
         pixels_.push_back(point.pixel);
         keep(point);
-        if (pixels_.size() >= most_points) start_covering();
+        if (pixels_.size() >= max_path_points) start_covering();
         last_ = point;
     }
     void lift() override {
@@ -156,7 +156,7 @@ class PathThinner : public Thinner {
 
  private:
     static constexpr double cell = 0.45;  // pixels; its diagonal is 0.64
-    static constexpr std::size_t most_points = 15000;
+    static constexpr std::size_t max_path_points = 15000;
 
     void start_covering() {
         cells_.assign(columns_ * rows_, false);
@@ -225,7 +225,7 @@ double overshoot(const Point& p, const Point& a, const Point& b, double share) {
 class Tracer {
  public:
     Tracer(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read)
-        : request_(request), read_(read), sampler_(trajectory), levels_(most_halvings + 1) {
+        : request_(request), read_(read), sampler_(trajectory), levels_(max_halvings + 1) {
         for (std::size_t i = 0; i < 2 * request.quantities; ++i) {
             if (request.over_time)
                 thinners_.push_back(std::make_unique<ColumnThinner>());
@@ -260,8 +260,8 @@ class Tracer {
     }
 
  private:
-    static constexpr int most_halvings = 24;
-    static constexpr int most_of_step = 200000;  // maximum number of samples in one step
+    static constexpr int max_halvings = 24;
+    static constexpr int max_of_step = 200000;  // maximum number of samples in one step
 
     void read_node(const Sample& sample, TraceNode& node) {
         node.t = sample.t;
@@ -351,8 +351,8 @@ class Tracer {
     // quarter. If the deviation was small before as well, both halves are accurate enough.
     void refine(const DenseSegment& piece, const TraceNode& a, const TraceNode& b, double before, int halvings) {
         const double t = 0.5 * (a.t + b.t);
-        if (samples_of_step_ > most_of_step) return leave_out(b);
-        if (halvings >= most_halvings || !(t > a.t && t < b.t)) return take(b);
+        if (samples_of_step_ > max_of_step) return leave_out(b);
+        if (halvings >= max_halvings || !(t > a.t && t < b.t)) return take(b);
         TraceNode& middle = levels_[static_cast<std::size_t>(halvings)];
         read_at(piece, t, middle);
         const double off = deviation(a, middle, b);

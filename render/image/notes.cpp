@@ -109,7 +109,7 @@ void read_note(std::string_view name, std::string_view data, Notes& notes) {
     if (name == "tEXt") note = read_text(data);
     if (name == "iTXt") note = read_international_text(data);
     if (!note || !is_keyword(note->keyword) || !is_text(note->text)) return;
-    if (notes.size() == most_notes) throw std::runtime_error(too_many);
+    if (notes.size() == max_notes) throw std::runtime_error(too_many);
     notes.push_back(*std::move(note));
 }
 
@@ -125,7 +125,7 @@ std::string with_resolution(std::string_view png, double pixels_per_mm) {
 
 std::string with_notes(std::string_view png, const Notes& notes) {
     const std::size_t begin = header_end(png);
-    if (notes.size() > most_notes) throw std::runtime_error(too_many);
+    if (notes.size() > max_notes) throw std::runtime_error(too_many);
     std::string result(png.substr(0, begin));
     for (const Note& note : notes) result += chunk(note);
     return result.append(png.substr(begin));
@@ -339,7 +339,7 @@ Notes pdf_notes(std::string_view pdf) {
         if (end == std::string_view::npos) throw std::runtime_error("its notes are incomplete");
         const std::string_view line = pdf.substr(0, end);
         const std::size_t space = line.find(' ');
-        if (!line.starts_with('/') || space == std::string_view::npos || notes.size() == most_notes) throw damaged();
+        if (!line.starts_with('/') || space == std::string_view::npos || notes.size() == max_notes) throw damaged();
         notes.push_back({keyword_of(line.substr(1, space - 1)), read_string(line.substr(space + 1))});
         pdf.remove_prefix(end + 1);
     }

@@ -16,7 +16,7 @@ struct Note {
 using Notes = std::vector<Note>;
 
 // Limit on the notes of a picture. Notes of an untrusted file can take ten times its size in memory.
-constexpr std::size_t most_notes = std::size_t{1} << 16;
+constexpr std::size_t max_notes = std::size_t{1} << 16;
 
 inline bool is_ascii(std::string_view text) {
     return std::all_of(text.begin(), text.end(), [](char c) { return static_cast<unsigned char>(c) < 0x80; });

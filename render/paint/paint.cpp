@@ -351,10 +351,10 @@ std::vector<Point> outline(const Shape& shape, const Placement& placement, const
 void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double scale, const Clip& clip) {
     if (rim.size() < 4 || !std::all_of(rim.begin(), rim.end(), is_finite)) return;
     // Ear clipping takes quadratic time in the number of corners.
-    constexpr std::size_t most_corners = 1000;
+    constexpr std::size_t max_corners = 1000;
     double tolerance = 0.05;
     std::vector<Point> corners = thinned(rim, tolerance);
-    while (corners.size() > most_corners && tolerance < 10.0) corners = thinned(rim, tolerance *= 2.0);
+    while (corners.size() > max_corners && tolerance < 10.0) corners = thinned(rim, tolerance *= 2.0);
     if (corners.size() < 4) return;
     corners.pop_back();  // it repeats the first point
     const auto is_outside = [&](const Point& p) {

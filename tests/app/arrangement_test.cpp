@@ -62,12 +62,12 @@ TEST(Arrangement, HasRoomForTheEnergy) {
                 scene.perform(command::Present{presents});
                 Measures m = measures(1366.0F, height, unit);
                 const Arrangement without = arrange(scene, m);
-                m.energy = 110.0F * unit, m.least_energy = 66.0F * unit;
+                m.energy = 110.0F * unit, m.min_energy = 66.0F * unit;
                 const Arrangement parts = arrange(scene, m);
                 const std::string what = std::to_string(height) + ", " + std::to_string(unit) + ": ";
                 expect_no_overlap(parts, m, what);
                 EXPECT_TRUE(parts.energy.height == 0.0F || parts.energy.height == m.energy ||
-                            parts.energy.height == m.least_energy)
+                            parts.energy.height == m.min_energy)
                     << what;
                 if (parts.energy.height > 0.0F) {
                     EXPECT_GE(parts.mechanism.height, 85.0F * unit) << what;

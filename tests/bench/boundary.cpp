@@ -102,8 +102,8 @@ long known() {
         Faults faults;
         look(known.question, known.way, known.tolerance, faults);
         std::string told = judgement.told;
-        if (judgement.verdict == Verdict::undecided && judgement.end < known.least_end) {
-            told = fmt::format("gave up at t = {:.9g}, nothing is in doubt before {}", judgement.end, known.least_end);
+        if (judgement.verdict == Verdict::undecided && judgement.end < known.min_end) {
+            told = fmt::format("gave up at t = {:.9g}, nothing is in doubt before {}", judgement.end, known.min_end);
             ++wrong;
         }
         const bool right = judgement.verdict == Verdict::right || judgement.verdict == Verdict::undecided;

@@ -160,7 +160,7 @@ Question Boundaries::question(const Chart& chart) const {
 std::string Boundaries::true_course(const Chart& chart, double end_time) const {
     const Question asked = question(chart);
     if (!in_contact_ && !(chart[1] > 1e-3)) return {};
-    TrueRuns runs(*model_, asked.run, most_true_events, asked.longest_true_step);
+    TrueRuns runs(*model_, asked.run, max_true_events, asked.longest_true_step);
     const Point start = point_of({asked.run.q, asked.run.v});
     try {
         Course course =

@@ -98,7 +98,7 @@ struct KnownCase {
     Question question;
     Way way;
     double tolerance;
-    double least_end = 0.0;  // a run must not be undecided before this time, s
+    double min_end = 0.0;  // a run must not be undecided before this time, s
 };
 std::vector<KnownCase> known_cases();
 

@@ -68,7 +68,7 @@ std::string impossible(const Trajectory& trajectory) {
 Judge34::Judge34(const Question& question)
     : question_(question),
       motion_(*question.model, question.run, question.longest_true_step),
-      runs_(*question.model, question.run, most_true_events, question.longest_true_step),
+      runs_(*question.model, question.run, max_true_events, question.longest_true_step),
       start_(point_of({question.run.q, question.run.v})),
       truth_(true_run(question.run.options.end_time)),
       course_(course_of(truth_, question.run.options.end_time)) {}

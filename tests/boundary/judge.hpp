@@ -15,7 +15,7 @@ namespace achilles::test {
 enum class Way { taylor, dopri5, eight };
 constexpr Way ways[] = {Way::taylor, Way::dopri5, Way::eight};
 std::string to_text(Way way);
-constexpr std::size_t most_true_events = 500;  // a reference with more events is given up
+constexpr std::size_t max_true_events = 500;  // a reference with more events is given up
 constexpr double tolerances[] = {1e-4, 1e-6, 1e-8, 1e-10, 1e-13};
 
 // A test case: system, run and start.

@@ -21,8 +21,8 @@ Question asked(std::shared_ptr<const Model> model, std::array<double, 2> q, std:
 std::vector<KnownCase> known_cases() {
     std::vector<KnownCase> result;
     const auto add = [&](const std::string& name, const Question& question, Way way, double tolerance,
-                         double least_end = 0.0) {
-        result.push_back({name, question, way, tolerance, least_end});
+                         double min_end = 0.0) {
+        result.push_back({name, question, way, tolerance, min_end});
     };
 
     const auto crest =

@@ -25,7 +25,7 @@ Eigen::VectorXd least(const ContactMatrix<double>& W, const Eigen::VectorXd& b) 
 }
 
 // Ratio of the smallest to the largest eigenvalue of W: 0 if gradients are linearly dependent.
-double least_pivot(const ClosedContacts& held) {
+double min_pivot(const ClosedContacts& held) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> values(Eigen::MatrixXd(held.W), Eigen::EigenvaluesOnly);
     return values.eigenvalues().minCoeff() / values.eigenvalues().maxCoeff();
 }
@@ -81,7 +81,7 @@ class Probe {
     // The same; if the forces are not unique, a nonnegative solution if there is one.
     Eigen::VectorXd pressing(const State& state, const ClosedContacts& held) {
         const Eigen::VectorXd of_any_sign = forces(state, held);
-        if (least_pivot(held) > 1e-9) return of_any_sign;
+        if (min_pivot(held) > 1e-9) return of_any_sign;
         const auto choice = solve_complementarity(held.W, ContactVector<double>(-held.W * of_any_sign));
         return choice ? Eigen::VectorXd(choice->p) : of_any_sign;
     }

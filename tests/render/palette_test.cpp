@@ -37,7 +37,7 @@ TEST(Palette, CurvesAndSignsCanBeSeen) {
         for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
             for (const Color& paper : {theme.background, theme.page})
                 EXPECT_GE(contrast(event_markers(theme, kind).fill, paper), of_signs);
-        for (int place = 1; place <= most_pinned; ++place)
+        for (int place = 1; place <= max_pinned; ++place)
             EXPECT_GE(contrast(run_color(theme, place), theme.background), of_signs) << theme.dark << " " << place;
         EXPECT_GE(contrast(theme.surface, theme.background), of_signs);
         EXPECT_GE(contrast(theme.body, theme.background), of_text);

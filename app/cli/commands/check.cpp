@@ -39,7 +39,7 @@ int check(const CheckArguments& arguments) {
     files.put("-", printable(is_whole ? check_report(model, run, deriving.count(), notation, disagreement)
                                       : check_answer(model, run, disagreement)));
     files.commit();
-    if (disagreement <= most_disagreement) return reached_end;
+    if (disagreement <= max_disagreement) return reached_end;
     print_clean(stderr, "achilles: the derived equations differ from finite differences of L by {:.1e}\n",
                 disagreement);
     return stopped_early;

@@ -46,8 +46,8 @@ struct FrameTimes {
 };
 
 void check_count(const FrameTimes& clock) {
-    if (clock.last() < static_cast<double>(most_frames)) return;
-    throw InputError({}, {}, fmt::format("this would take more than {} frames", most_frames),
+    if (clock.last() < static_cast<double>(max_frames)) return;
+    throw InputError({}, {}, fmt::format("this would take more than {} frames", max_frames),
                      "use a lower --fps, a higher --speed or an earlier --end");
 }
 

@@ -15,7 +15,7 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t largest_picture = std::size_t{1} << 30;  // bytes
-constexpr std::size_t most_words = 2000;                       // the longest stored command line that is read
+constexpr std::size_t max_words = 2000;                        // the longest stored command line that is read
 
 // Adds the name of the picture to errors.
 template <class Work>
@@ -36,10 +36,9 @@ int run_again(const std::string& picture, const Origin& origin, const std::strin
     int status = bad_input;
     add_pictures(program, status, job);
     std::vector<std::string> words = words_of(origin.command);
-    if (words.size() > most_words)
-        throw InputError(
-            picture, {},
-            fmt::format("its command has {} words; at most {} are allowed here", words.size(), most_words));
+    if (words.size() > max_words)
+        throw InputError(picture, {},
+                         fmt::format("its command has {} words; at most {} are allowed here", words.size(), max_words));
     words.insert(words.end(), {"--out", "picture." + format});
     std::reverse(words.begin(), words.end());  // CLI11 expects reverse order
     try {

@@ -86,7 +86,7 @@ TEST(Ranges, KnowAnExtremumCloseToTheEndOfTheBox) {
 
 // Slope of log(state error at a fixed later time) against log(w), for truncation at each impact of the first phase in
 // turn.
-double order(const std::string& system, Reinitialization kind, double later, double least_speed) {
+double order(const std::string& system, Reinitialization kind, double later, double min_speed) {
     const auto model = test::load(system);
     auto run = model->default_run();
     run.options.tolerance = 1e-13;
@@ -99,7 +99,7 @@ double order(const std::string& system, Reinitialization kind, double later, dou
     for (const Event& event : test::events_of(truth, Event::Kind::impact)) {
         const State before{event.q, event.v_before, event.t};
         const Contact contact = surface.at(before);
-        if (event.impact_speed > 0.05 || event.impact_speed < least_speed) continue;
+        if (event.impact_speed > 0.05 || event.impact_speed < min_speed) continue;
         auto cut = run;
         cut.q = event.q;
         cut.v = reinitialize(contact, event.v_before, kind);

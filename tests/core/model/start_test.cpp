@@ -24,10 +24,10 @@ std::string text_with(const std::string& mass, const std::string& kinetic, const
 // ---- small parameters ----
 
 TEST(SubnormalParameters, AreNumbersThatHaveLostDigits) {
-    constexpr double least_normal = std::numeric_limits<double>::min();
-    for (const double x : {5e-324, -5e-324, 0.5 * least_normal, std::nextafter(least_normal, 0.0)})
+    constexpr double min_normal = std::numeric_limits<double>::min();
+    for (const double x : {5e-324, -5e-324, 0.5 * min_normal, std::nextafter(min_normal, 0.0)})
         EXPECT_TRUE(is_subnormal(x)) << x;
-    for (const double x : {0.0, -0.0, least_normal, -least_normal, 1.0, 1e308, HUGE_VAL}) EXPECT_FALSE(is_subnormal(x));
+    for (const double x : {0.0, -0.0, min_normal, -min_normal, 1.0, 1e308, HUGE_VAL}) EXPECT_FALSE(is_subnormal(x));
 }
 
 TEST(SubnormalParameters, AreRefusedWhereTheyStand) {

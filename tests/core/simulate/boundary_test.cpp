@@ -28,7 +28,7 @@ TEST(Boundary, WhatWasDecidedWronglyOnce) {
         EXPECT_LE(judgement.verdict, Verdict::undecided) << known.name << ": " << judgement.told << "\n"
                                                          << repeat(known.question, known.way, known.tolerance);
         if (judgement.verdict != Verdict::undecided) continue;
-        EXPECT_GE(judgement.end, known.least_end) << known.name << " by " << to_text(known.way);
+        EXPECT_GE(judgement.end, known.min_end) << known.name << " by " << to_text(known.way);
     }
 }
 
