@@ -103,7 +103,7 @@ TEST(Cli, CommandLineGoesOverTheFileGoesOverTheDefault) {
     EXPECT_EQ(folder.files().size(), 2u);
 }
 
-TEST(Cli, ToleranceBelowWhatDoublesServeIsToldOnceAndRaised) {
+TEST(Cli, TooSmallToleranceIsRaisedWithOneWarning) {
     const Folder folder;
     const std::string warning =
         "achilles: warning: tolerance = 1e-30 is below what double precision supports; using 1e-15\n";

@@ -23,7 +23,7 @@ void PrintTo(const Refusal& refusal, std::ostream* out) { *out << refusal.argume
 
 class CommandErrors : public testing::TestWithParam<Refusal> {};
 
-TEST_P(CommandErrors, WithOneMessageAndNothingWritten) {
+TEST_P(CommandErrors, PrintOneMessageAndWriteNothing) {
     const Folder folder;
     const Answer answer = folder.run(GetParam().arguments);
     EXPECT_EQ(answer.status, 2);

@@ -27,7 +27,7 @@ Session asking(const std::string& system, const std::string& quantity = {}) {
 
 double by(const Session& session, const std::string& name) { return session.sensitivities()->find(name)->derivative; }
 
-TEST(SensitivityCommand, AsksForTheLastZenoTimeAtFirst) {
+TEST(SensitivityCommand, StartsWithTheLastZenoTime) {
     Session session = asking("ball_on_sine");
     EXPECT_EQ(session.depend_text(), "zeno_time(2)");
     ASSERT_TRUE(session.influences_are_current());
@@ -43,7 +43,7 @@ TEST(SensitivityCommand, AsksForTheLastZenoTimeAtFirst) {
 }
 
 // t1 + 2 e v1/(g (1 - e)), with v1 = sqrt(2 g (y - r)) and t1 = v1/g.
-TEST(SensitivityCommand, KnowsWhatTheFormulaSays) {
+TEST(SensitivityCommand, AgreesWithTheClosedForm) {
     const Session session = asking("ball_on_floor", "zeno_time");
     const double g = 9.81, e = 0.7, fall = 0.94, v = std::sqrt(2.0 * g * fall), k = (1.0 + e) / (1.0 - e);
     EXPECT_NEAR(session.sensitivities()->quantity.value, k * v / g, 1e-8);
@@ -94,7 +94,7 @@ TEST(SensitivityCommand, ShowsAnglesAsTheSlidersDo) {
               fmt::format("{:.4g}\u00a0s per \u00b0/s", by(time, "theta1'") / degree));
 }
 
-TEST(SensitivityCommand, SaysWhyThereIsNone) {
+TEST(SensitivityCommand, ReportsWhyThereIsNoDerivative) {
     Session session = asking("ball_on_sine", "work");
     EXPECT_EQ(session.sensitivities()->quantity.refused, "derivatives of work are not computed");
     session.apply(command::ShowSensitivity{"zeno_time(7)"});
@@ -123,7 +123,7 @@ TEST(SensitivityCommand, SaysWhyThereIsNone) {
     EXPECT_TRUE(resting.sensitivities()->find("x'")->reason.empty());
 }
 
-TEST(SensitivityCommand, RefusesWhatIsNoQuantityAndKeepsWhatThereIs) {
+TEST(SensitivityCommand, RejectsInvalidQuantitiesAndKeepsTheLastOne) {
     Session session = asking("ball_on_sine", "zeno_time(1)");
     for (const char* wrong : {"zeno_tme(1)", "held", "x +", ""}) {
         session.apply(command::ShowSensitivity{wrong});
@@ -140,7 +140,7 @@ TEST(SensitivityCommand, RefusesWhatIsNoQuantityAndKeepsWhatThereIs) {
     EXPECT_EQ(session.sensitivities(), nullptr);
 }
 
-TEST(SensitivityCommand, IsOfTheRunThatIsShownOrSaidToBeOld) {
+TEST(SensitivityCommand, BelongsToTheShownRunOrIsMarkedOutdated) {
     Session session = asking("ball_on_sine", "zeno_time(1)");
     const double before = by(session, "g");
     for (const double g : {1.1, 1.2, 1.3}) {
@@ -159,7 +159,7 @@ TEST(SensitivityCommand, IsOfTheRunThatIsShownOrSaidToBeOld) {
 }
 
 // While a slider is dragged, finished results appear; in the end those of the last request.
-TEST(SensitivityCommand, FinishesWhatItHasBegun) {
+TEST(SensitivityCommand, FinishesTheRequestInProgress) {
     const Session session = test::session("ball_on_sine");
     const auto run_of = [&](double g) {
         achilles::Run run = session.run();
@@ -232,7 +232,7 @@ TEST(SensitivityCommand, IsStraightAlongALogarithmicAxis) {
     EXPECT_NEAR(line.at(4.0) - line.at(2.0), line.at(2.0) - line.at(1.0), 1e-12);
 }
 
-TEST(SensitivityCommand, IsNoSlopeOfAnythingElse) {
+TEST(SensitivityCommand, DrawsNoTangentOnOtherSweeps) {
     Session session = asking("ball_on_sine", "zeno_time(2)");
     for (const char* other :
          {"--over e=0.1:0.9:5 --print \"zeno_time(1)\"", "--over end=5:20:5 --print \"zeno_time(2)\"",
@@ -259,7 +259,7 @@ TEST(SensitivityPanel, SweepsWhatIsClicked) {
     EXPECT_TRUE(hands.session.sweep_tangent());
 }
 
-TEST(SensitivityPanel, AsksWhatIsChosenOrTyped) {
+TEST(SensitivityPanel, ComputesTheChosenOrTypedQuantity) {
     Hands hands("ball_on_sine");
     hands.session.apply(command::Show{"depend", true});
     hands.session.settle();

@@ -99,7 +99,7 @@ TEST(Film, TellsHowManyFramesAreJoined) {
 }
 
 // If joining fails, the old file and the frames are kept; the frames are not drawn again.
-TEST(Film, ThatCannotBeJoinedChangesNothing) {
+TEST(Film, FailedJoiningKeepsTheOldFileAndTheFrames) {
     const Studio studio("echo no such codec >&2; exit 1");
     studio.put("film.mp4", "another film");
     const test::Answer answer = studio.make(short_film + "film.mp4");

@@ -311,7 +311,7 @@ TEST(Frames, AKilledProcessIsToldAndLeavesWholePictures) {
 }
 
 // The drawing processes then end by themselves and release the folder.
-TEST(Frames, AKilledProgramLeavesNobodyBehind) {
+TEST(Frames, WorkersEndIfTheProgramIsKilled) {
     const Folder folder;
     const Drawing161 drawing(folder);
     ASSERT_EQ(::kill(drawing.id(), SIGKILL), 0);

@@ -173,7 +173,7 @@ TEST(Keys, ForgetTheRowOfAnotherDialog) {
 }
 
 // A dialog that opens ignores keys that were pressed before it was visible.
-TEST(Keys, AnswerNoQuestionThatWasNotSeen) {
+TEST(Keys, PressedEarlierDoNotAnswerANewDialog) {
     Hands hands("ball_on_sine");
     hands.state.recovery_question = RecoveryQuestion{"mine.toml", "today"};
     hands.hand.keys = {key::enter};

@@ -92,7 +92,7 @@ TEST(OrbitSession, SearchesFromThePresentRun) {
     EXPECT_GT(std::abs(period_of(session) - 3.544294646668781), 1e-5);
 }
 
-TEST(OrbitSession, SaysWhatIsNoQuestionAndWhyThereIsNone) {
+TEST(OrbitSession, ReportsInvalidRequestsAndFailedSearches) {
     Session session = test::session("ball_on_floor");
     for (const auto& [text, words] :
          {std::pair{"--continue q=0:1", "there is no parameter 'q'"},

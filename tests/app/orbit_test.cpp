@@ -34,7 +34,7 @@ TEST(OrbitCommand, TellsAPeriodicRunAsJson) {
     EXPECT_TRUE(orbit["branch"].is_null());
 }
 
-TEST(OrbitCommand, TellsItToAPerson) {
+TEST(OrbitCommand, SummaryHasTheOrbitAndItsStability) {
     const Answer answer = Folder().run("orbit ball_down_a_wave --verbose");
     EXPECT_EQ(answer.status, 0);
     for (const char* words : {"period 3.5442946466688 s, from the release at t = 0 s", "x = 0.859359933872 m",
@@ -59,7 +59,7 @@ TEST(OrbitCommand, AnswersFirst) {
 }
 
 // Starts at the end of a run, at a state in a file, and with a shift on the command line.
-TEST(OrbitCommand, BeginsWhereItIsTold) {
+TEST(OrbitCommand, StartsFromARunAFileOrAShift) {
     const Folder folder;
     ASSERT_EQ(folder.run("orbit ball_down_a_wave --json orbit.json").status, 0);
     const json first = json::parse(content(folder.path() / "orbit.json"));

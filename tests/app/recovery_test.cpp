@@ -48,7 +48,7 @@ TEST_F(Recoveries, LeadToTheTextWhereverItBelongs) {
     }
 }
 
-TEST_F(Recoveries, OfSeveralWindowsAreSeveralAndStrangersFilesAreNone) {
+TEST_F(Recoveries, EachWindowHasItsOwnFileAndForeignFilesAreIgnored) {
     Session session = test::session("ball_on_sine");
     session.apply(command::SetText{"one"});
     Recovery one, two;

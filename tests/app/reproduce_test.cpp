@@ -237,7 +237,7 @@ TEST(Reproduce, RefusesWhatItCannotTrust) {
 }
 
 // Foreign notes, one in broken UTF-8, one after the pixels, do not affect the picture.
-TEST(Reproduce, StrangersNotesChangeNothing) {
+TEST(Reproduce, ForeignNotesChangeNothing) {
     using std::string_literals::operator""s;
     const Folder folder;
     folder.put("drop.toml", falling_ball);

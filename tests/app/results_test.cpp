@@ -77,7 +77,7 @@ TEST(Results, SelectAndShowTheProof) {
 }
 
 // With restitution 0 the impact is plastic: no certificate, and no impact sequence to show.
-TEST(Results, CallALandingSoAndOfferNoLens) {
+TEST(Results, PlasticImpactsHaveTheirNameAndNoLens) {
     for (const bool is_plastic : {false, true}) {
         Hands hands("ball_on_floor");
         if (is_plastic) hands.session.apply(command::Set{"e", {0.0, {}}});

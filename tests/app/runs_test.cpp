@@ -130,7 +130,7 @@ TEST(Runs, LeaveWithTheirSystemAndComeBack) {
     EXPECT_EQ(places(session), (std::vector<int>{1, 2}));
 }
 
-TEST(Runs, NeedNoMoreMemoryThanARunMay) {
+TEST(Runs, PinnedRunsRespectTheMemoryLimit) {
     Session session = test::session("ball_on_sine");
     const double bytes = bytes_of(session.trajectory());
     session.apply(command::SetOption{"memory", {2.5 * bytes}});
@@ -321,7 +321,7 @@ TEST(Runs, StandInTheOrderInWhichTheyWerePinned) {
 }
 
 // A run to be pinned continues beside the next one, without waiting, and is not mentioned in comparisons meanwhile.
-TEST(Runs, ThatAreUnderWayArePinnedWithoutAnybodyWaiting) {
+TEST(Runs, UnfinishedRunsArePinnedWithoutWaiting) {
     Hands hands("ball_on_sine");
     Session& session = hands.session;
     session.set_patience(0.02);

@@ -39,7 +39,7 @@ TEST(Slider, ADoubleClickTypesAValueAndMovesNothing) {
     }
 }
 
-TEST(Slider, WhatIsGivenUpChangesNothing) {
+TEST(Slider, EscapeDiscardsTheTypedValue) {
     SliderHand hands("ball_on_sine");
     hands.double_click("value of set g");
     hands.type("5");

@@ -55,7 +55,7 @@ TEST(SweepPicture, IsMadeAgain) {
 }
 
 // Reproducing an untrusted picture writes no other files.
-TEST(SweepPicture, OfAStrangerWritesNothing) {
+TEST(SweepPicture, UntrustedPictureWritesNoOtherFiles) {
     const Folder folder;
     ASSERT_EQ(folder.run(std::string(curve) + "--out a.svg").status, 0);
     std::string svg = content(folder.path() / "a.svg");

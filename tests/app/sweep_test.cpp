@@ -73,7 +73,7 @@ TEST(SweepCommand, ReplacesAFileWithItsModeAndLeavesOthersAlone) {
     EXPECT_EQ(folder.files().size(), 2u);
 }
 
-TEST(SweepCommand, LeavesEmptyWhatThereIsNot) {
+TEST(SweepCommand, MissingValuesAreEmptyCells) {
     const Folder folder;
     const Answer answer =
         folder.run("sweep ball_on_sine --over y=-3:3:3 --print \"impact_time(9)\" --print held --end 1");
@@ -197,7 +197,7 @@ TEST(SweepCommand, LosesOnlyChunksUnderWayWhenItIsKilled) {
     EXPECT_EQ(content(folder.path() / "long.csv"), content(folder.path() / "whole.csv"));
 }
 
-TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
+TEST(SweepCommand, InvalidRequestsWriteNothing) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
     folder.put("mine.csv.part", "a file of mine\n");
@@ -233,7 +233,7 @@ TEST(SweepCommand, WritesNothingWhereItIsAskedWrongly) {
 }
 
 // Requirements of a picture are checked before the runs; a picture that fails later does not affect the other files.
-TEST(SweepCommand, DrawsOrSaysWhyNot) {
+TEST(SweepCommand, DrawsOrReportsWhyNot) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
     const std::string sweep = "sweep ./drop.toml --over y=1:2:10 --print \"impact_time(1)\" --out a.";

@@ -256,7 +256,7 @@ TEST(FileQuestion, IsAskedAndAnswered) {
 }
 
 // Permission is for one file and one direction; all others are asked about separately.
-TEST_F(UntrustedFiles, AYesIsForOneFile) {
+TEST_F(UntrustedFiles, PermissionIsForOneFile) {
     const auto path = [&](const char* name) { return (folder.path() / name).string(); };
     folder.put("a.toml", drop_text);
     const std::string text = "open " + path("a.toml") + "\nsave " + path("b.toml") + "\nopen " + path("a.toml") +
@@ -314,7 +314,7 @@ TEST_F(UntrustedFiles, APictureThatIsDroppedReadsNoFileUnasked) {
 }
 
 // Escape sequences in a title, source, command, name or error message do not reach the terminal.
-TEST_F(UntrustedFiles, TextSteersNoTerminal) {
+TEST_F(UntrustedFiles, EscapeSequencesDoNotReachTheTerminal) {
     EXPECT_EQ(printable("a\x1b[31m\tb\n\x07\r\xC2\x9B"
                         "c\x7F\xE2\x80\xAE\xFF\xC3\xA9"),
               "a?[31m\tb\n???c???\xC3\xA9");

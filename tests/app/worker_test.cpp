@@ -46,7 +46,7 @@ TEST(Worker, ANewerJobStopsAnOlderOneWhoseResultIsNeverSeen) {
     EXPECT_GE(stopped, 1) << "those that had not begun yet need no stopping";
 }
 
-TEST(Worker, HandsOverWhatAJobThrows) {
+TEST(Worker, RethrowsExceptionsOfAJob) {
     Worker<int> worker;
     worker.start([](const std::stop_token&) -> int { throw std::runtime_error("no"); });
     EXPECT_THROW(worker.take({}), std::runtime_error);

@@ -48,7 +48,7 @@ TEST(OutputFiles, KeepTheModeAndFollowLinks) {
 }
 
 // Leftover of a killed process, even with our process id.
-TEST(OutputFiles, PartsOfTheDeadAreNotInTheWay) {
+TEST(OutputFiles, LeftoverPartFilesDoNotBlockWriting) {
     const Folder folder;
     folder.put("a.json.part" + std::to_string(::getpid()), "half");
     write(folder.path() / "a.json", "whole");
@@ -70,7 +70,7 @@ TEST(OutputFiles, AreAllThereOrAsTheyWere) {
     EXPECT_FALSE(fs::exists(two));
 }
 
-TEST(OutputFiles, AreNoInputsAndNoOthers) {
+TEST(OutputFiles, RejectInputsAndDuplicates) {
     const Folder folder;
     folder.put("in.toml", drop_text);
     fs::create_hard_link(folder.path() / "in.toml", folder.path() / "hard.toml");
@@ -101,7 +101,7 @@ TEST(OutputFiles, AreNoInputsAndNoOthers) {
 }
 
 // If standard output cannot be written, the status reports it.
-TEST(StandardOutput, ThatIsFullIsAnError) {
+TEST(StandardOutput, FullDeviceIsAnError) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
     for (const std::string arguments :
@@ -121,7 +121,7 @@ TEST(StandardOutput, ThatIsFullIsAnError) {
 
 // A pipe without a reader: prints a note, waits, and then writes everything. The note of the run before is
 // removed first: a shell that starts the program later would find it and read the pipe too soon.
-TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
+TEST(Pipe, WaitsForAReader) {
     const Folder folder;
     folder.put("drop.toml", drop_text);
     for (const std::string arguments :
@@ -142,7 +142,7 @@ TEST(Pipe, ThatNobodyReadsYetIsWaitedFor) {
 }
 
 // Lack of memory, threads or drawing libraries gives a message and status 3.
-TEST(Memory, ThatIsShortIsSaid) {
+TEST(Memory, LackOfMemoryIsReported) {
 #ifdef __SANITIZE_ADDRESS__
     GTEST_SKIP() << "the address sanitizer reserves more memory than the limits here allow";
 #endif

@@ -86,7 +86,7 @@ TEST(PngNotes, ChunksThatAreNoTextAreRefused) {
     EXPECT_EQ(png_notes(png_with("tEXtk\0a\xE9\x62"s)), (Notes{{"k", "aéb"}}));  // Latin-1
 }
 
-TEST(PngNotes, WhatNoChunkCanHoldIsRefused) {
+TEST(PngNotes, InvalidNotesAreRejected) {
     for (const Note& note : {Note{"", "v"}, Note{std::string(80, 'k'), "v"}, Note{"kä", "v"},
                              Note{"k", std::string("a\0b", 3)}, Note{"k", "\xff"}, Note{"k", "\xf8\x88\x80\x80"}})
         EXPECT_THROW(with_notes(small_png(), {note}), std::runtime_error) << note.keyword;
@@ -113,7 +113,7 @@ TEST(PngNotes, OfOneKeywordAllComeInOrder) {
 }
 
 // Notes before and after such a chunk are still found.
-TEST(PngNotes, ThatNobodyCouldHaveWrittenHereAreLeftOut) {
+TEST(PngNotes, InvalidTextChunksAreSkipped) {
     for (const std::string& strange :
          {"tEXt\0no keyword"s, "tEXt"s + std::string(80, 'k') + "\0too long"s, "tEXtH\xF6he\0Latin-1"s,
           "tEXtk\n\0a keyword of two lines"s, "tEXtk\0a zero \0 byte"s, "iTXtk\0\0\0\0\0a zero \0 byte"s,

@@ -143,7 +143,7 @@ TEST(DistributedChunks, EndWhereTheDiskIsFull) {
 }
 
 // A killed rank no longer answers. Once all are told to stop, nothing waits for it.
-TEST(DistributedChunks, AreNotWaitedForWhenTheyAreMute) {
+TEST(DistributedChunks, KilledRanksAreNotWaitedFor) {
     Boxes boxes(2);
     std::atomic<bool> stop{false};
     const std::jthread mute([&] {

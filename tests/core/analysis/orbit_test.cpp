@@ -274,7 +274,7 @@ TEST(Branch, OfABallThatStrikesOnceACycleFoldsWhereItsClosedFormDoes) {
     EXPECT_NE(branch.points.front().stable, branch.points.back().stable);
 }
 
-TEST(Orbit, IsRefusedWhereTheQuestionIsNone) {
+TEST(Orbit, RejectsInvalidPeriods) {
     const auto model = load("driven_double_pendulum");
     const auto told = [&](const std::string& period) -> std::string {
         OrbitProblem question = asked(*model, {}, "1");
@@ -295,7 +295,7 @@ TEST(Orbit, IsRefusedWhereTheQuestionIsNone) {
     EXPECT_THROW(find_orbit(table, asked(*table, {}, "1.3*pi/om")), InputError);
 }
 
-TEST(Orbit, IsNotFoundWhereARunComesToRest) {
+TEST(Orbit, IsNotFoundIfTheRunComesToRest) {
     const auto model = load("ball_on_floor");
     const OrbitSearchResult search = find_orbit(model, asked(*model, {}));
     EXPECT_FALSE(search.orbit.has_value());

@@ -32,7 +32,7 @@ TEST(Signature, LeavesOutTheImpactsBeforeRest) {
     EXPECT_EQ(of({{impact, left.with(right)}, {zeno, left.with(right)}}), of({{zeno, left.with(right)}}));
 }
 
-TEST(Signature, KeepsAllElse) {
+TEST(Signature, DiffersForDifferentEventSequences) {
     const std::set<std::uint64_t> all{
         of({}),
         of({}, Outcome::Kind::too_many_impacts),
@@ -54,7 +54,7 @@ TEST(Signature, KeepsAllElse) {
 }
 
 // The signature is the same for runs in lanes and for single runs, whatever the cut.
-TEST(Signature, IsOfTheMotion) {
+TEST(Signature, DoesNotDependOnLanesOrTheCut) {
     const auto model = test::load("ball_on_sine");
     const std::string sweep = "--over e=0.1:0.8:40 --print x --end 6";
     const auto rows_of = [&](const std::string& text) {

@@ -128,7 +128,7 @@ TEST(SweepSlopes, FollowTheEventsOfSections) {
 }
 
 // NaN for a quantity that does not exist, for the end of a run that stopped early, and for a run that cannot start.
-TEST(SweepSlopes, AreNothingWhereTheyDoNotExist) {
+TEST(SweepSlopes, AreNaNIfTheyDoNotExist) {
     const std::vector<std::string> prints{"d(zeno_time(9), e)", "d(impact_time(1), e)", "d(impact_time(1), y)",
                                           "d(x, e)"};
     const SweepFixture whole("ball_on_sine", "e=0.3:0.5:2", prints);
@@ -146,7 +146,7 @@ TEST(SweepSlopes, AreNothingWhereTheyDoNotExist) {
     EXPECT_TRUE(std::isnan(unable.number(0, 0))) << "it cannot start";
 }
 
-TEST(SweepSlopes, RefuseWhatHasNone) {
+TEST(SweepSlopes, RejectQuantitiesWithoutDerivatives) {
     const auto refusal = [](const std::string& print, const std::string& more = {}) {
         try {
             const SweepFixture swept("ball_on_sine", "e=0.3:0.5:2", {print}, more);

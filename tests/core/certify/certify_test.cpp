@@ -247,7 +247,7 @@ struct Cuts {
     }
 };
 
-TEST(SharpCertificates, AreNotPutOff) {
+TEST(SharpCertificates, TruncateAtTheFirstPossibleImpact) {
     for (const auto& problem : test::problems) {
         const auto model = test::load(problem.asset);
         auto run = model->default_run();
@@ -264,7 +264,7 @@ TEST(SharpCertificates, AreNotPutOff) {
 
 // The quick check is heuristic. Of 192 000 cuts of random runs of the gallery's systems with one gap and no drive, 8
 // came one impact late. With drives or held contacts more changes until the Zeno point: 14 of 11 000.
-TEST(SharpCertificates, AreNotPutOffInTheGallery) {
+TEST(SharpCertificates, TruncateAtTheFirstPossibleImpactInTheGallery) {
     Cuts cuts;
     for (const std::string& system : test::all_systems()) {
         const auto model = test::load(system);

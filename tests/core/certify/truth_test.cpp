@@ -163,7 +163,7 @@ TEST(Truth, CertificatesAreTrue) {
 
 // theory.md 3.3: the conditions hold with the least self-consistent V wherever they hold with an eps' <= eps of a
 // logarithmic grid. The bound is never worse than with eps' = eps.
-TEST(Truth, NoNeighborhoodOfAGridDoesBetter) {
+TEST(Truth, SmallestNeighborhoodIsBestOnAGrid) {
     constexpr int points = 13;  // over four decades
     int feasible = 0, only_smaller = 0;
     for (const std::string system : systems) {
@@ -232,7 +232,7 @@ TEST(Truth, KnowsTheTopOfTheFirstFlight) {
 }
 
 // The comparison must reject false certificates.
-TEST(Truth, EveryLieIsCaught) {
+TEST(Truth, FalseCertificatesAreRejected) {
     std::map<std::pair<FalseCertificate, Conditions>, int> caught;
     int uniform = 0;
     for (const std::string system : systems) {

@@ -76,7 +76,7 @@ TEST(Moreau, CradleOfThree) {
     EXPECT_TRUE(order_matters(W, Matrix::Zero(2, 2), e, nobody, contacts({0, 1})));
 }
 
-TEST(Moreau, OpensWhatALandingPullsAt) {
+TEST(Moreau, OpensAHeldContactThatWouldHaveToPull) {
     const auto impact = moreau_impact(pair_with(0.5), numbers({0.0, -1.0}), numbers({0.3, 0.5}), contacts({0}));
     EXPECT_EQ(impact->hdot_after, numbers({0.75, 0.5}));
     EXPECT_EQ(impact->opened, contacts({0}));
@@ -92,7 +92,7 @@ TEST(Moreau, HoldsWhatIsHeldExactly) {
     EXPECT_TRUE(impact->opened.empty());
 }
 
-TEST(Moreau, LeavesOutWhoMovesAway) {
+TEST(Moreau, SeparatingContactsGetNoImpulse) {
     const auto impact = moreau_impact(pair_with(-0.5), numbers({0.2, -1.0}), numbers({1.0, 1.0}), nobody);
     EXPECT_EQ(impact->impulses, numbers({0.0, 2.0}));
     EXPECT_EQ(impact->hdot_after, numbers({-0.8, 1.0}));  // a further impact follows
@@ -129,7 +129,7 @@ TEST(Moreau, EndlessImpactsAreTakenToTheirLimit) {
 }
 
 // After the first impact the other two contacts tie; their numbering must not decide the order.
-TEST(Moreau, ThoseWhoTieCollideTogether) {
+TEST(Moreau, EqualClosingSpeedsCollideTogether) {
     Matrix W = Matrix::Constant(3, 3, -0.3);
     W.diagonal().setOnes();
     const auto turns = impacts_in_turn(W, -Vector::Ones(3), Vector::Constant(3, 0.5), nobody, 0);
@@ -304,7 +304,7 @@ TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
 
 // ---- dependence on the order of impacts ----
 
-TEST(ImpactOrder, BySignsOfWhatMeets) {
+TEST(ImpactOrder, DependsOnTheSignOfTheCoupling) {
     const Matrix exact = Matrix::Zero(2, 2);
     const Vector plastic = numbers({0.0, 0.0}), elastic = numbers({0.0, 0.5});
     const ContactSet both = contacts({0, 1});

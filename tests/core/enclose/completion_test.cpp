@@ -102,7 +102,7 @@ TEST(Completion, ItsIntegralsAreThoseOfTheRightAccelerations) {
 
 // Against 34-digit references of single completions: the accumulation time, and the difference from the constrained
 // motion at its end.
-TEST(Completion, HoldsTheWaitAndTheShadow) {
+TEST(Completion, EnclosesAccumulationTimeAndShadowingError) {
     const auto model = load("ball_on_sine");
     const achilles::Run run = model->default_run();
     const Coordinates z = coordinates_of(*model, achilles::problem_of(run));
@@ -135,7 +135,7 @@ TEST(Completion, HoldsTheWaitAndTheShadow) {
 }
 
 // The same at random impacts of three systems, with configuration-dependent M(q) and curved gaps.
-TEST(Completion, HoldsTheWaitAndTheShadowOfRandomCollisions) {
+TEST(Completion, EnclosesRandomCollisions) {
     int proved = 0;
     double closest = 0.0;  // largest distance from the center of the error, relative to its radius
     for (const char* name : {"ball_on_sine", "double_pendulum", "falling_rod"}) {

@@ -17,7 +17,7 @@ std::string refused(const Model& model, const achilles::EnclosureProblem& claim)
 
 }  // namespace
 
-TEST(EnclosureProblem, ADoubleThatNoDecimalIsStandsForThoseAroundIt) {
+TEST(EnclosureProblem, DecimalsBecomeIntervals) {
     for (const double exact : {0.0, 1.5, -2.0, 0.375, 1e10}) EXPECT_EQ(width(interval_of_decimal(exact)), 0.0) << exact;
     EXPECT_TRUE(contains(interval_of_decimal(0.1), Real(1) / 10));
     EXPECT_TRUE(contains(interval_of_decimal(-0.1), Real(-1) / 10));

@@ -173,7 +173,7 @@ TEST(NarrowBends, ArePassedAsTheyAre) {
 }
 
 // Only expressions that can reach their domain boundary during the motion are monitored; parameters alone cannot.
-TEST(DomainBoundaries, AreThoseThatMove) {
+TEST(DomainBoundaries, OnlyMovingExpressionsAreMonitored) {
     EXPECT_EQ(test::load("ball_on_sine")->edges().size(), 0u);
     EXPECT_EQ(test::load("bead_in_ring")->edges().size(), 0u);
     EXPECT_EQ(ball(plain, "y*sqrt(p^2)", "y")->edges().size(), 0u);
@@ -185,7 +185,7 @@ TEST(DomainBoundaries, AreThoseThatMove) {
 
 // A ball flies towards a post whose height is negligible at the start. Far from the post the series of the flight is
 // that of a flat floor. The impact is where the parabola meets the post, known in closed form.
-TEST(DomainBoundaries, WhatHidesIsFound) {
+TEST(DomainBoundaries, FindsImpactsOnNarrowPosts) {
     for (const std::string post :
          {"exp(-400*(x - 1)^2)", "2^(-577*(x - 1)^2)", "1/cosh(30*(x - 1))^2", "(1 - tanh(30*(x - 1))^2)"}) {
         const auto model = ball(plain, "y", "y - 0.4*" + post);

@@ -40,7 +40,7 @@ class Ingredients {
     Graph graph_;
 };
 
-TEST(Forces, ThereAreNoneWhereNoneIsWritten) {
+TEST(Forces, AreZeroByDefault) {
     const Ingredients none(good);
     ASSERT_EQ(none.equations.Q.size(), 2u);
     EXPECT_TRUE(none.equations.Q[0].is_zero());

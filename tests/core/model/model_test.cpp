@@ -180,7 +180,7 @@ TEST(Model, NormalQuantitiesSatisfyTheirDefinitions) {
 
 // Equation (4): the normal velocity is reversed and scaled, s is unchanged. R* is the Euclidean projection onto g v =
 // 0.
-TEST(Impacts, NewtonsLawAndBothReinitialisations) {
+TEST(Impacts, SatisfyNewtonsLawAndBothReinitializations) {
     std::mt19937 random(5);
     const auto model = test::typed(odd_system);
     const auto run = model->default_run();
@@ -201,7 +201,7 @@ TEST(Impacts, NewtonsLawAndBothReinitialisations) {
 }
 
 // For M = m I both reinitializations are the same projection.
-TEST(Impacts, ReinitialisationsAgreeOnTheBall) {
+TEST(Impacts, ReinitializationsAgreeOnTheBall) {
     const auto model = test::load("ball_on_sine");
     ContactKinematics surface(*model, model->default_run());
     std::mt19937 random(6);

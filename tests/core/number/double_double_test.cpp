@@ -89,7 +89,7 @@ TEST(DoubleDouble, CarriesItsError) {
     }
 }
 
-TEST(DoubleDouble, HasNoValueWhereThereIsNone) {
+TEST(DoubleDouble, InvalidOperationsAreUndefined) {
     const DoubleDoubleBall around_zero(Interval(-1e-20, 1e-20));
     EXPECT_FALSE((DoubleDoubleBall(1.0) / DoubleDoubleBall(0.0)).is_defined());
     EXPECT_FALSE((DoubleDoubleBall(1.0) / around_zero).is_defined());

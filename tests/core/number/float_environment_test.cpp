@@ -90,7 +90,7 @@ TEST(FloatEnvironmentGuard, IsMissedWhereDenormalsVanish) {
     EXPECT_FALSE(lost.contains(1e-310));
 }
 
-TEST_P(FloatEnvironments, ArePutBackWhateverEndsThem) {
+TEST_P(FloatEnvironments, AreRestoredAfterExceptions) {
     const Computing computing(GetParam());
     try {
         const FloatEnvironmentGuard ground;

@@ -320,7 +320,7 @@ TEST_F(Outputs, SayThatTheRunStarted) {
     EXPECT_LT(std::abs(nlohmann::json::parse(to_json(rising))["statistics"]["least_gap"].get<double>()), 1e-14);
 }
 
-TEST_F(Outputs, TellRoundingFromNothingAndFromALie) {
+TEST_F(Outputs, LeastGapTextDistinguishesZeroRoundingAndPenetration) {
     EXPECT_EQ(least_gap_text(0.0, 1.0), "0");
     EXPECT_EQ(least_gap_text(-2.2e-16, 1.0), "0 to rounding");
     EXPECT_EQ(least_gap_text(-2.2e-16, 1e-3), "-2.2e-16");

@@ -81,7 +81,7 @@ TEST(Library, HasSweepsAsColumns) {
     expect_as_csv("--over x=-1:1:9 --at impact --after 3 --print \"x'\" --print held --end 8", 2);
 }
 
-TEST(Library, StopsASweepWhenItIsTold) {
+TEST(Library, CallbackStopsASweep) {
     const auto model = test::load("ball_on_sine");
     const SweepSpec sweep =
         make_sweep({.over = {"x=-3:3:1e6"}, .prints = {"x"}}, NamedRun(model->description()), model->description());

@@ -81,7 +81,7 @@ TEST_F(SweepFiles, AreReadBackFromTheLog) {
 }
 
 // Whatever byte the log is truncated at or corrupted in.
-TEST_F(SweepFiles, LoseWhatDoesNotCheck) {
+TEST_F(SweepFiles, LoseOnlyCorruptedChunks) {
     write();
     const auto size = fs::file_size(log_);
     const std::uint64_t first = size - 3 * 32 - 1100;

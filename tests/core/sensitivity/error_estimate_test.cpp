@@ -293,7 +293,7 @@ TEST(EnergyDrift, IsRelativeToTheLargestEnergyOfTheRun) {
     }
 }
 
-TEST(EstimatedError, IsNoneWhereNothingIsKnown) {
+TEST(EstimatedError, IsEmptyWithAReason) {
     const auto model = load("ball_on_sine");
     const auto why = [&](const auto& change) {
         auto run = model->default_run();

@@ -525,7 +525,7 @@ end_time = 20.0
     }
 }
 
-TEST(RunsSideBySide, AreCancelledWhereOneIsMade) {
+TEST(RunsSideBySide, ExceptionOfRunOfEndsTheBatch) {
     const auto model = test::load("ball_on_sine");
     struct Cancelled {};
     const auto run_of = [&](std::size_t i) { return i == 50 ? throw Cancelled() : model->default_run(); };

@@ -103,7 +103,7 @@ TEST(ManyRuns, TellWhyOneCannotStartAndRunTheOthers) {
     EXPECT_NE(told[9].find("the gap is negative at the start"), std::string::npos) << told[9];
 }
 
-TEST(ManyRuns, KeepNothingThatTakeDoesNotKeep) {
+TEST(ManyRuns, DestroyEachTrajectoryAfterTake) {
     const auto model = test::load("ball_on_sine");
     std::vector<double> ends(500);
     simulate_many(

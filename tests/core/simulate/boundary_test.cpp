@@ -60,7 +60,7 @@ TEST(Boundary, NoWrongAnswerFartherThanTenErrors) {
 }
 
 // The comparison must reject a missing impact, an extra one, and a false release or Zeno point.
-TEST(BoundaryJudge, CatchesALie) {
+TEST(BoundaryJudge, RejectsWrongEvents) {
     const auto model = load("ball_on_sine");
     Question question{model, model->default_run(), false};
     question.run.options.end_time = 6.0;

@@ -47,7 +47,7 @@ TEST(Decisions, AReleaseInADipOfTheForceIsNotMissed) {
     EXPECT_EQ(usual.outcome.kind, Outcome::Kind::end_time) << usual.outcome.message;
 }
 
-TEST(Decisions, NorEightAtATime) {
+TEST(Decisions, BatchesDoNotMissAReleaseInADipOfTheForce) {
     const auto model = model_of(crest);
     for (const double tolerance : tolerances) {
         const auto run = with(*model, Method::taylor, tolerance);
@@ -95,7 +95,7 @@ TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
 
 // After a cut, the contact force dips to less than the cut's error (1e-10). The true motion is released for an instant
 // at t = 0.74854; the computed one would stay in contact until 0.92694.
-TEST(Decisions, WhatACutMadeWrongDecidesNothing) {
+TEST(Decisions, ErrorOfACutDecidesNoRelease) {
     const auto model =
         model_of({.kinetic = "0.5498046875*a'^2 + 0.482421875*b'^2",
                   .potential = "1.462890625*b - 0.30517578125*a",
@@ -158,7 +158,7 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
 // A wall so steep that the Taylor series at the start, truncated where its terms are small, misses it. One step leads
 // into the wall, where h(q) < 0 although the series of the gap gives 1/2. The impact is at h(q) = 0: a^power = 1/2. The
 // 60th power is missed at exact_tolerance too, where no tighter run can find the impact instead.
-TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
+TEST(Decisions, NoStepEndsInsideASteepWall) {
     for (const int power : {20, 60})
         for (const double end : {0.9, 0.95, 1.0}) {
             const auto model = model_of({.potential = "0",
@@ -179,7 +179,7 @@ TEST(Decisions, NorDoesAStepEndInsideASteepWall) {
 }
 
 // A series far from a thin post misses it, too. The post is monitored as an Edge: exp(-400 (a - 1)^2) = 1/2.
-TEST(Decisions, NorInsideAThinPost) {
+TEST(Decisions, NoStepPassesThroughAThinPost) {
     for (const double steep : {400.0, 200.0})
         for (const double end : {0.97, 0.99, 1.0, 1.02, 3.0}) {
             const auto model = model_of({.potential = "0",
@@ -211,7 +211,7 @@ TEST(Decisions, ADipUpToTheEndOfAStepIsNotPassedOver) {
 }
 
 // A dip to 1e-12 at t = 1 is reported as undecided there, or decided at tolerance 1e-14.
-TEST(Decisions, ADoubtIsToldWhereItIs) {
+TEST(Decisions, UndecidedEventsAreReportedAtTheirTime) {
     const auto cut_at_resolution = model_of(
         {.kinetic = "1/2*(a'^2 + b'^2)", .potential = "0", .gap = "b + (a - 1)^2 - 1e-16", .a_rate = 1.0, .end = 2.0});
     const Trajectory undecided = simulate(cut_at_resolution, cut_at_resolution->default_run());
@@ -267,7 +267,7 @@ TEST(Decisions, TimeNeverRunsBack) {
 
 // A ball lands at t and stays until the end of the run. In floating point t + (end - t) may be the double after or
 // before the end. The heights and ends here include both cases; the run must end exactly at the end time.
-TEST(Decisions, NorByARounding) {
+TEST(Decisions, RunEndsExactlyAtTheEndTime) {
     const auto model = model_of({.e = "0", .b = 1.0});
     auto run = model->default_run();
     int past = 0, before = 0;

@@ -123,7 +123,7 @@ TEST(Domain, AProductOfGapsIsToldWithAdvice) {
 }
 
 // A motion to infinity crosses no domain boundary. It has another outcome.
-TEST(Domain, InfinityIsNoEdge) {
+TEST(Domain, InfinityIsNoDomainBoundary) {
     const auto model = test::typed(
         "title = \"away\"\n[[coordinate]]\nname = \"x\"\nstart = 1.0\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
         "potential = \"-x^4\"\n[[constraint]]\ngap = \"x\"\nrestitution = 0.5\n[run]\nend_time = 5.0\n");

@@ -177,7 +177,7 @@ Trajectory past_the_post(double height, double tolerance) {
 
 // The error after the bounce is larger than the distance to the boundary, so tighter steps after it cannot decide. Only
 // rerunning everything can. No decision is wrong, and none that 1e-14 can make stays open.
-TEST(AmbiguousEvents, WhatEarlierStepsMadeWrongDecidesNothing) {
+TEST(AmbiguousEvents, ErrorOfEarlierStepsDecidesNoEvent) {
     double clear = 0.1, touched = 0.7;
     ASSERT_EQ(past_the_post(clear, 1e-14).statistics.impacts, 1);
     ASSERT_GT(past_the_post(touched, 1e-14).statistics.impacts, 1);

@@ -48,7 +48,7 @@ class Automaton : public testing::Test {
     State state_;
 };
 
-TEST_F(Automaton, AsksForAFlightToItsEndAndGoesOnFromWhatCame) {
+TEST_F(Automaton, RequestsFlightStepsUntilTheEndTime) {
     auto execution = this->execution();
     const StepRequest* request = execution.next();
     ASSERT_NE(request, nullptr);
@@ -135,7 +135,7 @@ TEST_F(Automaton, ReleasesOnlyWhereTheForceIsProvedToFall) {
 }
 
 // Repeats the whole segment from its start, once.
-TEST_F(Automaton, AsksExactlyWhereAStepIsInDoubt) {
+TEST_F(Automaton, RetriesTheSegmentIfAStepIsAmbiguous) {
     auto execution = this->execution();
     for (const double t : {0.5, 1.0}) {
         ASSERT_NE(execution.next(), nullptr);
@@ -163,7 +163,7 @@ TEST_F(Automaton, AsksExactlyWhereAStepIsInDoubt) {
     EXPECT_EQ(trajectory.statistics.evaluations, 5);
 }
 
-TEST_F(Automaton, AsksExactlyForOneStretchOnly) {
+TEST_F(Automaton, RetriesASegmentOnce) {
     auto execution = this->execution();
     ASSERT_NE(execution.next(), nullptr);
     execution.accept(at(1.5, StepOutcome::ambiguous));
@@ -180,7 +180,7 @@ TEST_F(Automaton, AsksExactlyForOneStretchOnly) {
     EXPECT_EQ(request->state.t, 2.0);
 }
 
-TEST_F(Automaton, EndsInDoubtWhereItShallOrAllIsAsExactAlready) {
+TEST_F(Automaton, EndsUndecidedByPolicyOrAtTheTightestTolerance) {
     for (const bool exact : {false, true}) {
         if (exact) run_.options.tolerance = exact_tolerance;
         auto execution = this->execution(exact ? AmbiguityPolicy::retry_tight : AmbiguityPolicy::stop);

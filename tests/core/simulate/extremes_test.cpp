@@ -46,7 +46,7 @@ void expect_numbers(const Trajectory& trajectory) {
 
 // After coming to rest vertically, the ball slides on at rate 1/2 forever. The motion is representable at any finite
 // time.
-TEST(LongTimes, AreReachedByWhatGoesStraightOn) {
+TEST(LongTimes, AreReachedByUniformMotion) {
     const auto model = test::load("ball_on_floor");
     for (const Method method : {Method::taylor, Method::dopri5})
         for (const double end : {1e12, 1e60, 1e149}) {
@@ -62,7 +62,7 @@ TEST(LongTimes, AreReachedByWhatGoesStraightOn) {
         }
 }
 
-TEST(LongTimes, EndWhereNumbersDo) {
+TEST(LongTimes, OverflowEndsTheRun) {
     const auto model = test::load("ball_on_floor");
     const std::string beginning = "the motion diverges: the state is not finite just after t = ";
     for (const double end : {1e154, 1e160, 1e300, 1e308}) {

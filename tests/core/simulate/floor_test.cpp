@@ -18,7 +18,7 @@ Run started(const Model& model, const State& start) {
 
 class Floor : public testing::TestWithParam<std::string> {};
 
-TEST_P(Floor, IsNeverPassedFromRandomStarts) {
+TEST_P(Floor, IsNeverPenetratedFromRandomStarts) {
     const auto model = load(GetParam());
     Starts starts(model, 7);
     std::vector<achilles::Run> runs;
@@ -53,7 +53,7 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
 
 // Random parameters and start times as well. Energy is conserved, no gap becomes negative, no contact force pulls, and
 // every outcome is one of two. The energy may be off by 1e-10 of its largest term.
-TEST_P(Floor, AndAllLawsStandAtRandom) {
+TEST_P(Floor, AllLawsHoldForRandomParameters) {
     const auto model = load(GetParam());
     for (const Method method : {Method::taylor, Method::dopri5}) {
         Starts starts(model, 11);
@@ -102,7 +102,7 @@ INSTANTIATE_TEST_SUITE_P(Every, FloorOfOneGap, testing::ValuesIn(systems_of_one_
                          [](const auto& system) { return system.param; });
 
 // The comparison must reject a missing impact, and one moved by 1e-6.
-TEST(FloorJudge, CatchesALie) {
+TEST(FloorJudge, RejectsWrongEvents) {
     const auto model = load("ball_on_sine");
     auto run = model->default_run();
     run.options.tolerance = 1e-12;

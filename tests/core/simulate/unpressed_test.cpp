@@ -73,7 +73,7 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
 }
 
 // The force is 0 at the start only: its rate decides. If the rate is 0 as well, the run is undecided.
-TEST(UnpressedContacts, AreNoneWhereTheForceVanishesAtAnInstant) {
+TEST(UnpressedContacts, DoNotIncludeForcesThatVanishForAnInstant) {
     for (const auto& [force, held] : {std::pair("t", false), {"-t", true}, {"sin(t)*cos(x)", false}}) {
         const Trajectory trajectory = to_its_end(stop(force, "x", "", "start = 0"));
         EXPECT_EQ(trajectory.end_mode.held(), held ? ContactSet::of(0) : ContactSet()) << force;
@@ -103,7 +103,7 @@ end_time = 5
                              factor, force, e_wall));
 }
 
-TEST(UnpressedContacts, LetOthersCompleteBesideThem) {
+TEST(UnpressedContacts, OtherContactsCompleteWhileTheyAreHeld) {
     const double zeno = std::sqrt(2.0 * 5.0 / 9.81) * 3.0;
     for (const char* factor : {"1", "3", "1e-8", "1e8"})
         for (const char* force : {"0", "-0.2*x'"})

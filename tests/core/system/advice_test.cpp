@@ -12,7 +12,7 @@ using test::FileEdit, test::changed, test::good, test::told;
 
 class Advice : public testing::TestWithParam<FileEdit> {};
 
-TEST_P(Advice, IsGiven) {
+TEST_P(Advice, IsInTheMessage) {
     const FileEdit& change = GetParam();
     EXPECT_EQ(told(changed(good, {{change.from, change.to}})), change.message);
 }
