@@ -24,8 +24,8 @@ InputError not_carried(const std::string& name) {
 
 }  // namespace
 
-Inputs::Inputs(std::vector<InputSource> kept, const std::string& command)
-    : kept_(std::move(kept)),
+Inputs::Inputs(std::vector<InputSource> stored, const std::string& command)
+    : stored_(std::move(stored)),
       from_picture_(true),
       trust_{FilePolicy::Files::virtual_only,
              {},
@@ -37,11 +37,11 @@ Inputs::Inputs(std::vector<InputSource> kept, const std::string& command)
 
 // For a picture: the text that this name had at this request; after the last stored text, that one again.
 const InputSource& Inputs::next(const std::string& name, bool is_journal) {
-    const std::size_t wanted = asked_[{name, is_journal}]++;
+    const std::size_t number = request_counts_[{name, is_journal}]++;
     const InputSource* found = nullptr;
     std::size_t count = 0;
-    for (const InputSource& source : kept_)
-        if (source.name == name && (source.kind == InputSource::Kind::journal) == is_journal && count++ <= wanted)
+    for (const InputSource& source : stored_)
+        if (source.name == name && (source.kind == InputSource::Kind::journal) == is_journal && count++ <= number)
             found = &source;
     if (found == nullptr) throw not_carried(name);
     return *found;
@@ -49,14 +49,14 @@ const InputSource& Inputs::next(const std::string& name, bool is_journal) {
 
 std::string Inputs::text(const std::string& name) {
     if (from_picture_) return next(name, false).text;
-    kept_.push_back({InputSource::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
-    return kept_.back().text;
+    stored_.push_back({InputSource::Kind::system, name, read_text(files_read_.emplace_back(find_system(name)))});
+    return stored_.back().text;
 }
 
 std::string Inputs::data(const std::string& path) {
     if (from_picture_) return next(path, false).text;
-    kept_.push_back({InputSource::Kind::system, path, read_text(files_read_.emplace_back(path))});
-    return kept_.back().text;
+    stored_.push_back({InputSource::Kind::system, path, read_text(files_read_.emplace_back(path))});
+    return stored_.back().text;
 }
 
 // Messages use the name as given. A picture of the explorer shows them, and must not depend on the location of the
@@ -65,8 +65,8 @@ SystemDescription Inputs::system(const std::string& name) { return parse_system(
 
 std::string Inputs::journal_text(const std::string& path) {
     if (from_picture_) return next(path, true).text;
-    kept_.push_back({InputSource::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
-    return kept_.back().text;
+    stored_.push_back({InputSource::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
+    return stored_.back().text;
 }
 
 std::vector<Command> Inputs::journal(const std::string& path) {
@@ -96,9 +96,9 @@ void Inputs::count(const std::string& name, const std::vector<Command>& commands
 }
 
 std::string Inputs::first_system() const {
-    const auto first = std::find_if(kept_.begin(), kept_.end(),
+    const auto first = std::find_if(stored_.begin(), stored_.end(),
                                     [](const InputSource& source) { return source.kind == InputSource::Kind::system; });
-    if (first == kept_.end()) throw not_carried("SYSTEM");
+    if (first == stored_.end()) throw not_carried("SYSTEM");
     return first->name;
 }
 
@@ -116,22 +116,22 @@ struct DroppedOptions {
 
 DroppedOptions parsed(const std::string& command_line) {
     std::vector<std::string> words = words_of(command_line);
-    DroppedOptions asked;
+    DroppedOptions dropped;
     if (words.empty()) throw std::runtime_error("the picture does not contain the command that made it");
-    asked.kind = words.front();
+    dropped.kind = words.front();
     words.erase(words.begin());
     CLI::App command;
     command.allow_extras();
-    command.add_option("SYSTEM", asked.system);
-    command.add_option("--journal", asked.journal);
-    add_view_option(command, asked.views, "");
+    command.add_option("SYSTEM", dropped.system);
+    command.add_option("--journal", dropped.journal);
+    add_view_option(command, dropped.views, "");
     bool allowed = false;  // ignored: this replay writes nothing, and the window decides what may be read
-    add_step_option(command, asked.steps, allowed);
-    add_run_options(command, asked.settings, asked.overrides);
+    add_step_option(command, dropped.steps, allowed);
+    add_run_options(command, dropped.settings, dropped.overrides);
     // Declared so that their values are not taken for the system.
     std::string ignored;
-    command.add_option("--at", asked.at);
-    command.add_flag("--dark", asked.dark);
+    command.add_option("--at", dropped.at);
+    command.add_flag("--dark", dropped.dark);
     for (const char* flag : {"--width-mm", "--height-mm", "--font-pt", "--dpi", "--size", "--scale", "--columns",
                              "--format", "--fps", "--speed", "--camera", "--record"})
         command.add_option(flag, ignored);
@@ -141,10 +141,10 @@ DroppedOptions parsed(const std::string& command_line) {
     } catch (const CLI::ParseError& error) {
         throw std::runtime_error(std::string("the command in this picture cannot be read: ") + error.what());
     }
-    return asked;
+    return dropped;
 }
 
-const InputSource* carried(const Origin& origin, InputSource::Kind kind, const std::string& name) {
+const InputSource* stored_source(const Origin& origin, InputSource::Kind kind, const std::string& name) {
     for (const InputSource& source : origin.sources)
         if (source.kind == kind && (name.empty() || source.name == name)) return &source;
     return nullptr;
@@ -189,11 +189,11 @@ void open(const InputSource& source, DroppedCommands& opening) {
 }
 
 // The run and the plots that a command line specifies.
-void ask(const DroppedOptions& asked, const InputSource& source, std::vector<Command>& commands) {
+void add_option_commands(const DroppedOptions& dropped, const InputSource& source, std::vector<Command>& commands) {
     const SystemDescription description = parse_system(source.text, source.name);
-    Run run = requested_run(description, asked.settings, asked.overrides);
+    Run run = requested_run(description, dropped.settings, dropped.overrides);
     command::SetStart start;
-    for (const std::string& setting : asked.settings) {
+    for (const std::string& setting : dropped.settings) {
         std::string name = setting.substr(0, setting.find('='));
         name.erase(std::remove(name.begin(), name.end(), ' '), name.end());
         if (const double* value = find_value(description, run, name)) start.values.emplace_back(name, *value);
@@ -201,10 +201,10 @@ void ask(const DroppedOptions& asked, const InputSource& source, std::vector<Com
     if (!start.values.empty()) commands.emplace_back(start);
     for (const auto group : options_by_command(description.options, run.options))
         if (std::any_of(group.begin(), group.end(),
-                        [&](const Option& option) { return asked.overrides.find(option) != nullptr; }))
+                        [&](const Option& option) { return dropped.overrides.find(option) != nullptr; }))
             commands.emplace_back(command::SetOption(group[0], run.options));
-    if (asked.views.empty()) return;
-    const std::vector<ViewDescription> views = views_of(description, asked.views);
+    if (dropped.views.empty()) return;
+    const std::vector<ViewDescription> views = views_of(description, dropped.views);
     const int columns = views.size() > 2 ? 2 : 1;
     commands.emplace_back(command::SetGrid{columns, (static_cast<int>(views.size()) + columns - 1) / columns});
     for (std::size_t i = 0; i < views.size(); ++i) {
@@ -219,7 +219,7 @@ void ask(const DroppedOptions& asked, const InputSource& source, std::vector<Com
 void replay(const std::vector<Command>& journal, const Origin& origin, DroppedCommands& opening) {
     for (const Command& command : journal) {
         if (const auto* opened = std::get_if<command::Open>(&command)) {
-            if (const InputSource* source = carried(origin, InputSource::Kind::system, opened->system))
+            if (const InputSource* source = stored_source(origin, InputSource::Kind::system, opened->system))
                 open(*source, opening);
             continue;
         }
@@ -231,19 +231,19 @@ void replay(const std::vector<Command>& journal, const Origin& origin, DroppedCo
 }
 
 std::vector<Command> session_of(const Origin& origin, DroppedCommands& opening) {
-    const DroppedOptions asked = parsed(origin.command);
-    if (asked.kind == "paper")
+    const DroppedOptions dropped = parsed(origin.command);
+    if (dropped.kind == "paper")
         throw std::runtime_error("a picture made by achilles paper cannot be opened as a session");
-    const InputSource* source = carried(origin, InputSource::Kind::system, asked.system);
+    const InputSource* source = stored_source(origin, InputSource::Kind::system, dropped.system);
     if (source == nullptr) throw std::runtime_error("the picture does not contain its system");
     open(*source, opening);
-    ask(asked, *source, opening.commands);
-    if (const InputSource* journal = carried(origin, InputSource::Kind::journal, asked.journal);
-        !asked.journal.empty() && journal != nullptr)
+    add_option_commands(dropped, *source, opening.commands);
+    if (const InputSource* journal = stored_source(origin, InputSource::Kind::journal, dropped.journal);
+        !dropped.journal.empty() && journal != nullptr)
         replay(parse_journal(journal->text, journal->name), origin, opening);
-    replay(parse_steps(asked.steps), origin, opening);
-    if (!asked.at.empty()) opening.commands.push_back(parse_command("seek " + asked.at, opening.picture));
-    if (asked.dark) opening.commands.emplace_back(command::SetTheme{true});
+    replay(parse_steps(dropped.steps), origin, opening);
+    if (!dropped.at.empty()) opening.commands.push_back(parse_command("seek " + dropped.at, opening.picture));
+    if (dropped.dark) opening.commands.emplace_back(command::SetTheme{true});
     return opening.commands;
 }
 

@@ -28,7 +28,7 @@ class Inputs {
  public:
     Inputs() = default;
     // Reads the inputs stored in a picture; `command` is the command that made it.
-    Inputs(std::vector<InputSource> kept, const std::string& command);
+    Inputs(std::vector<InputSource> stored, const std::string& command);
 
     // What the journals may do with files; by default nothing. Ignored for a picture, whose journals access no files.
     void trust(const FilePolicy& trust) {
@@ -54,7 +54,7 @@ class Inputs {
     std::vector<Command> steps(const std::vector<std::string>& lines);
     // The first system requested: the default for a command line, stored in a picture, that names none.
     std::string first_system() const;
-    const std::vector<InputSource>& kept() const { return kept_; }
+    const std::vector<InputSource>& stored_sources() const { return stored_; }
     // Files read from the disk.
     const std::vector<std::filesystem::path>& files_read() const { return files_read_; }
 
@@ -63,13 +63,14 @@ class Inputs {
     std::string journal_text(const std::string& path);
     void count(const std::string& name, const std::vector<Command>& commands);
 
-    std::vector<InputSource> kept_;
+    std::vector<InputSource> stored_;
     std::vector<std::filesystem::path> files_read_;
     bool from_picture_ = false;
     FilePolicy trust_;
     TimeLimit time_limit_;
-    std::size_t replayed_ = 0, changes_ = 0;                     // commands, and how many of them start a new run
-    std::map<std::pair<std::string, bool>, std::size_t> asked_;  // number of requests of each input of a picture
+    std::size_t replayed_ = 0, changes_ = 0;  // commands, and how many of them start a new run
+    // Number of requests of each input of a picture.
+    std::map<std::pair<std::string, bool>, std::size_t> request_counts_;
 };
 
 // Files dropped on the window, as commands.

@@ -163,10 +163,10 @@ void validate_overrides(const Model& model, const Run& run, const std::vector<st
             file = without(model, setting, file);
         }
         if (!can_start(model, file)) throw;  // the settings are not the cause
-        std::vector<InputError> told;
+        std::vector<InputError> errors;
         for (const InputError& each : each_of(problem))
-            told.emplace_back(shown(alone.empty() ? all : alone), Location{}, each.message, each.hint);
-        throw InputErrors(told);
+            errors.emplace_back(shown(alone.empty() ? all : alone), Location{}, each.message, each.hint);
+        throw InputErrors(errors);
     }
 }
 

@@ -72,9 +72,9 @@ std::string_view rows_in(std::string_view bytes) { return bytes.substr(sizeof(st
 
 }  // namespace
 
-SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputOptions& asked, const SweepPictures& pictures,
+SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputOptions& options, const SweepPictures& pictures,
                          const fs::path& system_file, const std::string& system_name)
-    : table_(table), pictures_(pictures), csv_(asked.csv), hdf5_(asked.hdf5), units_(asked.units) {
+    : table_(table), pictures_(pictures), csv_(options.csv), hdf5_(options.hdf5), units_(options.units) {
     if (csv_.empty() && !keeps_rows()) csv_ = "-";
     if (units_ && csv_.empty()) throw InputError("--units", {}, "this needs --csv F");
     if (hdf5_ == "-") throw InputError("--hdf5 -", {}, "HDF5 output needs a file", "write --hdf5 F");
@@ -96,7 +96,7 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputOptions& aske
     log_path_ = csv_.empty() || is_stream(csv_) ? hdf5_ : csv_;
     if (log_path_.empty() && !pictures_.files().empty()) log_path_ = pictures_.files().front();
     if (log_path_.empty()) {
-        if (asked.resume) throw InputError("--resume", {}, "this needs a file: --csv F, --hdf5 F or --out F");
+        if (options.resume) throw InputError("--resume", {}, "this needs a file: --csv F, --hdf5 F or --out F");
         stream_ = csv_ == "-" ? STDOUT_FILENO : open_in_place(csv_);
         if (stream_ < 0)
             throw InputError(csv_, {}, fmt::format("the file cannot be written: {}", std::strerror(errno)));
@@ -106,7 +106,7 @@ SweepOutput::SweepOutput(const SweepTable& table, const SweepOutputOptions& aske
     log_path_ += ".part";
     files_.refuse_output(log_path_);
     files_.add(log_path_);
-    log_ = std::make_unique<SweepLog>(log_path_, key(), asked.resume, table.sweep().count());
+    log_ = std::make_unique<SweepLog>(log_path_, key(), options.resume, table.sweep().count());
 }
 
 SweepOutput::~SweepOutput() {
@@ -123,13 +123,13 @@ SweepKey SweepOutput::key() const {
     return {origin_.software, to_text(table_.sweep(), table_.model().description()), files, origin_.system};
 }
 
-std::string serialize_rows(const SweepTable& table, RowStorage kept, const Rows& rows) {
-    const std::string text = kept.text ? sweep_csv(table, rows) : "";
-    if (!kept.in_log) return text;
+std::string serialize_rows(const SweepTable& table, RowStorage storage, const Rows& rows) {
+    const std::string text = storage.text ? sweep_csv(table, rows) : "";
+    if (!storage.in_log) return text;
     const std::uint64_t size = text.size();
     std::string bytes(reinterpret_cast<const char*>(&size), sizeof size);
     bytes += text;
-    if (kept.rows) bytes += to_bytes(rows);
+    if (storage.rows) bytes += to_bytes(rows);
     return bytes;
 }
 
@@ -343,35 +343,35 @@ std::vector<std::string> SweepSummary::undefined_everywhere() const {
     return sentences;
 }
 
-SweepPictures::SweepPictures(const SweepTable& table, const SweepPictureOptions& asked, const PictureJob& job)
-    : table_(table), asked_(asked), job_(job) {
-    if (asked_.files.empty()) {
+SweepPictures::SweepPictures(const SweepTable& table, const SweepPictureOptions& options, const PictureJob& job)
+    : table_(table), options_(options), job_(job) {
+    if (options_.files.empty()) {
         for (const auto& [is_given, option] :
-             {std::pair{asked_.look.dark, "--dark"}, std::pair{asked_.look.transparent, "--transparent"},
-              std::pair{asked_.page.width > 0.0, "--width-mm"}})
+             {std::pair{options_.look.dark, "--dark"}, std::pair{options_.look.transparent, "--transparent"},
+              std::pair{options_.page.width > 0.0, "--width-mm"}})
             if (is_given) throw InputError(option, {}, "this needs --out F");
         return;
     }
-    for (const std::string& file : asked_.files) {
+    for (const std::string& file : options_.files) {
         if (file == "-") throw InputError("--out -", {}, "the picture of a sweep needs a file", "write --out F.png");
         const std::string format = format_for(file, "");
         if (format == "pdf") need_pdf_writer("--out " + file);
-        if (format == "png") job.check_size(asked_.size.width, asked_.size.height);
+        if (format == "png") job.check_size(options_.size.width, options_.size.height);
     }
-    check(asked_.page, "--width-mm");
+    check(options_.page, "--width-mm");
     if (!job.reproduces()) try_to_draw();
-    const PictureSize size = size_of(page_for(asked_.page, "svg"), asked_.size, Figure(), "svg");
-    asked_.look.width = size.width / size.scale;
-    if (has_height()) asked_.look.height = size.height / size.scale;
+    const PictureSize size = size_of(page_for(options_.page, "svg"), options_.size, Figure(), "svg");
+    options_.look.width = size.width / size.scale;
+    if (has_height()) options_.look.height = size.height / size.scale;
     const SweepData data(table);
-    check_drawn(data, asked_.look);
-    for (const std::string& word : left_out(data, asked_.look))
+    check_drawn(data, options_.look);
+    for (const std::string& word : left_out(data, options_.look))
         print_clean(stderr, "achilles: warning: --print {}: text values are not drawn in a section\n", word);
 }
 
 // Missing fonts or a missing off-screen renderer must cause an error before the runs, not after them.
 void SweepPictures::try_to_draw() const {
-    for (const std::string& file : asked_.files) {
+    for (const std::string& file : options_.files) {
         const std::string format = format_for(file, "");
         try {
             picture_of(Figure(), {64, 64}, {}, format == "png" ? format : "svg");
@@ -399,8 +399,8 @@ std::optional<Figure> SweepPictures::figure(const RowReader& each_rows) const {
             stderr,
             "achilles: warning: the table has {} rows; every {}th is drawn, because a figure holds at most {}\n", count,
             every, max_drawn_rows);
-    SweepLook look = asked_.look;
-    look.columns = columns_with_values(data, asked_.look);
+    SweepLook look = options_.look;
+    look.columns = columns_with_values(data, options_.look);
     const bool needs_both = data.is_section() && data.sweep.axes.empty();  // one is drawn over the other
     if (look.columns.empty() || (needs_both && look.columns.size() < 2)) {
         print_clean(stderr, "achilles: no picture is drawn: no run has a value to draw\n");
@@ -410,7 +410,7 @@ std::optional<Figure> SweepPictures::figure(const RowReader& each_rows) const {
 }
 
 PictureSize SweepPictures::size_for(const Figure& figure, const std::string& format) const {
-    PictureSize size = size_of(page_for(asked_.page, format), asked_.size, figure, format);
+    PictureSize size = size_of(page_for(options_.page, format), options_.size, figure, format);
     if (!has_height()) size.height = readable_height(figure, size.width, size.height, size.scale);
     return size;
 }
@@ -426,8 +426,8 @@ std::string SweepPictures::bytes(const Figure& figure, const std::string& file) 
     return picture_of(figure, size, notes, format);
 }
 
-void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& asked, PictureJob& job, int threads) {
-    const SweepPictures pictures(table, asked, job);
+void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& options, PictureJob& job, int threads) {
+    const SweepPictures pictures(table, options, job);
     const std::uint64_t points = table.sweep().count();
     const std::atomic<bool> stop{false};
     std::vector<Rows> all;

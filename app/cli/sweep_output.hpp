@@ -30,9 +30,9 @@ class SweepPictures {
  public:
     // Checks that they can be drawn, and throws InputError if not, before the sweep starts. Keeps references to the
     // table and the job.
-    SweepPictures(const SweepTable& table, const SweepPictureOptions& asked, const PictureJob& job);
+    SweepPictures(const SweepTable& table, const SweepPictureOptions& options, const PictureJob& job);
 
-    const std::vector<std::string>& files() const { return asked_.files; }
+    const std::vector<std::string>& files() const { return options_.files; }
     // Draws all rows at the end. Holds at most max_drawn_rows rows: if there are more, uses every second, third, ...
     // row. Columns without values are left out. If no column has a value, returns nothing and prints a warning to
     // standard error. Throws std::runtime_error if drawing fails.
@@ -42,15 +42,15 @@ class SweepPictures {
 
  private:
     void try_to_draw() const;
-    bool has_height() const { return asked_.page.width > 0.0 ? asked_.page.height > 0.0 : asked_.has_size; }
+    bool has_height() const { return options_.page.width > 0.0 ? options_.page.height > 0.0 : options_.has_size; }
     PictureSize size_for(const Figure& figure, const std::string& format) const;
     const SweepTable& table_;
-    SweepPictureOptions asked_;
+    SweepPictureOptions options_;
     const PictureJob& job_;
 };
 
 // Makes the one picture that `reproduce` wants, without writing files.
-void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& asked, PictureJob& job, int threads);
+void reproduce_sweep(const SweepTable& table, const SweepPictureOptions& options, PictureJob& job, int threads);
 
 struct SweepOutputOptions {
     std::string csv, hdf5;  // file names; csv may be -, standard output
@@ -62,7 +62,7 @@ struct RowStorage {
     bool text = false, rows = false, in_log = false;
 };
 // The stored form of these rows. Thread-safe.
-std::string serialize_rows(const SweepTable& table, RowStorage kept, const Rows& rows);
+std::string serialize_rows(const SweepTable& table, RowStorage storage, const Rows& rows);
 
 // Output files of a sweep, written when it is finished. Until then the rows are stored in a log: F.part, where F is
 // the first output file. --resume continues from this log. A table that goes only to standard output or to a device is
@@ -71,7 +71,7 @@ class SweepOutput {
  public:
     // Checks that the files can be written, before the sweep starts. Throws InputError. Keeps a reference to the
     // pictures.
-    SweepOutput(const SweepTable& table, const SweepOutputOptions& asked, const SweepPictures& pictures,
+    SweepOutput(const SweepTable& table, const SweepOutputOptions& options, const SweepPictures& pictures,
                 const std::filesystem::path& system_file, const std::string& system_name);
     ~SweepOutput();
     SweepOutput(const SweepOutput&) = delete;
@@ -79,7 +79,7 @@ class SweepOutput {
 
     // Number of points finished earlier.
     std::uint64_t done() const { return log_ ? log_->done() : printed_; }
-    RowStorage kept() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
+    RowStorage storage() const { return {!csv_.empty(), keeps_rows(), log_ != nullptr}; }
     // Appends the stored form of a chunk. Chunks must come in the order of the points. Throws std::system_error.
     void append(Chunk chunk, const std::string& bytes);
     // Writes the files. Returns false if a picture would be empty; it is then left out and the others are written.

@@ -67,19 +67,19 @@ void RunFailures::tell(const SweepTable& table) const {
     }
 }
 
-std::string sweep_chunk(const SweepTable& table, RowStorage kept, Chunk chunk) {
+std::string sweep_chunk(const SweepTable& table, RowStorage storage, Chunk chunk) {
     const Rows rows = table.rows(chunk.first, chunk.count);
     RunFailures failures;
     failures.note(rows);
     SweepSummary summary(table);
     summary.note(rows);
-    return summary.append_to(failures.append_to(serialize_rows(table, kept, rows)));
+    return summary.append_to(failures.append_to(serialize_rows(table, storage, rows)));
 }
 
 // Header lines, then the text of the system file.
-std::string sweep_order(const SweepTable& table, RowStorage kept, int threads) {
+std::string sweep_order(const SweepTable& table, RowStorage storage, int threads) {
     const SystemDescription& description = table.model().description();
-    return fmt::format("{}\n{:d} {:d} {:d} {}\n{}\n{}", version(), kept.text, kept.rows, kept.in_log, threads,
+    return fmt::format("{}\n{:d} {:d} {:d} {}\n{}\n{}", version(), storage.text, storage.rows, storage.in_log, threads,
                        to_text(table.sweep(), description), description.source_text);
 }
 
@@ -93,15 +93,15 @@ RankTask sweep_share(std::string_view order) {
     if (const std::string other = take_line(); other != version())
         throw std::runtime_error(
             fmt::format("this process runs Achilles {}, but rank 0 runs {}", version(), printable(other)));
-    RowStorage kept;
+    RowStorage storage;
     int text = 0, rows = 0, in_log = 0, threads = 0;
     std::sscanf(take_line().c_str(), "%d %d %d %d", &text, &rows, &in_log, &threads);
-    kept = {text != 0, rows != 0, in_log != 0};
+    storage = {text != 0, rows != 0, in_log != 0};
     const std::string sweep = take_line();
     const SystemDescription description = parse_system(std::string(order), "the system file sent by MPI rank 0");
     const auto table =
         std::make_shared<const SweepTable>(std::make_shared<const Model>(description), read_sweep(sweep, description));
-    return {threads, [table, kept](Chunk chunk) { return sweep_chunk(*table, kept, chunk); }};
+    return {threads, [table, storage](Chunk chunk) { return sweep_chunk(*table, storage, chunk); }};
 }
 
 void help_with_sweep(Messages& messages) {

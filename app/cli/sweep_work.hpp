@@ -30,10 +30,10 @@ class RunFailures {
 };
 
 // The bytes of a chunk: the stored form of its rows, then its failures and its summary.
-std::string sweep_chunk(const SweepTable& table, RowStorage kept, Chunk chunk);
+std::string sweep_chunk(const SweepTable& table, RowStorage storage, Chunk chunk);
 
 // The description of a sweep for other processes, which use no files or options of their own.
-std::string sweep_order(const SweepTable& table, RowStorage kept, int threads);
+std::string sweep_order(const SweepTable& table, RowStorage storage, int threads);
 // The work that an order describes. Throws if the order is from another version of the program.
 RankTask sweep_share(std::string_view order);
 

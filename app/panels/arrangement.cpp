@@ -35,8 +35,9 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
     };
     Arrangement parts;
     parts.error = {edge, edge, inside, std::min(m.error ? m.error(inside) : 0.0F, bottom - edge)};
-    const float said_at = below(parts.error);
-    parts.caption = {edge, said_at, inside, std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, bottom - said_at)};
+    const float caption_top = below(parts.error);
+    parts.caption = {edge, caption_top, inside,
+                     std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, bottom - caption_top)};
     const float top = std::min(below(parts.caption), bottom);
     const float timeline = std::min(m.timeline, bottom - top), lower = bottom - timeline;
     const float all_results = m.results ? m.results(inside) : 0.0F;
@@ -113,9 +114,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= min_plot * u;
     if (over_plots) error = 0.0F;
     parts.error = over_plots ? Rectangle{x + center + between, top, right, beside} : Rectangle{x, top, center, error};
-    const float said_at = below(top, error), said = std::min(caption, top + height - said_at);
-    parts.caption = {x, said_at, center, said};
-    const float picture = below(said_at, said);
+    const float caption_top = below(top, error), caption_height = std::min(caption, top + height - caption_top);
+    parts.caption = {x, caption_top, center, caption_height};
+    const float picture = below(caption_top, caption_height);
     // The picture takes precedence: if it would be too low, the results shrink.
     float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
     if (results < 0.4F * all_results) results = 0.0F;  // less than one line

@@ -399,10 +399,11 @@ void show_status(const Session& session, const PanelState& state) {
     }
     if (session.selected() > 0) {
         const auto event = static_cast<std::size_t>(session.selected() - 1);
-        const std::string said = fmt::format("event {}: ", event + 1) + typeset_sentence(session.sentences().of(event));
+        const std::string event_text =
+            fmt::format("event {}: ", event + 1) + typeset_sentence(session.sentences().of(event));
         const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
-        cell(ImGui::GetCursorScreenPos(), said, room, text_color());
-        ImGui::Dummy({std::min(width_of(said), room), ImGui::GetTextLineHeight()});
+        cell(ImGui::GetCursorScreenPos(), event_text, room, text_color());
+        ImGui::Dummy({std::min(width_of(event_text), room), ImGui::GetTextLineHeight()});
         show_legend(session);
         return;
     }

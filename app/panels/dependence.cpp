@@ -108,9 +108,9 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
         if (is_there) cell({x, y}, value, width, is_old ? faint_color() : text_color());
         x += width + units(16.0F);
     }
-    const std::string told = remark(session);
-    const float width = std::min(width_of(told), right - x);
-    if (width > units(60.0F)) cell({std::floor(right - width), y}, told, width, faint_color());
+    const std::string remark_text = remark(session);
+    const float width = std::min(width_of(remark_text), right - x);
+    if (width > units(60.0F)) cell({std::floor(right - width), y}, remark_text, width, faint_color());
     ImGui::SetCursorScreenPos(at);
     ImGui::Dummy({0.0F, row.height});
 }

@@ -346,8 +346,8 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
                          remaining().width, text_color());
     show_certificate(event);
     const auto& others = certificate.others;
-    const std::string told = others ? other_contacts_text(*session.model(), *others) : "";
-    if (!told.empty()) paragraph("Until then " + told + ".", remaining().width, text_color());
+    const std::string other_contacts = others ? other_contacts_text(*session.model(), *others) : "";
+    if (!other_contacts.empty()) paragraph("Until then " + other_contacts + ".", remaining().width, text_color());
 }
 
 void show_certificate(const Event& event) {

@@ -21,7 +21,7 @@ namespace achilles {
 
 // The request being edited, and the plots of the result.
 struct OrbitView {
-    OrbitOptions asked;
+    OrbitOptions typed;
     const Model* of = nullptr;  // the system of the request
     const OrbitJobResult* seen = nullptr;
     std::string low, high, shift;  // as typed
@@ -34,10 +34,10 @@ namespace {
 
 // The initial request: the file's [orbit] table while the run is the file's, else a search from the start of the run.
 OrbitOptions usual(const Session& session) {
-    OrbitOptions asked;
+    OrbitOptions typed;
     const Run &now = session.run(), &file = session.file_run();
-    if (!session.description().orbit || now.q != file.q || now.v != file.v) asked.from = "start";
-    return asked;
+    if (!session.description().orbit || now.q != file.q || now.v != file.v) typed.from = "start";
+    return typed;
 }
 
 OrbitView& view_of(const Session& session, PanelState& state) {
@@ -47,13 +47,13 @@ OrbitView& view_of(const Session& session, PanelState& state) {
     if (view.of != session.model().get()) {
         view = {};
         view.of = session.model().get();
-        view.asked = usual(session);
+        view.typed = usual(session);
     }
     if (view.seen == found.get() && view.dark == session.theme().dark) return view;
     if (found && view.seen != found.get()) {
-        view.asked = read_orbit(found->text);
+        view.typed = read_orbit(found->text);
         // The next search starts from the run, which is then on the orbit.
-        if (found->answer.orbit) view.asked.from = "start";
+        if (found->answer.orbit) view.typed.from = "start";
     }
     view.seen = found.get();
     view.dark = session.theme().dark;
@@ -69,7 +69,7 @@ OrbitView& view_of(const Session& session, PanelState& state) {
 void show_from(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit from")) return;
     const auto choice = [&](const char* name, const std::string& from, const char* about) {
-        if (ImGui::Selectable(name, view.asked.from == from)) view.asked.from = from;
+        if (ImGui::Selectable(name, view.typed.from == from)) view.typed.from = from;
         remember(state, std::string("orbit ") + name);
         tooltip(about);
     };
@@ -83,14 +83,14 @@ void show_from(const Session& session, OrbitView& view, PanelState& state) {
 
 void show_closing(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit closing")) return;
-    if (text_row("period", "orbit period", view.asked.period, 150.0F, state)) ImGui::CloseCurrentPopup();
+    if (text_row("period", "orbit period", view.typed.period, 150.0F, state)) ImGui::CloseCurrentPopup();
     tooltip(
         "period in s, an expression in the parameters such as 2*pi/om: of the drive, or a guess. Empty: from the file");
     const std::string& first = session.description().coordinates.front().name;
     if (text_row("shift", "orbit shift", view.shift, 150.0F, state)) ImGui::CloseCurrentPopup();
     tooltip(fmt::format("shift of a coordinate after one period, such as {}=2*pi. Empty: from the file", first));
-    view.asked.shifts.clear();
-    if (!view.shift.empty()) view.asked.shifts.push_back(view.shift);
+    view.typed.shifts.clear();
+    if (!view.shift.empty()) view.typed.shifts.push_back(view.shift);
     close_by_escape(state);
     ImGui::EndPopup();
 }
@@ -98,10 +98,10 @@ void show_closing(const Session& session, OrbitView& view, PanelState& state) {
 // Menu for the parameter of the branch; its default range is that of the slider.
 void show_along(const Session& session, OrbitView& view, PanelState& state) {
     if (!ImGui::BeginPopup("orbit along")) return;
-    const std::size_t equals = view.asked.along.find('=');
-    const std::string present = equals == std::string::npos ? "" : view.asked.along.substr(0, equals);
-    const auto take = [&] { view.asked.along = fmt::format("{}={}:{}", present, view.low, view.high); };
-    if (ImGui::Selectable("none", present.empty())) view.asked.along.clear();
+    const std::size_t equals = view.typed.along.find('=');
+    const std::string present = equals == std::string::npos ? "" : view.typed.along.substr(0, equals);
+    const auto take = [&] { view.typed.along = fmt::format("{}={}:{}", present, view.low, view.high); };
+    if (ImGui::Selectable("none", present.empty())) view.typed.along.clear();
     remember(state, "orbit along none");
     for (const ParameterDescription& parameter : session.description().parameters) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -110,16 +110,16 @@ void show_along(const Session& session, OrbitView& view, PanelState& state) {
             const double value = *session.value(parameter.name);
             view.low = fmt::format("{}", std::min(parameter.range[0], value));
             view.high = fmt::format("{}", std::max(parameter.range[1], value));
-            view.asked.along = fmt::format("{}={}:{}", parameter.name, view.low, view.high);
+            view.typed.along = fmt::format("{}={}:{}", parameter.name, view.low, view.high);
         }
         remember(state, "orbit along " + parameter.name);
         cell(at, typeset(parameter.name), units(200.0F), text_color());
     }
     if (!present.empty()) {
-        const std::size_t colon = view.asked.along.find(':');
+        const std::size_t colon = view.typed.along.find(':');
         if (view.low.empty() && colon != std::string::npos) {
-            view.low = view.asked.along.substr(equals + 1, colon - equals - 1);
-            view.high = view.asked.along.substr(colon + 1);
+            view.low = view.typed.along.substr(equals + 1, colon - equals - 1);
+            view.high = view.typed.along.substr(colon + 1);
         }
         ImGui::Separator();
         text_row("from", "orbit along from", view.low, 120.0F, state);
@@ -130,8 +130,8 @@ void show_along(const Session& session, OrbitView& view, PanelState& state) {
     ImGui::EndPopup();
 }
 
-std::string from_text(const OrbitOptions& asked) {
-    return asked.from.empty() ? "from the file's guess" : "from the " + asked.from;
+std::string from_text(const OrbitOptions& typed) {
+    return typed.from.empty() ? "from the file's guess" : "from the " + typed.from;
 }
 
 // Status text of the search.
@@ -152,7 +152,7 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
         if (is_busy)
             commands.emplace_back(command::StopOrbit{});
         else
-            commands.emplace_back(command::FindOrbit{to_text(view.asked)});
+            commands.emplace_back(command::FindOrbit{to_text(view.typed)});
     }
     remember(state, "make periodic");
     tooltip(is_busy ? "stop the search" : "find a periodic run near this one, and start the run there");
@@ -160,10 +160,10 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
     const float right = ImGui::GetWindowPos().x + content_right();
-    float x = menu_button("orbit from", from_text(view.asked), at.x, row, right, state);
+    float x = menu_button("orbit from", from_text(view.typed), at.x, row, right, state);
     tooltip("where the search begins");
     show_from(session, view, state);
-    x = menu_button("orbit along", view.asked.along.empty() ? "no branch" : "branch over " + typeset(view.asked.along),
+    x = menu_button("orbit along", view.typed.along.empty() ? "no branch" : "branch over " + typeset(view.typed.along),
                     x, row, right, state);
     tooltip("parameter of the branch");
     show_along(session, view, state);
@@ -172,10 +172,10 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
         tooltip("period of the drive, and shift of the coordinates after one period");
         show_closing(session, view, state);
     }
-    const std::string told = remark(session);
-    const float width = std::min(width_of(told), right - x);
+    const std::string remark_text = remark(session);
+    const float width = std::min(width_of(remark_text), right - x);
     if (width > units(40.0F))
-        cell({std::floor(right - width), at.y + ImGui::GetStyle().FramePadding.y}, told, width, faint_color());
+        cell({std::floor(right - width), at.y + ImGui::GetStyle().FramePadding.y}, remark_text, width, faint_color());
     ImGui::SetCursorScreenPos(at);
     ImGui::Dummy({0.0F, row.height});
 }

@@ -29,16 +29,16 @@ struct Result {
 
 std::string explanation(const Session& session, std::size_t index) {
     const Event& event = session.trajectory().events[index];
-    const std::string said = typeset_sentence(
+    const std::string event_text = typeset_sentence(
         fmt::format("{} at t = {} s: {}", names_of(event).name,
                     known_digits(event.t, session.precision().of_event(index), 10), session.sentences().of(index)));
-    if (session.precision().is_beyond(event.t)) return said;  // a certificate refers to the computed motion
-    if (!event.is_zeno()) return said + proved_text(session, index, "\n") + "\nClick: why";
-    if (session.enclosed(index) != nullptr) return said + proved_text(session, index, "\n");
+    if (session.precision().is_beyond(event.t)) return event_text;  // a certificate refers to the computed motion
+    if (!event.is_zeno()) return event_text + proved_text(session, index, "\n") + "\nClick: why";
+    if (session.enclosed(index) != nullptr) return event_text + proved_text(session, index, "\n");
     std::string proof = event.certificate ? sentence(*event.certificate, session.description()) : "not certified";
     for (std::size_t at = proof.find("; "); at != std::string::npos; at = proof.find("; ", at))
         proof.replace(at, 2, "\n");
-    return said + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
+    return event_text + "\n" + typeset_sentence(proof) + (is_plastic_landing(event) ? "" : "\n" + precision_text());
 }
 
 // "Zeno 2", "landing", "release knee", "wall opens knee".

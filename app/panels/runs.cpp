@@ -82,8 +82,8 @@ void show_run(const PinnedRun& run, const Session& session, PanelState& state, C
     const std::string name = run.name.empty() ? "same as present run" : run.name;
     tooltip(name + (run.shown ? ": pinned. Click to hide it" : ": pinned, hidden. Click to show it"));
     paint_sign(at, run_color(session.theme(), run.place), run.shown);
-    const std::string told = fitted(name, right - at.x - units(run_sign_width));
-    cell({at.x + units(run_sign_width), at.y}, told, right - at.x - units(run_sign_width) + 1.0F,
+    const std::string fitted_name = fitted(name, right - at.x - units(run_sign_width));
+    cell({at.x + units(run_sign_width), at.y}, fitted_name, right - at.x - units(run_sign_width) + 1.0F,
          run.shown || is_hovered ? text_color() : faint_color());
     ImGui::SetCursorScreenPos({at.x, at.y + ImGui::GetTextLineHeightWithSpacing()});
 }

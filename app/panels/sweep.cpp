@@ -213,9 +213,9 @@ std::optional<SweepAxis> axis_for(const Session& session, const std::string& nam
 void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& state, Commands& commands) {
     const SweepSpec sweep = session.sweep();
     const float right = row.x + row.width, third = row.width / 3.0F;
-    std::string asked;
-    for (const std::string& print : sweep.prints) asked += (asked.empty() ? "" : ", ") + typeset(print);
-    float x = menu_button("sweep print", asked, row.x, row, row.x + 1.4F * third, state);
+    std::string printed;
+    for (const std::string& print : sweep.prints) printed += (printed.empty() ? "" : ", ") + typeset(print);
+    float x = menu_button("sweep print", printed, row.x, row, row.x + 1.4F * third, state);
     tooltip("quantity to compute for each run");
     show_print_menu(session, state, commands);
     for (std::size_t place = 0; place < 2; ++place) {

@@ -137,18 +137,18 @@ std::string joined(const FrameSeries& frames, const std::string& film,
                    const std::function<void(std::size_t frames)>& done) {
     if (!has_film_joiner()) throw std::runtime_error("ffmpeg is not installed");
     // The file is in the frame folder. ffmpeg takes the format from its extension.
-    const Temporary made{frames.folder / ("joined." + ending_of(film))}, said{frames.folder / "joined.log"},
-        told{frames.folder / "joined.progress"};
+    const Temporary made{frames.folder / ("joined." + ending_of(film))}, log{frames.folder / "joined.log"},
+        progress{frames.folder / "joined.progress"};
     std::vector<std::string> words = join_words(frames, made.path.string());
     // No date and no version in the file, so that the same frames give the same bytes.
     words.insert(words.end() - 1,
                  {"-y", "-nostats", "-progress", "pipe:1", "-map_metadata", "-1", "-fflags", "+bitexact"});
-    const int status = run(words, told.path, said.path, [&] {
-        if (done) done(frames_in(content(told.path)));
+    const int status = run(words, progress.path, log.path, [&] {
+        if (done) done(frames_in(content(progress.path)));
     });
     std::string bytes = status == 0 ? content(made.path) : "";
     if (!bytes.empty()) return bytes;
-    const std::string all = content(said.path);
+    const std::string all = content(log.path);
     constexpr std::size_t last_words = 600;
     throw std::runtime_error("ffmpeg could not make the film: " +
                              all.substr(all.size() - std::min(all.size(), last_words)));

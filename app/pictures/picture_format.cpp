@@ -60,13 +60,13 @@ std::string ending_of_picture(const std::string& file) {
 }
 
 std::string format_for(const std::string& out, const std::string& wanted, const std::string& advice) {
-    const std::string ending = ending_of(out), said = ending_of_picture(out), option = "--out " + shown(out);
+    const std::string ending = ending_of(out), ending_format = ending_of_picture(out), option = "--out " + shown(out);
     if (wanted.empty() && out == "-") return "png";
-    if (wanted.empty() && said.empty())
+    if (wanted.empty() && ending_format.empty())
         throw InputError(option, {}, "the file name must end in .png, .svg or .pdf",
                          is_among(ending, other_formats) ? "" : "or add --format png, svg or pdf");
-    if (wanted.empty()) return said;
-    if (said != wanted && (!said.empty() || is_among(ending, other_formats)))
+    if (wanted.empty()) return ending_format;
+    if (ending_format != wanted && (!ending_format.empty() || is_among(ending, other_formats)))
         throw InputError(option, {},
                          fmt::format("this name says {}, but the picture is {}", large(ending), large(wanted)),
                          fmt::format("end it in .{}{}", wanted, advice));

@@ -48,7 +48,7 @@ void PictureJob::add(const std::string& path) {
 }
 
 Notes PictureJob::notes_of(const std::string& picture, const std::vector<PictureRun>& runs) const {
-    return notes({"Achilles " + version(), command_, picture, inputs_.kept()}, runs);
+    return notes({"Achilles " + version(), command_, picture, inputs_.stored_sources()}, runs);
 }
 
 void PictureJob::put(const std::string& path, const std::string& picture, const std::vector<PictureRun>& runs,

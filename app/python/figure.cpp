@@ -8,8 +8,8 @@ namespace py = pybind11;
 
 namespace achilles::python {
 
-FigureStyle figure_style(const FigureStyleTuple& asked, const std::string& format) {
-    const auto& [views, size, scale, page, columns, dark, transparent] = asked;
+FigureStyle figure_style(const FigureStyleTuple& tuple, const std::string& format) {
+    const auto& [views, size, scale, page, columns, dark, transparent] = tuple;
     FigureStyle look;
     look.views = views;
     look.size = {size[0], size[1], scale};

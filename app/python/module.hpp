@@ -33,8 +33,8 @@ struct RunArguments {
     std::vector<std::string> settings;
     std::map<std::string, std::string> options;
 };
-OptionOverrides overrides_of(const RunArguments& asked);
-Run run_of(const PythonSystem& system, const RunArguments& asked);
+OptionOverrides overrides_of(const RunArguments& arguments);
+Run run_of(const PythonSystem& system, const RunArguments& arguments);
 // The warnings that the command line would print.
 std::vector<std::string> warnings_of(const PythonSystem& system, const Run& run);
 
@@ -56,7 +56,7 @@ struct FigureStyle {
 using FigureStyleTuple =
     std::tuple<std::vector<std::string>, std::array<int, 2>, double, std::array<double, 4>, int, bool, bool>;
 // Converts it for a picture format. Throws InputError.
-FigureStyle figure_style(const FigureStyleTuple& asked, const std::string& format);
+FigureStyle figure_style(const FigureStyleTuple& tuple, const std::string& format);
 // Appends the equivalent options of the command line.
 void add(std::vector<std::string>& words, const FigureStyle& look);
 // The picture as file content, with the command line that reproduces it and the files which that reads, the system

@@ -24,15 +24,15 @@ struct PythonOrbit {
     const Branch* branch() const { return answer.branch ? &*answer.branch : nullptr; }
 };
 
-std::vector<std::string> words_of(const PythonSystem& system, const OrbitOptions& asked, const RunArguments& of_run) {
+std::vector<std::string> words_of(const PythonSystem& system, const OrbitOptions& typed, const RunArguments& of_run) {
     std::vector<std::string> words{"orbit", system.name};
     const auto add = [&](const std::string& flag, const std::string& value) {
         if (!value.empty()) words.insert(words.end(), {flag, value});
     };
-    add("--from", asked.from);
-    add("--period", asked.period);
-    for (const std::string& shift : asked.shifts) add("--shift", shift);
-    add("--continue", asked.along);
+    add("--from", typed.from);
+    add("--period", typed.period);
+    for (const std::string& shift : typed.shifts) add("--shift", shift);
+    add("--continue", typed.along);
     // All given options, even those equal to the file's: they take precedence over the options of an orbit search.
     for (const std::string& setting : of_run.settings) add("--set", setting);
     for (const auto& [flag, value] : of_run.options) add(flag, value);
@@ -40,29 +40,29 @@ std::vector<std::string> words_of(const PythonSystem& system, const OrbitOptions
 }
 
 // `json`: the content of the file named by `from`, if the search starts at a state.
-std::shared_ptr<PythonOrbit> search_orbit(const std::shared_ptr<const PythonSystem>& system, OrbitOptions asked,
+std::shared_ptr<PythonOrbit> search_orbit(const std::shared_ptr<const PythonSystem>& system, OrbitOptions typed,
                                           const std::optional<std::string>& json, const RunArguments& of_run) {
     const Model& model = *system->model;
     const auto found = std::make_shared<PythonOrbit>();
     found->system = system;
-    found->words = words_of(*system, asked, of_run);
+    found->words = words_of(*system, typed, of_run);
     found->sources = {{InputSource::Kind::system, system->name, model.description().source_text}};
-    asked.settings = of_run.settings;
+    typed.settings = of_run.settings;
     const OptionOverrides overrides = overrides_of(of_run);
     for (const Option& option : all_options())
-        if (overrides.find(option) != nullptr) asked.options.insert(option.key);
+        if (overrides.find(option) != nullptr) typed.options.insert(option.key);
     if (json) {
-        asked.guess = orbit_guess(*json, asked.from, model.description().coordinates.size());
-        found->sources.push_back({InputSource::Kind::system, asked.from, *json});
+        typed.guess = orbit_guess(*json, typed.from, model.description().coordinates.size());
+        found->sources.push_back({InputSource::Kind::system, typed.from, *json});
     }
     const Run run = run_of(*system, of_run);
-    validate_overrides(model, run, asked.settings);
+    validate_overrides(model, run, typed.settings);
     found->warnings = warnings_of(*system, run);
     std::stop_source source;
     OrbitMonitor watch;
     watch.stop = source.get_token();
     const auto work = [&] {
-        found->answer = solve_orbit_request(parse_orbit_request(asked, run, system->model), system->model, &watch);
+        found->answer = solve_orbit_request(parse_orbit_request(typed, run, system->model), system->model, &watch);
     };
     run_interruptibly(
         work, [&] { source.request_stop(); }, [] {});
@@ -70,8 +70,8 @@ std::shared_ptr<PythonOrbit> search_orbit(const std::shared_ptr<const PythonSyst
 }
 
 // The same picture as `achilles orbit --out`.
-std::string draw(const PythonOrbit& found, const FigureStyleTuple& asked, const std::string& format) {
-    const FigureStyle look = figure_style(asked, format);
+std::string draw(const PythonOrbit& found, const FigureStyleTuple& tuple, const std::string& format) {
+    const FigureStyle look = figure_style(tuple, format);
     const std::vector<ViewDescription> views = views_of(found.system->model->description(), look.views);
     const Figure figure = found.branch() != nullptr ? compose_branch(found.orbit(), *found.branch(), views, look.style)
                                                     : publication(found.orbit().run, views, look.style);
@@ -84,14 +84,14 @@ std::string draw(const PythonOrbit& found, const FigureStyleTuple& asked, const 
 RunArguments one_period_arguments(const PythonOrbit& found) {
     const Model& model = *found.system->model;
     const std::vector<std::string> words = run_options(model.description(), model.default_run(), found.orbit().run.run);
-    RunArguments asked;
+    RunArguments arguments;
     for (std::size_t i = 0; i + 1 < words.size(); i += 2) {
         if (words[i] == "--set")
-            asked.settings.push_back(words[i + 1]);
+            arguments.settings.push_back(words[i + 1]);
         else
-            asked.options[words[i]] = words[i + 1];
+            arguments.options[words[i]] = words[i + 1];
     }
-    return asked;
+    return arguments;
 }
 
 }  // namespace
@@ -105,8 +105,8 @@ void bind_orbits(py::module_& module) {
         .def_property_readonly("command", [](const PythonOrbit& f) { return shell_line(f.words); })
         .def("of_period",
              [](const PythonOrbit& f) {
-                 const RunArguments asked = one_period_arguments(f);
-                 return std::pair(asked.settings, asked.options);
+                 const RunArguments arguments = one_period_arguments(f);
+                 return std::pair(arguments.settings, arguments.options);
              })
         .def(
             "summary", [](const PythonOrbit& f) { return orbit_answer(f.orbit(), f.branch()); }, released)

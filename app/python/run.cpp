@@ -32,7 +32,7 @@ struct StateTable {
 
 struct PythonRun {
     std::shared_ptr<const PythonSystem> system;
-    RunArguments asked;
+    RunArguments arguments;
     Trajectory trajectory;
     std::vector<std::string> warnings;
     // Computed on first use: it takes longer than the run.
@@ -117,9 +117,9 @@ std::shared_ptr<PythonRun> made_from(const std::shared_ptr<const PythonSystem>& 
                                      std::vector<std::string> settings, std::map<std::string, std::string> options) {
     const auto made = std::make_shared<PythonRun>();
     made->system = system;
-    made->asked = {std::move(settings), std::move(options)};
-    const Run run = run_of(*system, made->asked);
-    validate_overrides(*system->model, run, made->asked.settings);
+    made->arguments = {std::move(settings), std::move(options)};
+    const Run run = run_of(*system, made->arguments);
+    validate_overrides(*system->model, run, made->arguments.settings);
     made->warnings = warnings_of(*system, run);
     std::stop_source source;
     RunMonitor watch;
@@ -145,8 +145,8 @@ std::string command_of(const PythonRun& made, const FigureStyle& look) {
 }
 
 // The same picture as `achilles figure`.
-std::string draw(const PythonRun& made, const FigureStyleTuple& asked, const std::string& format) {
-    const FigureStyle look = figure_style(asked, format);
+std::string draw(const PythonRun& made, const FigureStyleTuple& tuple, const std::string& format) {
+    const FigureStyle look = figure_style(tuple, format);
     const SystemDescription& description = made.system->model->description();
     return picture_of(publication(made.trajectory, views_of(description, look.views), look.style, nullptr,
                                   horizon_before_end(made.trajectory, made.estimate())),
@@ -160,8 +160,8 @@ void bind_runs(py::module_& module) {
     const py::call_guard<py::gil_scoped_release> released;
     py::class_<PythonRun, std::shared_ptr<PythonRun>>(module, "Run", not_constructible())
         .def_readonly("warnings", &PythonRun::warnings)
-        .def_property_readonly("settings", [](const PythonRun& m) { return m.asked.settings; })
-        .def_property_readonly("given", [](const PythonRun& m) { return m.asked.options; })
+        .def_property_readonly("settings", [](const PythonRun& m) { return m.arguments.settings; })
+        .def_property_readonly("given", [](const PythonRun& m) { return m.arguments.options; })
         .def_property_readonly("start_time", [](const PythonRun& m) { return m.trajectory.run.options.start_time; })
         .def_property_readonly("end_time", [](const PythonRun& m) { return m.trajectory.end_time; })
         .def_property_readonly("outcome", [](const PythonRun& m) { return to_text(m.trajectory.outcome.kind); })
@@ -186,7 +186,7 @@ void bind_runs(py::module_& module) {
             "summary",
             [](const PythonRun& m) {
                 return answer(m.trajectory, m.estimate(),
-                              prove_line(m.system->name, m.asked.settings, overrides_of(m.asked)));
+                              prove_line(m.system->name, m.arguments.settings, overrides_of(m.arguments)));
             },
             released)
         .def("json",

@@ -100,10 +100,10 @@ py::dict as_dict(const PythonSystem& system, const SweepTable& table, SweepColum
     return result;
 }
 
-py::dict swept(const std::shared_ptr<const PythonSystem>& system, SweepOptions sweep, const RunArguments& asked,
+py::dict swept(const std::shared_ptr<const PythonSystem>& system, SweepOptions sweep, const RunArguments& arguments,
                int threads, const py::object& progress) {
-    sweep.fixed = fixed_names(asked.settings, overrides_of(asked));
-    const SweepTable table(system->model, make_sweep(sweep, run_of(*system, asked), system->model->description()));
+    sweep.fixed = fixed_names(arguments.settings, overrides_of(arguments));
+    const SweepTable table(system->model, make_sweep(sweep, run_of(*system, arguments), system->model->description()));
     const std::uint64_t points = table.sweep().count();
     SweepColumnData columns;
     std::atomic<bool> stop{false};

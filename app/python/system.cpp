@@ -19,17 +19,17 @@ namespace achilles::python {
 PythonSystem::PythonSystem(std::string text, std::string name_)
     : name(std::move(name_)), model(std::make_shared<const Model>(parse_system(std::move(text), name))) {}
 
-OptionOverrides overrides_of(const RunArguments& asked) {
+OptionOverrides overrides_of(const RunArguments& arguments) {
     OptionOverrides overrides;
     for (const Option& option : all_options())
         for (const std::string& flag : {std::string(option.flag), common_flag(option)})
-            if (const auto given = asked.options.find(flag); given != asked.options.end())
+            if (const auto given = arguments.options.find(flag); given != arguments.options.end())
                 overrides.by_flag.insert_or_assign(flag, value_from(option, flag, given->second));
     return overrides;
 }
 
-Run run_of(const PythonSystem& system, const RunArguments& asked) {
-    return requested_run(system.model->description(), asked.settings, overrides_of(asked));
+Run run_of(const PythonSystem& system, const RunArguments& arguments) {
+    return requested_run(system.model->description(), arguments.settings, overrides_of(arguments));
 }
 
 std::vector<std::string> warnings_of(const PythonSystem& system, const Run& run) {

@@ -27,7 +27,7 @@ struct ValueArgument {
 
     ValueArgument() = default;
     ValueArgument(double number) : value(number) {}  // NOLINT: most are numbers
-    ValueArgument(double number, std::string said) : value(number), text(std::move(said)) {}
+    ValueArgument(double number, std::string typed) : value(number), text(std::move(typed)) {}
     friend bool operator==(const ValueArgument&, const ValueArgument&) = default;
 };
 

@@ -255,12 +255,12 @@ Session open_session(const std::string& name, const SystemDescription& first, co
 }
 
 void apply_all(Session& session, const std::vector<Command>& commands) {
-    std::set<std::string> told;
+    std::set<std::string> printed;
     for (const Command& command : commands) {
         session.apply(command);
         if (!session.error().empty()) throw InputError(to_text(command), {}, session.error());
         for (const std::string& warning : session.warnings())
-            if (told.insert(warning).second) print_clean(stderr, "achilles: warning: {}\n", warning);
+            if (printed.insert(warning).second) print_clean(stderr, "achilles: warning: {}\n", warning);
     }
 }
 

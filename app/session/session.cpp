@@ -144,8 +144,8 @@ void Session::begin_document(Document document) {
         placed_.reset();
         drop_pinned_runs();
         change_system(system, Plots(system->model), run);
-        for (const std::string& told : outside_ranges(description, run)) warn(told);
-        for (const std::string& told : unseen_lines(description)) warn(told);
+        for (const std::string& warning : outside_ranges(description, run)) warn(warning);
+        for (const std::string& warning : unseen_lines(description)) warn(warning);
     } catch (const PermissionDenied&) {
         throw;
     } catch (const InputError& problem) {
@@ -177,7 +177,7 @@ void Session::read_document() {
     try {
         const SystemDescription description = parse_system(document_.text, document_.source);
         const auto system = std::make_shared<const OpenSystem>(document_.name, description);
-        Run run = carried_over(this->description(), asked_, *system->model);
+        Run run = carried_over(this->description(), requested_run_, *system->model);
         try {
             system->model->check(run);
         } catch (const InputError&) {  // values set by the sliders do not fit the new text: use the text alone
@@ -243,7 +243,7 @@ void check_unit(const SystemDescription& description, const std::string& name, c
 
 void Session::perform(const command::Set& command) {
     perform(command::SetStart{{{command.name, command.value}}});
-    for (const std::string& told : warnings_) notice_ += (notice_.empty() ? "" : "; ") + told;
+    for (const std::string& warning : warnings_) notice_ += (notice_.empty() ? "" : "; ") + warning;
 }
 
 // Sends no notice: a drag makes many of these commands, and notices would flicker over the mechanism.
@@ -265,10 +265,10 @@ void Session::perform(const command::SetStart& command) {
         throw refusal(fmt::format("{}: {}", names, problem.message), problem.hint);
     }
     rerun(changed);
-    for (const std::string& told : outside_ranges(description(), changed))
+    for (const std::string& warning : outside_ranges(description(), changed))
         if (std::any_of(command.values.begin(), command.values.end(),
-                        [&](const auto& value) { return told.starts_with(value.first + " "); }))
-            warnings_.push_back(told);
+                        [&](const auto& value) { return warning.starts_with(value.first + " "); }))
+            warnings_.push_back(warning);
 }
 
 std::optional<double> Session::value(const std::string& name) const {
@@ -287,8 +287,8 @@ void Session::perform(const command::SetOption& command) {
     }
     const std::vector<std::string> before = achilles::warnings(run().options);
     rerun(changed);
-    for (const std::string& told : achilles::warnings(changed.options))
-        if (std::find(before.begin(), before.end(), told) == before.end()) warn(told);
+    for (const std::string& warning : achilles::warnings(changed.options))
+        if (std::find(before.begin(), before.end(), warning) == before.end()) warn(warning);
 }
 
 // Starts another run of the same model, without reading or deriving again.
@@ -296,7 +296,7 @@ void Session::rerun(const Run& run) {
     system_->model->check(run);
     if (library_.budget) library_.budget->check(run.options);
     put_aside_pin();
-    asked_ = run;
+    requested_run_ = run;
     const auto watch = std::make_shared<RunMonitor>();
     watch_ = watch;
     began_ = std::chrono::steady_clock::now();
@@ -356,7 +356,7 @@ void Session::receive(Timeout patience) {
     } catch (const std::bad_alloc&) {  // without a previous run the session cannot continue
         if (simulated_ == nullptr) throw;
         watch_.reset();
-        asked_ = simulated_->trajectory.run;
+        requested_run_ = simulated_->trajectory.run;
         error_ = "there is not enough memory for this run; the previous run is kept. Use an earlier end time";
     }
     if (!motion) return;
@@ -364,7 +364,7 @@ void Session::receive(Timeout patience) {
     watch_.reset();
     estimate();
     try {
-        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pins_asked_, simulated_);
+        if (pin_waits_) pin(*std::exchange(pin_waits_, std::nullopt), pin_requests_, simulated_);
     } catch (const InputError& problem) {
         error_ = problem.what();
     }

@@ -111,7 +111,7 @@ class Session {
     const std::shared_ptr<const Model>& model() const { return system_->model; }
     const SystemDescription& description() const { return system_->model->description(); }
     // The run requested last. trajectory().run is the one that is shown.
-    const Run& run() const { return asked_; }
+    const Run& run() const { return requested_run_; }
     // Value of a parameter, or of the initial coordinate x or rate x'; empty if there is no such name.
     std::optional<double> value(const std::string& name) const;
     const Trajectory& trajectory() const { return simulated_->trajectory; }
@@ -287,7 +287,7 @@ class Session {
                    a.document.text == b.document.text && a.plots == b.plots;
         }
     };
-    UndoState undo_state() const { return {document_, system_, plots_, asked_, pinned_}; }
+    UndoState undo_state() const { return {document_, system_, plots_, requested_run_, pinned_}; }
     void restore(UndoState back);
     void compose_pinned();
     void pin(int place, int number, const std::shared_ptr<FinishedRun>& run);
@@ -330,7 +330,7 @@ class Session {
     std::shared_ptr<const OpenSystem> system_;
     Plots plots_;
     Scene scene_;
-    Run asked_;
+    Run requested_run_;
     // A run of this system. It differs from the run requested while that is under way.
     std::shared_ptr<FinishedRun> simulated_;
     std::shared_ptr<const RunMonitor> watch_;      // monitor of the run under way
@@ -350,7 +350,7 @@ class Session {
     RunTable run_table_;
     std::vector<Panel> drawn_;      // empty: the current run's plots
     std::optional<int> pin_waits_;  // place at which the run under way will be pinned
-    int pins_asked_ = 0;            // total number of pin requests; that run is the last of them
+    int pin_requests_ = 0;          // total number of pin requests; that run is the last of them
     // A run computed beside the current one, to be pinned at this place.
     using Runner = Worker<std::shared_ptr<FinishedRun>>;
     struct PendingPin {
@@ -366,7 +366,7 @@ class Session {
         Run run;
         InitialUncertainty spread;
     };
-    std::optional<ProofRequest> proof_asked_;     // until it is finished
+    std::optional<ProofRequest> proof_request_;   // until it is finished
     std::vector<const EnclosedEvent*> enclosed_;  // one per event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
     std::unique_ptr<SensitivitiesJob> influences_job_ = std::make_unique<SensitivitiesJob>();

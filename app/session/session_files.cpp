@@ -65,13 +65,13 @@ void Session::perform(const command::Replay& command) {
     const std::vector<Command> journal = library_.journal(command.journal);
     ++replaying_;
     std::string first_error;
-    std::vector<std::string> told;
+    std::vector<std::string> warnings;
     for (const Command& step : journal) {
         apply(step);
         if (first_error.empty()) first_error = error_;
-        told.insert(told.end(), warnings_.begin(), warnings_.end());
+        warnings.insert(warnings.end(), warnings_.begin(), warnings_.end());
     }
-    warnings_ = std::move(told);
+    warnings_ = std::move(warnings);
     --replaying_;
     if (!first_error.empty()) throw refusal(first_error);
 }

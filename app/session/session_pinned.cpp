@@ -51,10 +51,11 @@ const PinnedRun* Session::pinned_at(int place) const {
 }
 
 void Session::perform(const command::Pin& command) {
-    const auto same =
-        std::find_if(pinned_.begin(), pinned_.end(), [&](const PinnedRun& p) { return p.trajectory->run == asked_; });
+    const auto same = std::find_if(pinned_.begin(), pinned_.end(),
+                                   [&](const PinnedRun& p) { return p.trajectory->run == requested_run_; });
     if (same != pinned_.end()) throw refusal(fmt::format("this run is already pinned, as {}", same->place));
-    const auto made = std::find_if(pins_.begin(), pins_.end(), [&](const PendingPin& p) { return p.run == asked_; });
+    const auto made =
+        std::find_if(pins_.begin(), pins_.end(), [&](const PendingPin& p) { return p.run == requested_run_; });
     if (pin_waits_ || made != pins_.end())
         throw refusal(fmt::format("this run will be pinned, as {}, when it has finished",
                                   pin_waits_ ? *pin_waits_ : made->place));
@@ -71,12 +72,12 @@ void Session::perform(const command::Pin& command) {
     if (place == 0)
         for (place = 1; is_taken(place);) ++place;
     scene_.perform(command::Show{"runs", true});
-    ++pins_asked_;
+    ++pin_requests_;
     if (watch_ != nullptr) {  // the current run is not finished
         pin_waits_ = place;
         return;
     }
-    pin(place, pins_asked_, simulated_);
+    pin(place, pin_requests_, simulated_);
     compose_pinned();
 }
 
@@ -128,7 +129,7 @@ void Session::put_aside_pin() {
     if (!pin_waits_) return;
     if (!patience_) receive(patience_);
     if (!pin_waits_) return;
-    pins_.push_back({*std::exchange(pin_waits_, std::nullopt), pins_asked_, asked_, std::move(worker_)});
+    pins_.push_back({*std::exchange(pin_waits_, std::nullopt), pin_requests_, requested_run_, std::move(worker_)});
     worker_ = std::make_unique<Runner>();
     if (ready_) worker_->on_ready(ready_);
     watch_.reset();

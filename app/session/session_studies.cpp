@@ -62,14 +62,14 @@ std::string Session::sweep_text() const { return scene_.sweep().value_or(default
 
 SweepSpec Session::sweep() const {
     SweepSpec sweep = sweep_of(sweep_text(), description());
-    sweep.base = asked_;
+    sweep.base = requested_run_;
     return sweep;
 }
 
 // Throws InputError if the sweep cannot be made with the options of the current run.
 void Session::check_sweep(const std::string& text) const {
     SweepSpec sweep = sweep_of(text, description());
-    sweep.base.options = asked_.options;
+    sweep.base.options = requested_run_.options;
     if (library_.budget) library_.budget->check(sweep);
     const RunMeasures measures(system_->model, sweep);
 }
@@ -113,7 +113,7 @@ const Proof* Session::proof() const {
 const ProofMonitor* Session::proof_under_way() const { return proof_job_->under_way(); }
 
 std::optional<command::Prove> Session::proof_command() const {
-    if (proof_asked_) return prove_command(proof_asked_->spread);
+    if (proof_request_) return prove_command(proof_request_->spread);
     return proof() == nullptr ? std::nullopt : std::optional(prove_command(proof()->spread));
 }
 
@@ -130,15 +130,15 @@ void Session::perform(const command::Prove& command) {
                                       side->high));
         spread.sides.push_back(*side);
     }
-    check(*system_->model, problem_of(description(), asked_, spread));
+    check(*system_->model, problem_of(description(), requested_run_, spread));
     proof_job_->forget();
-    proof_asked_ = ProofRequest{system_, asked_, spread};
+    proof_request_ = ProofRequest{system_, requested_run_, spread};
     follow_proof(patience_);
     compose_pinned();
 }
 
 void Session::perform(const command::StopProof&) {
-    proof_asked_.reset();
+    proof_request_.reset();
     proof_job_->forget();
     compose_pinned();
 }
@@ -146,22 +146,23 @@ void Session::perform(const command::StopProof&) {
 // Drops a request for another run than the current one; starts the proof once its run is finished. Throws InputError if
 // proofs do not cover the system.
 void Session::follow_proof(Timeout patience) {
-    if (proof_asked_ && (proof_asked_->system != system_ || !same_to_a_proof(proof_asked_->run, asked_))) {
-        proof_asked_.reset();
+    if (proof_request_ &&
+        (proof_request_->system != system_ || !same_to_a_proof(proof_request_->run, requested_run_))) {
+        proof_request_.reset();
         proof_job_->stop();
     }
     try {
-        if (proof_asked_ && watch_ == nullptr && proof_job_->under_way() == nullptr)
-            proof_job_->begin(system_->model, proof_asked_->spread,
-                              problem_to_draw(trajectory(), proof_asked_->spread));
+        if (proof_request_ && watch_ == nullptr && proof_job_->under_way() == nullptr)
+            proof_job_->begin(system_->model, proof_request_->spread,
+                              problem_to_draw(trajectory(), proof_request_->spread));
         if (!proof_job_->update(patience)) return;
-        proof_asked_.reset();
+        proof_request_.reset();
         compose_pinned();
     } catch (const InputError&) {
-        proof_asked_.reset();
+        proof_request_.reset();
         throw;
     } catch (const std::bad_alloc&) {
-        proof_asked_.reset();
+        proof_request_.reset();
         throw refusal("there is not enough memory for a proof of this run");
     }
 }
@@ -235,8 +236,8 @@ void Session::receive_orbit(Timeout patience) { orbit_job_->update(patience); }
 
 void Session::perform(const command::FindOrbit& command) {
     or_refuse<command::FindOrbit>([&] {
-        orbit_job_->begin(system_->model, command.text, asked_,
-                          parse_orbit_request(read_orbit(command.text), asked_, system_->model));
+        orbit_job_->begin(system_->model, command.text, requested_run_,
+                          parse_orbit_request(read_orbit(command.text), requested_run_, system_->model));
     });
     scene_.perform(command::Show{"orbit", true});
     receive_orbit(patience_);
@@ -253,24 +254,24 @@ void Session::perform(const command::SelectBranchPoint& command) {
     if (command.point < 1 || static_cast<std::size_t>(command.point) > found->count())
         throw refusal(fmt::format("the branch has no point {}: its points are numbered from 1 to {}", command.point,
                                   found->count()));
-    rerun(run_on(found->point(static_cast<std::size_t>(command.point) - 1), asked_));
+    rerun(run_on(found->point(static_cast<std::size_t>(command.point) - 1), requested_run_));
 }
 
 std::optional<std::size_t> Session::orbit_point() const {
     const auto found = orbit();
     for (std::size_t i = 0; found != nullptr && i < found->count(); ++i)
-        if (have_same_start(run_on(found->point(i), asked_), asked_)) return i;
+        if (have_same_start(run_on(found->point(i), requested_run_), requested_run_)) return i;
     return std::nullopt;
 }
 
 std::optional<command::FindOrbit> Session::orbit_command() const {
     const auto found = orbit();
     if (found == nullptr) return std::nullopt;
-    if (have_same_start(found->base, asked_)) return command::FindOrbit{found->text};
+    if (have_same_start(found->base, requested_run_)) return command::FindOrbit{found->text};
     if (!orbit_point()) return std::nullopt;
-    OrbitOptions asked = read_orbit(found->text);
-    asked.from = "start";
-    return command::FindOrbit{to_text(asked)};
+    OrbitOptions typed = read_orbit(found->text);
+    typed.from = "start";
+    return command::FindOrbit{to_text(typed)};
 }
 
 }  // namespace achilles

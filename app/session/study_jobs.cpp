@@ -90,24 +90,24 @@ double TangentLine::at(double other_x) const {
 }
 
 bool SensitivitiesJob::ask(const std::shared_ptr<const Trajectory>& run, const std::string& quantity) {
-    if (asked_ && asked_->run == run && asked_->quantity == quantity) return false;
-    asked_ = SensitivityRequest{run, quantity};
+    if (requested_ && requested_->run == run && requested_->quantity == quantity) return false;
+    requested_ = SensitivityRequest{run, quantity};
     problem_.clear();
     const Sensitivities* const known = sensitivities();
     if (known != nullptr && (known->quantity.expression != quantity || known->run->model != run->model)) job_.drop();
-    if (!begun_) begin();
+    if (!running_) begin();
     return true;
 }
 
 void SensitivitiesJob::forget() {
     job_.forget();
-    asked_.reset(), begun_.reset();
+    requested_.reset(), running_.reset();
     problem_.clear();
 }
 
 void SensitivitiesJob::begin() {
-    begun_ = asked_;
-    job_.start([asked = *asked_](const StopMonitor&) { return influences_on(asked.quantity, asked.run); });
+    running_ = requested_;
+    job_.start([request = *requested_](const StopMonitor&) { return influences_on(request.quantity, request.run); });
 }
 
 void SensitivitiesJob::update(Timeout patience) {
@@ -117,7 +117,7 @@ void SensitivitiesJob::update(Timeout patience) {
         if (!patience) return patience;
         return std::max(0.0, *patience - std::chrono::duration<double>(Clock::now() - began).count());
     };
-    while (begun_) {
+    while (running_) {
         std::string problem;
         try {
             if (!job_.update(left())) return;
@@ -126,11 +126,11 @@ void SensitivitiesJob::update(Timeout patience) {
         } catch (const std::bad_alloc&) {
             problem = "there is not enough memory for the derivatives of this run";
         }
-        const SensitivityRequest of = *std::exchange(begun_, std::nullopt);
-        const bool is_wanted = of.quantity == asked_->quantity && of.run->model == asked_->run->model;
+        const SensitivityRequest of = *std::exchange(running_, std::nullopt);
+        const bool is_wanted = of.quantity == requested_->quantity && of.run->model == requested_->run->model;
         if (is_wanted) problem_ = problem;
         if (!is_wanted || !problem.empty()) job_.drop();
-        if (of == *asked_) return;
+        if (of == *requested_) return;
         begin();
         if (left() == 0.0) return;  // show each result, even if the next one is soon ready
     }

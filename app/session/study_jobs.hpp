@@ -67,7 +67,7 @@ class SensitivitiesJob {
 
     // The last result: for the quantity requested last, but possibly for an earlier run. Null: none yet.
     const Sensitivities* sensitivities() const { return job_.result().get(); }
-    bool is_busy() const { return begun_.has_value(); }
+    bool is_busy() const { return running_.has_value(); }
     const std::string& problem() const { return problem_; }  // why there is no result; else empty
 
  private:
@@ -77,7 +77,7 @@ class SensitivitiesJob {
         friend bool operator==(const SensitivityRequest&, const SensitivityRequest&) = default;
     };
     void begin();
-    std::optional<SensitivityRequest> asked_, begun_;  // the last request, and the one under way
+    std::optional<SensitivityRequest> requested_, running_;  // the last request, and the one under way
     std::string problem_;
     Job<Sensitivities> job_;
 };

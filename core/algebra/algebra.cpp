@@ -317,7 +317,7 @@ Sign Positivity::sign(std::size_t atom) {
 
 bool Positivity::is_positive(const Multinomial& polynomial, bool not_zero) {
     std::vector<Term> bound;
-    std::vector<std::size_t> asked;
+    std::vector<std::size_t> tested;
     for (const Term& term : polynomial.terms()) {
         Term low = term;
         bool signs_known = true, dropped = false;
@@ -328,7 +328,7 @@ bool Positivity::is_positive(const Multinomial& polynomial, bool not_zero) {
             const Operation operation = Builder::node(algebra_.atom(i)).operation;
             const bool odd = term.powers[i] % 2 == 1, known = odd && sign(i) != Sign::unknown;
             const bool wave = operation == Operation::sin || operation == Operation::cos;
-            if (odd && known) asked.push_back(i);
+            if (odd && known) tested.push_back(i);
             if (odd && !known) signs_known = false;
             if (wave && !known) {
                 dropped = true;
@@ -354,11 +354,11 @@ bool Positivity::is_positive(const Multinomial& polynomial, bool not_zero) {
         for (std::size_t i = 0; i < algebra_.atom_count(); ++i)
             if (term.powers[i] > 0) {
                 strict = strict && sign(i) == Sign::positive;
-                if (sign(i) != Sign::unknown) asked.push_back(i);
+                if (sign(i) != Sign::unknown) tested.push_back(i);
             }
         positive = positive || strict;
     }
-    if (positive) used_.insert(asked.begin(), asked.end());
+    if (positive) used_.insert(tested.begin(), tested.end());
     return positive;
 }
 

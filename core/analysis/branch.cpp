@@ -318,9 +318,9 @@ class BranchContinuation {
 
 }  // namespace
 
-Branch follow(const std::shared_ptr<const Model>& model, const OrbitProblem& asked, const Orbit& orbit,
+Branch follow(const std::shared_ptr<const Model>& model, const OrbitProblem& problem, const Orbit& orbit,
               std::size_t parameter, double low, double high) {
-    const ReturnMap map(model, asked.run, asked.closing, asked.watch);
+    const ReturnMap map(model, problem.run, problem.closing, problem.watch);
     Branch branch;
     branch.parameter = parameter;
     const Run& start = orbit.run.run;

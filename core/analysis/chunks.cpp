@@ -9,7 +9,7 @@
 
 namespace achilles {
 
-int threads_for(int asked) { return asked > 0 ? asked : std::max(1, tbb::info::default_concurrency()); }
+int threads_for(int requested) { return requested > 0 ? requested : std::max(1, tbb::info::default_concurrency()); }
 
 bool do_chunks(std::uint64_t first, std::uint64_t end, int threads, const ChunkTask& task, const ChunkWriter& write,
                const std::atomic<bool>& stop) {

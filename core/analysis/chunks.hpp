@@ -32,7 +32,7 @@ bool do_chunks(std::uint64_t first, std::uint64_t end, int threads, const ChunkT
                const std::atomic<bool>& stop);
 
 // The number of threads to use; 0: one for every core that this process may use.
-int threads_for(int asked);
+int threads_for(int requested);
 
 // ---- chunks to work on: the source of threads and of other processes ----
 

@@ -71,19 +71,19 @@ std::optional<DerivativeRequest> read_slope(const std::string& print) {
     if (!without_spaces(print.substr(close + 1)).empty())
         throw refused_slope(print, "a derivative may not be part of an expression",
                             "print it and the other terms one by one");
-    const DerivativeRequest asked{without_spaces(print.substr(open + 1, comma - open - 1)),
-                                  without_spaces(print.substr(comma + 1, close - comma - 1))};
-    if (asked.quantity.empty() || asked.name.empty())
+    const DerivativeRequest request{without_spaces(print.substr(open + 1, comma - open - 1)),
+                                    without_spaces(print.substr(comma + 1, close - comma - 1))};
+    if (request.quantity.empty() || request.name.empty())
         throw refused_slope(print, "a derivative needs a quantity and a name", how_to_differentiate);
-    return asked;
+    return request;
 }
 
 // Throws InputError if the quantity never has derivatives.
-void check_quantity(const SystemDescription& description, const std::string& print, const DerivativeRequest& asked) {
-    if (read_slope(asked.quantity))
+void check_quantity(const SystemDescription& description, const std::string& print, const DerivativeRequest& request) {
+    if (read_slope(request.quantity))
         throw refused_slope(print, "second derivatives are not computed",
                             "differences of first derivatives approximate them");
-    for (const std::string& name : names_in(asked.quantity)) {
+    for (const std::string& name : names_in(request.quantity)) {
         if (is_settable(description, name)) continue;
         if (name == "held" || name == "outcome")
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
@@ -154,8 +154,8 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
     std::vector<Text> texts;
     std::vector<std::string> names, quantities;
     for (const std::string& print : sweep.prints) {
-        if (const auto asked = read_slope(print)) {
-            add_slope(sweep, print, asked->quantity, asked->name, quantities);
+        if (const auto request = read_slope(print)) {
+            add_slope(sweep, print, request->quantity, request->name, quantities);
             continue;
         }
         const bool is_word = (print == "held" || print == "outcome") && !is_settable(description, print);
@@ -177,8 +177,8 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
         const std::string& zero = sweep.at->expression;
         zero_ = section_program(*model_, zero);
         zero_along_ = model_->compile_section({zero, {}});
-        const std::vector<std::string> asked = names_in(zero);
-        zero_has_work_ = std::find(asked.begin(), asked.end(), "work") != asked.end();
+        const std::vector<std::string> names = names_in(zero);
+        zero_has_work_ = std::find(names.begin(), names.end(), "work") != names.end();
     }
     const auto asks = [&](std::string_view name) {
         return std::find(names.begin(), names.end(), name) != names.end() && !is_settable(description, name);

@@ -243,12 +243,12 @@ void lift(const Model& model, Run& run) {
 
 }  // namespace
 
-OrbitSearchResult find_orbit(const std::shared_ptr<const Model>& model, const OrbitProblem& asked) {
-    Chain::check(asked.run);
-    Run run = asked.run;
-    if (asked.is_guess) lift(*model, run);
+OrbitSearchResult find_orbit(const std::shared_ptr<const Model>& model, const OrbitProblem& problem) {
+    Chain::check(problem.run);
+    Run run = problem.run;
+    if (problem.is_guess) lift(*model, run);
     model->check(run);
-    const ReturnMap map(model, run, asked.closing, asked.watch);
+    const ReturnMap map(model, run, problem.closing, problem.watch);
     OrbitSearchResult found;
     // A run that forgets its start approaches the orbit by itself, so further attempts start after several periods.
     for (const int periods : {0, 1, 3, 8, 20}) {
@@ -257,7 +257,7 @@ OrbitSearchResult find_orbit(const std::shared_ptr<const Model>& model, const Or
             return found;
         } catch (const OrbitNotFound& none) {
             if (found.reason.empty()) found.reason = none.what();
-            if (asked.watch != nullptr && asked.watch->stop.stop_requested()) break;
+            if (problem.watch != nullptr && problem.watch->stop.stop_requested()) break;
         }
     }
     return found;

@@ -88,7 +88,7 @@ struct OrbitSearchResult {
 // Searches for a periodic orbit. Throws InputError if the request is ill-posed: a driven system without a period, a
 // non-positive period, or Euclidean reinitialization. Failure to converge is reported in `reason`. The run's tolerances
 // determine how exactly the orbit closes.
-OrbitSearchResult find_orbit(const std::shared_ptr<const Model>& model, const OrbitProblem& asked);
+OrbitSearchResult find_orbit(const std::shared_ptr<const Model>& model, const OrbitProblem& problem);
 
 // kappa of theory-derivatives.md 9: the exponent with which a_inf vanishes if a release overtakes a Zeno point of this
 // restitution, 0 < e < 1.
@@ -117,7 +117,7 @@ struct Branch {
 
 // Follows the branch in both directions from an orbit found by find_orbit(), as long as the parameter is in [low,
 // high], which must contain its present value.
-Branch follow(const std::shared_ptr<const Model>& model, const OrbitProblem& asked, const Orbit& orbit,
+Branch follow(const std::shared_ptr<const Model>& model, const OrbitProblem& problem, const Orbit& orbit,
               std::size_t parameter, double low, double high);
 
 // ---- text form of an orbit request (command line, journal, Python) and its result ----
@@ -149,12 +149,12 @@ struct OrbitOptions {
 };
 
 // For example "--from end --shift x=2*pi --continue e=0.1:0.9"; contains only these flags.
-std::string to_text(const OrbitOptions& asked);
+std::string to_text(const OrbitOptions& typed);
 // Throws InputError.
 OrbitOptions read_orbit(std::string_view text);
 
 struct OrbitRequest {
-    OrbitProblem asked;
+    OrbitProblem problem;
     bool from_end = false;  // start at the end of the run, which must be simulated first
     // Parameter range of the branch to follow.
     struct ContinuationRange {
@@ -165,7 +165,7 @@ struct OrbitRequest {
 };
 
 // Parses a request about a run, which must be able to start. Throws InputError if it is ill-posed.
-OrbitRequest parse_orbit_request(const OrbitOptions& asked, const Run& run, const std::shared_ptr<const Model>& model);
+OrbitRequest parse_orbit_request(const OrbitOptions& typed, const Run& run, const std::shared_ptr<const Model>& model);
 
 struct OrbitResult : OrbitSearchResult {
     std::optional<Branch> branch;  // if requested

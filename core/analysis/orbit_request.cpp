@@ -79,22 +79,22 @@ void begin_at(Run& run, const State& state, bool with_time) {
 
 // Tightens the tolerances that were not set explicitly to those of tightest_options(), because they determine the
 // accuracy of the orbit.
-void make_exact(Options& options, const std::set<std::string_view>& said) {
+void make_exact(Options& options, const std::set<std::string_view>& set_by_user) {
     const Options exact = tightest_options();
     for (const Option& option : all_options())
-        if (option.is_tolerance && !said.contains(option.key))
+        if (option.is_tolerance && !set_by_user.contains(option.key))
             option.set(options, std::min(std::get<double>(option.get(options)), std::get<double>(option.get(exact))));
 }
 
-void read_closing(const OrbitOptions& asked, const Model& model, ReturnCondition& closing) {
+void read_closing(const OrbitOptions& typed, const Model& model, ReturnCondition& closing) {
     const auto check = [&](const char* flag, const std::string& text) {
         compile_option(flag, text, [&](std::span<const Text> one) { return model.compile_of_parameters(one); });
     };
-    if (!asked.period.empty()) {
-        check("--period", asked.period);
-        closing.period = {asked.period, {}};
+    if (!typed.period.empty()) {
+        check("--period", typed.period);
+        closing.period = {typed.period, {}};
     }
-    for (const std::string& shift : asked.shifts) {
+    for (const std::string& shift : typed.shifts) {
         const std::string where = "--shift " + shown(shift);
         const auto [name, text] = named(where, shift, "write --shift x=2*pi");
         const std::size_t place = place_of(where, name, model.description().coordinates, "coordinate");
@@ -105,26 +105,26 @@ void read_closing(const OrbitOptions& asked, const Model& model, ReturnCondition
 
 }  // namespace
 
-std::string to_text(const OrbitOptions& asked) {
+std::string to_text(const OrbitOptions& typed) {
     std::vector<Flag> flags;
     const auto add = [&](const char* flag, const std::string& value) {
         if (!value.empty()) flags.push_back({flag, value});
     };
-    add("--from", asked.from);
-    add("--period", asked.period);
-    for (const std::string& shift : asked.shifts) add("--shift", shift);
-    add("--continue", asked.along);
+    add("--from", typed.from);
+    add("--period", typed.period);
+    for (const std::string& shift : typed.shifts) add("--shift", shift);
+    add("--continue", typed.along);
     return to_text(flags);
 }
 
 OrbitOptions read_orbit(std::string_view text) {
-    OrbitOptions asked;
+    OrbitOptions typed;
     const std::vector<std::string> known{"--from", "--period", "--shift", "--continue"};
     for (const Flag& flag : read_flags(text, "orbit")) {
-        std::string* const place = flag.name == "--from"       ? &asked.from
-                                   : flag.name == "--period"   ? &asked.period
-                                   : flag.name == "--continue" ? &asked.along
-                                   : flag.name == "--shift"    ? &asked.shifts.emplace_back()
+        std::string* const place = flag.name == "--from"       ? &typed.from
+                                   : flag.name == "--period"   ? &typed.period
+                                   : flag.name == "--continue" ? &typed.along
+                                   : flag.name == "--shift"    ? &typed.shifts.emplace_back()
                                                                : nullptr;
         if (place == nullptr)
             throw InputError(
@@ -133,30 +133,30 @@ OrbitOptions read_orbit(std::string_view text) {
         if (!place->empty()) throw InputError(shown(flag.name), {}, "it is given twice");
         *place = flag.value;
     }
-    return asked;
+    return typed;
 }
 
-OrbitRequest parse_orbit_request(const OrbitOptions& asked, const Run& run, const std::shared_ptr<const Model>& model) {
+OrbitRequest parse_orbit_request(const OrbitOptions& typed, const Run& run, const std::shared_ptr<const Model>& model) {
     const SystemDescription& description = model->description();
     OrbitRequest question;
-    OrbitProblem& whole = question.asked;
+    OrbitProblem& whole = question.problem;
     whole.run = run;
-    make_exact(whole.run.options, asked.options);
+    make_exact(whole.run.options, typed.options);
     whole.closing.shift.resize(description.coordinates.size());
-    const bool has_clock = !model->equations().autonomous && !asked.options.contains("start_time");
+    const bool has_clock = !model->equations().autonomous && !typed.options.contains("start_time");
     const auto& orbit = description.orbit;
     if (orbit) {
         whole.closing.period = orbit->period;
         if (!orbit->shift.empty()) whole.closing.shift = orbit->shift;
     }
-    if (!asked.guess && !asked.from.empty() && asked.from != "start" && asked.from != "end")
-        throw InputError("--from " + shown(asked.from), {}, "start or end is expected");
-    question.from_end = !asked.guess && asked.from == "end";
-    if (asked.guess) {
-        begin_at(whole.run, asked.guess->state, has_clock);
-        if (asked.guess->period && asked.period.empty() && whole.closing.period.text.empty())
-            whole.closing.period = {fmt::format("{}", *asked.guess->period), {}};
-    } else if (orbit && asked.from.empty()) {
+    if (!typed.guess && !typed.from.empty() && typed.from != "start" && typed.from != "end")
+        throw InputError("--from " + shown(typed.from), {}, "start or end is expected");
+    question.from_end = !typed.guess && typed.from == "end";
+    if (typed.guess) {
+        begin_at(whole.run, typed.guess->state, has_clock);
+        if (typed.guess->period && typed.period.empty() && whole.closing.period.text.empty())
+            whole.closing.period = {fmt::format("{}", *typed.guess->period), {}};
+    } else if (orbit && typed.from.empty()) {
         State guess = run.start();
         for (std::size_t i = 0; i < orbit->q.size(); ++i) {
             guess.q[static_cast<Eigen::Index>(i)] = orbit->q[i];
@@ -165,11 +165,11 @@ OrbitRequest parse_orbit_request(const OrbitOptions& asked, const Run& run, cons
         guess.t = orbit->t.value_or(guess.t);
         begin_at(whole.run, guess, has_clock);
         // Explicit settings take precedence over the guess.
-        for (const std::string& setting : asked.settings) assign(whole.run, description, setting);
+        for (const std::string& setting : typed.settings) assign(whole.run, description, setting);
     }
-    whole.is_guess = asked.guess || question.from_end || (orbit && asked.from.empty());
-    read_closing(asked, *model, whole.closing);
-    if (!asked.along.empty()) question.along = read_along(asked.along, description, whole.run);
+    whole.is_guess = typed.guess || question.from_end || (orbit && typed.from.empty());
+    read_closing(typed, *model, whole.closing);
+    if (!typed.along.empty()) question.along = read_along(typed.along, description, whole.run);
     Chain::check(whole.run);
     // Reports errors in the request before the search.
     [[maybe_unused]] const ReturnMap possible(model, whole.run, whole.closing);
@@ -177,20 +177,20 @@ OrbitRequest parse_orbit_request(const OrbitOptions& asked, const Run& run, cons
 }
 
 OrbitResult solve_orbit_request(OrbitRequest question, const std::shared_ptr<const Model>& model, OrbitMonitor* watch) {
-    OrbitProblem& asked = question.asked;
-    asked.watch = watch;
+    OrbitProblem& problem = question.problem;
+    problem.watch = watch;
     OrbitResult answer;
     if (question.from_end) {
         RunMonitor first;
         if (watch != nullptr) first.stop = watch->stop;
-        const Trajectory run = simulate(model, asked.run, &first, Recording::final_state);
+        const Trajectory run = simulate(model, problem.run, &first, Recording::final_state);
         State end = run.end;
         end.t = run.end_time;
-        begin_at(asked.run, end, !model->equations().autonomous);
+        begin_at(problem.run, end, !model->equations().autonomous);
     }
-    static_cast<OrbitSearchResult&>(answer) = find_orbit(model, asked);
+    static_cast<OrbitSearchResult&>(answer) = find_orbit(model, problem);
     if (const auto& along = question.along; along && answer.orbit)
-        answer.branch = follow(model, asked, *answer.orbit, along->parameter, along->low, along->high);
+        answer.branch = follow(model, problem, *answer.orbit, along->parameter, along->low, along->high);
     return answer;
 }
 

@@ -11,10 +11,10 @@ namespace achilles {
 std::optional<PathBounds> PathBounds::of(const Model& model, const Program& section,
                                          std::span<const double> parameters) {
     const Layout& layout = model.layout();
-    const std::vector<bool> asked = section.inputs_of(1);
-    bool is_known = !asked[layout.work()];
+    const std::vector<bool> inputs = section.inputs_of(1);
+    bool is_known = !inputs[layout.work()];
     for (std::size_t i = 0; i < layout.contacts; ++i)
-        is_known = is_known && !asked[layout.acceleration(i)] && !asked[layout.force(i)];
+        is_known = is_known && !inputs[layout.acceleration(i)] && !inputs[layout.force(i)];
     if (!is_known) return std::nullopt;
     return PathBounds(model, section, parameters);
 }

@@ -82,7 +82,7 @@ struct SweepOptions {
 };
 // Throws InputError if the options are invalid. Whether the expressions are valid, and a section begins before the end,
 // is checked by RunMeasures.
-SweepSpec make_sweep(const SweepOptions& asked, const Run& base, const SystemDescription& description);
+SweepSpec make_sweep(const SweepOptions& typed, const Run& base, const SystemDescription& description);
 
 // The sweep as text, without the system: "--over e=0:0.95:200 --print "zeno_time(2)"", with --set and options for
 // differences between the base and the description. A shell can parse it, too.

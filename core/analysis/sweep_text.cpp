@@ -215,29 +215,29 @@ std::vector<SweepAxis> read_axes(const std::vector<std::string>& over, const Sys
     return axes;
 }
 
-std::optional<RandomPoints> read_random(const SweepOptions& asked, const std::vector<SweepAxis>& axes) {
-    if (!asked.random) {
-        if (asked.seed)
-            throw refusal("--seed", *asked.seed,
+std::optional<RandomPoints> read_random(const SweepOptions& typed, const std::vector<SweepAxis>& axes) {
+    if (!typed.random) {
+        if (typed.seed)
+            throw refusal("--seed", *typed.seed,
                           "this has an effect only with --random N, which draws N points from the ranges of --over");
         for (std::size_t i = 0; i < axes.size(); ++i)
             if (axes[i].count == 0)
-                throw refusal("--over", asked.over[i], "the number of values is missing",
+                throw refusal("--over", typed.over[i], "the number of values is missing",
                               std::string(how_to_vary) + "; or draw points at random: --random N");
         return std::nullopt;
     }
     for (std::size_t i = 0; i < axes.size(); ++i)
         if (axes[i].count != 0)
-            throw refusal("--over", asked.over[i],
+            throw refusal("--over", typed.over[i],
                           "--random gives the number of points, so the number of values is not allowed",
                           fmt::format("write --over {}={}:{}", axes[i].name, axes[i].low, axes[i].high));
     RandomPoints random;
-    random.count = whole_number("--random", *asked.random, *asked.random, 1.0);
-    if (asked.seed) {
-        const std::string text = trimmed(*asked.seed);
+    random.count = whole_number("--random", *typed.random, *typed.random, 1.0);
+    if (typed.seed) {
+        const std::string text = trimmed(*typed.seed);
         const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), random.seed);
         if (problem != std::errc() || end != text.data() + text.size())
-            throw refusal("--seed", *asked.seed, "a whole number of at least 0 is expected");
+            throw refusal("--seed", *typed.seed, "a whole number of at least 0 is expected");
     }
     return random;
 }
@@ -273,13 +273,13 @@ std::string read_print(const std::string& text) {
     return print;
 }
 
-std::optional<Section> read_section(const SweepOptions& asked) {
-    if (!asked.at) {
-        if (asked.after) throw refusal("--after", *asked.after, "this needs --at");
+std::optional<Section> read_section(const SweepOptions& typed) {
+    if (!typed.at) {
+        if (typed.after) throw refusal("--after", *typed.after, "this needs --at");
         return std::nullopt;
     }
     Section section;
-    const std::string at = trimmed(*asked.at);
+    const std::string at = trimmed(*typed.at);
     const auto names =
         std::find_if(event_names.begin(), event_names.end(), [&](const EventNames& one) { return one.word == at; });
     section.event = names != event_names.end() ? std::optional(names->kind) : std::nullopt;
@@ -288,8 +288,8 @@ std::optional<Section> read_section(const SweepOptions& asked) {
         throw refusal("--at", at, "a constant never crosses zero",
                       fmt::format("write --at \"t - {}\" for an instant, or impact, zeno, release", at));
     if (at.empty()) throw InputError("--at", {}, "impact, zeno, release or an expression is expected");
-    if (!asked.after) return section;
-    section.after = number("--after", *asked.after, *asked.after);
+    if (!typed.after) return section;
+    section.after = number("--after", *typed.after, *typed.after);
     return section;
 }
 
@@ -318,20 +318,20 @@ void refuse_axis(const std::string& print, const SweepSpec& sweep, const SystemD
 
 }  // namespace
 
-SweepSpec make_sweep(const SweepOptions& asked, const Run& base, const SystemDescription& description) {
+SweepSpec make_sweep(const SweepOptions& typed, const Run& base, const SystemDescription& description) {
     SweepSpec sweep;
-    sweep.axes = read_axes(asked.over, description);
-    for (const SweepAxis& axis : sweep.axes) refuse_fixed(axis, asked.fixed);
+    sweep.axes = read_axes(typed.over, description);
+    for (const SweepAxis& axis : sweep.axes) refuse_fixed(axis, typed.fixed);
     sweep.base = without_axes(base, sweep.axes, default_run(description), description);
     // With a section, a single run may be enough.
-    if (sweep.axes.empty() && (!asked.at || asked.random))
+    if (sweep.axes.empty() && (!typed.at || typed.random))
         throw InputError("--over", {}, "nothing is varied", how_to_vary);
-    sweep.random = read_random(asked, sweep.axes);
+    sweep.random = read_random(typed, sweep.axes);
     double points = 1.0;
     for (const SweepAxis& axis : sweep.axes) points *= sweep.random ? 1.0 : static_cast<double>(axis.count);
     if (points > static_cast<double>(max_sweep_points))
         throw InputError("--over", {}, fmt::format("too many points: {:.3g} (maximum {})", points, max_sweep_points));
-    for (const std::string& text : asked.prints) {
+    for (const std::string& text : typed.prints) {
         const std::string print = read_print(text);
         if (std::find(sweep.prints.begin(), sweep.prints.end(), print) != sweep.prints.end())
             throw refusal("--print", print, "it is already printed");
@@ -341,7 +341,7 @@ SweepSpec make_sweep(const SweepOptions& asked, const Run& base, const SystemDes
     if (sweep.prints.empty())
         throw InputError("--print", {}, "name at least one quantity to print",
                          "write --print WHAT, as in --print \"zeno_time(2)\" or --print outcome");
-    sweep.at = read_section(asked);
+    sweep.at = read_section(typed);
     return sweep;
 }
 
@@ -404,7 +404,7 @@ std::string to_text(const SweepSpec& sweep, const SystemDescription& description
 }
 
 SweepSpec read_sweep(std::string_view text, const SystemDescription& description) {
-    SweepOptions asked;
+    SweepOptions typed;
     Run base = default_run(description);
     const std::vector<std::string> known{"--over", "--print", "--at", "--after", "--random", "--seed", "--set"};
     for (const Flag& one : read_flags(text, "sweep")) {
@@ -414,29 +414,29 @@ SweepSpec read_sweep(std::string_view text, const SystemDescription& description
             place = value;
         };
         if (flag == "--over") {
-            asked.over.push_back(value);
+            typed.over.push_back(value);
         } else if (flag == "--print") {
-            asked.prints.push_back(value);
+            typed.prints.push_back(value);
         } else if (flag == "--at") {
-            only(asked.at);
+            only(typed.at);
         } else if (flag == "--after") {
-            only(asked.after);
+            only(typed.after);
         } else if (flag == "--random") {
-            only(asked.random);
+            only(typed.random);
         } else if (flag == "--seed") {
-            only(asked.seed);
+            only(typed.seed);
         } else if (flag == "--set") {
             assign(base, description, value);
-            asked.fixed.push_back(trimmed(value.substr(0, value.find('='))));
+            typed.fixed.push_back(trimmed(value.substr(0, value.find('='))));
         } else if (set_option(base, flag, value)) {
-            asked.fixed.push_back(flag);
+            typed.fixed.push_back(flag);
         } else {
             throw InputError("sweep", {},
                              fmt::format("'{}' is not expected here{}", shown(flag), did_you_mean(flag, known)));
         }
     }
     if (const auto fault = end_time_error(base.options)) throw InputError("sweep", {}, *fault);
-    return make_sweep(asked, base, description);
+    return make_sweep(typed, base, description);
 }
 
 }  // namespace achilles

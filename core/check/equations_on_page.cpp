@@ -152,8 +152,8 @@ void EquationsOnPage::flat(std::size_t index) {
     for (int i = 0; i < model_.dof(); ++i)
         at += fmt::format("{}{} = {:.2g}", at.empty() ? "" : ", ", model_.slot_names()[static_cast<std::size_t>(i)],
                           place->q[i]);
-    const std::string told = fmt::format("dh = 0 where h = 0, near {}: no impact can be computed there", at);
-    for (const std::string& sentence : {told, std::string(flat_hint)})
+    const std::string flat_text = fmt::format("dh = 0 where h = 0, near {}: no impact can be computed there", at);
+    for (const std::string& sentence : {flat_text, std::string(flat_hint)})
         page_.sentence({sentence, Page::escaped(sentence)});
 }
 

@@ -157,8 +157,8 @@ void Completion::bound_time(CompletionProof& proof, const Box& box, const Double
 // (E_q, E_s): the two-sided bounds on the integrals of h and of hdot^2, times their coefficients.
 void Completion::bound_error(CompletionProof& proof, const Box& box, const Interval& e) {
     const Interval one(1.0), two(2.0), e3 = e * square(e), root = sqrt(box.r), r3 = box.r * root;
-    const auto integral = [&](const Interval& w, const Interval& a, const Interval& kept) {
-        return two * e3 * w * square(w) / (Interval(3.0) * square(a) * (one - kept));
+    const auto integral = [&](const Interval& w, const Interval& a, const Interval& ratio) {
+        return two * e3 * w * square(w) / (Interval(3.0) * square(a) * (one - ratio));
     };
     const Interval I(integral(Interval(box.w.lo()), box.a_max, e3 / r3).lo(),
                      integral(Interval(box.w.hi()), box.a_min, e3 * r3).hi());
@@ -209,8 +209,8 @@ std::optional<Completion::CompletionProof> Completion::prove(const Doubleton& se
         box.a_min = Interval(a.lo());
         box.a_max = Interval(a.hi());
         box.r = box.a_max / box.a_min;
-        const Interval one(1.0), kept = e * square(e) * box.r * sqrt(box.r);
-        if (!certainly_less(square(e) * box.r, one) || !certainly_less(kept, one)) return std::nullopt;
+        const Interval one(1.0), ratio = e * square(e) * box.r * sqrt(box.r);
+        if (!certainly_less(square(e) * box.r, one) || !certainly_less(ratio, one)) return std::nullopt;
         const Interval longest(accumulation_time_bounds(e, box.a_min, box.a_max, Interval(w)).latest.hi());
         box.T = Interval((longest * Interval(1.0 + 0x1p-40)).hi());
         if (!contain(box, e)) continue;

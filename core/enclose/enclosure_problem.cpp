@@ -180,13 +180,13 @@ Interval restitution_over(const Model& model, const EnclosureProblem& claim, std
 void check(const Model& model, const EnclosureProblem& claim) {
     const FloatEnvironmentGuard ground;
     const SystemDescription& description = model.description();
-    std::vector<InputError> told;
+    std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];
         try {
             restitution_over(model, claim, contact);
         } catch (const InputError& mistake) {
-            told.push_back(mistake);
+            errors.push_back(mistake);
         }
         Evaluator<Interval> gap(model.gap(contact));
         for (std::size_t i = 0; i < claim.parameters.size(); ++i)
@@ -207,7 +207,7 @@ void check(const Model& model, const EnclosureProblem& claim) {
             }
             gap.run();
             if (!(gap.output(0).hi() < -0x1p-44 * std::max(1.0, size))) continue;
-            told.push_back(
+            errors.push_back(
                 description.error(constraint.gap.at,
                                   fmt::format("the gap is negative in part of the initial box: h <= {:.3g} at {}",
                                               gap.output(0).hi(), where),
@@ -215,7 +215,7 @@ void check(const Model& model, const EnclosureProblem& claim) {
             break;
         }
     }
-    if (!told.empty()) throw InputErrors(told);
+    if (!errors.empty()) throw InputErrors(errors);
 }
 
 }  // namespace achilles

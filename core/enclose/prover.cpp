@@ -18,8 +18,8 @@ Prover::Prover(const Model& model, const EnclosureProblem& claim, const Coordina
       bounces_(coordinates.contacts),
       proved_until_(claim.run.options.start_time) {
     for (std::size_t i = 0; i < z_.contacts; ++i) restitutions_.push_back(restitution_over(model, claim, i));
-    for (const double time : claim.times) asked_.push_back({time, {}, false});
-    asked_.push_back({claim.run.options.end_time, {}, false});
+    for (const double time : claim.times) sample_requests_.push_back({time, {}, false});
+    sample_requests_.push_back({claim.run.options.end_time, {}, false});
 }
 
 Enclosure Prover::run() {
@@ -38,12 +38,12 @@ Enclosure Prover::run() {
     }
     const bool whole = result_.outcome.kind == Enclosure::ProofOutcome::Kind::end_time;
     result_.proved_until = whole ? claim_.run.options.end_time : proved_until_;
-    for (std::size_t i = 0; i < asked_.size(); ++i) {
-        if (!asked_[i].is_known) continue;
-        if (i + 1 < asked_.size())
-            result_.samples.push_back(*asked_[i].state);
+    for (std::size_t i = 0; i < sample_requests_.size(); ++i) {
+        if (!sample_requests_[i].is_known) continue;
+        if (i + 1 < sample_requests_.size())
+            result_.samples.push_back(*sample_requests_[i].state);
         else if (whole)
-            result_.end = *asked_[i].state;
+            result_.end = *sample_requests_[i].state;
     }
     return std::move(result_);
 }
@@ -64,7 +64,8 @@ double Prover::largest_radius() const {
 // ---- requested times ----
 
 bool Prover::is_over() const {
-    return std::all_of(asked_.begin(), asked_.end(), [](const SampleRequest& asked) { return asked.is_known; });
+    return std::all_of(sample_requests_.begin(), sample_requests_.end(),
+                       [](const SampleRequest& request) { return request.is_known; });
 }
 
 // The remaining time (s), a little beyond the end for every member.
@@ -77,37 +78,37 @@ double Prover::longest() const {
 // time before any reaches the end of the step, the set is mapped to that time. Otherwise the hull there is extended.
 void Prover::cover(const EnclosureStep& step, const Interval& elapsed) {
     const Interval now = set_.hull(Coordinates::t());
-    for (SampleRequest& asked : asked_) {
-        if (asked.is_known) continue;
-        const Interval tau = Interval(asked.time) - now;
+    for (SampleRequest& request : sample_requests_) {
+        if (request.is_known) continue;
+        const Interval tau = Interval(request.time) - now;
         if (!(tau.hi() >= 0.0) || !(tau.lo() <= elapsed.hi())) continue;
-        if (tau.lo() >= 0.0 && tau.hi() < elapsed.lo() && !asked.state) {
+        if (tau.lo() >= 0.0 && tau.hi() < elapsed.lo() && !request.state) {
             Doubleton there = set_;
             Interval when = tau;
-            cross(there, step, CrossingSurface::of_time(z_, asked.time), when);
+            cross(there, step, CrossingSurface::of_time(z_, request.time), when);
             const Intervals box = there.hull();
-            asked.state = EnclosedState{asked.time, positions(box), velocities(box)};
-            asked.is_known = true;
-            proved_until_ = std::max(proved_until_, asked.time);
+            request.state = EnclosedState{request.time, positions(box), velocities(box)};
+            request.is_known = true;
+            proved_until_ = std::max(proved_until_, request.time);
             continue;
         }
         const Interval part(std::max(0.0, tau.lo()), std::min(tau.hi(), elapsed.hi()));
         const Intervals box = step.box_over(set_, part);
-        cover(Interval(asked.time), positions(box), velocities(box));
+        cover(Interval(request.time), positions(box), velocities(box));
     }
 }
 
 // Extends the hulls of the requested times in `times` by a box that contains the members at those times.
 void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v) {
-    for (SampleRequest& asked : asked_) {
-        if (asked.is_known || !times.contains(asked.time)) continue;
-        if (!asked.state) {
-            asked.state = EnclosedState{asked.time, q, v};
+    for (SampleRequest& request : sample_requests_) {
+        if (request.is_known || !times.contains(request.time)) continue;
+        if (!request.state) {
+            request.state = EnclosedState{request.time, q, v};
             continue;
         }
         for (std::size_t i = 0; i < z_.dof; ++i) {
-            asked.state->q[i] = hull(asked.state->q[i], q[i]);
-            asked.state->v[i] = hull(asked.state->v[i], v[i]);
+            request.state->q[i] = hull(request.state->q[i], q[i]);
+            request.state->v[i] = hull(request.state->v[i], v[i]);
         }
     }
 }
@@ -116,8 +117,8 @@ void Prover::cover(const Interval& times, const Intervals& q, const Intervals& v
 void Prover::settle() {
     proved_until_ = std::max(proved_until_, now());
     if (watch_ != nullptr) watch_->time.store(proved_until_, std::memory_order_relaxed);
-    for (SampleRequest& asked : asked_)
-        if (!asked.is_known && asked.state && proved_until_ > asked.time) asked.is_known = true;
+    for (SampleRequest& request : sample_requests_)
+        if (!request.is_known && request.state && proved_until_ > request.time) request.is_known = true;
 }
 
 // ---- motion ----

@@ -89,7 +89,7 @@ class Prover {
     std::size_t last_ = 0;                // contact of the last event
     int doubts_ = 0;                      // consecutive steps shortened to before an undecided event
     std::vector<int> bounces_;            // of each contact since its flight began
-    std::vector<SampleRequest> asked_;
+    std::vector<SampleRequest> sample_requests_;
     double proved_until_;  // s; all members have reached this time
     Enclosure result_;
 };

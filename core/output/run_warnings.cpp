@@ -14,13 +14,13 @@ namespace achilles {
 namespace {
 
 RunWarning made_again(const Trajectory& trajectory) {
-    const Options &asked = trajectory.run.options, &used = *trajectory.rerun_options;
+    const Options &requested = trajectory.run.options, &used = *trajectory.rerun_options;
     std::string what = fmt::format("tolerance {:g}", used.tolerance);
     for (const char* key : {"eps_q", "eps_v"})
-        if (const Option& eps = option(key); eps.get(asked) != eps.get(used))
+        if (const Option& eps = option(key); eps.get(requested) != eps.get(used))
             what += ", " + summary_text(eps, used, "{:g}");
     return {fmt::format("repeated at tolerance {:g}", used.tolerance),
-            fmt::format("undecided at tolerance {:g}{}: the whole run was repeated with {}", asked.tolerance,
+            fmt::format("undecided at tolerance {:g}{}: the whole run was repeated with {}", requested.tolerance,
                         trajectory.rerun_reason.empty() ? "" : " (" + trajectory.rerun_reason + ")", what)};
 }
 

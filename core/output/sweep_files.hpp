@@ -53,7 +53,7 @@ struct SweepKey {
 };
 
 // The difference between the sweep of a log and the requested one, as a sentence; "" if they are the same.
-std::string difference(const SweepKey& log, const SweepKey& asked);
+std::string difference(const SweepKey& log, const SweepKey& current);
 
 // Stores the results of an incomplete sweep so that they survive any end of the program. It has the key, then for each
 // chunk a header with its length and a checksum, and its bytes. The final files cannot serve: CSV has no room for the

@@ -88,17 +88,17 @@ bool take_part(std::string_view& text, std::string& part) {
 
 }  // namespace
 
-std::string difference(const SweepKey& log, const SweepKey& asked) {
+std::string difference(const SweepKey& log, const SweepKey& current) {
     const auto two = [](const char* what, const std::string& there, const std::string& here) {
         return fmt::format("{}\n    there: {}\n    here:  {}", what, printable(there), here);
     };
-    if (log.software != asked.software)
-        return two("it was started by a different version", log.software, asked.software);
-    if (log.sweep != asked.sweep) return two("it is a different sweep", log.sweep, asked.sweep);
-    if (log.files != asked.files) return two("it writes other output files", log.files, asked.files);
-    if (log.system == asked.system) return "";
+    if (log.software != current.software)
+        return two("it was started by a different version", log.software, current.software);
+    if (log.sweep != current.sweep) return two("it is a different sweep", log.sweep, current.sweep);
+    if (log.files != current.files) return two("it writes other output files", log.files, current.files);
+    if (log.system == current.system) return "";
     for (int line = 1;; ++line) {
-        const std::string there = line_of(log.system, line), here = line_of(asked.system, line);
+        const std::string there = line_of(log.system, line), here = line_of(current.system, line);
         if (there != here) return two(fmt::format("the system has changed in line {}", line).c_str(), there, here);
         if (line > 100000) return "the system has changed";
     }

@@ -66,22 +66,22 @@ auto& member(Owner& owner) {
 
 // Completes a row with what follows from the member: getter, setter and words.
 template <auto... path>
-constexpr Option at(Option said) {
+constexpr Option at(Option entry) {
     using Value = std::remove_cvref_t<decltype(member<path...>(std::declval<Options&>()))>;
-    said.get = [](const Options& options) -> OptionValue {
+    entry.get = [](const Options& options) -> OptionValue {
         if constexpr (std::is_enum_v<Value>)
             return word_of(member<path...>(options));
         else
             return member<path...>(options);
     };
-    said.set = [](Options& options, const OptionValue& value) {
+    entry.set = [](Options& options, const OptionValue& value) {
         if constexpr (std::is_enum_v<Value>)
             member<path...>(options) = choice_from<Value>(std::get<std::string_view>(value)).value();
         else
             member<path...>(options) = std::get<Value>(value);
     };
-    if constexpr (std::is_enum_v<Value>) said.words = words_of<Value>;
-    return said;
+    if constexpr (std::is_enum_v<Value>) entry.words = words_of<Value>;
+    return entry;
 }
 
 constexpr auto cut = &Options::truncation;
@@ -242,15 +242,16 @@ std::vector<std::span<const Option>> options_by_command(const Options& from, con
 }
 
 std::vector<const Option*> options_in_report_order(std::initializer_list<std::string_view> first) {
-    std::vector<const Option*> told;
-    for (const Option& o : rows) told.push_back(&o);
+    std::vector<const Option*> ordered;
+    for (const Option& o : rows) ordered.push_back(&o);
     const auto rank = [&](const Option* o) {
         const auto named = std::find(first.begin(), first.end(), o->key);
         const bool is_of_cut = o->table == "truncation";
         return (named - first.begin()) + (is_of_cut ? 1 : 0) + (is_of_cut && o->words.empty() ? 1 : 0);
     };
-    std::stable_sort(told.begin(), told.end(), [&](const Option* a, const Option* b) { return rank(a) < rank(b); });
-    return told;
+    std::stable_sort(ordered.begin(), ordered.end(),
+                     [&](const Option* a, const Option* b) { return rank(a) < rank(b); });
+    return ordered;
 }
 
 bool is_valid_value(const Option& option, const OptionValue& value) {
@@ -268,12 +269,12 @@ std::string summary_text(const Option& option, const Options& options, std::stri
 }
 
 std::vector<std::string> warnings(const Options& options) {
-    std::vector<std::string> told;
+    std::vector<std::string> messages;
     for (const Option& o : all_options())
         if (o.is_tolerance && std::get<double>(o.get(options)) < min_tolerance)
-            told.push_back(fmt::format("{} = {} is below what double precision supports; using {}", o.key,
-                                       to_text(o.get(options)), min_tolerance));
-    return told;
+            messages.push_back(fmt::format("{} = {} is below what double precision supports; using {}", o.key,
+                                           to_text(o.get(options)), min_tolerance));
+    return messages;
 }
 
 void clamp_tolerances(Options& options) {
@@ -287,18 +288,18 @@ std::optional<std::string> end_time_error(const Options& options) {
 }
 
 std::vector<std::string> validation_errors(const Options& options) {
-    std::vector<std::string> told;
+    std::vector<std::string> messages;
     for (const Option& o : all_options()) {
         if (!o.words.empty()) continue;  // Options cannot hold an invalid word
         const OptionValue value = o.get(options);
         if (is_valid_value(o, value)) continue;
-        told.push_back(std::holds_alternative<double>(value)
-                           ? fmt::format("{} must be a {} number, but it is {}", o.key,
-                                         o.any_sign ? "finite" : "positive", to_text(value))
-                           : fmt::format("{} must be at least 1", o.key));
+        messages.push_back(std::holds_alternative<double>(value)
+                               ? fmt::format("{} must be a {} number, but it is {}", o.key,
+                                             o.any_sign ? "finite" : "positive", to_text(value))
+                               : fmt::format("{} must be at least 1", o.key));
     }
-    if (const auto fault = end_time_error(options)) told.push_back(*fault);
-    return told;
+    if (const auto fault = end_time_error(options)) messages.push_back(*fault);
+    return messages;
 }
 
 }  // namespace achilles

@@ -90,11 +90,11 @@ CompletionError::AccumulationEstimate CompletionError::accumulation_time(const T
     state.t += span;
     const Contact landed = surfaces_.of(cut.contact, cut.others).at(state);
     state.v = impact(landed, state.v, 0.0);
-    const double speed = -landed.hdot, kept = speed / cut.speed;
+    const double speed = -landed.hdot, speed_ratio = speed / cut.speed;
     const AccelerationTrend next = trend({cut.contact, cut.others, state, speed});
-    const double error =
-        (span + estimated_accumulation_time(next, e, speed) - estimate.formula) / (1.0 - kept * kept * kept);
-    if (std::isfinite(error) && kept < 1.0) estimate.error = error;
+    const double error = (span + estimated_accumulation_time(next, e, speed) - estimate.formula) /
+                         (1.0 - speed_ratio * speed_ratio * speed_ratio);
+    if (std::isfinite(error) && speed_ratio < 1.0) estimate.error = error;
     return estimate;
 }
 

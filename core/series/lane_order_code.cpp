@@ -60,7 +60,7 @@ class LaneOrderWriter {
 
  private:
     const LanePlan::LaneSum& sum(std::uint32_t i) const { return lanes_.sums[i]; }
-    Index stride() const { return lane(lanes_.kept.size()); }
+    Index stride() const { return lane(lanes_.stored.size()); }
     // Offset of row 1 from `now`.
     Index first_row() const { return lane(plan_.numbers()) + stride(); }
     // The current part of a number, as an operand at an offset from an address.
@@ -159,7 +159,7 @@ class LaneOrderWriter {
     void finish(std::uint32_t i, const Xmm& total) {
         const Xmm product = vector(1), weight = vector(2);
         const auto [left, right] = sum(i);
-        const auto newest = code_.holder(lanes_.kept[right].series);
+        const auto newest = code_.holder(lanes_.stored[right].series);
         if (!newest) code_.vmovupd(product, part(row, lane(right)));
         code_.vmulpd(product, newest ? *newest : product, part(now, first_row() + lane(left)));
         code_.vaddpd(total, total, product);
@@ -194,8 +194,8 @@ class LaneOrderWriter {
 
     void keep() {
         const Xmm weight = vector(1);
-        for (std::size_t i = 0; i < lanes_.kept.size(); ++i) {
-            const auto [series, weighted] = lanes_.kept[i];
+        for (std::size_t i = 0; i < lanes_.stored.size(); ++i) {
+            const auto [series, weighted] = lanes_.stored[i];
             const Xmm number = code_.held_or(vector(0), series);
             if (weighted) {
                 code_.broadcast(weight, at(weights, by_order));
@@ -224,7 +224,7 @@ std::shared_ptr<const LaneOrderCode> LaneOrderCode::of(const SeriesPlan& plan, c
     orders->code_ = MachineCode::of(writer.bytes());
     if (!orders->code_) return nullptr;
     orders->function_ = orders->code_->as<Function>();
-    orders->first_row_ = (plan.numbers() + lanes.kept.size()) * Double8::count;
+    orders->first_row_ = (plan.numbers() + lanes.stored.size()) * Double8::count;
     orders->states_ = plan.states() * Double8::count;
     for (int k = 1; k <= OrderCode::highest_order; ++k) {
         const double order = k;

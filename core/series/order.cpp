@@ -28,8 +28,8 @@ LanePlan::LanePlan(const SeriesPlan& plan, std::size_t inner_sums) {
     std::map<std::pair<std::uint32_t, bool>, std::uint32_t> places;
     const auto place = [&](std::uint32_t series, bool weighted) {
         const auto [found, fresh] =
-            places.emplace(std::pair(series, weighted), static_cast<std::uint32_t>(kept.size()));
-        if (fresh) kept.push_back({series, weighted});
+            places.emplace(std::pair(series, weighted), static_cast<std::uint32_t>(stored.size()));
+        if (fresh) stored.push_back({series, weighted});
         return found->second;
     };
     // The factors of an unweighted sum may be swapped. Few distinct factors on each side mean few loads.

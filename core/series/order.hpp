@@ -127,9 +127,9 @@ struct LanePlan {
         bool weighted;  // multiplied by the order
     };
     struct LaneSum {
-        std::uint32_t left, right;  // indices into `kept`
+        std::uint32_t left, right;  // indices into `stored`
     };
-    std::vector<StoredSums> kept;
+    std::vector<StoredSums> stored;
     std::vector<LaneSum> sums;  // in the order of the plan: the first plan.weighted are weighted
 
     LanePlan(const SeriesPlan& plan, std::size_t inner_sums);

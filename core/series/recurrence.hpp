@@ -156,8 +156,8 @@ struct InnerSums {
     // The first `inner_sums` lanes of the plan are used.
     InnerSums(const SeriesPlan& series, std::size_t inner_sums) : plan(series, inner_sums) {}
     std::size_t count() const { return plan.sums.size(); }
-    std::size_t row() const { return plan.kept.size(); }
-    LanePlan::StoredSums kept(std::size_t i) const { return plan.kept[i]; }
+    std::size_t row() const { return plan.stored.size(); }
+    LanePlan::StoredSums stored(std::size_t i) const { return plan.stored[i]; }
     std::size_t left(std::size_t i) const { return plan.sums[i].left; }
     std::size_t right(std::size_t i) const { return plan.sums[i].right; }
 
@@ -183,7 +183,7 @@ struct InnerSums<double> {
     std::size_t count() const { return plan.lanes; }
     std::size_t row() const { return plan.row(); }
     // The series whose coefficients are entry i of the stored rows: the left factors of all sums, then the right ones.
-    LanePlan::StoredSums kept(std::size_t i) const {
+    LanePlan::StoredSums stored(std::size_t i) const {
         if (i < plan.lanes) return {plan.left[i], i < plan.weighted};
         return {plan.right[i - plan.lanes], false};
     }
@@ -227,7 +227,7 @@ void make_order(const SeriesPlan& plan, const InnerSums<Number>& sums, const Ser
         now[plan.rules[i].result] = value_of(plan.rules[i], tables.factors[i], now);
     const std::size_t width = sums.row();
     for (std::size_t i = 0; i < width; ++i) {
-        const auto [series, weighted] = sums.kept(i);
+        const auto [series, weighted] = sums.stored(i);
         Number& place = tables.rows[width * k + i];
         place = now[series];
         if (weighted) place = place * static_cast<double>(k);

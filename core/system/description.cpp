@@ -111,14 +111,14 @@ std::string with_unit(double value, const std::string& unit) {
 }  // namespace
 
 std::vector<std::string> outside_ranges(const SystemDescription& description, const Run& run) {
-    std::vector<std::string> told;
+    std::vector<std::string> messages;
     const auto look = [&](const std::string& name, double value, const std::array<double, 2>& range, bool is_written) {
         if (!is_written || (value >= range[0] && value <= range[1])) return;
         const std::string unit = unit_of(description, name), shown_value = with_unit(value, unit);
         const bool is_shown_in_degrees = shown_value.find(" deg") != shown_value.npos;
         const bool seems_degrees = is_of_angles(unit) && !is_shown_in_degrees && std::abs(value) > 6.5;
         const double factor = is_shown_in_degrees ? degrees(1.0) : 1.0;
-        told.push_back(fmt::format(
+        messages.push_back(fmt::format(
             "{} = {} is outside its range, {:.6g} to {:.6g}{}", name, shown_value, factor * range[0], factor * range[1],
             seems_degrees ? fmt::format(": for an angle in degrees write {} deg{}", value, unit.substr(3)) : ""));
     };
@@ -131,12 +131,12 @@ std::vector<std::string> outside_ranges(const SystemDescription& description, co
         const ParameterDescription& p = description.parameters[i];
         look(p.name, run.parameters[i], p.range, p.has_range);
     }
-    return told;
+    return messages;
 }
 
 std::vector<std::string> unseen_lines(const SystemDescription& description) {
     constexpr double least = 0.25;  // pixels: about a tenth of the usual width
-    std::vector<std::string> told;
+    std::vector<std::string> messages;
     for (const DrawingDescription& drawing : description.drawings) {
         double width = 0.0;
         try {
@@ -145,12 +145,12 @@ std::vector<std::string> unseen_lines(const SystemDescription& description) {
             continue;
         }
         if (width > 0.0 && width < least)
-            told.push_back(
+            messages.push_back(
                 fmt::format("line {}: a width of {} is too small to see: widths are in pixels, not in the units of the "
                             "points (default 2)",
                             drawing.width.at.line, width));
     }
-    return told;
+    return messages;
 }
 
 namespace {

@@ -90,8 +90,8 @@ Camera::Camera(const Mechanism& mechanism, const ContactGeometry& touch, const T
 // ---- the bouncing sequence before a Zeno point ----
 
 Camera::Bounce Camera::bounce(std::size_t grip, std::size_t contact, const Sample& sample) const {
-    AnchorPoint asked = grips_[grip];
-    const auto body = Body::of(asked, sample.t, sample.state);
+    AnchorPoint point = grips_[grip];
+    const auto body = Body::of(point, sample.t, sample.state);
     if (!body) return {};
     const Model& model = *trajectory_.model;
     auto terms = model.evaluator(model.programs_of(contact).contact_terms, trajectory_.run.parameters);

@@ -84,9 +84,9 @@ std::vector<std::size_t> Plane::slots_of(std::span<const Expression> expressions
     const Layout& layout = model_->layout();
     std::vector<std::size_t> slots;
     const auto ask = [&](std::size_t slot) {
-        const auto asked = static_cast<std::uint32_t>(slot);
+        const auto input = static_cast<std::uint32_t>(slot);
         if (std::any_of(expressions.begin(), expressions.end(), [&](const Expression& e) {
-                return depends_on(e, {&asked, 1});
+                return depends_on(e, {&input, 1});
             }))
             slots.push_back(slot);
     };

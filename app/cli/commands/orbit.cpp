@@ -20,7 +20,7 @@ namespace {
 
 struct OrbitArguments {
     std::string system, json, out;
-    OrbitOptions asked;
+    OrbitOptions typed;
     std::vector<std::string> views;
     OptionOverrides overrides;
     PublicationStyle style;
@@ -32,16 +32,16 @@ struct OrbitArguments {
 int run(const OrbitArguments& arguments, PictureJob& job) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const auto model = std::make_shared<const Model>(description);
-    OrbitOptions asked = arguments.asked;
-    const Run run = requested_run(description, asked.settings, arguments.overrides);
+    OrbitOptions typed = arguments.typed;
+    const Run run = requested_run(description, typed.settings, arguments.overrides);
     job.check(run.options);
-    validate_overrides(*model, run, asked.settings);
+    validate_overrides(*model, run, typed.settings);
     warn(description, run);
     for (const Option& option : all_options())
-        if (arguments.overrides.find(option) != nullptr) asked.options.insert(option.key);
-    if (!asked.from.empty() && asked.from != "start" && asked.from != "end")
-        asked.guess = orbit_guess(job.inputs().data(asked.from), asked.from, description.coordinates.size());
-    const OrbitRequest question = parse_orbit_request(asked, run, model);
+        if (arguments.overrides.find(option) != nullptr) typed.options.insert(option.key);
+    if (!typed.from.empty() && typed.from != "start" && typed.from != "end")
+        typed.guess = orbit_guess(job.inputs().data(typed.from), typed.from, description.coordinates.size());
+    const OrbitRequest question = parse_orbit_request(typed, run, model);
     const std::vector<ViewDescription> views = views_of(description, arguments.views);
     std::string format;
     if (!arguments.out.empty()) {
@@ -93,18 +93,18 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     const auto add = [&](const char* flag, std::string& place, const char* type, const char* about) {
         command->add_option(flag, place, about)->type_name(type);
     };
-    add("--from", arguments->asked.from, "start|end|FILE",
+    add("--from", arguments->typed.from, "start|end|FILE",
         "initial guess: the start of the run, its end, or the state in a file written by orbit --json or simulate "
         "--json (default: [orbit] of the system, else the start)");
-    add("--period", arguments->asked.period, "EXPRESSION",
+    add("--period", arguments->typed.period, "EXPRESSION",
         "period in s, an expression in the parameters such as 2*pi/om: of the drive, or a guess if there is no drive");
     command
-        ->add_option("--shift", arguments->asked.shifts,
+        ->add_option("--shift", arguments->typed.shifts,
                      "shift of a coordinate after one period, such as x=2*pi; repeatable")
         ->type_name("NAME=EXPRESSION")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    add("--continue", arguments->asked.along, "NAME=LOW:HIGH",
+    add("--continue", arguments->typed.along, "NAME=LOW:HIGH",
         "follow the orbit as a parameter varies, in both directions and around folds, until a Zeno point disappears");
     add("--json", arguments->json, "F", "write the results as JSON instead of text; - is standard output");
     add("--out", arguments->out, "F.png|F.svg|F.pdf", "picture of one period, or of the branch");
@@ -114,7 +114,7 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     command->add_flag("--dark", arguments->style.dark, "with --out: draw light on dark, for a screen");
     add_page_options(*command, arguments->page);
     add_size_options(*command, arguments->size.width, arguments->size.height, arguments->size.scale);
-    add_run_options(*command, arguments->asked.settings, arguments->overrides);
+    add_run_options(*command, arguments->typed.settings, arguments->overrides);
     command->callback([arguments, &status, &job] { status = run(*arguments, job); });
 }
 

@@ -25,7 +25,7 @@ namespace {
 
 struct SweepArguments {
     std::string system;
-    SweepOptions asked;
+    SweepOptions typed;
     SweepOutputOptions output;
     SweepPictureOptions pictures;
     std::vector<std::string> settings;
@@ -84,9 +84,9 @@ void print_summary(const SweepSummary& summary, const SweepOutput& output) {
 int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const SystemDescription description = job.inputs().system(arguments.system);
     const Run base = requested_run(description, arguments.settings, arguments.overrides);
-    SweepOptions asked = arguments.asked;
-    if (!job.reproduces()) asked.fixed = fixed_names(arguments.settings, arguments.overrides);
-    const SweepSpec sweep = make_sweep(asked, base, description);
+    SweepOptions typed = arguments.typed;
+    if (!job.reproduces()) typed.fixed = fixed_names(arguments.settings, arguments.overrides);
+    const SweepSpec sweep = make_sweep(typed, base, description);
     job.check(sweep);
     const SweepTable table(std::make_shared<const Model>(description), sweep);
     if (job.reproduces()) {
@@ -102,14 +102,14 @@ int run(const SweepArguments& arguments, PictureJob& job, Messages* ranks) {
     const std::uint64_t before = output.done();
     RunFailures failures;
     SweepSummary summary(table);
-    const auto task = [&](Chunk chunk) { return sweep_chunk(table, output.kept(), chunk); };
+    const auto task = [&](Chunk chunk) { return sweep_chunk(table, output.storage(), chunk); };
     const auto write = [&](Chunk chunk, const std::string& bytes) {
         output.append(chunk, failures.take(summary.take(bytes)));
         progress.show(chunk.first + chunk.count - before);
     };
     const auto do_all = [&] {
         if (ranks == nullptr) return do_chunks(before, points, arguments.threads, task, write, stop_requested);
-        const std::string order = sweep_order(table, output.kept(), arguments.threads);
+        const std::string order = sweep_order(table, output.storage(), arguments.threads);
         return do_chunks(*ranks, order, before, points, arguments.threads, task, write, stop_requested);
     };
     try {
@@ -155,13 +155,13 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     CLI::App* command = program.add_subcommand(
         "sweep", "Simulates many runs over parameters, initial values and options: a table, a curve, a map");
     add_system_argument(*command, arguments->system);
-    SweepOptions& asked = arguments->asked;
+    SweepOptions& typed = arguments->typed;
     add_texts(
-        *command, "--over", asked.over, "NAME=LOW:HIGH:COUNT",
+        *command, "--over", typed.over, "NAME=LOW:HIGH:COUNT",
         "axis of the sweep: a parameter, a start x, a rate x' or a numeric option such as end, with COUNT values from "
         "LOW to HIGH; log:LOW:HIGH:COUNT is logarithmic; repeatable, the first varies slowest");
     add_texts(
-        *command, "--print", asked.prints, "WHAT",
+        *command, "--print", typed.prints, "WHAT",
         "quantity to tabulate: an expression at the end of the run, zeno_time(k), impact_time(k), impact_speed(k), "
         "release_time(k), zeno_points, impacts, releases, least_gap, their derivatives such as d(zeno_time(1), e), "
         "held or outcome; repeatable");
@@ -173,12 +173,12 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
             ->type_name(type);
     };
     text_option(
-        "--at", asked.at, "impact|zeno|release|EXPRESSION",
+        "--at", typed.at, "impact|zeno|release|EXPRESSION",
         "tabulate at every event of this kind, or where the expression crosses zero upward, instead of at the end");
-    text_option("--after", asked.after, "T", "with --at: tabulate from this time on, s (default: the start)");
-    text_option("--random", asked.random, "N",
+    text_option("--after", typed.after, "T", "with --at: tabulate from this time on, s (default: the start)");
+    text_option("--random", typed.random, "N",
                 "number of random points instead of a grid; --over then takes NAME=LOW:HIGH");
-    text_option("--seed", asked.seed, "S", "seed of the random points (default 1)");
+    text_option("--seed", typed.seed, "S", "seed of the random points (default 1)");
     SweepOutputOptions& output = arguments->output;
     command->add_option("--csv", output.csv, "file for the table (default: standard output)")->type_name("F");
     command->add_option("--hdf5", output.hdf5, "HDF5 file for the table: /axes/NAME, /values/WHAT")->type_name("F");
