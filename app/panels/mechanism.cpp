@@ -225,7 +225,7 @@ void stand_still(Drawing& drawing, const Placement& placement, const Rectangle& 
     drawing.y_low = low.y, drawing.y_high = high.y;
 }
 
-bool is_same(const Shape& a, const Shape& b) {
+bool is_same(const DrawnShape& a, const DrawnShape& b) {
     return a.kind == b.kind && a.radius == b.radius &&
            std::equal(a.points.begin(), a.points.end(), b.points.begin(), b.points.end(),
                       [](const Point& p, const Point& q) { return p.x == q.x && p.y == q.y; });
@@ -234,8 +234,8 @@ bool is_same(const Shape& a, const Shape& b) {
 // Draws the pinned runs at the same time behind everything else, each in its hue. Shapes equal to the current run's are
 // left out.
 void add_ghosts(const Session& session, Drawing& drawing) {
-    const std::vector<Shape> present = drawing.shapes;
-    std::vector<Shape> ghosts;
+    const std::vector<DrawnShape> present = drawing.shapes;
+    std::vector<DrawnShape> ghosts;
     for (const PinnedRun& pinned : session.pinned()) {
         if (!pinned.shown) continue;
         const Sample then = session.now_of(pinned);
@@ -243,9 +243,9 @@ void add_ghosts(const Session& session, Drawing& drawing) {
         Drawing ghost = session.mechanism().draw(then.t, then.state, pinned.trajectory->run.parameters, drawing,
                                                  session.theme(), then.mode.held());
         pinned.touch->rest(ghost, then.t, then.state);
-        for (Shape& shape : ghost.shapes) {
-            const auto is_there = [&](const Shape& other) { return is_same(shape, other); };
-            if (shape.kind == Shape::Kind::text ||
+        for (DrawnShape& shape : ghost.shapes) {
+            const auto is_there = [&](const DrawnShape& other) { return is_same(shape, other); };
+            if (shape.kind == DrawnShape::Kind::text ||
                 (!shape.moves && std::any_of(present.begin(), present.end(), is_there)))
                 continue;
             color.a = 200;

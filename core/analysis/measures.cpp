@@ -177,8 +177,8 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
         const std::string& zero = sweep.at->expression;
         zero_ = section_program(*model_, zero);
         zero_along_ = model_->compile_section({zero, {}});
-        const std::vector<std::string> names = names_in(zero);
-        zero_has_work_ = std::find(names.begin(), names.end(), "work") != names.end();
+        const std::vector<std::string> used = names_in(zero);
+        zero_has_work_ = std::find(used.begin(), used.end(), "work") != used.end();
     }
     const auto asks = [&](std::string_view name) {
         return std::find(names.begin(), names.end(), name) != names.end() && !is_settable(description, name);

@@ -224,7 +224,7 @@ std::string to_text(const AnimationFrame& still) {
     std::string text;
     for (const auto& item : still.heading)
         if (const auto* words = std::get_if<TextRun>(&item)) text += words->label + "\n";
-    for (const Shape& shape : still.world.shapes) {
+    for (const DrawnShape& shape : still.world.shapes) {
         if (shape.points.empty()) continue;
         const Point& last = shape.points.back();
         text += fmt::format("shape of {} points to {:.9g} {:.9g}\n", shape.points.size(), last.x, last.y);

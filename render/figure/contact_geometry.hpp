@@ -37,7 +37,7 @@ class ContactGeometry {
     // Inserts the solid ground behind the shapes, over the limits of the drawing. If no drawing belongs to a held
     // contact, the line of its gap is highlighted.
     void add_ground(Drawing& drawing, double t, const State& state, ContactSet held, const Theme& theme) const;
-    // Moves the discs of a drawing (Shape::item) to where they rest.
+    // Moves the discs of a drawing (DrawnShape::item) to where they rest.
     void rest(Drawing& drawing, double t, const State& state) const;
     // As nearness(), but for what is drawn: the position where the point, or a disc around it, touches the ground.
     std::optional<Nearness> ground_below(AnchorPoint& grip, std::size_t contact, double t, const State& state) const;
@@ -70,8 +70,8 @@ class ContactGeometry {
         std::vector<Point> area, line;
     };
     const CachedGround& cached_ground(std::size_t solid, const Drawing& drawing, double t, const State& state) const;
-    void find_discs(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<Shape>& shapes);
-    void find_tips(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<Shape>& shapes,
+    void find_discs(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<DrawnShape>& shapes);
+    void find_tips(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<DrawnShape>& shapes,
                    double size);
     std::optional<std::array<std::size_t, 2>> plane_of(AnchorPoint& grip, const State& start) const;
     bool is_of(std::size_t contact, const std::array<std::size_t, 2>& pair) const;

@@ -338,13 +338,13 @@ std::vector<Point> circle(const Point& center, double radius, const Clip& clip) 
 }
 
 // The outline in pixels.
-std::vector<Point> outline(const Shape& shape, const Placement& placement, const Clip& clip) {
+std::vector<Point> outline(const DrawnShape& shape, const Placement& placement, const Clip& clip) {
     std::vector<Point> points;
-    if (shape.kind == Shape::Kind::disc)
+    if (shape.kind == DrawnShape::Kind::disc)
         points = circle(placement.pixel(shape.points.front()), shape.radius * placement.unit, clip);
     else
         for (const Point& p : shape.points) points.push_back(placement.pixel(p));
-    if ((shape.closed || shape.kind == Shape::Kind::disc) && !points.empty()) points.push_back(points.front());
+    if ((shape.closed || shape.kind == DrawnShape::Kind::disc) && !points.empty()) points.push_back(points.front());
     return points;
 }
 
@@ -369,7 +369,7 @@ void fill(ImDrawList* list, const std::vector<Point>& rim, Color color, double s
 
 // Fills convex polygons as triangle fans. Edges are not anti-aliased: interior edges must be invisible, and the outer
 // edge has a line.
-void fill_area(ImDrawList* list, const Shape& shape, const Placement& placement, const Clip& clip) {
+void fill_area(ImDrawList* list, const DrawnShape& shape, const Placement& placement, const Clip& clip) {
     const Color& c = shape.fill_color;
     const ImU32 color = IM_COL32(c.r, c.g, c.b, c.a);
     std::vector<Point> polygon;
@@ -387,9 +387,9 @@ void fill_area(ImDrawList* list, const Shape& shape, const Placement& placement,
     put();
 }
 
-void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placement, double scale) {
+void paint_shape(const DrawnShape& shape, ImDrawList* list, const Placement& placement, double scale) {
     if (shape.points.empty()) return;
-    if (shape.kind == Shape::Kind::text) {
+    if (shape.kind == DrawnShape::Kind::text) {
         const Point at = placement.pixel(shape.points.front());
         if (!is_finite(at)) return;
         const auto size = static_cast<float>(world_text_size * scale);
@@ -399,16 +399,16 @@ void paint_shape(const Shape& shape, ImDrawList* list, const Placement& placemen
         return;
     }
     const Clip clip = clip_of(list);
-    if (shape.kind == Shape::Kind::area) return fill_area(list, shape, placement, clip);
+    if (shape.kind == DrawnShape::Kind::area) return fill_area(list, shape, placement, clip);
     const std::vector<Point> points = outline(shape, placement, clip);
-    if (shape.fill && (shape.closed || shape.kind == Shape::Kind::disc))
+    if (shape.fill && (shape.closed || shape.kind == DrawnShape::Kind::disc))
         fill(list, points, shape.fill_color, scale, clip);
     add_curve(list, points, screen_stroke(shape.stroke, scale));
 }
 
 }  // namespace
 
-std::vector<Point> outline(const Shape& shape, const Placement& placement, const Rectangle& seen) {
+std::vector<Point> outline(const DrawnShape& shape, const Placement& placement, const Rectangle& seen) {
     return outline(shape, placement, Clip{{seen.x, seen.y}, {seen.x + seen.width, seen.y + seen.height}});
 }
 
@@ -426,7 +426,7 @@ Placement place(const Drawing& drawing, Rectangle area) {
 Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale) {
     const Placement placement = place(drawing, area);
     list->PushClipRect({area.x, area.y}, {area.x + area.width, area.y + area.height}, true);
-    for (const Shape& shape : drawing.shapes) paint_shape(shape, list, placement, scale);
+    for (const DrawnShape& shape : drawing.shapes) paint_shape(shape, list, placement, scale);
     list->PopClipRect();
     return placement;
 }

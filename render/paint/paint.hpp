@@ -66,7 +66,7 @@ constexpr double world_text_size = 14.0;
 
 // Outline of a shape other than text, in pixels. A closed outline repeats its first point. For a large disc, only the
 // arc that may be visible is fine.
-std::vector<Point> outline(const Shape& shape, const Placement& placement, const Rectangle& seen);
+std::vector<Point> outline(const DrawnShape& shape, const Placement& placement, const Rectangle& seen);
 
 // Draws the shapes, clipped to the area; `scale` multiplies text sizes and stroke widths.
 Placement paint(const Drawing& drawing, ImDrawList* list, Rectangle area, double scale = 1.0);

@@ -357,9 +357,9 @@ std::string svg(const Drawing& world, const Color& background, const SvgSize& si
     const Rectangle area = area_of(size);
     if (background.a > 0) writer(Fill{area, background});
     const Placement placement = place(world, area);
-    for (const Shape& shape : world.shapes) {
+    for (const DrawnShape& shape : world.shapes) {
         if (shape.points.empty()) continue;
-        if (shape.kind == Shape::Kind::text) {
+        if (shape.kind == DrawnShape::Kind::text) {
             const Point at = placement.pixel(shape.points.front());
             const auto high = static_cast<float>(world_text_size * size.scale);
             if (is_finite(at))
@@ -368,7 +368,7 @@ std::string svg(const Drawing& world, const Color& background, const SvgSize& si
             continue;
         }
         const std::vector<Point> points = outline(shape, placement, area);
-        const bool is_closed = shape.closed || shape.kind == Shape::Kind::disc;
+        const bool is_closed = shape.closed || shape.kind == DrawnShape::Kind::disc;
         if (shape.fill && is_closed) writer.fill(points, shape.fill_color, area);
         Stroke stroke = shape.stroke;
         stroke.width *= size.scale;

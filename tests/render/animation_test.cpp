@@ -87,18 +87,18 @@ TEST(Animation, ShowsThePresentAndFillsThePlots) {
     EXPECT_NEAR(second.markers[4].points[0].y, Sampler(trajectory).at(3.2).state.q[1], 1e-15);
     // The solid; the surface, highlighted because it is touched; the future and the past trail of the ball, in flight
     // and in contact. In front of them the ball, whose rim is at the position that the file gives for its center.
-    const std::vector<Shape>& shapes = after.world.shapes;
+    const std::vector<DrawnShape>& shapes = after.world.shapes;
     ASSERT_EQ(shapes.size(), 9u);
     const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
-    EXPECT_EQ(shapes[0].kind, Shape::Kind::area);
+    EXPECT_EQ(shapes[0].kind, DrawnShape::Kind::area);
     EXPECT_EQ(shapes[1].stroke.color, light_theme().surface);
     EXPECT_EQ(shapes[2].stroke.color, lit);
     for (std::size_t i = 3; i < 6; ++i) EXPECT_LT(shapes[i].stroke.color.a, 100);
     EXPECT_FALSE(shapes[6].stroke.dash.empty());
     EXPECT_TRUE(shapes[7].stroke.dash.empty());
     EXPECT_EQ(shapes[7].stroke.color, lit);
-    const Shape& disc = shapes[8];
-    EXPECT_EQ(disc.kind, Shape::Kind::disc);
+    const DrawnShape& disc = shapes[8];
+    EXPECT_EQ(disc.kind, DrawnShape::Kind::disc);
     const Vector q = Sampler(trajectory).at(3.2).state.q;
     EXPECT_NEAR(std::hypot(disc.points[0].x - q[0], disc.points[0].y - q[1]), disc.radius, 1e-9);
 }

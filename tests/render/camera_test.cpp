@@ -35,10 +35,10 @@ struct SceneFixture {
 };
 
 // The last moving disc.
-Shape ball_in(const Drawing& drawing) {
-    Shape found;
-    for (const Shape& shape : drawing.shapes)
-        if (shape.kind == Shape::Kind::disc && shape.moves) found = shape;
+DrawnShape ball_in(const Drawing& drawing) {
+    DrawnShape found;
+    for (const DrawnShape& shape : drawing.shapes)
+        if (shape.kind == DrawnShape::Kind::disc && shape.moves) found = shape;
     return found;
 }
 
@@ -53,8 +53,8 @@ bool is_inside(const std::vector<Point>& polygon, const Point& p) {
 }
 
 bool is_solid(const Drawing& drawing, const Point& p) {
-    for (const Shape& shape : drawing.shapes) {
-        if (shape.kind != Shape::Kind::area) continue;
+    for (const DrawnShape& shape : drawing.shapes) {
+        if (shape.kind != DrawnShape::Kind::area) continue;
         std::vector<Point> polygon;
         for (const Point& corner : shape.points) {
             if (std::isfinite(corner.x)) {
@@ -84,10 +84,10 @@ TEST(Disc, RestsOnTheGroundItTouches) {
         SceneFixture staged(name);
         const double t = staged.first(Event::Kind::zeno).t;
         const Drawing drawing = staged.draw(t, staged.stage.limits());
-        const Shape ball = name == std::string("ball_in_gusts") ? [&] {
-            for (const Shape& shape : drawing.shapes)
-                if (shape.kind == Shape::Kind::disc && shape.moves) return shape;
-            return Shape();
+        const DrawnShape ball = name == std::string("ball_in_gusts") ? [&] {
+            for (const DrawnShape& shape : drawing.shapes)
+                if (shape.kind == DrawnShape::Kind::disc && shape.moves) return shape;
+            return DrawnShape();
         }() : ball_in(drawing);
         ASSERT_EQ(ball.points.size(), 1u) << name;
         // Slightly inside the rim nothing is solid; slightly outside, toward the ground, there is ground.
@@ -109,7 +109,7 @@ TEST(Disc, RestsOnTheGroundItTouches) {
 
 TEST(Disc, IsWhereTheFileSaysFarFromTheGround) {
     SceneFixture staged("ball_on_sine");
-    const Shape ball = ball_in(staged.draw(0.0, staged.stage.limits()));
+    const DrawnShape ball = ball_in(staged.draw(0.0, staged.stage.limits()));
     EXPECT_NEAR(ball.points[0].x, 0.0, 1e-9);
     EXPECT_NEAR(ball.points[0].y, 2.0, 1e-9);
     SceneFixture floor("ball_on_floor");
@@ -125,7 +125,7 @@ TEST(Disc, KeepsSmallHeights) {
     const double x = sample.state.q[0], slope = std::sqrt(1.0 + std::cos(x) * std::cos(x));
     const auto height = [&](double h) {
         sample.state.q[1] = std::sin(x) + h;
-        const Shape ball = ball_in(staged.stage.draw(sample, staged.stage.limits(), light_theme(), {}));
+        const DrawnShape ball = ball_in(staged.stage.draw(sample, staged.stage.limits(), light_theme(), {}));
         return ball.points[0].y;
     };
     for (const double h : {1e-9, 1e-6, 1e-3}) EXPECT_NEAR((height(h) - height(0.0)) / h, 1.0, 0.01 + 0.2 * h) << slope;
@@ -140,8 +140,8 @@ TEST(Ground, IsTheSideOfTheGapAndSmoothAtAnyZoom) {
             EXPECT_TRUE(is_solid(drawing, {x, on.y - 0.01 * size})) << x << " " << size;
             EXPECT_FALSE(is_solid(drawing, {x, on.y + 0.01 * size})) << x << " " << size;
             // On the file's own line, the error of a visible chord is at most a tenth of a pixel of a thousand.
-            const auto line = std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const Shape& shape) {
-                return shape.kind == Shape::Kind::polyline && !shape.moves && shape.item;
+            const auto line = std::find_if(drawing.shapes.begin(), drawing.shapes.end(), [](const DrawnShape& shape) {
+                return shape.kind == DrawnShape::Kind::polyline && !shape.moves && shape.item;
             });
             ASSERT_NE(line, drawing.shapes.end());
             double worst = 0.0;
@@ -174,7 +174,7 @@ TEST(Contact, IsLitWhileItIsHeldInEverySystemThatDraws) {
             sample.mode = Mode::holding(held);
             const Drawing drawing = staged.stage.draw(sample, staged.stage.limits(), light_theme(), {false, false});
             return std::count_if(drawing.shapes.begin(), drawing.shapes.end(),
-                                 [&](const Shape& shape) { return shape.stroke.color == lit; });
+                                 [&](const DrawnShape& shape) { return shape.stroke.color == lit; });
         };
         EXPECT_EQ(count({}), 0) << name;
         for (std::size_t i = 0; i < staged.model->contacts(); ++i) EXPECT_GE(count(ContactSet::of(i)), 1) << name << i;
@@ -288,8 +288,8 @@ TEST(BodyTrail, IsFaintAhead) {
     const Drawing drawing = staged.draw(5.0, staged.stage.limits());
     std::size_t ahead = 0, passed = 0;
     double last = 0.0;
-    for (const Shape& shape : drawing.shapes) {
-        if (shape.item || shape.kind != Shape::Kind::polyline || shape.points.empty()) continue;
+    for (const DrawnShape& shape : drawing.shapes) {
+        if (shape.item || shape.kind != DrawnShape::Kind::polyline || shape.points.empty()) continue;
         (shape.stroke.color.a < 100 ? ahead : passed) += shape.points.size();
         if (shape.stroke.color.a < 100) last = std::max(last, shape.points.back().x);
     }
@@ -319,7 +319,7 @@ TEST(TwoViews, CutASystemInSpaceWhereItsPointIs) {
     for (std::size_t side = 0; side < 2; ++side) {
         const Sample now = staged.at(staged.run.end_time);
         const Drawing drawing = sides.draw(side, now, limits[side], light_theme(), true);
-        const Shape ball = ball_in(drawing);
+        const DrawnShape ball = ball_in(drawing);
         const double across = now.state.q[static_cast<Eigen::Index>(side)];
         EXPECT_NEAR(ball.points[0].x, across, 1.01 * ball.radius);
         EXPECT_TRUE(is_solid(drawing, {across, now.state.q[2] - 0.05}));

@@ -166,7 +166,7 @@ TEST_P(ComposedFigure, TheMechanismStaysInsideItsLimits) {
         const Drawing drawing =
             mechanism.draw(sample.t, sample.state, trajectory.run.parameters, limits, light_theme());
         EXPECT_EQ(drawing.shapes.size(), model->description().drawings.size());
-        for (const Shape& shape : drawing.shapes) {
+        for (const DrawnShape& shape : drawing.shapes) {
             if (shape.points.size() > 100) continue;  // the surface extends beyond the picture
             for (const Point& p : shape.points) {
                 EXPECT_TRUE(p.x >= limits.x_low && p.x <= limits.x_high && p.y >= limits.y_low && p.y <= limits.y_high);

@@ -178,8 +178,8 @@ TEST(Mechanism, DrawsWhatIsTouched) {
     const Drawing drawing = mechanism.draw(0.0, {trajectory.run.q, trajectory.run.v}, trajectory.run.parameters,
                                            mechanism.limits(trajectory, plot_samples(trajectory)), light_theme());
     ASSERT_EQ(drawing.shapes.size(), 2u);
-    EXPECT_EQ(drawing.shapes[0].kind, Shape::Kind::polyline);
-    EXPECT_EQ(drawing.shapes[1].kind, Shape::Kind::disc);
+    EXPECT_EQ(drawing.shapes[0].kind, DrawnShape::Kind::polyline);
+    EXPECT_EQ(drawing.shapes[1].kind, DrawnShape::Kind::disc);
 }
 
 TEST(Mechanism, ACircleIsTheOutlineOfADisc) {
@@ -195,11 +195,11 @@ TEST(Mechanism, ACircleIsTheOutlineOfADisc) {
                   mechanism.limits(trajectory, plot_samples(trajectory)), light_theme())
             .shapes.at(0);
     };
-    const Shape disc = shape("shape = \"disc\"\n"), circle = shape("shape = \"circle\"\n"),
-                outline = shape("shape = \"disc\"\nfill = false\n");
+    const DrawnShape disc = shape("shape = \"disc\"\n"), circle = shape("shape = \"circle\"\n"),
+                     outline = shape("shape = \"disc\"\nfill = false\n");
     EXPECT_TRUE(disc.fill);
-    for (const Shape& open : {circle, outline}) {
-        EXPECT_EQ(open.kind, Shape::Kind::disc);
+    for (const DrawnShape& open : {circle, outline}) {
+        EXPECT_EQ(open.kind, DrawnShape::Kind::disc);
         EXPECT_FALSE(open.fill);
         EXPECT_EQ(open.radius, 3.0);
         EXPECT_GT(open.stroke.width, 0.0);
@@ -253,14 +253,14 @@ TEST(MechanismWithoutDrawing, ShowsTheSurfaceOrSaysSo) {
         if (std::isnan(p.x)) continue;
         EXPECT_NEAR(p.y, 0.2 * std::sin(3.0 * p.x), 1e-3);
     }
-    EXPECT_EQ(drawing.shapes[1].kind, Shape::Kind::disc);
+    EXPECT_EQ(drawing.shapes[1].kind, DrawnShape::Kind::disc);
 
     const Motion other(ball("[run]\nend_time = 2\n", "z", "z"));
     const Mechanism note(*other.model);
     const Drawing text = note.draw(other.run.end_time, other.run.end, other.run.run.parameters,
                                    note.limits(other.run, plot_samples(other.run)), dark_theme());
     ASSERT_EQ(text.shapes.size(), 1u);
-    EXPECT_EQ(text.shapes[0].kind, Shape::Kind::text);
+    EXPECT_EQ(text.shapes[0].kind, DrawnShape::Kind::text);
 }
 
 }  // namespace

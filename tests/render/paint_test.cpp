@@ -152,7 +152,7 @@ TEST(Mechanism, SurvivesShapesThatMakeNoSense) {
     Offscreen surface(support::options(300, 200));
     const double nan = std::numeric_limits<double>::quiet_NaN();
     Drawing drawing = samples::mechanism();
-    for (Shape shape : samples::mechanism().shapes) {
+    for (DrawnShape shape : samples::mechanism().shapes) {
         shape.radius = nan;
         drawing.shapes.push_back(shape);
         shape.radius = 1e30;
@@ -164,7 +164,7 @@ TEST(Mechanism, SurvivesShapesThatMakeNoSense) {
         shape.points.clear();
         drawing.shapes.push_back(shape);
     }
-    Shape comb;
+    DrawnShape comb;
     for (int i = 0; i < 5000; ++i) comb.points.push_back({-1.0 + i * 4e-4, i % 2 == 0 ? 0.0 : 1.0});
     comb.closed = comb.fill = true;
     drawing.shapes.push_back(comb);
@@ -177,7 +177,7 @@ TEST(Mechanism, SurvivesShapesThatMakeNoSense) {
 TEST(Mechanism, FillsAPolygonWithADent) {
     Offscreen surface(support::options());
     Drawing drawing;
-    Shape arrow;
+    DrawnShape arrow;
     arrow.points = {{-0.9, -0.9}, {0.0, 0.0}, {0.9, -0.9}, {0.0, 0.9}};
     arrow.closed = arrow.fill = true;
     arrow.fill_color = black;

@@ -139,12 +139,12 @@ TEST(Mechanism, DrawsPartsBetweenThingsThatMove) {
     const Machine machine;
     const Drawing start = machine.at(0.0), later = machine.at(1.0);
     ASSERT_EQ(start.shapes.size(), 6u);  // solid, hatches, their line, spring, damper, box
-    const auto breadth = [](const Shape& shape) {
+    const auto breadth = [](const DrawnShape& shape) {
         const auto [least, most] = std::minmax_element(shape.points.begin(), shape.points.end(),
                                                        [](const Point& a, const Point& b) { return a.x < b.x; });
         return most->x - least->x;
     };
-    const Shape &spring = start.shapes[3], &stretched = later.shapes[3];
+    const DrawnShape &spring = start.shapes[3], &stretched = later.shapes[3];
     EXPECT_EQ(spring.points.size(), stretched.points.size());
     EXPECT_NEAR(spring.points.back().y, 1.8, 1e-12);
     EXPECT_NEAR(stretched.points.back().y, 1.3, 1e-8);  // x = 2 - t^2/2
@@ -152,7 +152,7 @@ TEST(Mechanism, DrawsPartsBetweenThingsThatMove) {
     EXPECT_GT(breadth(spring), 0.02);
     EXPECT_TRUE(spring.moves);
     EXPECT_NEAR(start.shapes[4].points[4].x - start.shapes[4].points[5].x, -0.2, 1e-15);  // the cup, whose width is w/2
-    const Shape& box = later.shapes[5];
+    const DrawnShape& box = later.shapes[5];
     ASSERT_EQ(box.points.size(), 4u);
     EXPECT_TRUE(box.closed && box.fill);
     EXPECT_NEAR(apart(box.points[0], box.points[1]), 0.8, 1e-12);

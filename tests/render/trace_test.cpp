@@ -120,8 +120,8 @@ radius = "0.04"
     const double size = 0.02;
     seen.x_low = at.x - size, seen.x_high = at.x + size, seen.y_low = at.y - size, seen.y_high = at.y + size;
     int close = 0;
-    for (const Shape& shape : stage.draw(now, seen, light_theme(), {}).shapes) {
-        if (shape.kind != Shape::Kind::polyline || shape.moves) continue;
+    for (const DrawnShape& shape : stage.draw(now, seen, light_theme(), {}).shapes) {
+        if (shape.kind != DrawnShape::Kind::polyline || shape.moves) continue;
         for (std::size_t i = 1; i < shape.points.size(); ++i) {
             const Point middle{0.5 * (shape.points[i].x + shape.points[i - 1].x),
                                0.5 * (shape.points[i].y + shape.points[i - 1].y)};
