@@ -21,6 +21,8 @@ inline std::filesystem::path source_file(const std::string& relative) {
     return std::filesystem::path(ACHILLES_SOURCE_DIR) / relative;
 }
 
+inline constexpr Method both_methods[] = {Method::taylor, Method::dopri5};
+
 // Names of the gallery's systems, sorted.
 inline std::vector<std::string> all_systems() {
     std::vector<std::string> names;

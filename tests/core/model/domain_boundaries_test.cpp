@@ -64,7 +64,7 @@ void expect_to_end(const Kink& kink, const Trajectory& trajectory) {
 TEST_P(Kinks, EndTheRun) {
     const Kink& kink = GetParam();
     const auto model = ball(kink.kinetic, kink.potential, kink.gap);
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         auto run = model->default_run();
         run.options.method = method;
         expect_to_end(kink, simulate(model, run));
@@ -96,7 +96,7 @@ TEST(Poles, EndTheRunHoweverWeakTheyAre) {
         const auto model = test::typed("title = \"pole\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\nforce = \"" +
                                        force + "\"\n[lagrangian]\nkinetic = \"x'^2/2\"\npotential = \"" + potential +
                                        "\"\n[[constraint]]\ngap = \"" + gap + "\"\nrestitution = 0.5\n");
-        for (const Method method : {Method::taylor, Method::dopri5}) {
+        for (const Method method : test::both_methods) {
             auto run = model->default_run();
             run.options.method = method;
             const Trajectory trajectory = simulate(model, run);
@@ -114,7 +114,7 @@ TEST(Poles, TurnTheMotionWhereTheyRepelIt) {
     const auto model = test::typed(
         "title = \"wall\"\n[[coordinate]]\nname = \"x\"\nrate = 1.0\n[lagrangian]\nkinetic = \"x'^2/2\"\n"
         "potential = \"1e-13/(x - 1)^2\"\n[[constraint]]\ngap = \"x + 30\"\nrestitution = 0.5\n");
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         auto run = model->default_run();
         run.options.method = method;
         const Trajectory trajectory = simulate(model, run);
@@ -138,7 +138,7 @@ TEST(Poles, AreNoneWhereTheNumeratorVanishesToo) {
 // In contact as well: a bead slides along a roof to its ridge.
 TEST(KinksInContact, EndTheRun) {
     const auto model = ball(plain, "y", "y + sqrt(x^2) - 3");
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         auto run = model->default_run();
         run.options.method = method;
         run.q << -1.0, 2.0;
@@ -152,7 +152,7 @@ TEST(KinksInContact, EndTheRun) {
 // sqrt(x^2 + d^2) along y = 0. The series at x = -1 does not resolve d, but a step over x = 0 would have the wrong
 // sign. In the limit the ball bounces off a V: the floors y = -x and y = x, one after the other.
 TEST(NarrowBends, ArePassedAsTheyAre) {
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         std::vector<double> last;
         for (const char* square : {"1e-13", "1e-16", "1e-20", "1e-26"}) {
             const auto model = ball(plain, "y", std::string("y - sqrt(x^2 + ") + square + ")");
@@ -189,7 +189,7 @@ TEST(DomainBoundaries, FindsImpactsOnNarrowPosts) {
     for (const std::string post :
          {"exp(-400*(x - 1)^2)", "2^(-577*(x - 1)^2)", "1/cosh(30*(x - 1))^2", "(1 - tanh(30*(x - 1))^2)"}) {
         const auto model = ball(plain, "y", "y - 0.4*" + post);
-        for (const Method method : {Method::taylor, Method::dopri5}) {
+        for (const Method method : test::both_methods) {
             auto run = model->default_run();
             run.options.method = method;
             run.options.end_time = 1.0;

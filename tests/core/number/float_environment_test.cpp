@@ -116,7 +116,7 @@ std::vector<std::pair<std::shared_ptr<const Model>, Run>> some_runs() {
     std::vector<std::pair<std::shared_ptr<const Model>, Run>> runs;
     for (const char* name : {"ball_on_sine", "double_pendulum"}) {
         const auto model = test::load(name);
-        for (const Method method : {Method::taylor, Method::dopri5})
+        for (const Method method : test::both_methods)
             for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {
                 auto run = model->default_run();
                 run.options.method = method;

@@ -36,7 +36,7 @@ const PlaneSystem crest{.gap = "b - 0.25*cos(a)",
 
 TEST(Decisions, AReleaseInADipOfTheForceIsNotMissed) {
     const auto model = model_of(crest);
-    for (const Method method : {Method::taylor, Method::dopri5})
+    for (const Method method : test::both_methods)
         for (const double tolerance : tolerances) {
             const Trajectory trajectory = simulate(model, with(*model, method, tolerance));
             if (trajectory.outcome.kind == Outcome::Kind::undecided) continue;
@@ -84,7 +84,7 @@ TEST(Decisions, LowImpactsAreFoundOrInDoubt) {
                            .end = 1.94655};
     for (const auto& [plane, impacts] : {std::pair{seven, 7u}, {four, 4u}}) {
         const auto model = model_of(plane);
-        for (const Method method : {Method::taylor, Method::dopri5})
+        for (const Method method : test::both_methods)
             for (const double tolerance : {1e-8, 1e-9, 1e-10, 1e-13}) {
                 const Trajectory trajectory = simulate(model, with(*model, method, tolerance));
                 if (trajectory.outcome.kind == Outcome::Kind::undecided) continue;
@@ -143,7 +143,7 @@ TEST(Decisions, NoImpactIsStoredUnderTheFloor) {
     run.q << -0.16239388192238202, 0.92954240928458709;
     run.v << 0.36799511273198648, -1.1148232405731877;
     run.options.end_time = 4.0;
-    for (const Method method : {Method::taylor, Method::dopri5})
+    for (const Method method : test::both_methods)
         for (const double tolerance : tolerances) {
             run.options.method = method;
             run.options.tolerance = tolerance;
@@ -230,7 +230,7 @@ TEST(Decisions, UndecidedEventsAreReportedAtTheirTime) {
 // V = a b on the floor b = 0: the contact force is a, which starts at zero and grows.
 TEST(Decisions, AForceThatStartsFromZeroAndRisesHolds) {
     const auto model = model_of({.potential = "a*b", .a_rate = 1.0, .end = 2.0});
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const Trajectory trajectory = simulate(model, with(*model, method, 1e-10));
         EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
         ASSERT_EQ(trajectory.phases.size(), 1u);
@@ -246,7 +246,7 @@ TEST(Decisions, AForceThatStartsFromZeroAndRisesHolds) {
 TEST(Decisions, TimeNeverRunsBack) {
     for (const std::string& system : test::all_systems()) {
         const auto model = test::load(system);
-        for (const Method method : {Method::taylor, Method::dopri5}) {
+        for (const Method method : test::both_methods) {
             const Trajectory trajectory = simulate(model, with(*model, method, 1e-8));
             double t = 0.0;
             for (const Sample& sample : Sampler(trajectory).all(1)) {
@@ -294,7 +294,7 @@ TEST(Decisions, AProductOfGapsIsAGap) {
          {"(2 + sin(a))*b", "b/(1 + a^2)", "b*exp(a)", "b*(9 - a)", "(b - 0.1*sin(a))*(2 + cos(a))"}) {
         for (int i = 0; i < 10; ++i) {
             const auto model = model_of({.gap = gap, .e = "0.6", .a = -0.5, .b = 1.0, .a_rate = 0.05 * i, .end = 8.0});
-            for (const Method method : {Method::taylor, Method::dopri5}) {
+            for (const Method method : test::both_methods) {
                 const Trajectory trajectory = simulate(model, with(*model, method, 1e-10));
                 EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time)
                     << gap << ", " << i << ": " << trajectory.outcome.message;

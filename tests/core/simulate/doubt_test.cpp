@@ -47,7 +47,7 @@ constexpr double below_pi = 3.141592653589793, above_pi = 3.1415926535897936;
 
 TEST(AmbiguousEvents, ARoundingOfTheStateDoesNotDecideAStart) {
     for (const double a : {below_pi, above_pi}) {
-        for (const Method method : {Method::taylor, Method::dopri5}) {
+        for (const Method method : test::both_methods) {
             PlaneSystem plane{.potential = "b*sin(a)", .a = a, .end = 1.0};
             plane.a_rate = 1.0;  // the force decreases: release
             const Trajectory leaves = run_of(plane, 1e-10, method);
@@ -207,7 +207,7 @@ TEST(AmbiguousEvents, ErrorOfEarlierStepsDecidesNoEvent) {
 // A flight of four times that is 1e-13 high, more than eps_q = 1e-15 allows to cut. The height is a coordinate, which
 // rounding does not limit; time is limited.
 TEST(AmbiguousEvents, FlightsShorterThanTheResolutionOfTimeEndTheBouncing) {
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const auto model = test::drop();
         auto run = model->default_run();
         run.parameters[0] = 1e6;

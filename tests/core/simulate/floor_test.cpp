@@ -55,7 +55,7 @@ TEST_P(Floor, IsNeverPassedByRunsSideBySide) {
 // every outcome is one of two. The energy may be off by 1e-10 of its largest term.
 TEST_P(Floor, AllLawsHoldForRandomParameters) {
     const auto model = load(GetParam());
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         Starts starts(model, 11);
         std::vector<achilles::Run> runs;
         for (int i = 0; i < (method == Method::taylor ? 16 : 4); ++i) {

@@ -108,7 +108,7 @@ end_time = 1.5
 // Contact forces may depend on velocities. An impact that only presses the held contact may remove its contact force.
 TEST(HeldContacts, AnImpactMayTakeTheForceFromWhatIsHeld) {
     const auto floor = ContactSet::of(1), wall = ContactSet::of(0);
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const auto model = lifted(0.5, 0.0);
         auto run = model->default_run();
         run.options.method = method;

@@ -44,7 +44,7 @@ TEST(LeastGap, IsFoundInsideSteps) {
     // Zero of the gap's derivative just before x = 1, computed separately by Newton's method.
     const double x = 0.9993755849629357;
     const double least = (x - 1) * (x - 1) * (x - 3) * (x - 3) + (x + 1) / 200;
-    for (const Method method : {Method::taylor, Method::dopri5})
+    for (const Method method : test::both_methods)
         for (const double tolerance : {1e-4, 1e-10}) {
             auto run = valleys->default_run();
             run.options.method = method;

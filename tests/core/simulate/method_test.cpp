@@ -147,7 +147,7 @@ TEST(Grazing, IsRightAtTightTolerance) {
 }
 
 TEST(Grazing, IsRightOrUndecidedAtAnyTolerance) {
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         for (const double tolerance : {1e-6, 1e-8, 1e-10, 1e-12}) {
             for (const double clearance : {1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13, 0.0}) {
                 const Trajectory above = graze(clearance, tolerance, method);

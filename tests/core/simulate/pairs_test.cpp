@@ -239,7 +239,7 @@ TEST(Pairs, ABlockOnABlockComesToRest) {
         const auto model = two_blocks(lower, upper);
         auto run = model->default_run();
         std::vector<Trajectory> trajectories;
-        for (const Method method : {Method::taylor, Method::dopri5}) {
+        for (const Method method : test::both_methods) {
             run.options.method = method;
             trajectories.push_back(simulate(model, run));
             const Trajectory& trajectory = trajectories.back();

@@ -60,7 +60,7 @@ Trajectory simulated(const std::shared_ptr<const Model>& model, Method method = 
 // Expects a single phase that holds all contacts, for this motion of the load.
 void expect_rest(const Plate& plate) {
     SCOPED_TRACE(plate.load + " at " + plate.x + ", " + plate.y);
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const Trajectory trajectory = simulated(plate.model(), method);
         EXPECT_TRUE(trajectory.events.empty());
         ASSERT_EQ(trajectory.phases.size(), 1u);
@@ -99,7 +99,7 @@ TEST(RedundantContacts, WhereEveryForceTouchesZeroNothingIsDecided) {
 // The load moves past the last support. That contact alone stays closed, from the instant where load and weight balance
 // on it.
 TEST(RedundantContacts, OnlyThoseAreReleasedThatOpen) {
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const Trajectory trajectory = simulated(Plate{beam, "2", "s", "0"}.model(), method);
         ASSERT_EQ(trajectory.events.size(), 1u);
         const Event& release = trajectory.events[0];
@@ -149,7 +149,7 @@ end_time = 10
 )toml",
                                        second));
     };
-    for (const Method method : {Method::taylor, Method::dopri5}) {
+    for (const Method method : test::both_methods) {
         const Trajectory one = simulated(ball(""), method);
         const Trajectory two =
             simulated(ball(", { name = \"b\", gap = \"2*y - 0.6*sin(2*t)\", restitution = 0 }"), method);

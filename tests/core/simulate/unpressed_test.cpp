@@ -12,8 +12,6 @@
 namespace achilles::test {
 namespace {
 
-constexpr Method methods[] = {Method::taylor, Method::dopri5};
-
 Trajectory to_its_end(const std::shared_ptr<const Model>& model, Method method = Method::taylor) {
     auto run = model->default_run();
     run.options.method = method;
@@ -56,7 +54,7 @@ TEST(UnpressedContacts, HoldAMassAtAPlasticStop) {
         {"-4*sin(x)", "sin(x)", "", 0.0},
         {"-0.2*(x' - 0.5)", "x - 0.5*t", "", 1.5}};  // a moving stop
     for (const auto& [force, gap, more, at] : stops)
-        for (const Method method : methods) {
+        for (const Method method : both_methods) {
             SCOPED_TRACE(fmt::format("{}, {}, {}", force, gap, to_text(method)));
             const Trajectory trajectory = to_its_end(stop(force, gap, more), method);
             ASSERT_EQ(trajectory.events.size(), 2u);
@@ -107,7 +105,7 @@ TEST(UnpressedContacts, OtherContactsCompleteWhileTheyAreHeld) {
     const double zeno = std::sqrt(2.0 * 5.0 / 9.81) * 3.0;
     for (const char* factor : {"1", "3", "1e-8", "1e8"})
         for (const char* force : {"0", "-0.2*x'"})
-            for (const Method method : methods) {
+            for (const Method method : both_methods) {
                 SCOPED_TRACE(fmt::format("{} {} {}", factor, force, to_text(method)));
                 const Trajectory trajectory = to_its_end(wall_and_floor(factor, force), method);
                 EXPECT_EQ(trajectory.end_mode.held(), ContactSet::of(0).with(1));
@@ -141,7 +139,7 @@ end_time = 3
 
 TEST(UnpressedContacts, AreLiftedOrPressedByAForceThatAppears) {
     for (const char* factor : {"1", "3", "1e-6"})
-        for (const Method method : methods) {
+        for (const Method method : both_methods) {
             SCOPED_TRACE(fmt::format("{} {}", factor, to_text(method)));
             // x'' = 0.6 (t - 1) for t >= 1
             const Trajectory lifted = to_its_end(pulled_later("0.6*z", factor), method);
