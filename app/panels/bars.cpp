@@ -79,7 +79,7 @@ void show_file_menu(const Session& session, PanelState& state, Commands& command
     if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
     show_recent(session, state, commands);
     ImGui::Separator();
-    show_take_away_items(session, state, commands);
+    show_export_items(session, state, commands);
 }
 
 void show_edit_menu(const Session& session, PanelState& state, Commands& commands) {

@@ -25,7 +25,7 @@ std::string formatted_quantity(const Sensitivities& known, double value, const c
 
 double share_of(const Sensitivities& known, const Sensitivities::Sensitivity& by) {
     const double most = known.largest();
-    return most > 0.0 ? by.over_slider / most : 0.0;
+    return most > 0.0 ? by.change_over_slider / most : 0.0;
 }
 
 bool is_start(const SystemDescription& system, const std::string& name) {
@@ -44,7 +44,7 @@ std::string explanation(const Session& session, const Sensitivities& known, cons
     const SystemDescription& system = session.description();
     return fmt::format("derivative of {}: {};\nlinear change over the whole slider: {}",
                        typeset(known.quantity.expression), derivative_text(system, known, by),
-                       (by.over_slider > 0.0 ? "+" : "") + formatted_quantity(known, by.over_slider));
+                       (by.change_over_slider > 0.0 ? "+" : "") + formatted_quantity(known, by.change_over_slider));
 }
 
 // ---- the quantity ----
@@ -85,8 +85,8 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
 
 // Status text: which run the values belong to, and what the bars mean.
 std::string remark(const Session& session) {
-    if (session.sensitivities() == nullptr) return session.influences_job().is_busy() ? "computing\u2026" : "";
-    if (!session.influences_are_current()) return "from the previous run; this run is being computed";
+    if (session.sensitivities() == nullptr) return session.sensitivities_job().is_busy() ? "computing\u2026" : "";
+    if (!session.sensitivities_are_current()) return "from the previous run; this run is being computed";
     if (!session.sensitivities()->quantity.refused.empty()) return "";
     return "bars: its linear change over each whole slider";
 }
@@ -103,7 +103,7 @@ void show_head(const Session& session, PanelState& state, Commands& commands) {
     show_quantities(session, state, commands);
     if (const Sensitivities* const known = session.sensitivities(); known != nullptr) {
         const std::string value = "= " + formatted_quantity(*known, known->quantity.value, "{:.9g}");
-        const bool is_there = std::isfinite(known->quantity.value), is_old = !session.influences_are_current();
+        const bool is_there = std::isfinite(known->quantity.value), is_old = !session.sensitivities_are_current();
         const float width = is_there ? std::min(width_of(value), std::max(0.0F, right - x)) : 0.0F;
         if (is_there) cell({x, y}, value, width, is_old ? faint_color() : text_color());
         x += width + units(16.0F);
@@ -161,7 +161,7 @@ void paint_scale(const Sensitivities& known, const Lines& lines, std::size_t fir
 void paint_line(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by,
                 const Lines& lines, std::size_t i) {
     const ImVec2 at = lines.at(i);
-    const bool is_old = !session.influences_are_current();
+    const bool is_old = !session.sensitivities_are_current();
     const Color ink = is_old ? faint_color() : text_color();
     cell(at, slider_name(session.description(), by.name), units(slider_name_width - 6.0F), ink);
     const float middle = lines.middle(i), low = at.y, high = at.y + ImGui::GetTextLineHeight();
@@ -198,7 +198,7 @@ void show_line(const Session& session, const Sensitivities& known, const Sensiti
 
 void show_bars(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle room = remaining();
-    const std::string& problem = session.influences_job().problem();
+    const std::string& problem = session.sensitivities_job().problem();
     const Sensitivities* const known = session.sensitivities();
     if (!problem.empty()) return paragraph(no_derivative(problem), room.width, text_color());
     if (known == nullptr) return;
@@ -224,7 +224,7 @@ std::string derivative_text(const SystemDescription& system, const Sensitivities
 command::ShowSweep sweep_over(const Session& session, const std::string& name, const std::string& quantity) {
     SweepSpec sweep;
     SweepAxis axis = *axis_for(session, name);
-    axis.logarithmic = goes_by_ratios(axis.low, axis.high);
+    axis.logarithmic = has_log_scale(axis.low, axis.high);
     sweep.axes = {axis};
     sweep.prints = {quantity};
     return showing(sweep, session.description());
@@ -235,7 +235,7 @@ void put_bar(const Session& session, Slider& slider) {
     const Sensitivities::Sensitivity* const by = known == nullptr ? nullptr : known->find(slider.varies);
     if (by == nullptr) return;
     slider.bar_about = explanation(session, *known, *by);
-    slider.bar_is_old = !session.influences_are_current();
+    slider.bar_is_old = !session.sensitivities_are_current();
     if (slider.bar_is_old) slider.bar_about += " (from the previous run)";
     if (by->reason.empty()) slider.bar = static_cast<float>(share_of(*known, *by));
 }

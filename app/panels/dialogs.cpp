@@ -53,9 +53,9 @@ PathCheck to_save(const Document& document, const std::string& path) {
     return {"A file of this name exists. Overwrite it?", true, true};
 }
 
-PathCheck to_take_away(const Session& session, const PanelState& state, const std::string& typed) {
-    const ExportForm& form = state.take_away;
-    const std::string path = take_away_file(form, typed), ending = ending_of(path);
+PathCheck check_export_path(const Session& session, const PanelState& state, const std::string& typed) {
+    const ExportForm& form = state.export_form;
+    const std::string path = export_file(form, typed), ending = ending_of(path);
     const bool is_picture = !ending_of_picture(path).empty(),
                is_data = ending == "json" || ending == "csv" || ending == "journal";
     const auto refuse = [](const std::string& why) { return PathCheck{why, false, false}; };
@@ -69,7 +69,7 @@ PathCheck to_take_away(const Session& session, const PanelState& state, const st
         return refuse("end the name in .svg, .png, .pdf, .json, .csv or .journal");
     if (ending == "pdf" && find_program("rsvg-convert").empty())
         return refuse("a PDF needs rsvg-convert (librsvg2-bin), which is not installed");
-    const ExportNote note = is_data ? ExportNote() : take_away_note(session, form);
+    const ExportNote note = is_data ? ExportNote() : export_note(session, form);
     if (note.is_wrong) return refuse(note.text);
     // A picture of the dialog must not depend on existing files.
     return state.reads_folders ? to_save(Document(), path) : PathCheck{"writes to " + path, true, false};
@@ -174,18 +174,18 @@ void save_dialog(PanelState& state, const Session& session, Commands& commands) 
     editor.has_saved = editor.waiting.has_value() || editor.is_closing;
 }
 
-void take_away_dialog(PanelState& state, const Session& session, Commands& commands) {
+void export_dialog(PanelState& state, const Session& session, Commands& commands) {
     if (session.under_way() != nullptr) {
         ImGui::TextDisabled("the run is still under way");
         if (button("Cancel", state) || is_escape(state)) give_up(state.editor);
         return;
     }
-    show_take_away_form(session, state);
-    const auto judge = [&](const std::string& path) { return to_take_away(session, state, path); };
+    show_export_form(session, state);
+    const auto judge = [&](const std::string& path) { return check_export_path(session, state, path); };
     if (!path_chosen("Export", taken_away, state, judge)) return;
-    const std::string file = take_away_file(state.take_away, expanded(state.editor.path));
+    const std::string file = export_file(state.export_form, expanded(state.editor.path));
     close(state.editor);
-    commands.emplace_back(take_away_command(state.take_away, file, judge(file).asks));
+    commands.emplace_back(export_command(state.export_form, file, judge(file).asks));
 }
 
 // Performs the pending action.
@@ -295,18 +295,18 @@ void ask_to_save(const Session& session, PanelState& state) {
     state.editor.asking = EditorState::OpenDialog::save;
 }
 
-void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot) {
+void ask_to_export(const Session& session, PanelState& state, const std::string& ending, int plot) {
     std::string stem = fs::path(session.system()).stem().string();
     if (plot > 0) {
         const std::string title = as_name(session.plotted().list()[static_cast<std::size_t>(plot - 1)].view.name);
         stem += "-" + (title.empty() ? fmt::format("plot_{}", plot) : title);
     }
     const std::string dotted = "." + ending, name = stem + dotted;
-    state.take_away.plot = plot;
-    state.take_away.what = is_film(name) ? ExportForm::ExportSubject::film : ExportForm::ExportSubject::plots;
-    state.take_away.ending = ending;
+    state.export_form.plot = plot;
+    state.export_form.what = is_film(name) ? ExportForm::ExportSubject::film : ExportForm::ExportSubject::plots;
+    state.export_form.ending = ending;
     state.editor.path = state.reads_folders ? free_name(stem, dotted) : name;
-    state.editor.asking = EditorState::OpenDialog::take_away;
+    state.editor.asking = EditorState::OpenDialog::export_run;
 }
 
 void save_or_ask(const Session& session, PanelState& state, Commands& commands) {
@@ -336,12 +336,12 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
     take_keys(session, state, commands);
     using OpenDialog = EditorState::OpenDialog;
     const bool wants_export = session.scene().shows("export");
-    if (wants_export && editor.asking == OpenDialog::nothing) ask_to_take_away(session, state, "svg");
-    const bool was_open = editor.asking == OpenDialog::take_away;
+    if (wants_export && editor.asking == OpenDialog::nothing) ask_to_export(session, state, "svg");
+    const bool was_open = editor.asking == OpenDialog::export_run;
     constexpr std::pair<OpenDialog, const char*> titles[] = {{OpenDialog::open, "Open a system"},
                                                              {OpenDialog::save, "Save the system"},
                                                              {OpenDialog::unsaved, "Unsaved changes"},
-                                                             {OpenDialog::take_away, "Export"}};
+                                                             {OpenDialog::export_run, "Export"}};
     for (const auto& [asking, title] : titles)
         if (editor.asking == asking && !ImGui::IsPopupOpen(title)) ImGui::OpenPopup(title);
     const bool is_free = editor.asking == OpenDialog::nothing;
@@ -350,9 +350,9 @@ void show_dialogs(const Session& session, PanelState& state, Commands& commands)
                     [&] { recovery_dialog(state); });
     dialog(titles[0].second, [&] { open_dialog(state, session, commands); });
     dialog(titles[1].second, [&] { save_dialog(state, session, commands); });
-    dialog(titles[3].second, [&] { take_away_dialog(state, session, commands); });
+    dialog(titles[3].second, [&] { export_dialog(state, session, commands); });
     dialog(titles[2].second, [&] { unsaved_dialog(state, session, commands); });
-    if (wants_export && was_open && editor.asking != OpenDialog::take_away)
+    if (wants_export && was_open && editor.asking != OpenDialog::export_run)
         commands.emplace_back(command::Show{"export", false});
 }
 

@@ -272,18 +272,18 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
         if (std::optional<SheetResult> made = worker_->take(patience)) {
             sheet_ = *made;
             is_under_way_ = false;
-            set_for_.clear();
+            typeset_key_.clear();
             evaluators_.clear();
         }
     return sheet_.get();
 }
 
-const TypesetSheet& EquationsView::set(float size, const FormulaFont& font, float width, float height) {
+const TypesetSheet& EquationsView::typeset_sheet(float size, const FormulaFont& font, float width, float height) {
     const std::vector<float> key{size, width, height};
-    if (set_for_ == key) return set_;
-    set_for_ = key;
-    set_ = set_sheet(*sheet_, size, font, width, height);
-    return set_;
+    if (typeset_key_ == key) return typeset_;
+    typeset_key_ = key;
+    typeset_ = set_sheet(*sheet_, size, font, width, height);
+    return typeset_;
 }
 
 double EquationsView::value(std::size_t condition, const Model& model, const Run& run, const State& state, double t) {
@@ -474,8 +474,8 @@ void show_equations(const Session& session, PanelState& state, Commands& command
         // Reserve the width of a scroll bar, so that its appearance does not change the layout.
         const float bar = ImGui::GetStyle().ScrollbarSize;
         const float width = ImGui::GetWindowWidth() - 2.0F * units(page_padding) - bar;
-        const TypesetSheet& page =
-            view.set(ImGui::GetFontSize(), formula_font(), width, ImGui::GetWindowHeight() - 2.0F * units(8.0F));
+        const TypesetSheet& page = view.typeset_sheet(ImGui::GetFontSize(), formula_font(), width,
+                                                      ImGui::GetWindowHeight() - 2.0F * units(8.0F));
         std::erase_if(state.places, [](const auto& place) { return place.first.starts_with("equation "); });
         PageDrawing drawing(session, state, *sheet, {room.x, room.y});
         drawing.draw(page);

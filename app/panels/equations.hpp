@@ -41,8 +41,8 @@ class EquationsView {
     // timeout: null until it is ready.
     const EquationSheet* sheet(const std::shared_ptr<const Model>& model, const Run& run, Timeout patience);
     bool is_under_way() const { return is_under_way_; }
-    // The sheet requested last, typeset.
-    const TypesetSheet& set(float size, const FormulaFont& font, float width, float height);
+    // The sheet returned last by sheet(), which must not be null, typeset. Kept until the size changes.
+    const TypesetSheet& typeset_sheet(float size, const FormulaFont& font, float width, float height);
     // The quantity that determines the sign of a condition's hddot, at a state.
     double value(std::size_t condition, const Model& model, const Run& run, const State& state, double t);
 
@@ -53,8 +53,8 @@ class EquationsView {
     std::shared_ptr<const Model> model_;  // the model whose equations were requested last
     std::vector<double> signs_;           // ranges and values of the parameters that determine the signs
     SheetResult sheet_;
-    std::vector<float> set_for_;
-    TypesetSheet set_;
+    std::vector<float> typeset_key_;
+    TypesetSheet typeset_;
     std::map<std::size_t, Evaluator<double>> evaluators_;
     std::vector<double> parameters_;  // values in `evaluators_`
 };

@@ -78,11 +78,11 @@ void end_in(PanelState& state, const std::string& ending) {
     const std::string before = ending_of(state.editor.path), name = "a." + before;
     if (is_film(name) || !ending_of_picture(name).empty() || is_data(before)) path.replace_extension();
     use_path(state, path.string() + "." + ending);
-    state.take_away.ending = ending;
+    state.export_form.ending = ending;
 }
 
 void choose_what(const Session& session, PanelState& state) {
-    ExportForm& form = state.take_away;
+    ExportForm& form = state.export_form;
     const int count = static_cast<int>(session.plotted().list().size());
     form.plot = std::min(form.plot, count);
     row("content");
@@ -112,9 +112,9 @@ void choose_what(const Session& session, PanelState& state) {
 }
 
 void choose_kind(PanelState& state) {
-    const std::string& ending = state.take_away.ending;
+    const std::string& ending = state.export_form.ending;
     row("format");
-    if (state.take_away.what == ExportSubject::film) {
+    if (state.export_form.what == ExportSubject::film) {
         const std::string by = find_program("ffmpeg").empty() ? "ffmpeg is not installed" : "made with ffmpeg";
         for (const char* kind : {"mp4", "gif"})
             if (word(kind, ending == kind, state, by)) end_in(state, kind);
@@ -126,7 +126,7 @@ void choose_kind(PanelState& state) {
             if (word(kind, ending == kind, state, about)) end_in(state, kind);
     }
     ImGui::SameLine(0.0F, units(14.0F));
-    ImGui::Checkbox("dark", &state.take_away.dark);
+    ImGui::Checkbox("dark", &state.export_form.dark);
     remember(state, "take dark");
     tooltip("light on dark, for a screen; paper is white");
 }
@@ -140,7 +140,7 @@ double chosen_shape(const Session& session, const ExportForm& form) {
 }
 
 void choose_size(const Session& session, PanelState& state) {
-    ExportForm& form = state.take_away;
+    ExportForm& form = state.export_form;
     row("width");
     number_field("width", form.width, "mm", state);
     column("height");
@@ -160,7 +160,7 @@ void choose_size(const Session& session, PanelState& state) {
 }
 
 void choose_page(const Session& session, PanelState& state) {
-    ExportForm& form = state.take_away;
+    ExportForm& form = state.export_form;
     row("for");
     const auto widths = column_widths();
     const auto chosen =
@@ -189,7 +189,7 @@ void choose_page(const Session& session, PanelState& state) {
 }
 
 void choose_film(const Session& session, PanelState& state) {
-    ExportForm& form = state.take_away;
+    ExportForm& form = state.export_form;
     row("width");
     for (const int pixels : {640, 1280, 1920, 2560})
         if (word(fmt::format("{}", pixels), form.pixels == pixels, state)) form.pixels = pixels;
@@ -211,8 +211,8 @@ void use_path(PanelState& state, const std::string& path) {
     state.browser.rewrites = true;
 }
 
-void show_take_away_form(const Session& session, PanelState& state) {
-    ExportForm& form = state.take_away;
+void show_export_form(const Session& session, PanelState& state) {
+    ExportForm& form = state.export_form;
     if (const std::string typed = ending_of(state.editor.path); fits(form, typed)) form.ending = typed;
     if (is_data(form.ending)) return;
     choose_what(session, state);
@@ -221,18 +221,18 @@ void show_take_away_form(const Session& session, PanelState& state) {
         choose_film(session, state);
     else
         choose_page(session, state);
-    const ExportNote note = take_away_note(session, form);
+    const ExportNote note = export_note(session, form);
     row("result");
     paragraph(note.text, remaining().width, note.is_wrong ? error_color() : text_color());
     ImGui::Dummy({0.0F, units(4.0F)});
 }
 
-std::string take_away_file(const ExportForm& form, const std::string& path) {
+std::string export_file(const ExportForm& form, const std::string& path) {
     const std::filesystem::path file(path);
     return file.has_filename() && file.extension().empty() ? path + "." + form.ending : path;
 }
 
-command::Export take_away_command(const ExportForm& form, const std::string& file, bool overwrite) {
+command::Export export_command(const ExportForm& form, const std::string& file, bool overwrite) {
     command::Export what{file, overwrite, 0};
     if (form.what == ExportSubject::film) {
         what.fps = form.fps == 30.0 ? 0.0 : form.fps;
@@ -257,7 +257,7 @@ namespace {
 
 ExportNote note_on_film(const Session& session, const ExportForm& form) {
     if (!(form.fps > 0.0)) return {fmt::format("the frames per second must be above 0, not {:g}", form.fps), true};
-    const FilmExtent extent = extent_of(session, take_away_command(form, "a.mp4", false));
+    const FilmExtent extent = extent_of(session, export_command(form, "a.mp4", false));
     if (!(extent.frames <= max_film_frames))
         return {fmt::format("more than {:.0f} frames: raise the speed, or use fewer per second", max_film_frames),
                 true};
@@ -287,7 +287,7 @@ ExportNote note_on_page(const Session& session, const ExportForm& form) {
 
 }  // namespace
 
-ExportNote take_away_note(const Session& session, const ExportForm& form) {
+ExportNote export_note(const Session& session, const ExportForm& form) {
     if (form.what == ExportSubject::film) return note_on_film(session, form);
     if (form.on_paper) return note_on_page(session, form);
     return {form.ending == "pdf" ? fmt::format("170 \u00d7 113.3 mm, text of {:.2g} pt", default_font)
@@ -345,7 +345,7 @@ bool word_button(const char* word, const char* about, PanelState& state, bool en
 
 }  // namespace
 
-void show_take_away_items(const Session& session, PanelState& state, Commands& commands) {
+void show_export_items(const Session& session, PanelState& state, Commands& commands) {
     struct ExportItem {
         const char *name, *ending, *about;
     };
@@ -356,9 +356,9 @@ void show_take_away_items(const Session& session, PanelState& state, Commands& c
         {"Run as JSON\u2026", "json", "phases, events and certificates"},
         {"Run as CSV\u2026", "csv", "one row per instant"},
         {"Session as journal\u2026", "journal", "the commands that lead here, to replay anywhere"}};
-    const bool is_there = session.under_way() == nullptr;
+    const bool is_idle = session.under_way() == nullptr;
     for (const ExportItem& kind : kinds)
-        if (item(kind.name, kind.about, state, is_there)) ask_to_take_away(session, state, kind.ending);
+        if (item(kind.name, kind.about, state, is_idle)) ask_to_export(session, state, kind.ending);
     ImGui::Separator();
     constexpr std::pair<const char*, const char*> lines[] = {
         {"Copy explorer command", "explorer"}, {"Copy figure command", "figure"}, {"Copy run command", "run"}};

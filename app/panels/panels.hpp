@@ -37,7 +37,7 @@ struct EditorState {
     float height = 0.0F;      // visible height of the text, pixels
     bool is_active = false;   // it has the keyboard
 
-    enum class OpenDialog { nothing, open, save, unsaved, take_away };
+    enum class OpenDialog { nothing, open, save, unsaved, export_run };
     OpenDialog asking = OpenDialog::nothing;
     std::string path;                // path typed in a dialog
     bool keeps_path = false;         // the path entered was wrong: the field keeps the keyboard
@@ -224,7 +224,7 @@ struct PanelState {
     EditorState editor;
     BrowserState browser;
     bool browser_has_field = false;  // the path field has the keyboard
-    ExportForm take_away;
+    ExportForm export_form;
     std::optional<FilmProgress> film;
     std::shared_ptr<Thumbnails> thumbnails;  // for the gallery; null: none
     Focus focus;
@@ -269,8 +269,8 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
 void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,
                   Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);
-// Menu entries for exports and tours.
-void show_take_away_items(const Session& session, PanelState& state, Commands& commands);
+// Menu entries: exports, and shell commands to copy.
+void show_export_items(const Session& session, PanelState& state, Commands& commands);
 void show_tour_items(const Session& session, PanelState& state, Commands& commands);
 // Menu entries for the pages of the manual, and the window with the selected page.
 void show_help_items(PanelState& state, Commands& commands);
@@ -291,15 +291,15 @@ struct BrowseResult {
 };
 BrowseResult browse(PanelState& state, const std::vector<std::string>& endings, bool entered);
 // The export options above the path, and a note on the resulting file below it.
-void show_take_away_form(const Session& session, PanelState& state);
+void show_export_form(const Session& session, PanelState& state);
 struct ExportNote {
     std::string text;
     bool is_wrong = false;  // the export is not possible
 };
-ExportNote take_away_note(const Session& session, const ExportForm& form);
-command::Export take_away_command(const ExportForm& form, const std::string& file, bool overwrite);
+ExportNote export_note(const Session& session, const ExportForm& form);
+command::Export export_command(const ExportForm& form, const std::string& file, bool overwrite);
 // The output file: the path, with the form's extension if it has none.
-std::string take_away_file(const ExportForm& form, const std::string& path);
+std::string export_file(const ExportForm& form, const std::string& path);
 // Progress of an animation.
 void show_film(PanelState& state);
 // The gallery (Ctrl+G): pictures of the systems, while the scene shows "gallery".
@@ -387,7 +387,7 @@ bool request_close(const Session& session, PanelState& state);
 void ask_to_open(PanelState& state);
 void ask_to_save(const Session& session, PanelState& state);
 // `ending`: "svg", in the form of ending_of().
-void ask_to_take_away(const Session& session, PanelState& state, const std::string& ending, int plot = 0);
+void ask_to_export(const Session& session, PanelState& state, const std::string& ending, int plot = 0);
 void save_or_ask(const Session& session, PanelState& state, Commands& commands);
 
 }  // namespace achilles

@@ -351,7 +351,7 @@ State slice_of(const Session& session, const PlaneView& plane) {
 }
 
 // The visible part of the plane.
-Drawing seen(const Panel& panel) {
+Drawing limits_of(const Panel& panel) {
     Drawing limits;
     limits.x_low = panel.x.low, limits.x_high = panel.x.high;
     limits.y_low = panel.y.low, limits.y_high = panel.y.high;
@@ -363,7 +363,7 @@ void update_lines(const Session& session, const Panel& panel, PlaneView& plane) 
     const State state = slice_of(session, plane);
     // Parameters of the run that is shown, even if another was requested.
     const auto& parameters = (plane.is_held ? session.run() : session.trajectory().run).parameters;
-    const Drawing limits = seen(panel);
+    const Drawing limits = limits_of(panel);
     const auto changes = [&](std::vector<double>& key, std::vector<double> now) {
         now.insert(now.end(), parameters.begin(), parameters.end());
         now.insert(now.end(), {limits.x_low, limits.x_high, limits.y_low, limits.y_high});

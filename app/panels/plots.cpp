@@ -494,7 +494,7 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
     }
     ImGui::Separator();
     if (ImGui::MenuItem("Save figure\u2026", nullptr, false, session.under_way() == nullptr))
-        ask_to_take_away(session, state, "svg", number);
+        ask_to_export(session, state, "svg", number);
     remember(state, "menu Save figure\u2026");
     tooltip("save this plot alone, for print, as SVG, PNG or PDF");
     if (was_entered && !menu.is_wrong) ImGui::CloseCurrentPopup();

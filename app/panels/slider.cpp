@@ -19,7 +19,7 @@ namespace achilles {
 
 namespace {
 
-bool is_logarithmic(const Slider& slider) { return goes_by_ratios(slider.low, slider.high); }
+bool is_logarithmic(const Slider& slider) { return has_log_scale(slider.low, slider.high); }
 
 double rounded(double value, int digits) { return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr); }
 

@@ -294,7 +294,7 @@ std::unique_ptr<FilmJob> begin_film(const Session& session, const command::Expor
                                      held_by(session.description().file) == text ? "" : text);
 }
 
-void take_away(const Session& session, const command::Export& what) {
+void write_export(const Session& session, const command::Export& what) {
     const std::string& file = what.file;
     check_file(what);
     OutputFiles files;

@@ -32,7 +32,7 @@ Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, co
 // Exports what the file extension selects: .svg, .png or .pdf the plots, one plot or the mechanism; .json or .csv the
 // run; .journal the session. The write is atomic; it replaces an existing file only with `overwrite`. Throws
 // InputError.
-void take_away(const Session& session, const command::Export& what);
+void write_export(const Session& session, const command::Export& what);
 
 // Starts an export to .mp4 or .gif in another process: the mechanism in motion beside the plots, at most
 // `max_film_frames` frames. Throws InputError before drawing if it is not possible.

@@ -151,11 +151,11 @@ class Session {
     // The command that requests this proof; empty if there is none and none is under way.
     std::optional<command::Prove> proof_command() const;
     // The sensitivities shown by "depend": the quantity and its derivatives; null: none yet. Until those of the current
-    // run are computed they are those of an earlier run, and influences_are_current() is false.
+    // run are computed they are those of an earlier run, and sensitivities_are_current() is false.
     std::string depend_text() const;
-    const Sensitivities* sensitivities() const { return influences_job_->sensitivities(); }
-    bool influences_are_current() const;
-    const SensitivitiesJob& influences_job() const { return *influences_job_; }
+    const Sensitivities* sensitivities() const { return sensitivities_job_->sensitivities(); }
+    bool sensitivities_are_current() const;
+    const SensitivitiesJob& sensitivities_job() const { return *sensitivities_job_; }
     // The result of the last orbit search in this system; null: no search, or it is under way.
     std::shared_ptr<const OrbitJobResult> orbit() const;
     const OrbitMonitor* orbit_under_way() const;
@@ -369,7 +369,7 @@ class Session {
     std::optional<ProofRequest> proof_request_;   // until it is finished
     std::vector<const EnclosedEvent*> enclosed_;  // one per event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
-    std::unique_ptr<SensitivitiesJob> influences_job_ = std::make_unique<SensitivitiesJob>();
+    std::unique_ptr<SensitivitiesJob> sensitivities_job_ = std::make_unique<SensitivitiesJob>();
     std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();
     std::unique_ptr<Runner> worker_ = std::make_unique<Runner>();

@@ -36,7 +36,7 @@ void Session::perform(const command::Export& command) {
     const std::string path = (file.is_absolute() ? file : library_.folder / file).lexically_normal().string();
     notice_ = "wrote " + path;
     if (!library_.exports) return;
-    if (!is_film(command.file)) return take_away(*this, command);
+    if (!is_film(command.file)) return write_export(*this, command);
     std::unique_ptr<FilmJob> film = begin_film(*this, command);
     if (library_.film) {
         notice_.clear();
@@ -118,7 +118,7 @@ std::string to_text(const Session& session) {
         text += fmt::format("{}: {} until {}\n", to_text(*session.proof_command()),
                             to_text(proof->enclosure.outcome.kind), reach_text(proof->enclosure, 9));
     if (session.orbit() != nullptr) text += to_text(*session.orbit(), session.orbit_point());
-    if (session.influences_are_current()) text += to_text(*session.sensitivities());
+    if (session.sensitivities_are_current()) text += to_text(*session.sensitivities());
     text += to_text(session.plotted()) + to_text(session.scene());
     if (session.theme().dark) text += "theme dark\n";
     if (const auto horizon = session.horizon()) text += fmt::format("trusted until {:.9g}\n", *horizon);

@@ -119,7 +119,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     estimator_->on_ready(ready);
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
-    influences_job_->on_ready(ready);
+    sensitivities_job_->on_ready(ready);
     orbit_job_->on_ready(ready);
     for (const PendingPin& pin : pins_) pin.worker->on_ready(ready);
 }

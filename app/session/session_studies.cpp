@@ -179,7 +179,7 @@ void Session::receive_proof(Timeout patience) {
 
 std::string Session::depend_text() const { return scene_.depends().value_or(simulated_->quantity); }
 
-bool Session::influences_are_current() const {
+bool Session::sensitivities_are_current() const {
     const Sensitivities* const known = sensitivities();
     return known != nullptr && watch_ == nullptr && known->run.get() == &trajectory() &&
            known->quantity.expression == depend_text();
@@ -202,13 +202,13 @@ void Session::keep_dependence() {
 // Follows the run that is shown. What takes less than half a frame is available in the same frame.
 void Session::follow_dependence(Timeout patience) {
     constexpr double glance = 0.008;
-    if (!scene_.shows("depend") || shows_start()) return influences_job_->forget();
-    const bool is_new = influences_job_->ask({simulated_, &simulated_->trajectory}, depend_text());
-    influences_job_->update(is_new && patience ? glance : patience);
+    if (!scene_.shows("depend") || shows_start()) return sensitivities_job_->forget();
+    const bool is_new = sensitivities_job_->ask({simulated_, &simulated_->trajectory}, depend_text());
+    sensitivities_job_->update(is_new && patience ? glance : patience);
 }
 
 std::optional<TangentLine> Session::sweep_tangent() const {
-    if (!influences_are_current()) return std::nullopt;
+    if (!sensitivities_are_current()) return std::nullopt;
     const SweepSpec shown = sweep();
     if (shown.axes.size() != 1 || shown.at || shown.prints.front() != sensitivities()->quantity.expression)
         return std::nullopt;

@@ -29,8 +29,8 @@ Sensitivities::Sensitivity sensitivity(const std::string& name, const std::array
     const auto k = static_cast<std::size_t>(at - derivatives.directions.begin());
     Sensitivities::Sensitivity one{name, quantity.derivatives[static_cast<Eigen::Index>(k)], 0.0, ""};
     const double reach =
-        goes_by_ratios(range[0], range[1]) ? value * std::log(range[1] / range[0]) : range[1] - range[0];
-    one.over_slider = one.derivative * reach;
+        has_log_scale(range[0], range[1]) ? value * std::log(range[1] / range[0]) : range[1] - range[0];
+    one.change_over_slider = one.derivative * reach;
     if (std::isfinite(one.derivative)) return one;
     one.reason = !derivatives.refused[k].empty() ? derivatives.refused[k]
                  : !quantity.refused.empty()     ? quantity.refused
@@ -40,7 +40,7 @@ Sensitivities::Sensitivity sensitivity(const std::string& name, const std::array
 
 }  // namespace
 
-bool goes_by_ratios(double low, double high) { return low > 0.0 && high / low >= 100.0; }
+bool has_log_scale(double low, double high) { return low > 0.0 && high / low >= 100.0; }
 
 const Sensitivities::Sensitivity* Sensitivities::find(const std::string& name) const {
     const auto found = std::find_if(all.begin(), all.end(), [&](const Sensitivity& one) { return one.name == name; });
@@ -50,14 +50,14 @@ const Sensitivities::Sensitivity* Sensitivities::find(const std::string& name) c
 double Sensitivities::largest() const {
     double most = 0.0;
     for (const Sensitivity& one : all)
-        if (std::isfinite(one.over_slider)) most = std::max(most, std::abs(one.over_slider));
+        if (std::isfinite(one.change_over_slider)) most = std::max(most, std::abs(one.change_over_slider));
     return most;
 }
 
-Sensitivities influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run) {
+Sensitivities sensitivities_of(const std::string& quantity, const std::shared_ptr<const Trajectory>& run) {
     const Derivatives derivatives = differentiate(*run);
     Sensitivities result{run, Quantities(run->model, {quantity}).of(*run, derivatives).front(), {}, {}};
-    SweepSpec sweep;
+    SweepSpec sweep;  // only to find the unit
     sweep.prints = {quantity};
     result.unit = RunMeasures(run->model, sweep).columns().front().unit;
     const SystemDescription& system = run->model->description();
@@ -71,10 +71,10 @@ Sensitivities influences_on(const std::string& quantity, const std::shared_ptr<c
         add(c.name, c.range, run->run.q[static_cast<Eigen::Index>(i)]);
         add(c.name + "'", c.rate_range, run->run.v[static_cast<Eigen::Index>(i)]);
     }
-    // Derivatives that are rounding noise beside the others become 0.
+    // Below 1e-12 of the largest change or of the quantity itself, a derivative is rounding noise: it becomes 0.
     const double size = std::max(result.largest(), std::abs(result.quantity.value));
     for (Sensitivities::Sensitivity& one : result.all)
-        if (std::abs(one.over_slider) < 1e-12 * size) one.derivative = one.over_slider = 0.0;
+        if (std::abs(one.change_over_slider) < 1e-12 * size) one.derivative = one.change_over_slider = 0.0;
     return result;
 }
 
@@ -107,7 +107,7 @@ void SensitivitiesJob::forget() {
 
 void SensitivitiesJob::begin() {
     running_ = requested_;
-    job_.start([request = *requested_](const StopMonitor&) { return influences_on(request.quantity, request.run); });
+    job_.start([request = *requested_](const StopMonitor&) { return sensitivities_of(request.quantity, request.run); });
 }
 
 void SensitivitiesJob::update(Timeout patience) {

@@ -20,7 +20,7 @@ namespace achilles {
 // Sensitivities of a quantity.
 
 // True if a slider over this range has a logarithmic scale.
-bool goes_by_ratios(double low, double high);
+bool has_log_scale(double low, double high);
 
 // A quantity of one run and its derivatives with respect to all parameters and initial values, in the file's units.
 struct Sensitivities {
@@ -32,18 +32,18 @@ struct Sensitivities {
         double derivative = 0.0;  // of the quantity; NaN if it does not exist
         // Linear estimate of the change of the quantity over the whole slider range. For a logarithmic slider the
         // derivative is that with respect to the logarithm.
-        double over_slider = 0.0;
+        double change_over_slider = 0.0;
         std::string reason;  // why there is no derivative; else empty
     };
     std::vector<Sensitivity> all;  // in the order of the sliders
 
     const Sensitivity* find(const std::string& name) const;
-    // The largest |over_slider|; 0 if no derivative exists.
+    // The largest |change_over_slider|; 0 if no derivative exists.
     double largest() const;
 };
 
 // Throws InputError if the expression is invalid, or if the run has no derivatives at all.
-Sensitivities influences_on(const std::string& quantity, const std::shared_ptr<const Trajectory>& run);
+Sensitivities sensitivities_of(const std::string& quantity, const std::shared_ptr<const Trajectory>& run);
 // The initial choice: the last Zeno time or, without one, the final value of the first coordinate.
 std::string default_quantity(const Trajectory& run);
 

@@ -15,15 +15,15 @@ struct GapOver {
     Number state_error = 0.0;
     static constexpr double steepest = 1e3;
 
-    // Rate at which the error of the state changes an event function: that of the gap's rate in flight, of hddot itself
-    // in contact. `size`: sum of the sizes of hddot (m/s^2) and of its rate (m/s^3). `unit`: scale of a gap that has
-    // another unit than the coordinates.
-    Number drift(const Number& size, double unit = 1.0) const {
+    // Error of hddot caused by the error of the state. In flight it is the rate at which the error of hdot grows; in
+    // contact it is the error of the event function. `size`: sum of the sizes of hddot (m/s^2) and of its rate
+    // (m/s^3). `unit`: scale of a gap that has another unit than the coordinates.
+    Number hddot_error(const Number& size, double unit = 1.0) const {
         return state_error * (unit + min(size, Number(steepest * unit)));
     }
-    // Error of the gap after a time in flight (s), with `drifting` from drift().
-    Number error_after(const Number& span, const Number& drifting) const {
-        return error + (rate_error + 0.5 * drifting * span) * span;
+    // Error of the gap after a time in flight (s), with the error of hddot.
+    Number error_after(const Number& span, const Number& acceleration_error) const {
+        return error + (rate_error + 0.5 * acceleration_error * span) * span;
     }
 };
 using Gap = GapOver<double>;

@@ -121,9 +121,9 @@ class TaylorStep {
     void event_terms(std::size_t contact, const Number& span, Number* terms) const;
 
     // Error bounds of an event function: the remainder of this step, the error at its end from earlier steps, and the
-    // rate at which the error of the state changes it.
+    // error of hddot.
     struct EventUncertainty {
-        Number own, earlier, drifting;
+        Number own, earlier, hddot_error;
         Number remainder() const { return own + earlier; }
     };
     EventUncertainty doubt(std::size_t contact, const Number& span, const TermSizes<Number>& sizes) const;
@@ -246,8 +246,9 @@ auto TaylorStep<Number>::doubt(std::size_t contact, const Number& span, const Te
     const bool open = watches_gap(contact);
     const auto term = [&](int k) { return abs(event(contact, k)); };
     const Number own = max(sizes.last + 4.0 * unit_roundoff * sizes.all, 2.0 / unit(contact));
-    const Number drifting = gap.drift(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1), gap_units_[contact]);
-    return {own, open ? gap.error_after(span, drifting) : drifting, drifting};
+    const Number hddot_error =
+        gap.hddot_error(open ? 2.0 * term(2) + 6.0 * term(3) : term(0) + term(1), gap_units_[contact]);
+    return {own, open ? gap.error_after(span, hddot_error) : hddot_error, hddot_error};
 }
 
 // The end of the step is known better than the remainder, which holds for the whole step. But a truncation error also
@@ -259,7 +260,7 @@ void TaylorStep<Number>::add_error(std::size_t contact, const Number& span, cons
                                    const EventUncertainty& doubt, GapOver<Number>& end) const {
     const Number left_out = 0.16 * max(sizes.last - 1024.0 * unit_roundoff * sizes.all, 0.0);
     end.error = doubt.earlier + 0.125 * doubt.own + left_out;
-    end.rate_error = doubt.drifting * span + static_cast<double>(order_ + 1) * left_out / span;
+    end.rate_error = doubt.hddot_error * span + static_cast<double>(order_ + 1) * left_out / span;
     end.state_error = gaps_[contact].state_error;
 }
 

@@ -69,7 +69,7 @@ class Dopri5 : public Stepper {
     StepFailure accept();
     StepFailure failure_here() const;
     double own_remainder(std::size_t contact, const Polynomial& p) const;
-    double drifting(std::size_t contact, const Polynomial& p) const;
+    double hddot_error(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
     bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
@@ -265,16 +265,17 @@ double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
-double Dopri5::drifting(std::size_t contact, const Polynomial& p) const {
-    return gaps_[contact].drift(watches_gap(contact)
-                                    ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
-                                    : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
-                                units_[contact]);
+// From the terms of p in theta = t/span: the sizes of hddot and of its rate at the start of the step.
+double Dopri5::hddot_error(std::size_t contact, const Polynomial& p) const {
+    return gaps_[contact].hddot_error(watches_gap(contact)
+                                          ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
+                                          : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
+                                      units_[contact]);
 }
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
-    const double drift = drifting(contact, p);
-    return watches_gap(contact) ? gaps_[contact].error_after(span_, drift) : drift;
+    const double error = hddot_error(contact, p);
+    return watches_gap(contact) ? gaps_[contact].error_after(span_, error) : error;
 }
 
 double Dopri5::remainder(std::size_t contact, const Polynomial& p) const {
@@ -287,7 +288,7 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     const double own = own_remainder(contact, p);
     end.error = earlier_error(contact, p) + own;
     end.state_error = gap.state_error;
-    end.rate_error = gap.rate_error + drifting(contact, p) * span_ +
+    end.rate_error = gap.rate_error + hddot_error(contact, p) * span_ +
                      std::min(4.0 * tolerance_ * (units_[contact] + std::abs(end.hdot)), own / span_);
 }
 

@@ -182,7 +182,7 @@ class ExecutionAutomaton {
     void continue_phase();
 
     StepRequest next_;        // the current state and the next step
-    double last_step_ = 0.0;  // s
+    double last_step_ = 0.0;  // s; duration of the last step, which may be only the end of a flight
     State scale_;             // the largest |q|, |v|, |t| so far
     long evaluations_ = 0;
     int stalled_ = 0;  // consecutive steps as short as the resolution of t

@@ -316,11 +316,12 @@ bool ExecutionAutomaton::complete_pair(std::size_t first, std::size_t second, Mo
     return true;
 }
 
-// Whether the last flight, between two impacts, was close to the resolution of time.
+// Whether a segment begins just after a step that was short compared with the resolution of time, in a run with several
+// contacts and impacts. If no step is possible here, chatter is the cause.
 bool ExecutionAutomaton::is_chatter() const {
-    constexpr double resolved = 0x1p20;
+    constexpr double few_ulps = 0x1p20;  // 2e-10 of t
     return surfaces_->count() > 1 && record_.impacts() > 1 && next_.begins &&
-           last_step_ < resolved * ulp(next_.state.t);
+           last_step_ < few_ulps * ulp(next_.state.t);
 }
 
 // Whether the flight before an impact at this speed was lower than the rounding of another open contact's gap that is

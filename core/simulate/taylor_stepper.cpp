@@ -165,7 +165,7 @@ void TaylorStepper::add_error(std::size_t contact, const Polynomial& p, Gap& end
     step_.add_error(contact, span_, sizes, step_.doubt(contact, span_, sizes), end);
 }
 
-// Evaluates the terms of the event function at the step's length, without forming its polynomial (Stepper).
+// See Stepper. Uses the terms at the end of the step, without forming the polynomial.
 bool TaylorStepper::stays_negative(std::size_t contact) const {
     double power = 1.0;
     return step_.stays_negative(contact, span_, [&](int k) {

@@ -130,7 +130,7 @@ std::optional<std::array<std::size_t, 2>> ContactGeometry::plane_of(AnchorPoint&
     return found[0] && found[1] ? std::optional(pair) : std::nullopt;
 }
 
-bool ContactGeometry::is_of(std::size_t contact, const std::array<std::size_t, 2>& pair) const {
+bool ContactGeometry::gap_depends_only_on(std::size_t contact, const std::array<std::size_t, 2>& pair) const {
     std::vector<std::uint32_t> others;
     for (std::size_t i = 0; i < model_->layout().dof; ++i)
         if (i != pair[0] && i != pair[1]) others.push_back(static_cast<std::uint32_t>(model_->layout().q(i)));
@@ -209,7 +209,7 @@ void ContactGeometry::find_discs(const Mechanism& mechanism, const Trajectory& t
                 of_center != nullptr ? of_center : line_through(shapes, places(radius), within * radius);
             if (line == nullptr || known[contact]) continue;
             Solid solid{contact, of_center != nullptr ? 0.0 : radius};
-            if (pair && is_of(contact, *pair)) {
+            if (pair && gap_depends_only_on(contact, *pair)) {
                 solid.pair = *pair;
                 const std::uint32_t clock = model_->layout().t();
                 solid.stands_still = !depends_on(model_->equations().gaps[contact], {&clock, 1});

@@ -74,7 +74,7 @@ class ContactGeometry {
     void find_tips(const Mechanism& mechanism, const Trajectory& trajectory, const std::vector<DrawnShape>& shapes,
                    double size);
     std::optional<std::array<std::size_t, 2>> plane_of(AnchorPoint& grip, const State& start) const;
-    bool is_of(std::size_t contact, const std::array<std::size_t, 2>& pair) const;
+    bool gap_depends_only_on(std::size_t contact, const std::array<std::size_t, 2>& pair) const;
     PlaneFunction function_of(const Solid& solid, double t, const State& state) const;
 
     const Model* model_;

@@ -48,7 +48,7 @@ struct Name {
     std::size_t primes;
 };
 
-std::string sign_of(std::string_view word) {
+std::string display_letter(std::string_view word) {
     if (word == "gap") return "h";
     for (const auto& [name, letter] : greek_letters)
         if (name == word) return std::string(letter);
@@ -93,16 +93,16 @@ std::string italic(const std::string& word) {
 std::size_t bar_of(const Name& name) {
     const std::size_t bar = name.word.find('_');
     if (bar == std::string_view::npos || bar + 1 == name.word.size()) return 0;
-    return letters(sign_of(name.word.substr(0, bar))).size() == 1 ? bar : 0;
+    return letters(display_letter(name.word.substr(0, bar))).size() == 1 ? bar : 0;
 }
 
 // A name as a label.
 std::string variable(std::string_view text) {
     const Name name(text);
     const std::size_t bar = bar_of(name);
-    if (bar == 0) return italic(sign_of(name.word)) + dots_of(name) + index_of(name.digits);
-    const std::string index = sign_of(name.word.substr(bar + 1)) + std::string(name.digits);
-    return italic(sign_of(name.word.substr(0, bar))) + dots_of(name) + "_{" + index + "}";
+    if (bar == 0) return italic(display_letter(name.word)) + dots_of(name) + index_of(name.digits);
+    const std::string index = display_letter(name.word.substr(bar + 1)) + std::string(name.digits);
+    return italic(display_letter(name.word.substr(0, bar))) + dots_of(name) + "_{" + index + "}";
 }
 
 constexpr std::array<std::string_view, 10> powers{"\u2070", "\u00B9", "\u00B2", "\u00B3", "\u2074",
@@ -130,8 +130,8 @@ std::string utf8(char32_t c) {
 std::string typeset_name(std::string_view text) {
     const Name name(text);
     const std::size_t bar = bar_of(name);
-    if (bar == 0) return sign_of(name.word) + dots_of(name) + index_of(name.digits);
-    return sign_of(name.word.substr(0, bar)) + dots_of(name) + "_" + std::string(name.word.substr(bar + 1)) +
+    if (bar == 0) return display_letter(name.word) + dots_of(name) + index_of(name.digits);
+    return display_letter(name.word.substr(0, bar)) + dots_of(name) + "_" + std::string(name.word.substr(bar + 1)) +
            index_of(name.digits);
 }
 

@@ -16,9 +16,9 @@ constexpr std::size_t max_markers = 250;  // maximum in a plot
 constexpr std::size_t most_events = 8;    // events per marker; more of them are drawn as a band
 
 // Positions of the markers inside the plot area. Markers are drawn entirely or not at all, because half a marker at the
-// edge would look like another shape. Positions may miss the edge by rounding.
+// edge would look like another shape. Half a pixel of slack allows for rounding.
 std::vector<Point> places_of(const Markers& markers, Rectangle plot, const PanelMap& map, const Metrics& m) {
-    constexpr double slack = 0.5;
+    constexpr double slack = 0.5;  // pixels
     std::vector<Point> places;
     for (const Point& point : markers.points) {
         Point at = map(point);
@@ -213,7 +213,7 @@ struct DotGrid {
     }
     // Positions at the edge may miss it by rounding.
     std::optional<std::size_t> place(const Point& at) const {
-        constexpr double slack = 0.5;
+        constexpr double slack = 0.5;  // pixels
         const double x = (at.x - left) / width, y = (at.y - top) / height;
         if (!(x >= -slack && y >= -slack && x <= static_cast<double>(columns) + slack &&
               y <= static_cast<double>(rows) + slack))

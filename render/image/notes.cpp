@@ -90,8 +90,8 @@ Note read_text(std::string_view data) {
     return {keyword, utf8_of_latin1(data)};
 }
 
-// nullopt for a compressed text. This library writes none, and an untrusted one may expand to a thousand times its
-// size.
+// Reads an iTXt chunk. Returns nullopt if its text is compressed: this library writes none, and an untrusted one may
+// expand to a thousand times its size.
 std::optional<Note> read_international_text(std::string_view data) {
     const std::string keyword(take_word(data));
     if (data.size() < 2) throw std::runtime_error("the PNG file is damaged: a text chunk is too short");

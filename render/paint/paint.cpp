@@ -320,18 +320,20 @@ std::vector<Point> circle(const Point& center, double radius, const Clip& clip) 
     const auto add = [&](double angle) {
         points.push_back({center.x + radius * std::cos(angle), center.y + radius * std::sin(angle)});
     };
-    constexpr double large = 2000.0;
+    constexpr double large = 2000.0;  // pixels
+    // A chord over the angle a deviates by radius a^2 / 8.
     const double corners = std::max(16.0, std::numbers::pi * std::sqrt(radius / 0.04));
     if (radius <= large) {
-        const int count = static_cast<int>(corners);
+        const int count = static_cast<int>(std::ceil(corners));
         for (int i = 0; i < count; ++i) add(2.0 * std::numbers::pi * i / count);
         return points;
     }
-    // The arc that may be visible is fine; elsewhere only few points are needed, because those chords are invisible.
+    // The arc that may be visible is fine, `half` (rad) to either side of the middle of the view. Elsewhere only few
+    // points are needed, because those chords are invisible.
     const double x = clip.middle().x - center.x, y = clip.middle().y - center.y;
-    const double half = std::min(0.25 * std::numbers::pi, 2.0 * clip.reach() / radius);
-    const double towards = std::atan2(y, x), step = 2.0 * half * radius > 0.0 ? 2.0 * std::numbers::pi / corners : half;
-    const int fine = std::clamp(static_cast<int>(2.0 * half / step), 8, 2000);
+    const double half = clip.reach() < radius ? 2.0 * clip.reach() / radius : std::numbers::pi;
+    const double towards = std::atan2(y, x), step = 2.0 * std::numbers::pi / corners;
+    const int fine = std::clamp(static_cast<int>(std::ceil(2.0 * half / step)), 8, 4000);
     for (int i = 0; i <= fine; ++i) add(towards - half + 2.0 * half * i / fine);
     for (int i = 1; i < 64; ++i) add(towards + half + 2.0 * (std::numbers::pi - half) * i / 64);
     return points;

@@ -30,7 +30,7 @@ double by(const Session& session, const std::string& name) { return session.sens
 TEST(SensitivityCommand, StartsWithTheLastZenoTime) {
     Session session = asking("ball_on_sine");
     EXPECT_EQ(session.depend_text(), "zeno_time(2)");
-    ASSERT_TRUE(session.influences_are_current());
+    ASSERT_TRUE(session.sensitivities_are_current());
     EXPECT_EQ(session.sensitivities()->unit, "s");
     EXPECT_NEAR(session.sensitivities()->quantity.value, 12.465775, 1e-6);
     EXPECT_NEAR(by(session, "x"), 15.87553773274613, 1e-4);
@@ -61,11 +61,11 @@ TEST(SensitivityCommand, ComparesOverWholeSlidersInTheirOrder) {
     std::string order;
     for (const Sensitivities::Sensitivity& one : known.all) order += one.name + " ";
     EXPECT_EQ(order, "m r g e x x' y y' ");
-    EXPECT_DOUBLE_EQ(known.find("y")->over_slider, by(session, "y") * (3.0 - 0.06));
+    EXPECT_DOUBLE_EQ(known.find("y")->change_over_slider, by(session, "y") * (3.0 - 0.06));
     // Sliders with a logarithmic scale.
-    EXPECT_TRUE(goes_by_ratios(0.1, 20.0));
-    EXPECT_FALSE(goes_by_ratios(0.0, 20.0));
-    EXPECT_DOUBLE_EQ(known.find("g")->over_slider, by(session, "g") * 9.81 * std::log(20.0 / 0.1));
+    EXPECT_TRUE(has_log_scale(0.1, 20.0));
+    EXPECT_FALSE(has_log_scale(0.0, 20.0));
+    EXPECT_DOUBLE_EQ(known.find("g")->change_over_slider, by(session, "g") * 9.81 * std::log(20.0 / 0.1));
     double most = 0.0;
     for (const Sensitivities::Sensitivity& one : known.all) {
         Slider slider;
@@ -74,7 +74,7 @@ TEST(SensitivityCommand, ComparesOverWholeSlidersInTheirOrder) {
         ASSERT_TRUE(slider.bar) << one.name;
         EXPECT_FALSE(slider.bar_is_old);
         most = std::max(most, std::abs(double{*slider.bar}));
-        EXPECT_NEAR(*slider.bar, one.over_slider / known.largest(), 1e-6);
+        EXPECT_NEAR(*slider.bar, one.change_over_slider / known.largest(), 1e-6);
     }
     EXPECT_EQ(most, 1.0);
 }
@@ -108,12 +108,12 @@ TEST(SensitivityCommand, ReportsWhyThereIsNoDerivative) {
     session.apply(command::SetReinitialization{Reinitialization::euclidean});
     session.settle();
     EXPECT_EQ(session.sensitivities(), nullptr);
-    EXPECT_NE(session.influences_job().problem().find("uclidean"), std::string::npos);
+    EXPECT_NE(session.sensitivities_job().problem().find("uclidean"), std::string::npos);
     session.apply(command::SetReinitialization{Reinitialization::kinetic});
     session.apply(command::ShowSensitivity{"x"});
     session.settle();
-    EXPECT_EQ(session.influences_job().problem(), "");
-    EXPECT_TRUE(session.influences_are_current());
+    EXPECT_EQ(session.sensitivities_job().problem(), "");
+    EXPECT_TRUE(session.sensitivities_are_current());
     // At rest on the floor: derivatives for starts that leave the constraint do not exist, those along it do.
     Session resting = test::session("ball_on_floor");
     resting.apply(command::SetStart{{{"y", 0.06}, {"x'", 0.5}}});
@@ -135,7 +135,7 @@ TEST(SensitivityCommand, RejectsInvalidQuantitiesAndKeepsTheLastOne) {
     session.apply(command::Open{"double_pendulum"});
     session.settle();
     EXPECT_EQ(session.depend_text(), "zeno_time(3)");
-    EXPECT_TRUE(session.influences_are_current());
+    EXPECT_TRUE(session.sensitivities_are_current());
     session.apply(command::Show{"depend", false});
     EXPECT_EQ(session.sensitivities(), nullptr);
 }
@@ -147,13 +147,13 @@ TEST(SensitivityCommand, BelongsToTheShownRunOrIsMarkedOutdated) {
         session.apply(command::Set{"g", g});
         const Sensitivities* const known = session.sensitivities();
         ASSERT_NE(known, nullptr);  // some result is always available
-        EXPECT_EQ(session.influences_are_current(), known->run.get() == &session.trajectory());
-        if (!session.influences_are_current()) {
+        EXPECT_EQ(session.sensitivities_are_current(), known->run.get() == &session.trajectory());
+        if (!session.sensitivities_are_current()) {
             EXPECT_FALSE(session.sweep_tangent());
         }
     }
     session.settle();
-    EXPECT_TRUE(session.influences_are_current());
+    EXPECT_TRUE(session.sensitivities_are_current());
     EXPECT_EQ(session.sensitivities()->run->run.parameters, session.run().parameters);
     EXPECT_NE(by(session, "g"), before);
 }

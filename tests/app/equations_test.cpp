@@ -183,11 +183,11 @@ TEST(Equations, AreSimplifiedAndSetOnce) {
     EquationsView view;
     const EquationSheet* const sheet = view.sheet(model, run, {});
     ASSERT_NE(sheet, nullptr);
-    const TypesetSheet::SheetLine* const line = view.set(15.0F, font(), 800.0F, 300.0F).lines.data();
+    const TypesetSheet::SheetLine* const line = view.typeset_sheet(15.0F, font(), 800.0F, 300.0F).lines.data();
     run.parameters[0] *= 1.1;
     EXPECT_EQ(view.sheet(model, run, {}), sheet) << "within its range a value changes no sign";
-    EXPECT_EQ(view.set(15.0F, font(), 800.0F, 300.0F).lines.data(), line);
-    EXPECT_NE(view.set(15.0F, font(), 500.0F, 300.0F).lines.data(), line);
+    EXPECT_EQ(view.typeset_sheet(15.0F, font(), 800.0F, 300.0F).lines.data(), line);
+    EXPECT_NE(view.typeset_sheet(15.0F, font(), 500.0F, 300.0F).lines.data(), line);
     // For a value outside the range no sign may be assumed that does not hold.
     run.parameters[0] = -1.0;
     const EquationSheet* const other = view.sheet(model, run, {});

@@ -52,8 +52,8 @@ TEST(ExportDialog, ASizeThatIsNoneIsToldAndNothingIsWritten) {
     test::Hands hands("ball_on_sine");
     hands.session.apply(parse_command("show export"));
     hands.rest(3);
-    hands.state.take_away.on_paper = true;
-    hands.state.take_away.width = 5.0;
+    hands.state.export_form.on_paper = true;
+    hands.state.export_form.width = 5.0;
     hands.state.editor.path = (folder.path() / "a.svg").string();
     hands.rest(2);
     EXPECT_TRUE(hands.says("the width of a picture cannot be 5 mm: use 20 to 1200 mm"));
@@ -101,7 +101,7 @@ TEST(ExportDialog, EntryOfTheMenuIsReady) {
         EXPECT_TRUE(can_press(hands, "dialog Export")) << entry;
         EXPECT_TRUE(hands.says(std::string("ball_on_sine.") + ending)) << entry;
         const bool is_film = std::string(ending) == "mp4";
-        EXPECT_EQ(hands.state.take_away.what == ExportForm::ExportSubject::film, is_film);
+        EXPECT_EQ(hands.state.export_form.what == ExportForm::ExportSubject::film, is_film);
         EXPECT_EQ(hands.says("1280 \u00d7 800 px"), is_film) << entry;
     }
 }
@@ -170,7 +170,7 @@ TEST(ExportDialog, WidthIsWrongOnlyWhereItIs) {
         hands.rest(2);
         EXPECT_FALSE(hands.says("above 0")) << path;
     }
-    hands.state.take_away.width = 0.0;
+    hands.state.export_form.width = 0.0;
     hands.rest(2);
     EXPECT_TRUE(hands.says("width must be above 0, not 0"));
     EXPECT_FALSE(can_press(hands, "dialog Export"));
@@ -200,10 +200,10 @@ TEST(ExportDialog, SizeIsReadWhole) {
         hands.press_with_control('A');
         hands.type("40");
         hands.press(key::enter);
-        EXPECT_EQ(hands.state.take_away.height, 40.0);
+        EXPECT_EQ(hands.state.export_form.height, 40.0);
         EXPECT_TRUE(hands.says("85 \u00d7 40 mm"));
         hands.click("take fits");
-        EXPECT_EQ(hands.state.take_away.height, 0.0);
+        EXPECT_EQ(hands.state.export_form.height, 0.0);
         EXPECT_TRUE(hands.says("85 \u00d7 56.67 mm"));
     }
 }

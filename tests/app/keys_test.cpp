@@ -123,7 +123,7 @@ TEST(Keys, OfADropDownChooseNoFileBehindIt) {
     // Escape closes only the list of widths.
     hands.press(key::escape);
     EXPECT_TRUE(hands.session.scene().shows("export"));
-    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::take_away);
+    EXPECT_EQ(hands.state.editor.asking, EditorState::OpenDialog::export_run);
     hands.press(key::escape);
     EXPECT_FALSE(hands.session.scene().shows("export"));
 }

@@ -150,14 +150,14 @@ void bars() {
         const std::string quantity = default_quantity(*run);
         std::size_t directions = 0;
         const double made =
-            median_ms(40, bench::thread_seconds, [&](int) { directions = influences_on(quantity, run).all.size(); });
+            median_ms(40, bench::thread_seconds, [&](int) { directions = sensitivities_of(quantity, run).all.size(); });
         say(fmt::format("{}: {} by {} values", system, quantity, directions), made, 1e3 / 60.0);
         const double g = *desk.session.value("g");
         int late = 0;
         const double all = median_ms(60, wall_seconds, [&](int i) {
             desk.session.apply(command::Set{"g", g * (1.0 + 1e-4 * i)});
             desk.session.update();
-            late += desk.session.influences_are_current() ? 0 : 1;
+            late += desk.session.sensitivities_are_current() ? 0 : 1;
             desk.frame();
         });
         say(fmt::format("    slider to new bars, 6 plots ({} of 60 a frame late)", late), all, 1e3 / 60.0);

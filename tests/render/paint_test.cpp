@@ -193,5 +193,31 @@ TEST(Mechanism, FillsAPolygonWithADent) {
     }
 }
 
+// Every point of a circle inside the picture is within 0.02 pixels of a chord, also in pictures so large that most of a
+// circle of 2000 pixels is visible.
+TEST(Outline, OfADiscFollowsTheCircleWhereItIsVisible) {
+    for (const auto& [width, height] :
+         {std::pair(300.0, 200.0), std::pair(1920.0, 1080.0), std::pair(16384.0, 16384.0)})
+        for (const double radius : {20.0, 1999.0, 2001.0, 9000.0, 1e6})
+            for (const Point center : {Point{0.5 * width, 0.5 * height}, Point{0.5 * width, 0.9 * height + radius}}) {
+                DrawnShape disc;
+                disc.kind = DrawnShape::Kind::disc;
+                disc.points = {{0.0, 0.0}};
+                disc.radius = radius;
+                const std::vector<Point> corners =
+                    outline(disc, {center.x, center.y, 1.0}, Rectangle{0.0, 0.0, width, height});
+                double largest = 0.0;
+                for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
+                    const Point a = corners[i], b = corners[i + 1], m{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};
+                    const double off = radius - std::hypot(m.x - center.x, m.y - center.y);
+                    // The point of the circle above the middle of the chord.
+                    const double s = radius / (radius - off), x = center.x + s * (m.x - center.x),
+                                 y = center.y + s * (m.y - center.y);
+                    if (x >= 0.0 && x <= width && y >= 0.0 && y <= height) largest = std::max(largest, off);
+                }
+                EXPECT_LT(largest, 0.0201) << width << " " << radius << " " << center.y;
+            }
+}
+
 }  // namespace
 }  // namespace achilles

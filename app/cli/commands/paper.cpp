@@ -31,8 +31,8 @@ Trajectory run(PictureJob& job, const std::string& system) {
 
 int draw_paper(const fs::path& folder, const std::string& format, double scale, PictureJob& job) {
     if (format == "pdf") need_pdf_writer("--format pdf");
-    std::optional<OutputFolder> made;
-    if (!job.reproduces()) made.emplace(folder);
+    std::optional<OutputFolder> output_folder;
+    if (!job.reproduces()) output_folder.emplace(folder);
     const Trajectory ball = run(job, "ball_on_sine"), pendulum = run(job, "double_pendulum");
     const std::vector<NamedFigure> figures = paper_figures(ball, pendulum);
     const std::string table = paper_table(ball, pendulum), table_file = folder / "table.txt";

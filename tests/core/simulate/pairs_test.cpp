@@ -182,7 +182,7 @@ TEST(Pairs, TheirRestBalancesTheEnergy) {
 
 // Three equal balls exchange infinitely many impacts in zero time if e < 7 - 4 sqrt 3, without any force. This is
 // reported as chatter.
-TEST(Pairs, WhatCollapsesWithoutAForceIsToldAsChatter) {
+TEST(Pairs, CollapseWithoutAForceIsReportedAsChatter) {
     for (const double e : {0.001, 0.01, 0.05}) {
         const auto model = system_of(
             "[[coordinate]]\nname = \"x1\"\nrate = 1\n[[coordinate]]\nname = \"x2\"\nstart = 1.001\n"
