@@ -70,7 +70,7 @@ close_window() {
 is_asleep() { ! sed 's/.*) //' /proc/"$explorer"/task/*/stat | grep -qv '^S'; }
 # Waits until the window shows the result, also on a busy machine: the explorer sleeps and its screen no longer changes.
 settle() {
-    for _ in $(seq 120); do
+    for _ in $(seq 400); do
         cp "$folder/Xvfb_screen0" "$folder/before"
         sleep 0.2
         if is_asleep && cmp -s "$folder/Xvfb_screen0" "$folder/before"; then return 0; fi
