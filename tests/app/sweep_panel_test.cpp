@@ -18,7 +18,7 @@ namespace {
 
 using test::Hands;
 
-std::string refused(Session& session, const std::string& text) {
+std::string sweep_refusal(Session& session, const std::string& text) {
     session.apply(command::ShowSweep{text});
     return session.error();
 }
@@ -88,8 +88,9 @@ TEST(SweepPanel, ShowsDerivatives) {
 // More points, or rows, than a picture may have.
 TEST(SweepPanel, RefusesMoreThanItDraws) {
     Session session = test::session("ball_on_sine");
-    EXPECT_NE(refused(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points cannot be drawn"),
-              std::string::npos)
+    EXPECT_NE(
+        sweep_refusal(session, "--over e=0:1:900000000 --print x").find("a sweep of 900000000 points cannot be drawn"),
+        std::string::npos)
         << session.error();
 }
 
@@ -127,12 +128,12 @@ TEST(SweepPanel, IsMadeAnewWhereSomethingElseChanges) {
 
 TEST(SweepPanel, RefusesWhatCannotBeShownAndKeepsWhatThereIs) {
     Session session = swept("ball_on_sine", "--over e=0:0.9:8 --print x");
-    EXPECT_NE(refused(session, "--over f=0:1:8 --print x").find("'f'"), std::string::npos) << session.error();
-    EXPECT_NE(refused(session, "--over e=0:0.9:8").find("name at least one quantity to print"), std::string::npos)
+    EXPECT_NE(sweep_refusal(session, "--over f=0:1:8 --print x").find("'f'"), std::string::npos) << session.error();
+    EXPECT_NE(sweep_refusal(session, "--over e=0:0.9:8").find("name at least one quantity to print"), std::string::npos)
         << session.error();
-    EXPECT_NE(refused(session, "--over e=0:0.9:8 --print nonsense").find("nonsense"), std::string::npos);
-    EXPECT_NE(refused(session, "--over e=0:0.9:8 --print x --set g=3").find("sliders"), std::string::npos);
-    EXPECT_NE(refused(session, "--over e=0:0.9:8 --over x=0:1:8 --over y=0:1:8 --print x").find("two axes"),
+    EXPECT_NE(sweep_refusal(session, "--over e=0:0.9:8 --print nonsense").find("nonsense"), std::string::npos);
+    EXPECT_NE(sweep_refusal(session, "--over e=0:0.9:8 --print x --set g=3").find("sliders"), std::string::npos);
+    EXPECT_NE(sweep_refusal(session, "--over e=0:0.9:8 --over x=0:1:8 --over y=0:1:8 --print x").find("two axes"),
               std::string::npos);
     EXPECT_EQ(session.sweep_text(), "--over e=0:0.9:8 --print x");
     // Another system has no x: it gets its default sweep.
@@ -161,9 +162,9 @@ TEST(SweepPanel, IsInTheRecipeAndOnTheCommandLine) {
 TEST(SweepPanel, AsksForSectionsOfRunsThatAreLongerThanTheFileSays) {
     Session session = test::session("ball_on_vibrating_table");  // takes 10 s
     const std::string late = "--over om=5:15:8 --at impact --after 50 --print y'";
-    EXPECT_NE(refused(session, late).find("--after 50: the runs end at 10"), std::string::npos);
+    EXPECT_NE(sweep_refusal(session, late).find("--after 50: the runs end at 10"), std::string::npos);
     session.apply(command::SetEndTime{60.0});
-    EXPECT_EQ(refused(session, late), "");
+    EXPECT_EQ(sweep_refusal(session, late), "");
     session.settle();
     EXPECT_EQ(session.sweep_job().problem(), "");
     session.apply(command::SetEndTime{40.0});

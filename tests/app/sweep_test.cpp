@@ -261,15 +261,15 @@ TEST(SweepCommand, DrawsOrReportsWhyNot) {
 TEST(SweepCommand, PrintsDerivatives) {
     const Folder folder;
     const std::string prints = "--print \"zeno_time(1)\" --print \"d(zeno_time(1), e)\" ";
-    const std::string curve = "sweep ball_on_sine --over e=0.3:0.5:3 --end 5 " + prints;
-    const Answer answer = folder.run(curve + "--csv -");
+    const std::string curve_sweep = "sweep ball_on_sine --over e=0.3:0.5:3 --end 5 " + prints;
+    const Answer answer = folder.run(curve_sweep + "--csv -");
     ASSERT_EQ(answer.status, 0) << answer.err;
     const auto lines = lines_of(answer.out);
     ASSERT_EQ(lines.size(), 4u);
     EXPECT_EQ(lines[0], "e,zeno_time(1),\"d(zeno_time(1), e)\",outcome");
     const auto number = [&](std::size_t row, std::size_t column) { return std::stod(cells_of(lines[row])[column]); };
     EXPECT_NEAR(number(2, 2), (number(3, 1) - number(1, 1)) / 0.2, 0.2 * std::abs(number(2, 2)));
-    EXPECT_EQ(folder.run(curve + "--csv a.csv --out a.svg --out a.png --threads 1").status, 0);
+    EXPECT_EQ(folder.run(curve_sweep + "--csv a.csv --out a.svg --out a.png --threads 1").status, 0);
     EXPECT_EQ(content(folder.path() / "a.csv"), answer.out);
     const std::string svg = content(folder.path() / "a.svg");
     EXPECT_NE(svg.find("\xE2\x88\x82"), std::string::npos) << "the sign of a partial derivative";

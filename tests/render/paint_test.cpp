@@ -197,7 +197,7 @@ TEST(Mechanism, FillsAPolygonWithADent) {
 // circle of 2000 pixels is visible.
 TEST(Outline, OfADiscFollowsTheCircleWhereItIsVisible) {
     for (const auto& [width, height] :
-         {std::pair(300.0, 200.0), std::pair(1920.0, 1080.0), std::pair(16384.0, 16384.0)})
+         {std::pair(300.0F, 200.0F), std::pair(1920.0F, 1080.0F), std::pair(16384.0F, 16384.0F)})
         for (const double radius : {20.0, 1999.0, 2001.0, 9000.0, 1e6})
             for (const Point center : {Point{0.5 * width, 0.5 * height}, Point{0.5 * width, 0.9 * height + radius}}) {
                 DrawnShape disc;
@@ -205,7 +205,7 @@ TEST(Outline, OfADiscFollowsTheCircleWhereItIsVisible) {
                 disc.points = {{0.0, 0.0}};
                 disc.radius = radius;
                 const std::vector<Point> corners =
-                    outline(disc, {center.x, center.y, 1.0}, Rectangle{0.0, 0.0, width, height});
+                    outline(disc, {center.x, center.y, 1.0}, Rectangle{0.0F, 0.0F, width, height});
                 double largest = 0.0;
                 for (std::size_t i = 0; i + 1 < corners.size(); ++i) {
                     const Point a = corners[i], b = corners[i + 1], m{0.5 * (a.x + b.x), 0.5 * (a.y + b.y)};

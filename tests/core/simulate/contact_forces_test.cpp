@@ -86,14 +86,14 @@ tolerance = 1e-10
 // The work of a sample includes that of all steps before its own.
 TEST(Samples, HaveTheWorkSinceTheStart) {
     const auto model = test::load("ball_on_vibrating_table");
-    Run run = model->default_run();
+    auto run = model->default_run();
     run.options.end_time = 0.45;
     const Trajectory trajectory = simulate(model, run);
     Sampler sampler(trajectory);
     double largest = 0.0;
     for (const double t : {0.3, 0.4, 0.45}) {
         const Sample sample = sampler.at(t);
-        Run part = run;
+        auto part = run;
         part.options.end_time = t;
         EXPECT_NEAR(sample.work, simulate(model, part).work, 1e-8) << t;
         largest = std::max(largest, std::abs(sample.work));
