@@ -447,13 +447,16 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(spaces) + 1 - first);
 }
 
-// Parses the whole text as a decimal number within the range of double.
+// Parses the whole text as a decimal number. One too small for a double is 0, and one too large is infinite.
 std::optional<double> plain_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
     double value = 0.0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (end != text.data() + text.size() || problem != std::errc()) return std::nullopt;
-    return value;
+    if (end != text.data() + text.size() || problem == std::errc::invalid_argument) return std::nullopt;
+    if (problem == std::errc()) return value;
+    long double wide = HUGE_VALL;  // stays so if it is out of range, too
+    std::from_chars(text.data(), end, wide);
+    return static_cast<double>(wide);
 }
 
 // The text with a decimal point, "0.4" for 0,4; "" if that is not a number.

@@ -27,8 +27,8 @@ inline Session session(const std::string& name, Timeout patience = {}) {
 
 // Elastic impacts up to max_impacts: takes seconds.
 inline void ask_for_a_long_run(Session& session) {
+    session.apply(command::SetEndTime{1e6});  // first, so that no short run can finish in between
     session.apply(command::Set{"e", 1.0});
-    session.apply(command::SetEndTime{1e6});
 }
 
 // A surface with the explorer's options.
