@@ -326,7 +326,7 @@ std::string SweepSummary::text() const {
             continue;
         }
         const std::string low = fmt::format("{:.6g}", column.low), high = fmt::format("{:.6g}", column.high);
-        text += low == high ? low : low + " to " + high;
+        text += low == high ? low : fmt::format("{} to {}", low, high);
         text += fmt::format("{} in {} {}", unit_of(i), column.count, things);
         if (column.missing > 0 && !is_section)
             text += fmt::format("; does not exist in {} ({})", column.missing, where_missing(column));

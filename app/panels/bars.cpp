@@ -65,7 +65,8 @@ void show_recent(const Session& session, PanelState& state, Commands& commands) 
     ImGui::Separator();
     for (const std::string& path : state.recent) {
         const std::string name = std::filesystem::path(path).filename().string();
-        if (ImGui::MenuItem((name + "##" + path).c_str())) request(session, state, command::Open{path}, commands);
+        if (ImGui::MenuItem(fmt::format("{}##{}", name, path).c_str()))
+            request(session, state, command::Open{path}, commands);
         remember(state, "menu " + path);
         tooltip(path);
     }

@@ -137,8 +137,9 @@ struct Lines {
     float width = 0.0F, bar = 0.0F, height = 0.0F;
     ImVec2 corner;
     ImVec2 at(std::size_t i) const {
-        return {std::floor(corner.x + width * static_cast<float>(i / each)),
-                std::floor(corner.y + height * static_cast<float>(i % each + 1))};
+        const std::size_t column = i / each, row = i % each + 1;
+        return {std::floor(corner.x + width * static_cast<float>(column)),
+                std::floor(corner.y + height * static_cast<float>(row))};
     }
     // Middle of the bars in the column of line i.
     float middle(std::size_t i) const { return std::floor(at(i).x + units(slider_name_width) + 0.5F * bar); }

@@ -116,7 +116,7 @@ void show_scale_bar(const Session& session, const Rectangle& area, double unit, 
     const float room = right - left - label - units(16.0F);
     const bool beside = room >= units(40.0F);
     const double most = beside ? std::min(0.22 * double{area.width}, double{room}) : 0.22 * double{area.width};
-    const float bottom = area.y + area.height - units(beside ? 11.0F : 11.0F) - (beside ? 0.0F : switches_height());
+    const float bottom = area.y + area.height - units(11.0F) - (beside ? 0.0F : switches_height());
     const double length = paint_scale_bar(ImGui::GetWindowDrawList(), {left, bottom}, most, unit,
                                           session.mechanism_scene().unit(), faint_color(), double{units(1.0F)});
     const float high = ImGui::GetTextLineHeight();

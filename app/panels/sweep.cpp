@@ -518,9 +518,9 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     const float right = show_progress(session, row, state, commands);
     show_sweep_menus(session, {row.x, row.y, right - row.x, row.height}, state, commands);
     const SweepJob& job = session.sweep_job();
-    const auto message = [&](const std::string& text) {
-        ImGui::SetCursorScreenPos({inner.x, inner.y + units(6.0F)});
-        show_message(text, inner.width);
+    const auto message = [&area = inner](const std::string& text) {
+        ImGui::SetCursorScreenPos({area.x, area.y + units(6.0F)});
+        show_message(text, area.width);
     };
     if (!job.problem().empty()) return message(job.problem());
     if (!job.data()) return;

@@ -108,7 +108,7 @@ Rectangle area_of(const PictureSize& size) {
 }
 
 // Stores the resolution in a PNG that has a size on paper.
-std::string on_paper(std::string png, const PictureSize& size) {
+std::string on_paper(const std::string& png, const PictureSize& size) {
     return size.width_mm > 0.0 ? with_resolution(png, size.width / size.width_mm) : png;
 }
 

@@ -29,13 +29,14 @@ FigureStyle figure_style(const FigureStyleTuple& tuple, const std::string& forma
 void add(std::vector<std::string>& words, const FigureStyle& look) {
     const auto add = [&](const char* flag, const std::string& value) { words.insert(words.end(), {flag, value}); };
     for (const std::string& view : look.views) add("--view", view);
+    // On a page, too, the shape of the size arranges the panels.
+    add("--size", std::to_string(look.size.width) + "x" + std::to_string(look.size.height));
     if (look.page.width > 0.0) {
         add("--width-mm", to_text(OptionValue{look.page.width}));
         if (look.page.height > 0.0) add("--height-mm", to_text(OptionValue{look.page.height}));
         if (look.page.font > 0.0) add("--font-pt", to_text(OptionValue{look.page.font}));
         if (look.page.dpi > 0.0) add("--dpi", to_text(OptionValue{look.page.dpi}));
     } else {
-        add("--size", std::to_string(look.size.width) + "x" + std::to_string(look.size.height));
         add("--scale", to_text(OptionValue{look.size.scale}));
     }
     if (look.style.columns > 0) add("--columns", std::to_string(look.style.columns));

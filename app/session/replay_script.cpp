@@ -223,6 +223,7 @@ std::vector<Command> figure_steps(const Session& session, const Plots& plots) {
     return steps;
 }
 
+// To follow the options of run_options(). Includes a proof or an orbit that is still being computed.
 std::vector<Command> explorer_steps(const Session& session) {
     std::vector<Command> steps = run_steps(session, session.run());
     append(steps, proof_steps(session));

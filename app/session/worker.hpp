@@ -127,8 +127,8 @@ class Job {
     // Starts the work. Work under way is stopped, and its result or exception is dropped.
     void start(Work work, std::shared_ptr<Monitor> monitor = std::make_shared<Monitor>()) {
         monitor_ = monitor;
-        worker_.start([work = std::move(work), monitor = std::move(monitor)](std::stop_token stop) {
-            monitor->stop = std::move(stop);
+        worker_.start([work = std::move(work), monitor = std::move(monitor)](const std::stop_token& stop) {
+            monitor->stop = stop;
             return std::make_shared<const Result>(work(*monitor));
         });
     }

@@ -153,7 +153,6 @@ std::string events_of(const Orbit& orbit) {
         }
         impacts = std::max(impacts - 2, 0);
         tell_impacts(event.truncation && !is_plastic_landing(event) ? " more before the cut" : " more");
-        impacts = 0;
         text += fmt::format("  {:<9} t = {:<18.13g} {}\n", names_of(event).word, event.t,
                             named(orbit.run.model->description(), event.q, ""));
     }

@@ -43,10 +43,10 @@ std::string inner_text(const Interval& x);
 // Printed for a number without any known digit.
 inline constexpr const char* unknown_number = "?";
 
-// The number with at most `digits` significant digits, cut after the first digit that the error changes. "0" if the
-// error exceeds the number; unknown_number if the error is infinite.
+// The number with at most `digits` significant digits, rounded at the decimal place of the error's first digit, but with
+// at least one digit. "0" if it is less than half a unit of that place; unknown_number if the error is infinite.
 std::string known_digits(double value, double error, int digits);
-// The number of significant digits that known_digits() prints: 0 if the value is 0 within its error.
+// The number of significant digits that known_digits() prints for a finite error; 0 if it prints "0".
 int count_of_known_digits(double value, double error, int digits);
 // The number of decimals that such an error leaves, at most `decimals`.
 int known_decimals(double error, int decimals);

@@ -58,6 +58,7 @@ class Library {
     }
     const std::string& fault() const { return fault_; }
 
+// NOLINTNEXTLINE(bugprone-macro-parentheses): a declared name takes no parentheses
 #define ACHILLES_HDF5_FUNCTION(name) decltype(&::name) name = address<decltype(&::name)>(#name)
     ACHILLES_HDF5_FUNCTION(H5dont_atexit);
     ACHILLES_HDF5_FUNCTION(H5open);

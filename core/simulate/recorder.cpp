@@ -173,7 +173,7 @@ void Recorder::after_impact(ContactSet opened, Mode mode) {
 
 void Recorder::event(Event event) {
     if (keep_ == Recording::final_state) {
-        trajectory_.passages.push_back({event.kind, event.contacts, event.t, 0.0});
+        trajectory_.passages.push_back({{event.kind}, event.contacts, event.t, 0.0});
         return;
     }
     event.work = trajectory_.work;

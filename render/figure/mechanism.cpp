@@ -425,12 +425,10 @@ Drawing Mechanism::limits(const Trajectory& trajectory, std::span<const Sample> 
         Evaluator<double> run = model_.evaluator(item.program, trajectory.run.parameters);
         const EvaluatedDrawing placed =
             place(item, run, trajectory.run.options.start_time, {trajectory.run.q, trajectory.run.v});
-        if (still)
+        if (still || is_shown_whole(item.description.shape, box, placed.points))
             all.include(placed);
         else if (item.description.shape == DrawingShape::curve)
             include_under(all, box, placed.points);
-        else if (is_shown_whole(item.description.shape, box, placed.points))
-            all.include(placed);
         else
             include_nearest(all, box, placed);
     }

@@ -364,12 +364,14 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
     markers.edge.a = 0;
     markers.size = points.size() > 500 ? 2.2 : 3.5;
     const bool are_few = points.size() <= max_markers;
-    if (are_few) markers.points = std::move(points);
+    if (are_few)
+        markers.points = std::move(points);
+    else
+        panel.dots = {std::move(points), {}, color, 0, 0.0, 0.0};
     if (!what.empty()) {
         markers.label = are_few ? what : what + "; color strength: number of points (log scale)";
         panel.legend = panel.legend_above = true;
     }
-    if (!are_few) panel.dots = {std::move(points), {}, color, 0, 0.0, 0.0};
     panel.markers.push_back(std::move(markers));
 }
 

@@ -184,6 +184,9 @@ def test_figures(program, tmp_path):
     assert drawn.read_bytes() == (tmp_path / "f.svg").read_bytes()
     run.figure(width_mm=85, font_pt=7).save(tmp_path / "page.png")
     assert (tmp_path / "page.png").read_bytes().startswith(b"\x89PNG")
+    # The shape of the size arranges the panels of a page.
+    achilles.simulate("ball_in_v").figure(size=(600, 1600), width_mm=170).save(tmp_path / "tall.svg")
+    assert "--size 600x1600" in program("reproduce", str(tmp_path / "tall.svg"))
     text = achilles.System(run.system.text + "# mine\n")
     achilles.simulate(text, e=0.2).figure("height").save(tmp_path / "mine.pdf")
     for file in ("f.svg", "page.png", "mine.pdf"):

@@ -71,7 +71,7 @@ void finish_output() {
     std::abort();
 }
 
-int run(std::vector<std::string> words, Messages* ranks) {
+int run(const std::vector<std::string>& words, Messages* ranks) {
     CLI::App program("Simulates mechanical systems with impacts past their Zeno points", "achilles");
     program.set_version_flag("--version", "achilles " + version());
     program.require_subcommand(1);

@@ -70,7 +70,7 @@ void warn_of(const SystemDescription& description, const SweepSpec& sweep) {
 // Prints the summary and the list of files to standard error if files hold the table or it is a terminal. Quantities
 // that are undefined in every run are reported in any case.
 void print_summary(const SweepSummary& summary, const SweepOutput& output) {
-    const std::vector<std::string> files = output.files();
+    const std::vector<std::string>& files = output.files();
     if (files.empty() && ::isatty(STDERR_FILENO) == 0) {
         for (const std::string& sentence : summary.undefined_everywhere())
             print_clean(stderr, "achilles: warning: {}\n", sentence);
