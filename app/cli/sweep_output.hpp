@@ -64,9 +64,9 @@ struct RowStorage {
 // The stored form of these rows. Thread-safe.
 std::string serialize_rows(const SweepTable& table, RowStorage storage, const Rows& rows);
 
-// Output files of a sweep, written when it is finished. Until then the rows are stored in a log: F.part, where F is
-// the first output file. --resume continues from this log. A table that goes only to standard output or to a device is
-// written at once, without a log.
+// Output files of a sweep. They are written when the sweep is finished. Until then, its rows are stored in the log
+// F.part, where F is the first output file, and --resume continues from it. A table that goes only to standard output or
+// to a device is written at once, without a log.
 class SweepOutput {
  public:
     // Checks that the files can be written, before the sweep starts. Throws InputError. Keeps a reference to the

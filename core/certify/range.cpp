@@ -17,20 +17,20 @@ Interval Range::evaluate(const std::vector<Interval>& box) {
 // is used. Variables in which the expression is monotone are set to that face. Over the others, plain evaluation and
 // the mean-value form are intersected.
 Interval Range::bound(const std::vector<Interval>& box, bool upper) {
-    rest_ = middle_ = box;
+    face_ = middle_ = box;
     Interval spread(0.0);
     bool point = true;
     for (std::size_t i = 0; i < box.size(); ++i) {
         const bool rises = slopes_[i].lo() >= 0.0, falls = slopes_[i].hi() <= 0.0;
         if (rises || falls) {
-            rest_[i] = middle_[i] = Interval(rises == upper ? box[i].hi() : box[i].lo());
+            face_[i] = middle_[i] = Interval(rises == upper ? box[i].hi() : box[i].lo());
         } else {
             point = false;
             middle_[i] = Interval(mid(box[i]));
             spread = spread + slopes_[i] * (box[i] - middle_[i]);
         }
     }
-    const Interval plain = evaluate(rest_);
+    const Interval plain = evaluate(face_);
     if (point || !plain.is_defined()) return plain;
     const Interval mean_value = evaluate(middle_) + spread;
     if (!mean_value.is_defined()) return plain;

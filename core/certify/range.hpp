@@ -35,8 +35,10 @@ class Range {
 
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
-    std::vector<Interval> slopes_, rest_, middle_, center_;  // of the current box
-    Interval at_center_;                                     // the value at its center
+    std::vector<Interval> slopes_;         // over the current box
+    std::vector<Interval> face_, middle_;  // of bound(): the face of the box, and its middle
+    std::vector<Interval> center_;         // of the current box
+    Interval at_center_;                   // the value there
 };
 
 // The interval of all numbers within `radius` of x.

@@ -447,14 +447,15 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(spaces) + 1 - first);
 }
 
-// Parses the whole text as a decimal number. One too small for a double is 0, and one too large is infinite.
+// Parses the whole text as a decimal number. One too small for a double is 0, if it is within the range of long double.
+// Any other number out of range is infinite, so that it is refused.
 std::optional<double> plain_number(std::string_view text) {
     if (text.size() > 1 && text[0] == '+' && text[1] != '-' && text[1] != '+') text.remove_prefix(1);
     double value = 0.0;
     const auto [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (end != text.data() + text.size() || problem == std::errc::invalid_argument) return std::nullopt;
     if (problem == std::errc()) return value;
-    long double wide = HUGE_VALL;  // stays so if it is out of range, too
+    long double wide = HUGE_VALL;  // unchanged by a number out of its range
     std::from_chars(text.data(), end, wide);
     return static_cast<double>(wide);
 }

@@ -197,7 +197,7 @@ FirstCrossing first_descent(const Polynomial& polynomial, int known, double rema
     const PolynomialTerms p{polynomial.c.data() + known, polynomial.degree - known};
     // On [0, 1] the powers of theta decrease, so the polynomial is a convex combination of the partial sums of its
     // coefficients (Abel summation) and lies between their minimum and maximum. The same holds for the derivative.
-    double value = p.c[0], least = value, slope = p.c[1], min_slope = slope, largest_slope = slope;
+    double value = p.c[0], least = value, slope = p.c[1], min_slope = slope, max_slope = slope;
     for (int k = 1; k <= p.degree; ++k) {
         const double c = p.c[k];
         value += c;
@@ -205,14 +205,14 @@ FirstCrossing first_descent(const Polynomial& polynomial, int known, double rema
         if (k == 1) continue;
         slope += k * c;
         min_slope = std::min(min_slope, slope);
-        largest_slope = std::max(largest_slope, slope);
+        max_slope = std::max(max_slope, slope);
     }
-    if (least > remainder || (largest_slope < 0.0 && value > remainder)) return {};
+    if (least > remainder || (max_slope < 0.0 && value > remainder)) return {};
     // The polynomial decreases throughout, from above the remainder to below it: there is one root. Newton's method
     // starts from the root of the quadratic part. It may stop at the first small step if the derivative changes little,
     // else at the third.
-    if (p.c[0] > remainder && largest_slope < 0.0 && value < -remainder) {
-        const bool steady = min_slope > 3.0 * largest_slope;  // the derivative changes by a factor of at most three
+    if (p.c[0] > remainder && max_slope < 0.0 && value < -remainder) {
+        const bool steady = min_slope > 3.0 * max_slope;  // the derivative changes by a factor of at most three
         const double curvature = p.degree > 1 ? p.c[2] : 0.0;
         const double root = std::sqrt(std::max(0.0, p.c[1] * p.c[1] - 4.0 * p.c[0] * curvature));
         return {FirstCrossing::Kind::root,

@@ -168,15 +168,15 @@ class LaneStepperOver final : public LaneStepper {
     };
     Descents descent(const Number& remainder) {
         Number value = terms_[0] + terms_[1], least = min(value, terms_[0]), slope = terms_[1];
-        min_slope_ = largest_slope_ = slope;
+        min_slope_ = max_slope_ = slope;
         for (std::size_t k = 2; k <= order(); ++k) {
             value += terms_[k];
             least = min(value, least);
             slope += static_cast<double>(k) * terms_[k];
             min_slope_ = min(slope, min_slope_);
-            largest_slope_ = max(slope, largest_slope_);
+            max_slope_ = max(slope, max_slope_);
         }
-        const Mask falls = largest_slope_ < 0.0;
+        const Mask falls = max_slope_ < 0.0;
         return {(least > remainder) | (falls & (value > remainder)),
                 falls & (terms_[0] > remainder) & (value < -remainder)};
     }
@@ -185,7 +185,7 @@ class LaneStepperOver final : public LaneStepper {
     // converge from `searched`.
     Number root(Mask& searched) const {
         const Number discriminant = max(terms_[1] * terms_[1] - 4.0 * terms_[0] * terms_[2], 0.0);
-        const Mask steady = min_slope_ > 3.0 * largest_slope_;
+        const Mask steady = min_slope_ > 3.0 * max_slope_;
         Number x = min(2.0 * terms_[0] / (sqrt(discriminant) - terms_[1]), 1.0), low = 0.0, high = 1.0;
         Mask searching = searched;
         for (int round = 0; round < 20 && any(searching); ++round) {
@@ -284,7 +284,7 @@ class LaneStepperOver final : public LaneStepper {
     TaylorStep<Number> step_;
     std::vector<Number> before_;                                       // the state before a step
     std::array<Number, TaylorStep<Number>::highest_order + 2> terms_;  // of the event function
-    Number min_slope_, largest_slope_;                                 // of its partial sums, along the step
+    Number min_slope_, max_slope_;  // smallest and largest slope of the event function's partial sums along the step
 };
 
 // The functions of one vector size (lane_kinds.hpp), instantiated only by its source file.

@@ -102,7 +102,7 @@ bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const Cont
         update_load_sharing_candidates(closed, pressed);
         return true;
     }
-    // At permanent rest, the forces of the load-bearing contacts need not be told apart.
+    // At permanent rest, it does not matter which of the pressed contacts bear the load.
     const ContactSet pressed_ones = closed.contacts_at(pressed);
     const bool rests = doubted.empty() && is_at_rest(Mode::holding(pressed_ones));
     if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))

@@ -343,7 +343,7 @@ Panel map_panel(const SweepData& data, const ColumnView& column, const Theme& th
 
 namespace {
 
-constexpr std::size_t max_markers = 3000;  // more points are drawn as dots
+constexpr std::size_t max_row_markers = 3000;  // more points are drawn as dots
 
 std::string word_of(const Section& section) {
     return section.event ? std::string(names_of(*section.event).name) : "upward zero of " + typeset(section.expression);
@@ -363,7 +363,7 @@ void add_points(std::vector<Point> points, const Color& color, const Theme& them
     markers.fill = color;
     markers.edge.a = 0;
     markers.size = points.size() > 500 ? 2.2 : 3.5;
-    const bool are_few = points.size() <= max_markers;
+    const bool are_few = points.size() <= max_row_markers;
     if (are_few)
         markers.points = std::move(points);
     else
@@ -421,7 +421,7 @@ struct ColoredMarkers {
     std::vector<Color> colors;
 
     void add_to(Panel& panel) {
-        if (points.size() > max_markers) {
+        if (points.size() > max_row_markers) {
             panel.dots = {std::move(points), std::move(colors), {}, 0, 0.0, 0.0};
             return;
         }

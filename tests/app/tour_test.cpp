@@ -111,7 +111,7 @@ TEST(Tour, GoesBackASentence) {
     tour.advance(0.5);
     EXPECT_EQ(tour.captions_shown(), 1U);
     EXPECT_EQ(tour.sentences(), 3U);
-    EXPECT_TRUE(tour.back().empty()) << "there is none before the first";
+    EXPECT_TRUE(tour.back().empty()) << "no caption comes before the first";
     tour.advance(3.0);  // half a second into the third
     EXPECT_EQ(tour.captions_shown(), 3U);
     EXPECT_EQ(tour.back(), lines({"unpin", "open ball_on_sine", "say \"1\"", "wait 1", "set e 0.4"}));
@@ -174,7 +174,7 @@ TEST(Tour, HasButtonsAndSaysHowFarItIs) {
     hands.state.tour_action = PanelState::TourAction::none;
     hands.state.tour_captions_shown = 1;
     hands.click("tour back");
-    EXPECT_EQ(hands.state.tour_action, PanelState::TourAction::none) << "there is none before the first";
+    EXPECT_EQ(hands.state.tour_action, PanelState::TourAction::none) << "no caption comes before the first";
 }
 
 // A panel is framed until the next caption.
