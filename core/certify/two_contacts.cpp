@@ -258,7 +258,7 @@ Certificate PairConditions::certificate_of(const PairBox& box, const PairBound& 
     c.a_max = std::max(pair.a[0].hi(), pair.a[1].hi());
     decide(c, 0.5 * bound.T.hi());
     c.assumptions = {{"growth of the energy", bound.m.hi(), 2.0},
-                     {"minus the least force at the cut", -std::min(pair.lambda[0].lo(), pair.lambda[1].lo()), 0.0}};
+                     {"negated least force at the cut", -std::min(pair.lambda[0].lo(), pair.lambda[1].lo()), 0.0}};
     return c;
 }
 
