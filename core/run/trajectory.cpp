@@ -2,7 +2,11 @@
 #include "run/trajectory.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstring>
+
+#include "number/inner_loops.hpp"
 
 namespace achilles {
 
@@ -12,17 +16,19 @@ bool is_plastic_landing(const Event& event) {
 }
 
 State state_in(const DenseSegment& piece, std::span<const double> coefficients, Eigen::Index dof, double t) {
+    using Pair = Pack<double, 2>;
     const double theta =
         piece.end > piece.start ? std::clamp((t - piece.start) / (piece.end - piece.start), 0.0, 1.0) : 0.0;
-    State state{Vector::Zero(dof), Vector::Zero(dof), t};
+    const auto n = static_cast<std::size_t>(dof);
+    std::array<Pair::Value, max_coordinates> pairs{};  // adjacent components of (q, v)
+    const double* block = coefficients.data() + piece.first + 2 * n * (piece.degree + std::size_t{1});
     for (std::uint32_t k = piece.degree + 1; k-- > 0;) {
-        const double* block = coefficients.data() + piece.first + 2 * static_cast<std::size_t>(dof) * k;
-        for (Eigen::Index i = 0; i < dof; ++i) {
-            state.q[i] = state.q[i] * theta + block[i];
-            state.v[i] = state.v[i] * theta + block[dof + i];
-        }
+        block -= 2 * n;
+        for (std::size_t i = 0; i < n; ++i) pairs[i] = pairs[i] * theta + Pair::load(block + 2 * i);
     }
-    return state;
+    std::array<double, 2 * max_coordinates> values;
+    std::memcpy(values.data(), pairs.data(), sizeof values);
+    return {Eigen::Map<const Vector>(values.data(), dof), Eigen::Map<const Vector>(values.data() + n, dof), t};
 }
 
 double integration_error_of_time(const Trajectory& trajectory, std::size_t zeno_event) {
