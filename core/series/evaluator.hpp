@@ -122,8 +122,10 @@ class SeriesEvaluator {
     // Evaluates order k, 1 <= k <= highest_order, given order k of the moving inputs. Requires all lower orders.
     void extend(int k, const Number* inputs) {
         std::copy_n(inputs, inputs_, tables_.now + 1);
-        if constexpr (is_one)
+        if constexpr (is_one) {
             if (k == 1 && code_) return code_->make_first(tables_);
+            if (code_ && program_->plan_.coordinates() == 0) return code_->make_given(tables_, k);
+        }
         make_order(program_->plan_, sums_, tables_, static_cast<std::size_t>(k));
     }
     // Order k of an output, valid from extend(k) until the next call of extend().

@@ -79,7 +79,7 @@ void make_order(const SeriesPlan& plan, const SeriesTables& tables, int k);
 // coefficient times its power is not above 1. Returns the order reached.
 int make_orders(const SeriesPlan& plan, const SeriesTables& tables, MotionOrders& motion, int k, int last);
 
-// Machine code for both functions and one plan, with vectors of four or eight. All terms of the inner sums except the
+// Machine code for these functions and one plan, with vectors of four or eight. All terms of the inner sums except the
 // two with row k are added before the rules, so that the processor can overlap both. The results are the same to the
 // last bit.
 class OrderCode {
@@ -90,6 +90,11 @@ class OrderCode {
 
     void make_first(const SeriesTables& tables) const {
         first_(tables.now, tables.factors, tables.rows + row_, tables.rows + row_, weights(1), nullptr);
+    }
+    // Order k >= 2. Requires a plan without coordinates; order k of its inputs is in the tables.
+    void make_given(const SeriesTables& tables, int k) const {
+        given_(tables.now, tables.factors, tables.rows + row_, tables.rows + static_cast<std::size_t>(k) * row_,
+               weights(k), nullptr);
     }
     // Requires the plan of a motion.
     int make_orders(const SeriesTables& tables, MotionOrders& motion, int k, int last) const {
@@ -108,7 +113,7 @@ class OrderCode {
     const double* weights(int k) const { return weights_.data() + k * weights_per_order; }
 
     std::shared_ptr<const MachineCode> code_;
-    Function *first_ = nullptr, *later_ = nullptr;
+    Function *first_ = nullptr, *later_ = nullptr, *given_ = nullptr;
     std::size_t row_ = 0, states_ = 0;
     // For each order k: k and 1/(k + 1), and both again as vectors for the vector in which only the first lanes are
     // weighted.

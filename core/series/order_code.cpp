@@ -58,6 +58,16 @@ class OrderWriter {
         code_.ret();
         return begin;
     }
+    // Order k >= 2 where order k of the inputs is given.
+    std::size_t write_given() {
+        const std::size_t begin = code_.getSize();
+        code_.forget_all();
+        sum_older();
+        write_order(false);
+        code_.vzeroupper();
+        code_.ret();
+        return begin;
+    }
     std::size_t write_later() {
         const std::size_t begin = code_.getSize();
         Label done;
@@ -245,14 +255,15 @@ std::shared_ptr<const OrderCode> OrderCode::of(const SeriesPlan& plan, Width wid
     if (!best || width > *best || plan.rules.empty() || plan.rules.size() > max_rules_in_code) return nullptr;
     OrderWriter writer(plan, width);
     const std::size_t first = writer.write_first();
-    const std::optional<std::size_t> later = plan.outputs.empty() ? std::nullopt : std::optional(writer.write_later());
+    const bool is_motion = plan.coordinates() > 0;
+    const std::size_t later = is_motion ? writer.write_later() : writer.write_given();
     auto order = std::make_shared<OrderCode>();
     order->code_ = MachineCode::of(writer.bytes());
     if (!order->code_) return nullptr;
     order->first_ = order->code_->as<Function>(first);
-    if (later) order->later_ = order->code_->as<Function>(*later);
+    (is_motion ? order->later_ : order->given_) = order->code_->as<Function>(later);
     order->row_ = plan.row();
-    order->states_ = later ? plan.states() : 0;
+    order->states_ = plan.states();
     const std::size_t mixed = plan.weighted % static_cast<std::size_t>(width);
     for (int k = 0; k <= highest_order; ++k) {
         const double weight = k, inverse = 1.0 / static_cast<double>(k + 1);

@@ -319,6 +319,34 @@ std::vector<double> orders_of(const Model& model, const SeriesProgram& program, 
     return rows;
 }
 
+// All orders of a program that is not a motion: the distances from the edges of domains, along any given series.
+std::vector<double> orders_of_edges(const Model& model, const std::vector<double>& state) {
+    SeriesEvaluator<double> series(model.edge_series(), model.default_run().parameters);
+    std::vector<double> orders, inputs = state;
+    series.begin(inputs.data(), 10.0 * state[0], 0.7);
+    for (int k = 1; k <= SeriesEvaluator<double>::highest_order; ++k) {
+        for (std::size_t i = 0; i < inputs.size(); ++i) inputs[i] *= 0.3 + 0.1 * static_cast<double>(i % 3);
+        series.extend(k, inputs.data());
+        for (std::size_t i = 0; i < model.edges().size(); ++i) orders.push_back(series.output(i));
+    }
+    return orders;
+}
+
+TEST_F(MachineCodes, GiveTheDistancesFromEdgesOfTheLoops) {
+    int systems = 0;
+    for (const std::string& system : systems_with_time()) {
+        const auto with = test::load(system), without = load_without(system);
+        if (with->edges().empty()) continue;
+        ++systems;
+        std::mt19937_64 random(10);
+        for (int i = 0; i < 30; ++i) {
+            const auto state = any_state(*with, random);
+            expect_bits(orders_of_edges(*with, state), orders_of_edges(*without, state), system);
+        }
+    }
+    EXPECT_GT(systems, 2);
+}
+
 TEST_F(MachineCodes, GiveTheOrdersOfTheLoops) {
     for (const std::string& system : systems_with_time()) {
         const auto with = test::load(system), without = load_without(system);
