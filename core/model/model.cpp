@@ -146,6 +146,11 @@ const Program& Model::power(Mode mode) const {
     });
 }
 
+const SeriesProgram& Model::power_series(Mode mode) const {
+    const Program& program = power(mode);
+    return derived(power_series_, mode, [&] { return SeriesProgram(program, 0, 1); });
+}
+
 bool Model::stays_closed_without_force(std::size_t contact, Mode mode) const {
     return derived(closed_without_force_, {mode, contact},
                    [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });

@@ -82,6 +82,7 @@ class Model {
     const TypedProgram<EnergyTerms>& energy() const { return energy_; }
     // dE/dt in a mode: v'Q + dV/dt - sum lambda dh/dt over the held contacts (W).
     const Program& power(Mode mode) const;
+    const SeriesProgram& power_series(Mode mode) const;
 
     // Functions whose edge the motion may reach, and the series of their distances from the edge.
     const std::vector<DomainBoundary>& edges() const { return edges_; }
@@ -170,6 +171,7 @@ class Model {
     mutable std::map<Mode, ModeDynamics> motions_;
     mutable std::map<Mode, SeriesProgram> hddot_series_;
     mutable std::map<Mode, Program> powers_;
+    mutable std::map<Mode, SeriesProgram> power_series_;
     mutable std::map<ContactInMode, ContactPrograms> programs_;
     mutable std::map<ContactInMode, BouncingModel> bouncings_;
     mutable std::map<ContactInMode, OtherContactTerms> other_contact_terms_;

@@ -1,8 +1,8 @@
 #include "simulate/flow.hpp"
 
 #include <algorithm>
+#include <array>
 #include <boost/math/quadrature/gauss.hpp>
-#include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
 namespace achilles {
@@ -107,36 +107,54 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
 WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
     : any_(model.equations().has_power()), dof_(model.dof()), model_(&model), parameters_(run.parameters) {}
 
-double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double from, double to) {
-    if (!any_ || !(to > from)) return 0.0;
-    Evaluator<double>* const power = power_in(piece.motion());
+double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double to) {
+    if (!any_ || !(to > piece.start)) return 0.0;
+    Power* const power = power_in(piece.motion());
     if (power == nullptr) return 0.0;
+    if (const auto work = by_series(power->series, piece, coefficients, to)) return *work;
     const auto power_at = [&](double t) {
-        set_state(*power, state_in(piece, coefficients, dof_, t));
-        power->run();
-        return power->output(0);
+        set_state(power->value, state_in(piece, coefficients, dof_, t));
+        power->value.run();
+        return power->value.output(0);
     };
-    using boost::math::quadrature::gauss, boost::math::quadrature::gauss_kronrod;
-    if (model_->equations().autonomous)
-        return piece.degree <= 7 ? gauss<double, 7>::integrate(power_at, from, to)
-                                 : gauss<double, 10>::integrate(power_at, from, to);
-    // The error of the rule with 15 points is about the square of this one, that of the 7 points among them.
-    constexpr double negligible = 1e-10;
-    double error = 0.0, size = 0.0;
-    const double work = gauss_kronrod<double, 15>::integrate(power_at, from, to, 0, 0.0, &error, &size);
-    return error <= negligible * size ? work : gauss<double, 30>::integrate(power_at, from, to);
+    return boost::math::quadrature::gauss<double, 30>::integrate(power_at, piece.start, to);
 }
 
-// The program of the power in a mode; null if the power is always 0.
-Evaluator<double>* WorkIntegrator::power_in(Mode mode) {
+std::optional<double> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
+                                                std::span<const double> coefficients, double to) const {
+    constexpr double rounding = 0x1p-53, accurate = 0x1p-44;
+    const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
+    constexpr std::array<double, 2 * max_coordinates> zeros{};
+    const std::size_t width = 2 * static_cast<std::size_t>(dof_);
+    const double* order = coefficients.data() + piece.first;
+    power.begin(order, piece.start, span);
+    double factor = theta, sum = power.start(0) * theta, size = std::abs(sum);
+    std::array<double, 4> last{};  // terms; symmetry may make three in a row 0
+    const auto are_below = [&](double part) { return last[0] + last[1] + last[2] + last[3] <= part * size; };
+    const auto fewest = std::max(static_cast<int>(last.size()), static_cast<int>(piece.degree));
+    for (int k = 1; k <= SeriesEvaluator<double>::highest_order; ++k) {
+        power.extend(k, k <= static_cast<int>(piece.degree) ? order += width : zeros.data());
+        factor *= theta;
+        const double term = power.output(0) * factor / (k + 1);
+        sum += term;
+        size += last[static_cast<std::size_t>(k) % last.size()] = std::abs(term);
+        if (k >= fewest && are_below(rounding)) break;
+    }
+    if (!are_below(accurate)) return std::nullopt;
+    return sum * span;
+}
+
+// The power in a mode; null if it is always 0.
+WorkIntegrator::Power* WorkIntegrator::power_in(Mode mode) {
     auto known = powers_.find(mode);
     if (known == powers_.end()) {
         const Program& program = model_->power(mode);
-        const std::vector<bool> moving = program.inputs_of(1);
-        known = powers_.emplace(mode, model_->evaluator(program, parameters_)).first;
-        if (std::none_of(moving.begin(), moving.end(), [](bool used) { return used; }) &&
-            known->second->output(0) == 0.0)
-            known->second.reset();
+        Evaluator<double> value = model_->evaluator(program, parameters_);
+        const std::vector<bool> inputs = program.inputs_of(1);
+        const bool is_zero =
+            std::none_of(inputs.begin(), inputs.end(), [](bool used) { return used; }) && value.output(0) == 0.0;
+        known = powers_.emplace(mode, std::nullopt).first;
+        if (!is_zero) known->second.emplace(Power{std::move(value), {model_->power_series(mode), parameters_}});
     }
     return known->second ? &*known->second : nullptr;
 }

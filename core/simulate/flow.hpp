@@ -85,21 +85,25 @@ class WorkIntegrator {
 
     // Whether there is any work. False if all forces have a potential and neither it nor the gaps depend on time.
     bool any() const { return any_; }
-    // The work over [from, to] in a step, in units of energy, accurate to rounding. The terms of a step's polynomials
-    // decrease at least by half from one to the next, so a Gauss rule with n points has a relative error below 34^-n.
-    // That of dopri5, with powers of at most 4, integrates a product of three of them exactly. A power that depends on
-    // time may vary while the system is at rest: then two rules are compared, and more points used if they differ.
-    double along(const DenseSegment& piece, std::span<const double> coefficients, double from, double to);
+    // The work from the start of a step to the time `to` (s) in it, in units of energy, accurate to rounding.
+    double along(const DenseSegment& piece, std::span<const double> coefficients, double to);
 
  private:
-    Evaluator<double>* power_in(Mode mode);
+    struct Power {
+        Evaluator<double> value;
+        SeriesEvaluator<double> series;
+    };
+    Power* power_in(Mode mode);
+    // The integral of the series of the power along the polynomials of the step. nullopt if its last terms are not
+    // small: a power that depends on time may vary much faster than the motion. Gauss quadrature then evaluates it.
+    std::optional<double> by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
+                                    std::span<const double> coefficients, double to) const;
 
     bool any_;
     Eigen::Index dof_;
     const Model* model_;
     std::vector<double> parameters_;
-    // By mode, created at first use; nullopt if the power is always 0.
-    std::map<Mode, std::optional<Evaluator<double>>> powers_;
+    std::map<Mode, std::optional<Power>> powers_;  // by mode, created at first use; nullopt if it is always 0
 };
 
 }  // namespace achilles

@@ -112,7 +112,7 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     piece.mode = mode;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
-    if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.start, piece.end);
+    if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.end);
     set_state(energy_, flow.end());
     energy_.run();
     // The drift is relative to the largest |T| + |V| so far, because at an instant the sum and each part may be 0.

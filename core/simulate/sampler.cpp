@@ -47,7 +47,7 @@ State Sampler::state(const DenseSegment& piece, double t) const {
 }
 
 double Sampler::work(const DenseSegment& piece, double t) const {
-    return piece.work + projection_->work.along(piece, trajectory_.coefficients, piece.start, t);
+    return piece.work + projection_->work.along(piece, trajectory_.coefficients, t);
 }
 
 Sample Sampler::at(double t) {
