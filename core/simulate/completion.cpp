@@ -148,7 +148,7 @@ bool ExecutionAutomaton::too_short_to_resolve(const Collision& collision, double
 void ExecutionAutomaton::capture(const Contact& contact, const Collision& before) {
     Collision collision = before;
     collision.restart = collision.tangential;
-    Interval hddot = kinematics().normal(collision.with(collision.restart)).hddot;
+    Interval hddot = kinematics().hddot(collision.with(collision.restart));
     if (surfaces_->needs_no_force(which_, next_.mode, collision.with(collision.restart), scale_)) {
         hddot = Interval(0.0);
         next_.unpressed = next_.unpressed.with(which_);

@@ -26,6 +26,17 @@ void move_along(Vector& x, double a, const Vector& n) {
 // The interval of all numbers within this relative distance of a computed number.
 Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
 
+// Sets the inputs of a program to the rounding box of a state.
+void set_rounded(Evaluator<Interval>& program, const State& state) {
+    constexpr double few_ulps = 0x1p-50;
+    const auto n = static_cast<std::size_t>(state.q.size());
+    for (std::size_t i = 0; i < n; ++i) {
+        program.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
+        program.input(n + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
+    }
+    program.clock() = rounded(state.t, few_ulps);
+}
+
 }  // namespace
 
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
@@ -119,21 +130,24 @@ bool ContactKinematics::project(State& state, bool keep_velocity, Contact& conta
 }
 
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {
-    constexpr double few_ulps = 0x1p-50;
     const FloatEnvironmentGuard ground;
     auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        enclosure.input(i) = rounded(state.q[static_cast<Eigen::Index>(i)], few_ulps);
-        enclosure.input(dof_ + i) = rounded(state.v[static_cast<Eigen::Index>(i)], few_ulps);
-    }
-    enclosure.clock() = rounded(state.t, few_ulps);
+    set_rounded(enclosure, state);
     enclosure.run();
     return {enclosure.hddot(), enclosure.jerk()};
 }
 
+Interval ContactKinematics::hddot(const State& state) {
+    const FloatEnvironmentGuard ground;
+    Evaluator<Interval>& enclosure = normal_enclosure();
+    set_rounded(enclosure, state);
+    enclosure.run();
+    return enclosure.output(0);
+}
+
 Interval ContactKinematics::hddot_within(const State& distances, const State& state) {
     const FloatEnvironmentGuard ground;
-    auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
+    Evaluator<Interval>& enclosure = normal_enclosure();
     const auto around = [](double x, double distance) { return Interval(x) + Interval(-distance, distance); };
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
@@ -142,7 +156,12 @@ Interval ContactKinematics::hddot_within(const State& distances, const State& st
     }
     enclosure.clock() = around(state.t, distances.t);
     enclosure.run();
-    return enclosure.hddot();
+    return enclosure.output(0);
+}
+
+Evaluator<Interval>& ContactKinematics::normal_enclosure() {
+    if (!normal_enclosure_) normal_enclosure_ = model_->evaluator<Interval>(programs_->normal_acceleration, parameters_);
+    return *normal_enclosure_;
 }
 
 double ContactKinematics::normal_acceleration(const State& state) {

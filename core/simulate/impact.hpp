@@ -54,6 +54,8 @@ class ContactKinematics {
         Interval hddot, jerk;
     };
     Normal normal(const State& state);
+    // The first of them alone, which is much cheaper.
+    Interval hddot(const State& state);
     // hddot over all states within these distances of `state`.
     Interval hddot_within(const State& distances, const State& state);
     double normal_acceleration(const State& state);
@@ -62,6 +64,7 @@ class ContactKinematics {
  private:
     // Evaluates the terms of the contact at a state and stores them in `contact`.
     void evaluate(const State& state, Contact& contact);
+    Evaluator<Interval>& normal_enclosure();
     const Model* model_;
     const Model::ContactPrograms* programs_;
     std::vector<double> parameters_;
@@ -71,6 +74,7 @@ class ContactKinematics {
     std::optional<Evaluator<double>> normal_;
     std::optional<ReleaseTerms<Evaluator<double>>> release_;
     std::optional<ContactTerms<Evaluator<Interval>>> enclosure_;
+    std::optional<Evaluator<Interval>> normal_enclosure_;
     std::optional<ReleaseTerms<Evaluator<Interval>>> release_enclosure_;
 };
 

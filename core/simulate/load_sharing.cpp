@@ -43,7 +43,7 @@ ContactSet basis_of(const ClosedContacts& closed, ContactSet set) {
 ContactVector<double> ExecutionAutomaton::rounding_of(const ClosedContacts& closed) {
     ContactVector<double> rounding(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        rounding[static_cast<Eigen::Index>(i)] = 4.0 * width(surfaces_->of(closed.which[i]).normal(next_.state).hddot);
+        rounding[static_cast<Eigen::Index>(i)] = 4.0 * width(surfaces_->of(closed.which[i]).hddot(next_.state));
     return rounding;
 }
 
