@@ -83,6 +83,9 @@ void Model::compile() {
         free_.push_back(&programs_.emplace(ContactInMode({}, i), compile_contact(e.free, i)).first->second);
     energy_ = TypedProgram<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
     start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
+    std::vector<Text> derived;
+    for (const DerivedDescription& one : description_.derived) derived.push_back({one.name, one.definition.at});
+    if (!derived.empty()) derived_parameters_ = compile_drawing(derived);
     edges_ = edges_of(equations_, layout_);
     std::vector<Expression> distances;
     for (const DomainBoundary& edge : edges_) distances.push_back(edge.event_function);
@@ -223,15 +226,11 @@ Program Model::compile_drawing(std::span<const Text> texts, const std::string& o
 }
 
 std::vector<double> derived_values(const Model& model, std::span<const double> parameters) {
-    const auto& all = model.description().derived;
-    if (all.empty()) return {};
-    std::vector<Text> names;
-    for (const DerivedDescription& derived : all) names.push_back({derived.name, derived.definition.at});
-    const Program program = model.compile_drawing(names);
-    auto value = model.evaluator(program, parameters);
+    std::vector<double> values(model.description().derived.size());
+    if (values.empty()) return values;
+    auto value = model.evaluator(model.derived_parameters(), parameters);
     value.run();
-    std::vector<double> values;
-    for (std::size_t i = 0; i < all.size(); ++i) values.push_back(value.output(i));
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = value.output(i);
     return values;
 }
 

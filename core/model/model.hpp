@@ -84,6 +84,9 @@ class Model {
     const Program& power(Mode mode) const;
     const SeriesProgram& power_series(Mode mode) const;
 
+    // The derived parameters, in the order of the description.
+    const Program& derived_parameters() const { return derived_parameters_; }
+
     // Functions whose edge the motion may reach, and the series of their distances from the edge.
     const std::vector<DomainBoundary>& edges() const { return edges_; }
     const SeriesProgram& edge_series() const { return edge_series_; }
@@ -179,6 +182,7 @@ class Model {
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;
+    Program derived_parameters_;
     SeriesProgram edge_series_;
     std::vector<DomainBoundary> edges_;
     TypedProgram<EnergyTerms> energy_;
