@@ -45,7 +45,7 @@ double DomainMonitor::sign_of(const DomainBoundary& edge, double start) const {
 // expanded until their last terms are small.
 double DomainMonitor::safe_part(const Stepper& stepper, double time) {
     motion_.clear();
-    const std::size_t degree = stepper.coefficients(motion_);
+    degree_ = stepper.coefficients(motion_);
     motion_.resize(motion_.size() + block_, 0.0);
     series_.begin(motion_.data(), time, stepper.current_time());
     for (std::size_t i = 0; i < distances_.size(); ++i) {
@@ -55,7 +55,7 @@ double DomainMonitor::safe_part(const Stepper& stepper, double time) {
     }
     bool known = false;
     for (int k = 1; k <= highest && !known; ++k) {
-        series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree + 1) * block_);
+        series_.extend(k, motion_.data() + std::min<std::size_t>(static_cast<std::size_t>(k), degree_ + 1) * block_);
         known = k >= lowest;
         for (std::size_t i = 0; i < distances_.size(); ++i) {
             Polynomial& distance = distances_[i];

@@ -20,6 +20,11 @@ class DomainMonitor {
     // exp(DomainBoundary::growth). If the motion reaches an edge, the steps shorten to nothing. If it passes close to
     // one, as sqrt(x^2 + y^2) may, the steps resolve the passage.
     double safe_part(const Stepper& stepper, double time);
+    // The polynomials of that step, as from Stepper::coefficients().
+    std::uint32_t append_motion(std::vector<double>& coefficients) const {
+        coefficients.insert(coefficients.end(), motion_.begin(), motion_.end() - static_cast<std::ptrdiff_t>(block_));
+        return degree_;
+    }
 
  private:
     double safe_part(Polynomial& distance) const;
@@ -31,6 +36,7 @@ class DomainMonitor {
     std::vector<Polynomial> distances_;
     std::vector<double> signs_;   // factors of the higher terms of each distance
     std::vector<double> motion_;  // the last step as polynomials, and a block of zeros
+    std::uint32_t degree_ = 0;    // of those polynomials
 };
 
 // ---- messages: the function that becomes undefined just ahead of a state ----

@@ -38,7 +38,8 @@ StepFailure Flow::step(double until) {
     first_ = 0.0;
     if (edges_ && failure == StepFailure::none) {
         const double theta = edges_->safe_part(*stepper_, t_);
-        if (theta < 1.0) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
+        is_examined_ = !(theta < 1.0);
+        if (!is_examined_) failure = stepper_->redo_step(theta * stepper_->current_time(), least());
     }
     if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
@@ -49,7 +50,7 @@ StepFailure Flow::step(double until) {
 }
 
 StepFailure Flow::redo_step(double duration) {
-    moved_ = false;
+    moved_ = is_examined_ = false;
     const StepFailure failure = stepper_->redo_step(duration, least());
     if (failure != StepFailure::none) return failure;
     span_ = stepper_->current_time();
@@ -90,7 +91,7 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
     piece.mode = mode_;
     piece.load_bearing = mode_.held();
     piece.first = coefficients.size();
-    piece.degree = stepper_->coefficients(coefficients);
+    piece.degree = is_examined_ ? edges_->append_motion(coefficients) : stepper_->coefficients(coefficients);
     if (!moved_) return piece;
     // Corrects the polynomial to end at the projected state.
     const State& moved = end();
@@ -122,7 +123,8 @@ double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> 
 
 std::optional<double> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                                 std::span<const double> coefficients, double to) const {
-    constexpr double rounding = 0x1p-53, accurate = 0x1p-44;
+    // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
+    constexpr double rounding = 0x1p-53, accurate = 0x1p-40;
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
     constexpr std::array<double, 2 * max_coordinates> zeros{};
     const std::size_t width = 2 * static_cast<std::size_t>(dof_);

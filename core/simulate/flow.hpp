@@ -64,6 +64,7 @@ class Flow {
 
     std::unique_ptr<Stepper> stepper_;
     std::unique_ptr<DomainMonitor> edges_;  // null if the system has no edges
+    bool is_examined_ = false;              // edges_ has the polynomials of the last step
     const Model* model_;
     std::vector<double> parameters_;
     Model::MotionEvaluators motions_;          // by mode, created at first use
