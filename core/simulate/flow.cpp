@@ -124,7 +124,7 @@ double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> 
 std::optional<double> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                                 std::span<const double> coefficients, double to) const {
     // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
-    constexpr double rounding = 0x1p-53, accurate = 0x1p-40;
+    constexpr double rounding = 0x1p-53, accurate = 0x1p-42;
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
     constexpr std::array<double, 2 * max_coordinates> zeros{};
     const std::size_t width = 2 * static_cast<std::size_t>(dof_);
