@@ -160,7 +160,8 @@ Interval ContactKinematics::hddot_within(const State& distances, const State& st
 }
 
 Evaluator<Interval>& ContactKinematics::normal_enclosure() {
-    if (!normal_enclosure_) normal_enclosure_ = model_->evaluator<Interval>(programs_->normal_acceleration, parameters_);
+    if (!normal_enclosure_)
+        normal_enclosure_ = model_->evaluator<Interval>(programs_->normal_acceleration, parameters_);
     return *normal_enclosure_;
 }
 
