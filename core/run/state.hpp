@@ -1,4 +1,4 @@
-// The state of a system: coordinates, rates, time. At most eight coordinates, so that their vectors need no heap
+// The state of a system: coordinates, rates, time. At most 16 coordinates, so that their vectors need no heap
 // memory.
 #pragma once
 
@@ -7,7 +7,7 @@
 
 namespace achilles {
 
-inline constexpr int max_coordinates = 8;
+inline constexpr int max_coordinates = 16;
 using Vector = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, max_coordinates, 1>;
 
 struct State {

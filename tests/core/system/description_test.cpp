@@ -243,10 +243,10 @@ TEST(Description, ExpressionsKnowWhereTheyStart) {
     EXPECT_STREQ(error.what(), "<text>:10:8: unknown name 'x'\n    gap = \"x\"\n           ^");
 }
 
-TEST(Description, AtMostEightCoordinates) {
+TEST(Description, AtMostSixteenCoordinates) {
     std::string text = title + least;
-    for (int i = 0; i < 9; ++i) text += "[[coordinate]]\nname = \"q" + std::to_string(i) + "\"\nstart = 0\nrate = 0\n";
-    EXPECT_EQ(message_of(text), "f.toml:41:9: more than 8 coordinates\n    name = \"q7\"\n            ^");
+    for (int i = 0; i < 17; ++i) text += "[[coordinate]]\nname = \"q" + std::to_string(i) + "\"\nstart = 0\nrate = 0\n";
+    EXPECT_EQ(message_of(text), "f.toml:73:9: more than 16 coordinates\n    name = \"q15\"\n            ^");
 }
 
 TEST(Description, HostileFilesEndInAMessage) {
