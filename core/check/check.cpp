@@ -13,6 +13,12 @@ namespace achilles {
 
 namespace {
 
+TextAndLatex energy_of_prescribed_motion() {
+    return {"T = T2 + T1 + T0 by degree in the rates: 'energy' is T2 - T0 + V, and 'work' belongs to that balance",
+            "$T = T_2 + T_1 + T_0$ by degree in the rates: the energy is $T_2 - T_0 + V$, and the work belongs to that "
+            "balance.\n"};
+}
+
 class Report : EquationsOnPage {
  public:
     Report(const Model& model, const Run& run, const SimplifiedEquations& simplified, Notation notation)
@@ -99,8 +105,9 @@ class Report : EquationsOnPage {
             page_.formula(
                 left, is_text() ? text.text : achilles::write(expression, model_.slot_names(), Notation::latex).text);
         };
-        show({"T", "T"}, e.kinetic, system.kinetic);
-        show({"V", "V"}, e.potential, system.potential);
+        show({"T", "T"}, e.given.kinetic, system.kinetic);
+        show({"V", "V"}, e.given.potential, system.potential);
+        if (e.has_prescribed_motion()) page_.sentence(energy_of_prescribed_motion());
         Graph graph(e.energy.graph());
         const std::vector<Expression> forces = given_forces(model_, graph);
         if (!system.dissipation.text.empty()) show({"R", "R"}, forces.back(), system.dissipation);
@@ -158,6 +165,7 @@ class CheckReport : EquationsOnPage {
         if (const std::size_t count = simplified_.while_held.size(); count > 0)
             page_.sentence({counted(count, "more Zeno condition") + " while other contacts are held: --verbose", {}});
         page_.sentence({verified(disagreement), {}});
+        if (model_.equations().has_prescribed_motion()) page_.sentence(energy_of_prescribed_motion());
         const bool forces = has_forces(model_.equations());
         page_.heading(fmt::format("M q'' + bias = {}", forces ? "Q" : "0"));
         matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);

@@ -67,17 +67,23 @@ Real slope(const std::function<Real(const PreciseState&)>& f, const PreciseState
     return (up - f(at)) / (2 * step);
 }
 
+// The same derivative by the time.
+Real slope_in_time(const std::function<Real(const PreciseState&)>& f, const PreciseState& point) {
+    return (f({point.q, point.v, point.t + step}) - f({point.q, point.v, point.t - step})) / (2 * step);
+}
+
 // The expected equations from L, the forces and the gaps: d/dt dL/dv = dL/dq + force - dR/dv along the motion.
 class Differences {
  public:
     Differences(const Model& model, const Run& run)
         : dof_(model.dof()),
-          lagrangian_(model, run, {model.equations().kinetic - model.equations().potential}),
+          has_prescribed_motion_(model.equations().has_prescribed_motion()),
+          lagrangian_(model, run, {model.equations().given.kinetic - model.equations().given.potential}),
           graph_(model.equations().energy.graph()),
           forces_(model, run, given_forces(model, graph_)),
           gaps_(model, run, model.equations().gaps) {}
 
-    // M, bias, Q; for each contact dh, hdot, hddot, lambda; then hddot of each contact while one other is held.
+    // M, bias, Q; in bias and Q, the forces of a prescribed motion belong to Q. For each contact dh, hdot, hddot, lambda; then hddot of each contact while one other is held.
     Reals operator()(const PreciseState& at) {
         const auto L = [&](const PreciseState& x) { return lagrangian_(x)[0]; };
         const auto R = [&](const PreciseState& x) { return forces_(x)[dof_]; };
@@ -90,6 +96,12 @@ class Differences {
             for (Eigen::Index j = 0; j < dof_; ++j) {
                 M(i, j) = slope(momentum, at, &PreciseState::v, j);
                 b[i] += slope(momentum, at, &PreciseState::q, j) * at.v[j];
+            }
+            if (has_prescribed_motion_) {
+                b[i] += slope_in_time(momentum, at);
+                const Real inertia = force_of_motion(at, i);
+                b[i] += inertia;
+                Q[i] += inertia;
             }
         }
         const Eigen::PartialPivLU<Matrix> inverse(M);
@@ -121,7 +133,22 @@ class Differences {
     }
 
  private:
+    // -dc_i/dt - sum_k (dc_i/dq_k - dc_k/dq_i) v_k, where c is dL/dv at v = 0.
+    Real force_of_motion(const PreciseState& at, Eigen::Index i) {
+        const auto c = [&](Eigen::Index k) {
+            return [this, k](const PreciseState& x) {
+                const auto L = [&](const PreciseState& y) { return lagrangian_(y)[0]; };
+                return slope(L, {x.q, Reals(Reals::Zero(dof_)), x.t}, &PreciseState::v, k);
+            };
+        };
+        Real force = -slope_in_time(c(i), at);
+        for (Eigen::Index k = 0; k < dof_; ++k)
+            force -= (slope(c(i), at, &PreciseState::q, k) - slope(c(k), at, &PreciseState::q, i)) * at.v[k];
+        return force;
+    }
+
     Eigen::Index dof_;
+    bool has_prescribed_motion_;
     Functions lagrangian_;
     Graph graph_;
     Functions forces_, gaps_;

@@ -10,10 +10,9 @@ namespace achilles {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-// Limits of a graph. They are far above the needs of a chain of eight links (10 000 nodes), and low enough that a
-// larger input is rejected within a second. The size of an exact number is that of its numerator and denominator
-// together.
-inline constexpr std::size_t max_nodes = 200000;
+// Limits of a graph. A chain of twelve links in relative angles needs a million nodes, certificates included. A larger
+// input is rejected within seconds. The size of an exact number is that of its numerator and denominator together.
+inline constexpr std::size_t max_nodes = 4000000;
 inline constexpr std::size_t max_bits = 1 << 14, max_bits_in_all = 1 << 26;
 
 // Hash set of ids with open addressing: copying a graph then copies plain memory.

@@ -2,12 +2,11 @@
 
 #include <fmt/format.h>
 #include <algorithm>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 #include "contacts/contact_law.hpp"
-#include "model/read_expressions.hpp"
+#include "model/rate_polynomial.hpp"
 
 namespace achilles {
 
@@ -82,8 +81,7 @@ bool is_quadratic(Expression expression, const std::vector<std::uint32_t>& slots
     Expression offender;
     const auto expanded = expand_in_rates(expression, slots, offender);
     if (!expanded) return false;
-    return std::all_of(expanded->begin(), expanded->end(),
-                       [](const auto& term) { return std::accumulate(term.first.begin(), term.first.end(), 0) <= 2; });
+    return std::all_of(expanded->begin(), expanded->end(), [](const auto& term) { return degree(term.first) <= 2; });
 }
 
 // Cancels a factor common to dividend and divisor of a quotient. The divisor must never be zero.

@@ -57,8 +57,17 @@ struct ModeEquations {
     std::vector<ContactEquations> contacts;
 };
 
+// T, V and the forces (including -dR/dv) as given.
+struct GivenTerms {
+    Expression kinetic, potential;
+    std::vector<Expression> Q;
+};
+
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.
 struct Equations {
+    GivenTerms given;
+    // If the given T has terms of degree 1 and 0 in the rates, T = T2 + c.v + T0, then kinetic is T2, potential is V -
+    // T0, and Q contains the forces from c (theory-gaps.md 1).
     std::vector<Expression> M, bias, Q;
     Expression kinetic, potential, energy;
     std::vector<Expression> gaps, restitutions;  // of every contact
@@ -69,6 +78,7 @@ struct Equations {
     bool quadratic_in_rates = true;  // the forces, and therefore f_c, have degree 2 or less in the rates
 
     bool has_power() const;
+    bool has_prescribed_motion() const { return kinetic != given.kinetic; }
 };
 
 // Derives the rest of the equations from M, Q, kinetic, potential, gaps and restitutions, which must be set.

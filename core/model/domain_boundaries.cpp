@@ -120,10 +120,10 @@ std::vector<DomainBoundary> edges_of(const Equations& equations, const Layout& l
     std::vector<std::uint32_t> moving;
     for (std::uint32_t slot = 0; slot < 2 * layout.dof; ++slot) moving.push_back(slot);
     moving.push_back(layout.t());
-    std::vector<std::pair<Expression, const char*>> written{{equations.kinetic, "the kinetic energy"},
-                                                            {equations.potential, "the potential"}};
+    std::vector<std::pair<Expression, const char*>> written{{equations.given.kinetic, "the kinetic energy"},
+                                                            {equations.given.potential, "the potential"}};
     for (const Expression gap : equations.gaps) written.emplace_back(gap, "the gap");
-    for (const Expression force : equations.Q) written.emplace_back(force, "the forces");
+    for (const Expression force : equations.given.Q) written.emplace_back(force, "the forces");
     std::vector<DomainBoundary> edges;
     for (const auto& [whole, place] : written) {
         const std::vector<bool> needed = reachable(std::span(&whole, 1));

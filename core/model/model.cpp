@@ -6,6 +6,7 @@
 #include "contacts/contact_law.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
+#include "model/size_limit.hpp"
 #include "model/unpressed.hpp"
 #include "number/float_environment.hpp"
 #include "number/jet.hpp"
@@ -28,14 +29,18 @@ Model::Model(SystemDescription description) : description_(std::move(description
         derive(equations_, layout_, *graph_);
         compile();
     } catch (const ExpressionTooLarge& problem) {
-        throw description_.error(description_.kinetic.at,
-                                 fmt::format("the equations of motion are too large: {}", problem.what()));
+        throw too_large("the equations of motion", problem);
     } catch (const std::domain_error& problem) {
         throw description_.error(
             description_.kinetic.at,
             fmt::format("the mass matrix is not positive definite at any state: {}", problem.what()),
             "every coordinate needs a positive inertia");
     }
+}
+
+InputError Model::too_large(const char* what, const ExpressionTooLarge& problem) const {
+    const Mistake mistake = achilles::too_large(description_, equations_, what, problem);
+    return description_.error(mistake.at, mistake.message, mistake.hint);
 }
 
 Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const {
@@ -82,7 +87,8 @@ void Model::compile() {
     for (std::size_t i = 0; i < contacts(); ++i)
         free_.push_back(&programs_.emplace(ContactInMode({}, i), compile_contact(e.free, i)).first->second);
     energy_ = TypedProgram<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
-    start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.kinetic, e.potential);
+    start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.given.kinetic,
+                                          e.given.potential);
     std::vector<Text> derived;
     for (const DerivedDescription& one : description_.derived) derived.push_back({one.name, one.definition.at});
     if (!derived.empty()) derived_parameters_ = compile_drawing(derived);
@@ -119,9 +125,7 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
     try {
         return map.emplace(key, make()).first->second;
     } catch (const ExpressionTooLarge& problem) {
-        throw description_.error(
-            description_.kinetic.at,
-            fmt::format("the equations for held contacts or for certificates are too large: {}", problem.what()));
+        throw too_large("the equations for held contacts or for certificates", problem);
     }
 }
 

@@ -152,6 +152,7 @@ class Model {
     Program compile_drawing(std::span<const Text> texts, const std::string& own = {}) const;
 
  private:
+    InputError too_large(const char* what, const ExpressionTooLarge& problem) const;
     Expression read(const Text& text, const Scope& scope, Graph& graph) const;
     void compile();
     ContactPrograms compile_contact(const ModeEquations& motion, std::size_t contact) const;

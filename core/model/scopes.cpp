@@ -105,14 +105,6 @@ Scope constant_scope(const SystemDescription& system, const Layout& layout, Grap
 
 }  // namespace
 
-Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
-    Scope scope = force_scope(system, layout, graph);
-    scope.allowed.erase("t");
-    scope.forbidden.emplace(
-        "t", "'t' is not allowed in the kinetic energy: write prescribed motion in the gap, the potential or a force");
-    return scope;
-}
-
 Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     Scope scope;
     allow_positions(scope, system, layout, graph);

@@ -19,9 +19,7 @@ Layout layout_of(const SystemDescription& system);
 // The names of the inputs, by slot: what to_text() prints.
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout);
 
-// Coordinates, rates, parameters.
-Scope kinetic_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
-// Coordinates, rates, t, parameters: for a force or the dissipation.
+// Coordinates, rates, t, parameters: for the kinetic energy, a force or the dissipation.
 Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters.
 Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph);

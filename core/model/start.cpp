@@ -85,9 +85,9 @@ Mistake no_value(const Model& model, const Run& run, Location at, const char* wh
 // Checks that T and V have finite values.
 void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const {
     if (!std::isfinite(start.kinetic()))
-        throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.kinetic, 1});
+        throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.given.kinetic, 1});
     if (!std::isfinite(start.potential()))
-        throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.potential, 1});
+        throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.given.potential, 1});
 }
 
 // Checks that the gap is defined and not clearly negative, and that a closed contact has a normal.
@@ -150,7 +150,7 @@ void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double
     };
     for (std::size_t i = 0; i < description_.coordinates.size(); ++i)
         if (!description_.coordinates[i].force.text.empty())
-            blame(description_.coordinates[i].force, "the force", {graph.adopt(equations_.Q[i])});
+            blame(description_.coordinates[i].force, "the force", {graph.adopt(equations_.given.Q[i])});
     blame(description_.potential, "a derivative of the potential", gradient(graph.adopt(equations_.potential), q));
     for (std::size_t i = 0; i < contacts(); ++i) {
         std::vector<Expression> of_gap = gradient(graph.adopt(equations_.gaps[i]), q);

@@ -145,10 +145,10 @@ std::string undefined_in(const Model& model, const Run& run, const State& state,
     const auto look = [&](const std::vector<Expression>& expressions, const char* name) {
         return undefined_among(model, run, expressions, state, box, name);
     };
-    std::string found = look({e.kinetic}, "the kinetic energy");
-    if (found.empty()) found = look({e.potential}, "the potential");
+    std::string found = look({e.given.kinetic}, "the kinetic energy");
+    if (found.empty()) found = look({e.given.potential}, "the potential");
     if (found.empty()) found = look(e.gaps, "the gap");
-    if (found.empty()) found = look(e.Q, "the forces");
+    if (found.empty()) found = look(e.given.Q, "the forces");
     if (found.empty()) found = first_edge(model, run, state, box);
     if (found.empty()) found = first_bad_pivot(model, run, state, box);
     if (found.empty()) found = look(e.free.f, "the equations of motion");

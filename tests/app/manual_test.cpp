@@ -1,4 +1,5 @@
 // Consistency of the manual with the program: its tables, its examples and the JSON schema.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -268,6 +269,24 @@ TEST(Schema, HoldsForForcesMovingAndSeveralGaps) {
         ++systems;
     }
     EXPECT_EQ(systems, 6);
+}
+
+TEST(Schema, HoldsForSixteenCoordinates) {
+    const Folder folder;
+    std::string text = "title = \"sixteen\"\ncoordinate = [\n", kinetic = "0", potential = "0";
+    for (int i = 1; i <= 16; ++i) {
+        text += fmt::format("{{name = \"x{}\", start = {}, rate = -1}},\n", i, i);
+        kinetic += fmt::format(" + x{}'^2/2", i);
+        potential += fmt::format(" + x{}^2/2", i);
+    }
+    folder.put("sixteen.toml", text + "]\nlagrangian.kinetic = \"" + kinetic + "\"\nlagrangian.potential = \"" +
+                                   potential + "\"\nconstraint = [{gap = \"x1 + 0.1\", restitution = 0}]\n");
+    const Answer run = folder.run("simulate sixteen.toml --end 2 --json -");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(faults_of(json::parse(run.out)), std::vector<std::string>());
+    const Answer proof = folder.run("prove sixteen.toml --end 0.5 --json -");
+    EXPECT_EQ(proof.status, 0) << proof.err;
+    EXPECT_EQ(faults_of(json::parse(proof.out), "proof.schema.json"), std::vector<std::string>());
 }
 
 // A ball nearly touches a post, which a loose tolerance cannot decide. Options are as requested; the rerun is reported.

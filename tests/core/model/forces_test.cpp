@@ -85,9 +85,6 @@ TEST_P(WrongForces, IsToldWithItsPlace) {
 }
 
 const WrongForce wrong_forces[] = {
-    {kinetic_text, "m/2*(x'^2 + theta'^2)*t",
-     "f.toml:15:34: 't' is not allowed in the kinetic energy: write prescribed motion in the gap, the potential or a "
-     "force\n    kinetic = \"m/2*(x'^2 + theta'^2)*t\"\n                                     ^"},
     {"restitution = \"e\"", "restitution = \"e*t\"",
      "f.toml:19:18: 't' is not allowed in the restitution: use only parameters\n    restitution = \"e*t\"\n            "
      "         ^"},

@@ -226,7 +226,7 @@ std::string error_of(std::string text, const std::string& from, const std::strin
 
 TEST(BadSystems, AreToldWhatIsWrong) {
     const std::string right = odd_system;
-    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "c'"), "the term c' of the kinetic energy has degree 1 in the rates");
+    EXPECT_EQ(error_of(right, "exp(b)*c'^2", "c'^3"), "the term c'^3 of the kinetic energy has degree 3 in the rates");
     EXPECT_EQ(error_of(right, "exp(b)*c'^2", "sin(c')"),
               "the kinetic energy is not a polynomial in the rates: sin(c')");
     EXPECT_EQ(error_of(right, "c^4/4", "c'^2"),
@@ -272,10 +272,18 @@ TEST(BadSystems, IndefiniteMassesAreToldEvenWhereTheyCancel) {
 }
 
 TEST(BadSystems, EquationsHaveAStatedLimit) {
-    std::string potential = "c";
-    for (int i = 1; i < 30000; ++i) potential += " + " + std::to_string(i) + "*sin(a + " + std::to_string(i) + "*b)";
-    EXPECT_EQ(error_of(odd_system, "c^4/4", potential),
-              "the equations of motion are too large: more than 200000 operations");
+    std::string kinetic = "exp(b)*c'^2", potential = "c";
+    for (int i = 1; i < 2000; ++i) kinetic += fmt::format(" + 1/{}*(c' + {}*a')^2", 2 * i + 1, i);
+    EXPECT_EQ(error_of(odd_system, "exp(b)*c'^2", kinetic),
+              "the equations of motion are too large: an exact number has more than 16384 bits; the largest expression "
+              "of the file is the kinetic energy, with 10011 operations");
+    // What is too large is T, but most of it is in V.
+    for (int i = 1; i < 5000; ++i) potential += fmt::format(" + sin(a + {}*b)", i);
+    std::string text = odd_system;
+    text.replace(text.find("exp(b)*c'^2"), 11, kinetic);
+    EXPECT_EQ(error_of(text, "c^4/4", potential),
+              "the equations of motion are too large: an exact number has more than 16384 bits; the largest expression "
+              "of the file is the potential, with 19995 operations");
 }
 
 }  // namespace
