@@ -83,7 +83,8 @@ class Differences {
           forces_(model, run, given_forces(model, graph_)),
           gaps_(model, run, model.equations().gaps) {}
 
-    // M, bias, Q; in bias and Q, the forces of a prescribed motion belong to Q. For each contact dh, hdot, hddot, lambda; then hddot of each contact while one other is held.
+    // M, bias, Q, which contains the forces of a prescribed motion. For each contact dh, hdot, hddot, lambda; then hddot
+    // of each contact while one other is held.
     Reals operator()(const PreciseState& at) {
         const auto L = [&](const PreciseState& x) { return lagrangian_(x)[0]; };
         const auto R = [&](const PreciseState& x) { return forces_(x)[dof_]; };

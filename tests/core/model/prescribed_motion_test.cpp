@@ -18,18 +18,18 @@ namespace {
 
 using Runs = std::shared_ptr<const Model>;
 
-// A pendulum whose pivot moves along y = a cos(om t), with a stop at theta = -0.3. T and the force on theta vary.
+// A pendulum whose pivot moves along y = a cos(om t), with a stop at theta = 0.2. T and the force on theta vary.
 std::string kapitza(const std::string& kinetic, const std::string& force) {
     return R"toml(title = "Kapitza's pendulum"
 coordinate = [{name = "theta", start = 0.7, rate = -0.4, unit = "rad", force = ")toml" +
            force + R"toml("}]
-parameter = [{name = "m", value = 1.3}, {name = "L", value = 0.5}, {name = "a", value = 0.05}, {name = "om", value = 9.0},
-             {name = "g", value = 9.81}]
+parameter = [{name = "m", value = 1.3}, {name = "L", value = 0.5}, {name = "a", value = 0.05},
+             {name = "om", value = 9.0}, {name = "g", value = 9.81}]
 lagrangian.kinetic = ")toml" +
            kinetic + R"toml("
 lagrangian.potential = "-m*g*L*cos(theta)"
-constraint = [{gap = "theta + 0.3", restitution = 0.6}]
-run = {end_time = 4.0, tolerance = 1e-14}
+constraint = [{gap = "theta - 0.2", restitution = 0.6}]
+run = {end_time = 3.0, tolerance = 1e-14}
 )toml";
 }
 
@@ -44,12 +44,13 @@ std::string hoop(const std::string& kinetic, const std::string& force) {
     return R"toml(title = "Bead on a rotating hoop"
 coordinate = [{name = "theta", start = 0.4, rate = 0.2, unit = "rad", force = ")toml" +
            force + R"toml("}]
-parameter = [{name = "m", value = 0.7}, {name = "R", value = 0.4}, {name = "om", value = 6.0}, {name = "g", value = 9.81}]
+parameter = [{name = "m", value = 0.7}, {name = "R", value = 0.4}, {name = "om", value = 6.0},
+             {name = "g", value = 9.81}]
 lagrangian.kinetic = ")toml" +
            kinetic + R"toml("
 lagrangian.potential = "-m*g*R*cos(theta)"
-constraint = [{gap = "1.2 - theta", restitution = 0.5}]
-run = {end_time = 4.0, tolerance = 1e-14}
+constraint = [{gap = "0.6 - theta", restitution = 0.5}]
+run = {end_time = 3.0, tolerance = 1e-14}
 )toml";
 }
 
@@ -65,12 +66,13 @@ Runs hoop_by_hand() { return test::typed(hoop("m/2*R^2*theta'^2", "m*R^2*om^2*si
 std::string turntable(const std::string& kinetic, const std::string& on_x, const std::string& on_y) {
     return R"toml(title = "Mass on a turntable"
 coordinate = [{name = "x", start = 0.5, rate = 0.3, force = ")toml" +
-           on_x + R"toml("}, {name = "y", start = -0.2, rate = 1.1, force = ")toml" + on_y + R"toml("}]
-parameter = [{name = "m", value = 1.5}, {name = "b", value = 0.8}, {name = "d", value = 0.3}, {name = "k", value = 20.0}]
+           on_x + R"toml("}, {name = "y", start = 0.6, rate = -0.4, force = ")toml" + on_y + R"toml("}]
+parameter = [{name = "m", value = 1.5}, {name = "b", value = 0.8}, {name = "d", value = 0.3},
+             {name = "k", value = 20.0}]
 lagrangian.kinetic = ")toml" +
            kinetic + R"toml("
 lagrangian.potential = "k/2*(x^2 + y^2)"
-constraint = [{gap = "y + x/4 + 0.3", restitution = 0.5}]
+constraint = [{gap = "y + x/4 - 0.1", restitution = 0.5}]
 run = {end_time = 3.0, tolerance = 1e-14}
 )toml";
 }
