@@ -161,6 +161,8 @@ Fraction Algebra::node(Expression e, const Fraction& a, const Fraction& b) {
             return divide(a, b);
         case Op::power:
             return power(a, node.exponent);
+        case Op::midpoint:  // its value does not matter: 0 makes the expression shortest
+            return {};
         case Op::real_power: {
             const Expression value = real_power(expression(a), expression(b));
             if (!Builder::is(value, Op::real_power)) return simplify(value);  // the exponent has become a number
@@ -171,13 +173,33 @@ Fraction Algebra::node(Expression e, const Fraction& a, const Fraction& b) {
     }
 }
 
+namespace {
+
+// Whether the value of a node follows without those of its operands.
+bool has_own_value(Operation operation) { return is_leaf(operation) || operation == Op::midpoint; }
+
+// By node: whether the value of the expression follows from it. Nothing below a midpoint is needed.
+std::vector<bool> nodes_for(Expression expression) {
+    std::vector<bool> needed(expression.id() + 1, false);
+    needed.back() = true;
+    for (std::uint32_t id = expression.id() + 1; id-- > 0;) {
+        const Graph::Node& node = expression.graph().node(id);
+        if (!needed[id] || has_own_value(node.operation)) continue;
+        needed[node.a] = true;
+        if (is_binary(node.operation)) needed[node.b] = true;
+    }
+    return needed;
+}
+
+}  // namespace
+
 Fraction Algebra::simplify(Expression expression) {
-    const std::vector<bool> needed = reachable(std::span(&expression, 1));
+    const std::vector<bool> needed = nodes_for(expression);
     std::vector<Fraction> of(needed.size());
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
         if (!needed[id]) continue;
         const Graph::Node node = graph_.node(id);
-        const bool leaf = is_leaf(node.operation);
+        const bool leaf = has_own_value(node.operation);
         of[id] = this->node({&graph_, id}, of[leaf ? 0 : node.a], of[is_binary(node.operation) ? node.b : 0]);
     }
     return of[expression.id()];

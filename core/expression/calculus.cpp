@@ -70,6 +70,8 @@ Expression derivative_of(Expression e, Expression da, Expression db) {
         case Op::real_power:
             if (db.is_zero()) return b * real_power(a, b - graph.number(1)) * da;
             return e * (db * apply(Op::log, a) + b * da / a);
+        case Op::midpoint:
+            return graph.number(0);
         default:
             return da.is_zero() ? da : outer_derivative(e) * da;
     }
@@ -215,6 +217,9 @@ double value_of_constant(Expression expression) {
                 break;
             case Op::real_power:
                 values[id] = std::pow(a, b);
+                break;
+            case Op::midpoint:
+                values[id] = a;
                 break;
             default:
                 values[id] = std::find_if(functions.begin(), functions.end(), [&](const Function& f) {

@@ -41,7 +41,8 @@ enum class Operation : std::uint8_t {
     cosh,
     tanh,
     exp,
-    log
+    log,
+    midpoint  // a number near a, constant in time and in all variables; it cannot be typed
 };
 
 class Graph;
@@ -80,6 +81,10 @@ Expression operator-(Expression a);
 Expression power(Expression base, int exponent);
 Expression real_power(Expression base, Expression exponent);  // base > 0; integers and 1/2 become power and sqrt
 Expression apply(Operation function, Expression argument);    // one of sqrt ... log
+
+// A number near x whose value does not matter: its derivatives are 0, and over intervals it is the midpoint. For
+// expressions that have the same value whatever this number is, such as C (C'MC)^-1 C' = M^-1 with a good choice of C.
+Expression midpoint(Expression x);
 
 // A rational constant in the forms that the scalar types need.
 struct Constant {

@@ -194,6 +194,9 @@ FormattedTerm write(Expression expression, std::span<const std::string> names, N
             case Op::real_power:
                 written[id] = write_real_power(a, b, notation);
                 break;
+            case Op::midpoint:
+                written[id] = a;
+                break;
             default:
                 written[id] = write_function(node.operation, a, notation);
         }

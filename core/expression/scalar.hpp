@@ -49,6 +49,19 @@ inline Interval scalar_pi<Interval>() {
     return Interval::pi();
 }
 
+// A number near x, for Operation::midpoint.
+template <class Scalar>
+Scalar midpoint_of(const Scalar& x) {
+    if constexpr (HasDerivatives<Scalar>)
+        return Scalar(midpoint_of(x.value));
+    else
+        return x;
+}
+template <>
+inline Interval midpoint_of<Interval>(const Interval& x) {
+    return Interval(mid(x));
+}
+
 // x^n by repeated squaring. Interval has its own overload, tight for even n.
 template <class Scalar>
 Scalar integer_power(const Scalar& x, int n) {

@@ -171,7 +171,10 @@ Expression real_power(Expression base, Expression exponent) {
     return binary(Op::real_power, base, exponent);
 }
 
+Expression midpoint(Expression x) { return x.is_number() ? x : unary(Op::midpoint, x); }
+
 Expression apply(Operation function, Expression x) {
+    if (function == Op::midpoint) return midpoint(x);
     const bool odd = function == Op::sin || function == Op::tan || function == Op::asin || function == Op::atan ||
                      function == Op::sinh || function == Op::tanh;
     const bool even = function == Op::cos || function == Op::cosh;

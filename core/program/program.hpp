@@ -169,6 +169,9 @@ void Evaluator<Scalar>::execute(std::size_t first_run, std::size_t last_run) {
             case Operation::log:
                 for (; in != end; ++in, ++result) *result = log(r[in->a]);
                 break;
+            case Operation::midpoint:
+                for (; in != end; ++in, ++result) *result = midpoint_of(r[in->a]);
+                break;
             case Operation::pi:
                 for (; in != end; ++in, ++result) *result = scalar_pi<Scalar>();
                 break;

@@ -51,6 +51,8 @@ Function function_of(Operation operation) {
             return std::exp;
         case Operation::log:
             return std::log;
+        case Operation::midpoint:
+            return [](double x) { return midpoint_of(x); };
         default:
             return nullptr;
     }
@@ -101,6 +103,8 @@ LaneFunction* function_of_lanes(Operation operation) {
             return each<Operation::exp>;
         case Operation::log:
             return each<Operation::log>;
+        case Operation::midpoint:
+            return each<Operation::midpoint>;
         default:
             return nullptr;
     }

@@ -247,9 +247,11 @@ class SeriesCompiler {
             series_.plan_.rules.push_back({to, x, y, w, {0, 0, static_cast<std::int8_t>(of_w)}});
         };
         switch (seed.kind) {
-            case Kind::multiply:
-                add(r, b.series, a.series, sums_.of(a.series, b.series, false), by_a * by_b);
+            case Kind::multiply: {
+                const bool is_scaled = a.series == 0 || b.series == 0;  // one factor is constant in time
+                add(r, b.series, a.series, is_scaled ? 0 : sums_.of(a.series, b.series, false), by_a * by_b);
                 break;
+            }
             case Kind::square:
                 add(r, a.series, 0, sums_.of(a.series, a.series, false), by_a * by_a);
                 break;
@@ -323,6 +325,8 @@ class SeriesCompiler {
 
     Form translate(const Instruction& in, std::uint32_t result) {
         const auto form = [&](std::uint32_t reg) { return moves(reg) ? forms_[reg] : Form(); };
+        // Midpoints, and what is computed from them alone, are constant in time.
+        if (in.operation == Operation::midpoint || (form(in.a).empty() && form(in.b).empty())) return {};
         const auto function = [&](Kind kind, double sign = 1.0) {
             const Operand a = operand(in.a);
             return make({.kind = kind, .sign = sign}, a, a, result);
@@ -386,6 +390,7 @@ class SeriesCompiler {
                 return form_of(function(Kind::exp));
             case Operation::log:
                 return ratio(1.0, operand(in.a));
+            case Operation::midpoint:
             case Operation::number:
             case Operation::symbol:
             case Operation::pi:

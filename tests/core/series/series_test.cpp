@@ -97,6 +97,26 @@ TEST(Series, SumTheirTermsToTheFunction) {
         expect_series(text);
 }
 
+// The midpoint of x y is constant in time. The series follows from those of x and y, with its value at order 0.
+TEST(Series, KeepMidpointsConstant) {
+    Graph graph;
+    const Expression x = graph.symbol(0), y = graph.symbol(1), m = midpoint(x * y);
+    const Expression all = m * (x + y) * (m - graph.number(2)) - m * m + y / (graph.number(1) + m);
+    const Program program(std::span(&all, 1), Slots{3, 2, 3});
+    const SeriesProgram series(program, 0, 1);
+    SeriesEvaluator<double> terms(series, std::span(&p, 1));
+    double inputs[2] = {x_series[0], y_series[0]};
+    const double value = x_series[0] * y_series[0], factor = value * (value - 2.0);
+    terms.begin(inputs);
+    EXPECT_NEAR(terms.start(0), factor * (inputs[0] + inputs[1]) - value * value + inputs[1] / (1.0 + value), 1e-15);
+    for (int k = 1; k <= 5; ++k) {
+        for (int i = 0; i < 2; ++i) inputs[i] = k < 4 ? (i == 0 ? x_series : y_series)[k] : 0.0;
+        terms.extend(k, inputs);
+        EXPECT_NEAR(terms.output(0), factor * (inputs[0] + inputs[1]) + inputs[1] / (1.0 + value), 1e-15) << k;
+    }
+    EXPECT_EQ(series.inner_sums(), 0u);
+}
+
 // A random plan for a given number of lanes: one coordinate, 1 to 3 event functions. Every rule has an inner sum or
 // none.
 struct RandomSeries {
