@@ -10,8 +10,9 @@ namespace achilles {
 
 using Rational = boost::multiprecision::cpp_rational;
 
-// Limits of a graph. A chain of twelve links in relative angles needs more than a million nodes, certificates included. A larger
-// input is rejected within seconds. The size of an exact number is that of its numerator and denominator together.
+// Limits of a graph. A chain of twelve links in relative angles needs more than a million nodes, certificates included.
+// A larger input is rejected within seconds. The size of an exact number is that of its numerator and denominator
+// together.
 inline constexpr std::size_t max_nodes = 6000000;
 inline constexpr std::size_t max_bits = 1 << 14, max_bits_in_all = 1 << 26;
 
