@@ -179,7 +179,9 @@ bool is_constant(Expression expression) {
     return true;
 }
 
-double value_of_constant(Expression expression) {
+double value_of_constant(Expression expression) { return value_of(expression, {}); }
+
+double value_of(Expression expression, std::span<const double> symbols) {
     const Graph& graph = expression.graph();
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
     std::vector<double> values(needed.size(), std::numeric_limits<double>::quiet_NaN());
@@ -196,6 +198,7 @@ double value_of_constant(Expression expression) {
                 values[id] = std::numbers::pi;
                 break;
             case Op::symbol:
+                if (node.a < symbols.size()) values[id] = symbols[node.a];
                 break;
             case Op::add:
                 values[id] = a + b;

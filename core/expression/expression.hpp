@@ -145,6 +145,8 @@ bool depends_on(Expression expression, std::span<const std::uint32_t> slots);
 bool is_constant(Expression expression);
 // The value of a constant expression in double arithmetic; NaN for any other expression.
 double value_of_constant(Expression expression);
+// The value in double arithmetic with the values of symbols by slot; NaN if it depends on another symbol.
+double value_of(Expression expression, std::span<const double> symbols);
 
 // The expression as text that parse() can read; symbols print as names[slot].
 std::string to_text(Expression expression, std::span<const std::string> names);
