@@ -5,6 +5,7 @@
 
 #include "check/equations_on_page.hpp"
 #include "check/finite_differences.hpp"
+#include "check/mechanism_on_page.hpp"
 #include "check/simplified.hpp"
 #include "model/model.hpp"
 #include "output/contacts.hpp"
@@ -31,6 +32,7 @@ class Report : EquationsOnPage {
         coordinates();
         page_.heading("Parameters");
         parameters();
+        put_mechanism(page_, model_, run_);
         const bool forces = has_forces(model_.equations());
         page_.heading(fmt::format("Energies, {}{}, restitution{}", forces ? "forces, " : "", is_one() ? "gap" : "gaps",
                                   is_one() ? "" : "s"));
@@ -161,6 +163,8 @@ class CheckReport : EquationsOnPage {
         : EquationsOnPage(model, run, simplified, Page(Notation::text)) {}
 
     std::string write(const MaxDifference& disagreement) {
+        put_mechanism(page_, model_, run_);
+        if (!page_.blocks().empty()) page_.heading("Equations");
         for (std::size_t i = 0; i < model_.contacts(); ++i) condition(i, simplified_.contacts[i].zeno);
         if (const std::size_t count = simplified_.while_held.size(); count > 0)
             page_.sentence({counted(count, "more Zeno condition") + " while other contacts are held: --verbose", {}});
@@ -171,7 +175,8 @@ class CheckReport : EquationsOnPage {
         matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);
         matrix({"bias", "b"}, simplified_.bias, model_.equations().bias, 1);
         if (forces) matrix({"Q", "Q"}, simplified_.Q, model_.equations().Q, 1);
-        return first_line(disagreement) + "\n\n" + page_.finish() +
+        const bool has_heading_first = page_.blocks().front().kind == Block::Kind::heading;  // with an empty line above
+        return first_line(disagreement) + (has_heading_first ? "\n" : "\n\n") + page_.finish() +
                "\nParameters, energies, gap, hdot, hddot, lambda, each check: --verbose. LaTeX: --latex\n";
     }
 

@@ -163,8 +163,11 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
 
 namespace {
 
-void read_pictures(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
-                   ExpressionReader& reader) {
+// What no equation uses: slips, drawings, views, the closing of an orbit.
+void read_rest(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
+               ExpressionReader& reader) {
+    Scope in_slips = force_scope(system, layout, graph);
+    for (const ConstraintDescription& constraint : system.constraints) reader.read(constraint.slip, in_slips);
     Scope in_drawings = drawing_scope(system, layout, graph);
     for (const DrawingDescription& drawing : drawings_of(system)) {
         if (drawing.shape == DrawingDescription::Shape::curve && drawing.over.empty()) continue;  // its name is missing
@@ -198,7 +201,7 @@ bool check_expressions(const SystemDescription& system, Names names, ErrorCollec
     for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
     ExpressionReader reader(graph, names, mistakes);
     attempt_within_limits(mistakes, system, equations,
-                          [&] { read_pictures(system, layout, graph, equations, reader); });
+                          [&] { read_rest(system, layout, graph, equations, reader); });
     return has_equations;
 }
 

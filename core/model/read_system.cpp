@@ -41,6 +41,13 @@ SystemDescription parse_system(std::string text, std::string name) {
     return std::move(read.system);
 }
 
+std::string expand_system(const std::string& text, const std::string& name) {
+    parse_system(text, name);
+    std::string expanded;
+    read_tables(text, name, &expanded);
+    return expanded;
+}
+
 std::shared_ptr<const Model> derive(SystemDescription description) {
     return std::make_shared<const Model>(std::move(description));
 }

@@ -5,6 +5,7 @@
 
 #include "model/degenerate_gap.hpp"
 #include "model/model.hpp"
+#include "model/scopes.hpp"
 #include "model/undefined_term.hpp"
 #include "number/float_environment.hpp"
 #include "system/input_error.hpp"
@@ -67,6 +68,37 @@ void Model::check(const Run& run) const {
 
 namespace {
 
+// Where the part of a text stands that is undefined at the start of a run, or has an undefined slope. A text that the
+// reader made from several tables has a place for each.
+Location place_of_undefined(const Model& model, const Run& run, const Text& text) {
+    if (text.pieces.empty()) return text.at;
+    const Layout& layout = model.layout();
+    Graph graph;
+    const Scope scope = force_scope(model.description(), layout, graph);
+    std::vector<double> values;
+    for (const Vector* part : {&run.q, &run.v}) values.insert(values.end(), part->begin(), part->end());
+    values.insert(values.end(), run.parameters.begin(), run.parameters.end());
+    values.push_back(run.options.start_time);
+    std::vector<std::uint32_t> q;
+    for (std::size_t i = 0; i < layout.dof; ++i) q.push_back(layout.q(i));
+    for (std::size_t i = 0; i < text.pieces.size(); ++i) {
+        const TextPiece& piece = text.pieces[i];
+        if (piece.is_written) continue;
+        const std::size_t end = i + 1 < text.pieces.size() ? text.pieces[i + 1].begin : text.text.size();
+        std::string part = text.text.substr(piece.begin, end - piece.begin);
+        part.erase(part.find_last_not_of(" +-") + 1);
+        try {
+            const Expression whole = parse(part, scope, graph);
+            std::vector<Expression> all = gradient(whole, q);
+            all.push_back(whole);
+            for (const Expression each : all)
+                if (!std::isfinite(value_of(each, values))) return piece.at;
+        } catch (const ParseError&) {  // a part of a product
+        }
+    }
+    return text.at;
+}
+
 // Message "WHAT is not defined at the start: log(x - 2), with x - 2 = -1" if the undefined part is found. If there is
 // no such part, a value is too large.
 Mistake no_value(const Model& model, const Run& run, Location at, const char* what,
@@ -87,7 +119,8 @@ void Model::check_energies(const Run& run, const StartTerms<Evaluator<double>>& 
     if (!std::isfinite(start.kinetic()))
         throw no_value(*this, run, description_.kinetic.at, "the kinetic energy", {&equations_.given.kinetic, 1});
     if (!std::isfinite(start.potential()))
-        throw no_value(*this, run, description_.potential.at, "the potential", {&equations_.given.potential, 1});
+        throw no_value(*this, run, place_of_undefined(*this, run, description_.potential), "the potential",
+                       {&equations_.given.potential, 1});
 }
 
 // Checks that the gap is defined and not clearly negative, and that a closed contact has a normal.
@@ -103,6 +136,9 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     if (mid(h) < -4.0 * error) {
         const Run file = default_run();
         const bool is_of_file = run.q == file.q && run.parameters == file.parameters;  // otherwise its sign was right
+        const auto& shapes = description_.mechanism.contacts;
+        if (contact < shapes.size() && !shapes[contact].behind.empty())
+            throw Mistake{at, fmt::format(fmt::runtime(shapes[contact].behind), -mid(h)), shapes[contact].hint};
         throw Mistake{
             at, fmt::format("the gap is negative at the start: h = {}", mid(h)),
             fmt::format("choose a start with h(q) >= 0{}",
@@ -124,7 +160,8 @@ void Model::check_mass(const StartTerms<Evaluator<double>>& start) const {
     for (std::size_t i = 0; i < layout_.dof; ++i) {
         const double pivot = start.pivot(i);
         if (pivot > 0.0) continue;
-        throw Mistake{description_.kinetic.at,
+        const bool has_bodies = !description_.mechanism.bodies.empty();  // T is then not in the file
+        throw Mistake{has_bodies ? description_.coordinates[i].at : description_.kinetic.at,
                       fmt::format("the mass matrix is not positive definite at the start (the pivot of '{}' is {})",
                                   description_.coordinates[i].name, pivot),
                       "every coordinate needs a positive inertia"};
@@ -146,7 +183,8 @@ void Model::check_acceleration(const Run& run, const StartTerms<Evaluator<double
         set_state(value, run.start());
         value.run();
         for (std::size_t i = 0; i < parts.size(); ++i)
-            if (!std::isfinite(value.output(i))) throw no_value(*this, run, text.at, what, parts);
+            if (!std::isfinite(value.output(i)))
+                throw no_value(*this, run, place_of_undefined(*this, run, text), what, parts);
     };
     for (std::size_t i = 0; i < description_.coordinates.size(); ++i)
         if (!description_.coordinates[i].force.text.empty())

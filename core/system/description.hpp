@@ -75,6 +75,7 @@ struct ConstraintDescription {
     std::string begins{}, ends{};  // sentences for the start and the end of contact: "knee locks"; may be empty
     std::vector<DrawingDescription> drawings;  // of the touched bodies, as written
     Location at;
+    Text slip{};  // sliding velocity, scaled like the gap; may be empty. Reserved for friction: no equation uses it
 };
 
 struct ViewDescription {
@@ -93,6 +94,26 @@ struct OrbitDescription {
     Location at;
 };
 
+// What the reader understood of a mechanism's bodies (system/expand.hpp), for `check`; empty for typed energies.
+
+// A line such as "thigh  {0}, {1} about its center; at hip", with expressions for the numbers in braces.
+struct SummaryLine {
+    std::string name, pattern;
+    std::vector<std::string> values;
+};
+// A contact between shapes, or an empty name for a typed gap.
+struct SummaryContact {
+    std::string name, gap, slip;  // "shank.end on floor"; slip is empty for a string
+    std::string force;            // the meaning of lambda
+    std::string behind, hint;     // message for a negative gap at the start, {} is its size, and advice
+};
+struct MechanismSummary {
+    std::vector<SummaryLine> bodies, springs;
+    std::vector<SummaryContact> contacts;  // one for each constraint if there are bodies
+    bool has_signed_length = false;        // of a spring or damper, which goes on below 0 where its ends pass each other
+    bool is_prescribed = false;            // a mass is moved by time: energy is T2 - T0 + V
+};
+
 struct SystemDescription {
     std::string file;         // path as given; "<text>" for typed text
     std::string source_text;  // the whole file, to show lines in errors
@@ -107,6 +128,7 @@ struct SystemDescription {
     std::vector<DrawingDescription> drawings;        // as written; may be empty
     std::vector<ViewDescription> views;              // as written, or default_views()
     std::optional<OrbitDescription> orbit;
+    MechanismSummary mechanism;
 
     // An error at a location in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;

@@ -137,6 +137,13 @@ double Fields::number_or(std::string_view key, double otherwise, std::string_vie
     return find(key) ? number(key, unit) : otherwise;
 }
 
+bool Fields::flag_or(std::string_view key, bool otherwise) const {
+    const TomlValue* value = find(key);
+    if (value == nullptr) return otherwise;
+    if (value->kind != TomlValue::Kind::boolean) throw wrong_type(key, *value, "true or false");
+    return value->boolean;
+}
+
 std::array<double, 2> Fields::range_or(std::string_view key, std::array<double, 2> otherwise,
                                        std::string_view unit) const {
     const TomlValue* value = find(key);

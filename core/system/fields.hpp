@@ -37,6 +37,7 @@ class Fields {
     Text expression_or_none(std::string_view key) const;  // default: an empty text
     std::string string_or(std::string_view key, std::string otherwise) const;
     double number_or(std::string_view key, double otherwise, std::string_view unit = {}) const;
+    bool flag_or(std::string_view key, bool otherwise) const;
     std::array<double, 2> range_or(std::string_view key, std::array<double, 2> otherwise,
                                    std::string_view unit = {}) const;
 

@@ -185,9 +185,12 @@ std::string subnormal_parameter(std::string_view name, double value) {
 }
 
 Location place_in(const Text& text, std::size_t offset) {
-    Location at = text.at;
-    if (!text.is_written) return at;
-    for (std::size_t i = 0; i < offset && i < text.text.size(); ++i) {
+    TextPiece piece{0, text.at, text.is_written};
+    for (const TextPiece& each : text.pieces)
+        if (each.begin <= offset) piece = each;
+    Location at = piece.at;
+    if (!piece.is_written) return at;
+    for (std::size_t i = piece.begin; i < offset && i < text.text.size(); ++i) {
         if ((static_cast<unsigned char>(text.text[i]) & 0xC0) == 0x80) continue;  // inside a UTF-8 character
         ++at.column;
         if (text.text[i] == '\n') at = {at.line + 1, 1};

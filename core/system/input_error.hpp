@@ -42,13 +42,19 @@ struct InputErrors : InputError {
 std::vector<InputError> each_of(const InputError& error);
 
 // An expression or number in a file. `at` is the location of its first character.
+struct TextPiece {
+    std::size_t begin;  // offset in the text; the piece ends where the next one begins
+    Location at;
+    bool is_written;  // false: created by the reader from what is at `at`
+};
 struct Text {
     std::string text;
     Location at;
     bool is_written = true;  // false: created by the reader from what is at `at` (rewrite.hpp)
+    std::vector<TextPiece> pieces{};  // parts from other places, by their begin; the text before the first is as above
 };
 
-// The location of a byte of a text. For a text created by the reader it is `text.at`.
+// The location of a byte of a text. For a part created by the reader it is that of its origin.
 Location place_in(const Text& text, std::size_t offset);
 
 // Collects the mistakes of one system file while it is read. Parts independent of a mistake are still read; parts that

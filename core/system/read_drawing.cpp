@@ -135,11 +135,7 @@ DrawingDescription read_drawing(const SystemDescription& system, const Fields& f
     mistakes.attempt([&] {
         if (fields.find("width")) drawing.width = of_shape.expression("width");
     });
-    mistakes.attempt([&] {
-        const TomlValue* fill = fields.find("fill");
-        if (fill && fill->kind != TomlValue::Kind::boolean) throw of_shape.wrong_type("fill", *fill, "true or false");
-        if (fill) drawing.fill = fill->boolean;
-    });
+    mistakes.attempt([&] { drawing.fill = of_shape.flag_or("fill", drawing.fill); });
     return drawing;
 }
 

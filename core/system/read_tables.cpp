@@ -10,6 +10,7 @@
 #include "expression/parse.hpp"
 #include "number/float_environment.hpp"
 #include "run/contact_set.hpp"
+#include "system/expand.hpp"
 #include "system/fields.hpp"
 #include "system/input_error.hpp"
 #include "system/keys.hpp"
@@ -46,7 +47,8 @@ struct FileReader {
     SystemDescription& system;
     const TomlValue& root;
     ErrorCollector& mistakes;
-    Names& names;                          // of coordinates and parameters, including invalid ones
+    Names& names;  // of coordinates and parameters, including invalid ones
+    Expansion expansion = {};
     std::vector<Fields> constraints = {};  // the tables of system.constraints
 };
 
@@ -141,6 +143,17 @@ void read_derived(FileReader& reading, const Fields& fields, DerivedDescription 
                               {}});
 }
 
+// The restitutions of all constraints, as text.
+std::vector<std::string> texts_of_restitutions(const TomlValue& root) {
+    std::vector<std::string> texts;
+    for (const TomlEntry& entry : root.entries)
+        if (entry.key == "constraint")
+            for (const TomlValue& table : entry.value.items)
+                for (const TomlEntry& key : table.entries)
+                    if (key.key == "restitution") texts.push_back(key.value.text.text);
+    return texts;
+}
+
 // True if all names in the expression are parameters, so that "2*m" is twice the mass m and not two meters.
 bool has_parameters_alone(const std::string& expression, const TomlValue& root) {
     std::vector<std::string> known;
@@ -154,6 +167,8 @@ bool has_parameters_alone(const std::string& expression, const TomlValue& root) 
 }
 
 void read_parameters(FileReader& reading) {
+    const std::vector<std::string> restitutions =
+        texts_of_restitutions(reading.root);  // their sliders have their own range
     for (Fields& fields : named_tables(reading, "parameter")) {
         ErrorCollector& mistakes = reading.mistakes;
         fields.allow(keys_of("[[parameter]]"), mistakes);
@@ -171,10 +186,7 @@ void read_parameters(FileReader& reading) {
             parameter.value = fields.number("value", parameter.unit);
             parameter.at = fields.need("value").at;
         });
-        const auto& constraints = reading.system.constraints;
-        const bool is_restitution =
-            std::any_of(constraints.begin(), constraints.end(),
-                        [&](const ConstraintDescription& c) { return c.restitution.text == parameter.name; });
+        const bool is_restitution = contains(restitutions, parameter.name);
         const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
         parameter.has_range = fields.find("range") != nullptr;
         mistakes.attempt([&] { parameter.range = fields.range_or("range", usual, parameter.unit); });
@@ -183,11 +195,14 @@ void read_parameters(FileReader& reading) {
 }
 
 void read_lagrangian(FileReader& reading, const Fields& root) {
+    if (reading.expansion.has_failed && !root.find("lagrangian")) return;
     root.need("lagrangian", missing_part("[lagrangian]"));
     Fields fields(*root.find("lagrangian"), "[lagrangian]");
     fields.allow(keys_of("[lagrangian]"), reading.mistakes);
-    reading.mistakes.attempt([&] { reading.system.kinetic = fields.expression("kinetic"); });
-    reading.mistakes.attempt([&] { reading.system.potential = fields.expression("potential"); });
+    const bool is_derived = reading.expansion.has_failed;  // then a missing energy follows from other mistakes
+    for (const auto& [key, text] :
+         {std::pair("kinetic", &reading.system.kinetic), std::pair("potential", &reading.system.potential)})
+        if (!is_derived || fields.find(key)) reading.mistakes.attempt([&] { *text = fields.expression(key); });
     reading.mistakes.attempt([&] { reading.system.dissipation = fields.expression_or_none("dissipation"); });
 }
 
@@ -225,7 +240,9 @@ void read_constraints(FileReader& reading, const Fields& root) {
         const bool is_named =
             mistakes.attempt([&] { read_constraint_name(fields, list.size() == 1, places, constraint.name); });
         if (!is_named) reading.names.complete = false;  // nor are the names of its gap and force
-        mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
+        if (!reading.expansion.has_failed || fields.find("gap"))
+            mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
+        mistakes.attempt([&] { constraint.slip = fields.expression_or_none("slip"); });
         mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
         mistakes.attempt([&] { constraint.begins = fields.string_or("begins", ""); });
         mistakes.attempt([&] { constraint.ends = fields.string_or("ends", ""); });
@@ -342,9 +359,19 @@ void read_pictures(FileReader& reading) {
     if (system.views.empty()) system.views = default_views(system);
 }
 
+// The title comes first, and a file without one is named after itself.
+TomlValue with_title(TomlValue root, const std::string& title) {
+    std::erase_if(root.entries, [](const TomlEntry& entry) { return entry.key == "title"; });
+    TomlValue value;
+    value.kind = TomlValue::Kind::string;
+    value.text.text = title;
+    root.entries.insert(root.entries.begin(), TomlEntry{"title", {}, std::move(value)});
+    return root;
+}
+
 }  // namespace
 
-ParsedFile read_tables(std::string text, std::string name) {
+ParsedFile read_tables(std::string text, std::string name, std::string* expanded) {
     const FloatEnvironmentGuard ground;  // decimals are rounded to nearest
     if (text.size() > largest_file)
         throw InputError(name, {}, fmt::format("the file is larger than {} MB", largest_file >> 20));
@@ -353,7 +380,7 @@ ParsedFile read_tables(std::string text, std::string name) {
     SystemDescription& system = read.system;
     system.file = std::move(name);
     system.source_text = std::move(text);
-    const TomlValue root = read_toml(system.source_text, system.file);
+    TomlValue root = read_toml(system.source_text, system.file);
     ErrorCollector& mistakes = read.mistakes;
     FileReader reading{system, root, mistakes, read.names};
     Fields fields(root, "a system file");
@@ -367,14 +394,16 @@ ParsedFile read_tables(std::string text, std::string name) {
     const TomlValue* constraints = fields.find("constraint");
     read.names.has_several_gaps = constraints != nullptr && constraints->items.size() > 1;
     mistakes.attempt([&] { read_coordinates(reading, fields); });
-    mistakes.attempt([&] { read_lagrangian(reading, fields); });
-    mistakes.attempt([&] { read_constraints(reading, fields); });
-    read_parameters(reading);  // after the constraints, because the restitution's slider has its own range
+    read_parameters(reading);
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
             mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
-    if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     rewrite(read);
+    reading.expansion = expand_mechanism(root, read);
+    if (expanded != nullptr) *expanded = to_toml(with_title(root, system.title));
+    mistakes.attempt([&] { read_lagrangian(reading, fields); });
+    mistakes.attempt([&] { read_constraints(reading, fields); });
+    if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);
     return read;

@@ -29,8 +29,8 @@ struct ParsedFile {
 };
 
 // Reads the tables of a system file from its text; `name` is the file's name in messages. Throws InputError if nothing
-// can be read (the text is not TOML, or too large).
-ParsedFile read_tables(std::string text, std::string name);
+// can be read (the text is not TOML, or too large). `expanded` returns the file with energies and gaps in place of bodies.
+ParsedFile read_tables(std::string text, std::string name, std::string* expanded = nullptr);
 
 // Throws InputError, with the file's `name`, if the first bytes show that the text is not TOML: a picture, an archive,
 // JSON, a table, UTF-16, another programming language, or nothing.

@@ -18,13 +18,21 @@ namespace {
 
 struct CheckArguments {
     std::string system;
-    bool latex = false, verbose = false;
+    bool latex = false, verbose = false, expand = false;
     std::vector<std::string> settings;
     OptionOverrides overrides;
 };
 
 int check(const CheckArguments& arguments) {
-    const SystemDescription description = parse_system(read_text(find_system(arguments.system)), arguments.system);
+    const std::string text = read_text(find_system(arguments.system));
+    OutputFiles files;
+    files.add("-");
+    if (arguments.expand) {
+        files.put("-", printable(expand_system(text, arguments.system)));
+        files.commit();
+        return reached_end;
+    }
+    const SystemDescription description = parse_system(text, arguments.system);
     const Run run = requested_run(description, arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
     const Model model(description);
@@ -33,8 +41,6 @@ int check(const CheckArguments& arguments) {
     warn(description, run);
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;
-    OutputFiles files;
-    files.add("-");
     const bool is_whole = arguments.latex || arguments.verbose;
     files.put("-", printable(is_whole ? check_report(model, run, deriving.count(), notation, disagreement)
                                       : check_answer(model, run, disagreement)));
@@ -57,6 +63,8 @@ void add_check(CLI::App& program, int& status) {
     command->add_flag("--latex", arguments->latex, "print a LaTeX document");
     command->add_flag("--verbose", arguments->verbose,
                       "print parameters, energies, contact equations and each check, too");
+    command->add_flag("--expand", arguments->expand,
+                      "print the file with energies, gaps and drawings in place of bodies, and nothing else");
     add_run_options(*command, arguments->settings, arguments->overrides);
     command->callback([arguments, &status] { status = check(*arguments); });
 }

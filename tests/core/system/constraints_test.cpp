@@ -67,7 +67,7 @@ TEST(Constraints, HaveDrawingsOfTheirOwn) {
               "f.toml:24:8: unknown name 'z'\n    to = [\"z\", 1]\n           ^");
     EXPECT_EQ(told_by_reading(with_constraints(knee + changed(drawn, {{"radius", "raduis"}}) + wall)),
               "f.toml:28:1: unknown key 'raduis' in [[drawing]] of shape disc; did you mean 'radius'?\n    raduis = "
-              "\"m\"\n    ^\nknown keys: shape, color, width, fill, at, radius");
+              "\"m\"\n    ^\nknown keys: shape, on, color, width, fill, at, radius");
 }
 
 std::string sixteen_and(int more) {

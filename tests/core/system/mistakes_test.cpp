@@ -38,11 +38,12 @@ const FileEdit in_keys[] = {
      "name, start, rate, force, unit, range, rate_range"},
     {"[lagrangian]", "[langrangian]",
      "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
-     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, "
-     "orbit, extra"},
+     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, "
+     "damper, force, torque, run, view, drawing, truncation, orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
      "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown keys: "
-     "title, source, coordinate, parameter, lagrangian, constraint, run, view, drawing, truncation, orbit, extra"},
+     "title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, damper, force, torque, "
+     "run, view, drawing, truncation, orbit, extra"},
     {"end_time = 5", "zeno = 5",
      "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown keys: start_time, end_time, tolerance, "
      "method, max_impacts, max_steps, memory, simultaneous"},

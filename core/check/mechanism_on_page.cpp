@@ -1,0 +1,87 @@
+#include "check/mechanism_on_page.hpp"
+
+#include <fmt/args.h>
+#include <fmt/format.h>
+
+#include "expression/parse.hpp"
+#include "model/scopes.hpp"
+#include "system/units.hpp"
+
+namespace achilles {
+
+namespace {
+
+class MechanismPage {
+ public:
+    MechanismPage(Page& page, const Model& model, const Run& run)
+        : page_(page), system_(model.description()), scope_(force_scope(system_, model.layout(), graph_)) {
+        for (const Vector* part : {&run.q, &run.v}) start_.insert(start_.end(), part->begin(), part->end());
+        start_.insert(start_.end(), run.parameters.begin(), run.parameters.end());
+        start_.push_back(run.options.start_time);
+    }
+
+    void put() {
+        const MechanismSummary& mechanism = system_.mechanism;
+        put_lines("Bodies", mechanism.bodies);
+        put_lines("Springs and dampers", mechanism.springs);
+        if (mechanism.has_signed_length) say("A signed length goes on below 0 where the ends pass each other.");
+        put_contacts();
+        if (mechanism.is_prescribed)
+            say("Time moves a mass: M, impacts and lambda are those at frozen t, and `energy` is T2 - T0 + V, where T2 "
+                "is "
+                "quadratic in the rates and T0 is the kinetic energy at rates zero.");
+    }
+
+ private:
+    std::string words(const std::string& plain) const {
+        return page_.notation() == Notation::text ? plain : Page::escaped(plain);
+    }
+    void say(const std::string& sentence) { page_.sentence({sentence, Page::escaped(sentence)}); }
+
+    // "0.1029 kg m^2": the value at the start, with its unit if that is known.
+    std::string value(const std::string& expression) {
+        const double number = value_of(parse(expression, scope_, graph_), start_);
+        std::string unit = is_name(expression) ? unit_of(system_, expression) : unit_of_expression(system_, expression);
+        for (char& c : unit)
+            if (c == '*') c = ' ';
+        return fmt::format("{:.4g}{}{}", number, unit.empty() ? "" : " ", unit);
+    }
+
+    void put_lines(const char* heading, const std::vector<SummaryLine>& lines) {
+        if (lines.empty()) return;
+        page_.heading(heading);
+        std::vector<std::vector<std::string>> rows;
+        for (const SummaryLine& line : lines) {
+            fmt::dynamic_format_arg_store<fmt::format_context> values;
+            for (const std::string& expression : line.values) values.push_back(value(expression));
+            rows.push_back({words(line.name), words(fmt::vformat(line.pattern, values))});
+        }
+        page_.lines(rows);
+    }
+
+    void put_contacts() {
+        std::vector<std::vector<std::string>> rows;
+        for (std::size_t i = 0; i < system_.mechanism.contacts.size(); ++i) {
+            const SummaryContact& contact = system_.mechanism.contacts[i];
+            if (contact.name.empty()) continue;
+            rows.push_back({words(system_.constraints[i].name),
+                            words(fmt::format("{}: h = {}, {}", contact.name, contact.gap, contact.force))});
+            if (!contact.slip.empty()) rows.push_back({"", words("slip = " + contact.slip)});
+        }
+        if (rows.empty()) return;
+        page_.heading("Contacts");
+        page_.lines(rows);
+    }
+
+    Page& page_;
+    const SystemDescription& system_;
+    Graph graph_;
+    Scope scope_;
+    std::vector<double> start_;  // by slot
+};
+
+}  // namespace
+
+void put_mechanism(Page& page, const Model& model, const Run& run) { MechanismPage(page, model, run).put(); }
+
+}  // namespace achilles

@@ -1,0 +1,186 @@
+// Bodies, grounds, springs and forces of a system file, read and placed. mechanism_terms.hpp derives the energies and
+// forces, contact_geometry.hpp the gaps, and expand.cpp puts them into the file in place of the bodies.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "expression/parse.hpp"
+#include "system/description.hpp"
+#include "system/fields.hpp"
+#include "system/planar.hpp"
+#include "system/read_tables.hpp"
+
+namespace achilles {
+
+struct LocalPoint {
+    ProductSum x, y;
+};
+
+enum class TouchShape { none, rod, disc, ring, box, polygon, line, curve };
+
+struct PlacedShape;
+
+// The coordinates and parameters of a file as symbols of a graph, with their values at the start of the file.
+class MechanismSymbols {
+ public:
+    explicit MechanismSymbols(const SystemDescription& system);
+
+    enum class Allowed { constants, constants_and_time, positions, rates, curve };  // curve: x, t and parameters
+    const Scope& scope(Allowed allowed) const { return scopes_[static_cast<std::size_t>(allowed)]; }
+    std::string text(const ProductSum& sum) const { return writer_.text(sum); }
+    // NaN if a value is missing or undefined.
+    double at_start(const ProductSum& sum) const;
+    bool is_constant(const ProductSum& sum) const;  // depends on parameters only
+    bool depends_on_coordinates(const ProductSum& sum) const { return sum.depends_on(kinematics_->coordinates()); }
+    bool depends_on_time(const ProductSum& sum) const;
+    const Kinematics& kinematics() const { return *kinematics_; }
+    Graph& graph() const { return *graph_; }
+    std::uint32_t abscissa() const { return abscissa_; }  // the symbol x of a curve
+    // The root of a sum of squares; the root of one square is its base, with the sign that makes it positive at the start.
+    ProductSum positive_root(const ProductSum& square) const;
+    // The unit vector along a line or rod, from its first corner to its second, and its angle.
+    LocalPoint direction(const PlacedShape& shape) const;
+    ProductSum angle_of(const LocalPoint& direction) const;
+    ProductSum number(long top, long bottom = 1) const { return ProductSum::number(*graph_, top, bottom); }
+
+ private:
+    std::unique_ptr<Graph> graph_;
+    std::unique_ptr<Kinematics> kinematics_;
+    std::uint32_t abscissa_ = 0;
+    std::vector<double> start_;  // by slot
+    Scope scopes_[5];
+    ProductSumWriter writer_{{}, {}};
+};
+
+// What bodies and grounds have in common: a place with named points.
+struct PlacedShape {
+    std::string name;
+    bool is_ground = false;
+    Location at, name_at;
+    MovingFrame frame;
+    TouchShape shape = TouchShape::none;
+    std::vector<LocalPoint> corners;           // rod, line: its two ends; box: four; polygon: all
+    ProductSum radius;                         // disc, ring
+    LocalPoint size;                           // box
+    std::map<std::string, LocalPoint> points;  // all names but x, y, angle
+    TomlValue color, width;                    // kind table: not given
+    bool is_hidden = false;
+};
+
+struct RigidBody : PlacedShape {
+    ProductSum mass, inertia;  // about the center of mass
+    LocalPoint center;
+    Location mass_at;
+    const PlacedShape* on = nullptr;  // may be a ground
+    ProductSum height, along;         // on a ground: the distance of its origin, and its velocity along the tangent
+    std::string placement;            // for messages: "at hip, rotated by theta"
+    std::string how;                  // "uniform rod"; "" if mass or inertia are as typed
+};
+
+struct GroundSurface : PlacedShape {
+    Expression height;  // curve: f(x) of the abscissa and time
+    std::array<Text, 2> over;
+    ProductSum speed;  // of its surface along the tangent
+};
+
+// A point as typed, with the body that carries it.
+struct NamedPoint {
+    MovingPoint point;
+    const PlacedShape* carrier = nullptr;  // null: the world
+    std::string name;                      // as typed, for messages
+    bool is_whole = false;                 // the name of a body alone
+    Location at;
+};
+
+struct SpringOrDamper {
+    bool is_damper = false, is_hidden = false;
+    std::optional<std::array<NamedPoint, 2>> between;
+    ProductSum angle, coefficient, rest;
+    Location at;
+};
+
+// A force at a point or a torque on a body, with the point or body that takes the opposite one.
+struct AppliedLoad {
+    std::optional<NamedPoint> point, against_point;       // force
+    const RigidBody *body = nullptr, *against = nullptr;  // torque
+    MovingFrame axes;                                     // of the force
+    ProductSum x, y, torque;
+    Location at;
+};
+
+// Reads and places what the tables say. Bodies are placed at first use, so they may stand in any order.
+class Mechanism {
+ public:
+    // Adds the mistakes of the tables.
+    Mechanism(const TomlValue& root, const SystemDescription& system, Names& names, ErrorCollector& mistakes);
+
+    const MechanismSymbols& symbols() const { return symbols_; }
+    // Those without mistakes, in the order of the file.
+    std::vector<const RigidBody*> bodies() const;
+    std::vector<const GroundSurface*> grounds() const;
+    std::array<ProductSum, 2> gravity;
+    std::vector<SpringOrDamper> springs;  // and dampers, in the order of the file
+    std::vector<AppliedLoad> loads;
+    Location gravity_at;
+
+    // An expression with values such as thigh.end.x replaced by their text. Throws Mistake.
+    Text substituted(const Text& text, const std::string& own = "");
+    ProductSum read(const Text& text, MechanismSymbols::Allowed allowed);
+    // A point [x, y] or a name, in the axes of a body or ground (null: the world). Throw Mistake.
+    NamedPoint read_point(const TomlValue& value, const Fields& fields, std::string_view key, PlacedShape* on);
+    // A body or ground by its name; null for the world. Throws Mistake.
+    PlacedShape* find(const Text& name);
+    // The point of a name such as thigh.end. Throws Mistake.
+    NamedPoint find_point(const Text& name, PlacedShape* on);
+    // True if two points are on one body and do not move in it.
+    bool is_rigid(const NamedPoint& a, const NamedPoint& b) const;
+    static bool is_world(const std::string& name) { return name == "world"; }
+
+ private:
+    using Allowed = MechanismSymbols::Allowed;
+    struct Entry {
+        Fields fields;
+        std::unique_ptr<RigidBody> body;  // one of the two
+        std::unique_ptr<GroundSurface> ground;
+        enum class State { unseen, on_the_way, done, failed } state = State::unseen;
+        PlacedShape& shape() const { return body ? static_cast<PlacedShape&>(*body) : *ground; }
+    };
+    void list_names(const TomlValue& root, const char* key);
+    void read_world(const TomlValue& root);
+    void read_springs(const TomlValue& root, const char* key);
+    void read_loads(const TomlValue& root);
+    Entry* entry_of(const std::string& name);
+    void place(Entry& entry);
+    void place_body(RigidBody& body, const Fields& fields);
+    void place_ground(GroundSurface& ground, const Fields& fields);
+    void place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground);
+    void place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve);
+    void read_shape(PlacedShape& shape, const Fields& fields);
+    void read_mass(RigidBody& body, const Fields& fields);
+    ProductSum spread_mass(RigidBody& body) const;
+    void read_points(PlacedShape& shape, const Fields& fields);
+    LocalPoint read_local(const TomlValue& value, const Fields& fields, std::string_view key,
+                          MechanismSymbols::Allowed allowed);
+    ProductSum read_positive(const Fields& fields, std::string_view key, const TomlValue& value, bool may_be_zero);
+    ProductSum value_of(const std::string& token, const Location& at);
+    PlacedShape* on_of(const Fields& fields);
+    [[noreturn]] void refuse_unknown(const Text& name) const;
+
+    MechanismSymbols symbols_;
+    Names& names_;
+    ErrorCollector& mistakes_;
+    std::vector<Entry> entries_;
+    PlacedShape world_;
+    bool are_names_complete_ = true;  // false: a name could not be read, so no name is reported as unknown
+    std::vector<std::string> way_;    // names of the bodies that are being placed
+    const SystemDescription& system_;
+};
+
+// True if the file has a table of this section.
+bool has_mechanism(const TomlValue& root);
+
+}  // namespace achilles

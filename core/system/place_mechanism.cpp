@@ -1,0 +1,213 @@
+// Grounds, bodies placed on grounds, springs and loads of a mechanism.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "system/keys.hpp"
+#include "system/mechanism.hpp"
+
+namespace achilles {
+
+void Mechanism::place_ground(GroundSurface& ground, const Fields& fields) {
+    PlacedShape* on = on_of(fields);
+    if (on != nullptr && on->is_ground)
+        throw Mistake{fields.string("on").at, fmt::format("'{}' is a ground: a ground stands on a body", on->name),
+                      "leave out 'on', or make a body that carries both"};
+    const Kinematics& kinematics = symbols_.kinematics();
+    ground.frame = on ? on->frame : world_.frame;
+    read_shape(ground, fields);
+    if (ground.shape == TouchShape::none)
+        throw Mistake{ground.at, fmt::format("the ground '{}' has no shape", ground.name),
+                      "write one of: line = [from, to], curve = \"f(x)\", disc = r, ring = r"};
+    const bool is_round = ground.shape == TouchShape::disc || ground.shape == TouchShape::ring;
+    if (const TomlValue* at = fields.find("at")) {
+        if (!is_round)
+            throw Mistake{at->at, "'at' belongs to a disc or a ring",
+                          "write the place into line or curve, or put the ground on a body without mass"};
+        ground.frame = kinematics.frame_at(read_point(*at, fields, "at", on).point, ground.frame, {});
+    }
+    if (const TomlValue* speed = fields.find("speed"))
+        ground.speed = read(fields.expression("speed", *speed), Allowed::constants_and_time);
+    if (ground.shape == TouchShape::line && (!symbols_.is_constant(ground.corners[1].x - ground.corners[0].x) ||
+                                             !symbols_.is_constant(ground.corners[1].y - ground.corners[0].y)))
+        throw Mistake{fields.need("line").at,
+                      fmt::format("the direction of the line '{}' must not change", ground.name),
+                      "put it on a body without mass that turns"};
+    if (ground.shape != TouchShape::curve) return;
+    ground.height = read(fields.expression("curve"), Allowed::curve).expression(symbols_.graph());
+    const TomlValue& over = fields.need("over");
+    if (over.kind != TomlValue::Kind::array || over.items.size() != 2)
+        throw fields.wrong_type("over", over, "where the curve is drawn, [low, high]");
+    ground.over = {substituted(fields.expression("over", over.items[0])),
+                   substituted(fields.expression("over", over.items[1]))};
+}
+
+void Mechanism::place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground) {
+    const Kinematics& kinematics = symbols_.kinematics();
+    Graph& graph = symbols_.graph();
+    const TomlValue* at = fields.find("at");
+    if (at == nullptr || at->kind != TomlValue::Kind::array)
+        throw Mistake{at ? at->at : body.at,
+                      fmt::format("'{}' is on the ground '{}': 'at' must be [s, d]", body.name, ground.name),
+                      "s is the place along the ground, d the distance from it to the free side"};
+    const LocalPoint place = read_local(*at, fields, "at", Allowed::positions);
+    const ProductSum &s = place.x, &d = place.y;
+    body.height = d;
+    body.placement = fmt::format("on {} at {}, {} from it", ground.name, symbols_.text(s), symbols_.text(d));
+    const MovingFrame& base = ground.frame;
+    const ProductSum quarter = symbols_.number(1, 2) * ProductSum::from(graph.pi());
+    if (ground.shape == TouchShape::line) {
+        const LocalPoint& from = ground.corners[0];
+        const MovingFrame along = kinematics.frame_at(kinematics.point_in(base, from.x, from.y), base,
+                                                      symbols_.angle_of(symbols_.direction(ground)));
+        body.frame = along;
+        body.frame.origin = kinematics.point_in(along, s, d);
+        body.along = kinematics.rate_of(s) + kinematics.drift_of(s);
+        return;
+    }
+    if (ground.shape == TouchShape::disc || ground.shape == TouchShape::ring) {
+        const bool is_outside = ground.shape == TouchShape::disc;
+        const MovingFrame radial = kinematics.frame_at(base.origin, base, s);
+        const ProductSum distance = is_outside ? ground.radius + d : ground.radius - d;
+        body.frame = radial;
+        body.frame.origin = kinematics.point_in(radial, distance, {});
+        body.frame.angle = radial.angle + (is_outside ? -quarter : quarter);
+        return;
+    }
+    place_on_curve(body, place, ground);
+}
+
+// The velocity along the curve is s' times S - d f''/S^2 with S = sqrt(1 + f'^2), in the axes of its tangent.
+void Mechanism::place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve) {
+    const Kinematics& kinematics = symbols_.kinematics();
+    Graph& graph = symbols_.graph();
+    const ProductSum &s = place.x, &d = place.y, one = symbols_.number(1), height = d.packed();
+    const MovingFrame& base = curve.frame;
+    const std::uint32_t x = symbols_.abscissa(), slots[] = {x};
+    const Expression place_on_x[] = {s.expression(graph)};
+    const auto at_s = [&](Expression of_x) { return ProductSum::from(substitute(of_x, slots, place_on_x)); };
+    const Expression slope = derivative(curve.height, x);
+    const ProductSum f = at_s(curve.height), fx = at_s(slope), fxx = at_s(derivative(slope, x));
+    const ProductSum f_t = at_s(derivative(curve.height, kinematics.time()));
+    const ProductSum stretch = square_root(one + power(fx, 2)), tilt = ProductSum::function(Operation::atan, fx, graph);
+    const ProductSum tangent = base.angle + tilt;
+    const ProductSum tilt_rate = fxx / power(stretch, 2) * kinematics.rate_of(s),
+                     tilt_drift = kinematics.drift_of(fx) / power(stretch, 2);
+    const ProductSum factor = (stretch - height * fxx / power(stretch, 2)).packed();
+    const ProductSum along = factor * kinematics.rate_of(s),
+                     drift_along = stretch * kinematics.drift_of(s) - height * tilt_drift;
+    MovingPoint& origin = body.frame.origin;
+    origin.position = base.origin.position + PlanarVector(base.angle, s, f) + PlanarVector(tangent, {}, height);
+    const auto turning = [&](const ProductSum& rate) {
+        return PlanarVector(base.angle, -(rate * f), rate * s) + PlanarVector(tangent, -(rate * height), {});
+    };
+    origin.velocity = base.origin.velocity + turning(base.rate) + PlanarVector(tangent, along, kinematics.rate_of(d));
+    origin.drift = base.origin.drift + turning(base.drift) + PlanarVector(base.angle, {}, f_t) +
+                   PlanarVector(tangent, drift_along, kinematics.drift_of(d));
+    body.frame.angle = tangent;
+    body.frame.rate = base.rate + tilt_rate;
+    body.frame.drift = base.drift + tilt_drift;
+    body.along = along + drift_along;
+}
+
+bool Mechanism::is_rigid(const NamedPoint& a, const NamedPoint& b) const {
+    if (a.carrier != b.carrier) return false;
+    const ProductSum axes = a.carrier ? a.carrier->frame.angle : ProductSum{};
+    const auto apart = components(b.point.position - a.point.position, axes, symbols_.graph());
+    return symbols_.is_constant(apart[0]) && symbols_.is_constant(apart[1]);
+}
+
+void Mechanism::read_springs(const TomlValue& root, const char* key) {
+    for (Fields& fields : tables(root, key, mistakes_)) {
+        fields.allow(keys_of(fields.where()), mistakes_);
+        mistakes_.attempt([&] {
+            SpringOrDamper spring;
+            spring.at = fields.table().at;
+            spring.is_damper = fields.where() == "[[damper]]";
+            const TomlValue *between = fields.find("between"), *angle = fields.find("angle");
+            if ((between == nullptr) == (angle == nullptr))
+                fields.need("between", {angle ? angle->at : spring.at,
+                                        fmt::format("{} needs either 'between' or 'angle'", fields.where()),
+                                        "between = [point, point], or angle = \"an expression\""});
+            if (between != nullptr && angle != nullptr)
+                throw Mistake{angle->at, fmt::format("{} needs either 'between' or 'angle'", fields.where()), {}};
+            if (between != nullptr) {
+                if (between->kind != TomlValue::Kind::array || between->items.size() != 2)
+                    throw fields.wrong_type("between", *between, "two points");
+                spring.between = {read_point(between->items[0], fields, "between", nullptr),
+                                  read_point(between->items[1], fields, "between", nullptr)};
+                if (is_rigid((*spring.between)[0], (*spring.between)[1]))
+                    throw Mistake{
+                        between->at,
+                        fmt::format("both ends are on one body, {}",
+                                    (*spring.between)[0].carrier ? (*spring.between)[0].carrier->name : "world"),
+                        "an end belongs to another body, or to the world"};
+            } else {
+                spring.angle = read(fields.expression("angle"), Allowed::positions);
+            }
+            spring.coefficient = read(fields.expression(spring.is_damper ? "damping" : "stiffness"),
+                                      spring.is_damper ? Allowed::rates : Allowed::positions)
+                                     .packed();
+            if (!spring.is_damper) {
+                if (between != nullptr)
+                    fields.need("rest", {spring.at, "missing key 'rest' in [[spring]]: its length without force",
+                                         "write rest = 0 for a spring that pulls its ends together"});
+                if (fields.find("rest")) spring.rest = read(fields.expression("rest"), Allowed::positions);
+                if (between != nullptr && symbols_.at_start(spring.rest) < 0.0)
+                    throw Mistake{
+                        fields.need("rest").at,
+                        fmt::format("the rest length is negative at the start: {}", symbols_.at_start(spring.rest)),
+                        {}};
+            }
+            if (symbols_.at_start(spring.coefficient) < 0.0)
+                throw Mistake{
+                    fields.need(spring.is_damper ? "damping" : "stiffness").at,
+                    fmt::format("the {} is negative at the start: {}", spring.is_damper ? "damping" : "stiffness",
+                                symbols_.at_start(spring.coefficient)),
+                    {}};
+            spring.is_hidden = fields.flag_or("hidden", false);
+            springs.push_back(std::move(spring));
+        });
+    }
+}
+
+void Mechanism::read_loads(const TomlValue& root) {
+    for (Fields& fields : tables(root, "force", mistakes_)) {
+        fields.allow(keys_of(fields.where()), mistakes_);
+        mistakes_.attempt([&] {
+            AppliedLoad load;
+            load.at = fields.table().at;
+            PlacedShape* on = on_of(fields);
+            load.axes = on ? on->frame : world_.frame;
+            load.point = read_point(fields.need("at"), fields, "at", on);
+            const LocalPoint value = read_local(fields.need("value"), fields, "value", Allowed::rates);
+            load.x = value.x;
+            load.y = value.y;
+            if (const TomlValue* against = fields.find("against"))
+                load.against_point = read_point(*against, fields, "against", nullptr);
+            loads.push_back(std::move(load));
+        });
+    }
+    for (Fields& fields : tables(root, "torque", mistakes_)) {
+        fields.allow(keys_of(fields.where()), mistakes_);
+        mistakes_.attempt([&] {
+            AppliedLoad load;
+            load.at = fields.table().at;
+            const auto body_of = [&](const char* key) -> const RigidBody* {
+                const Text name = fields.string(key);
+                const PlacedShape* shape = find(name);
+                if (shape == nullptr && std::string(key) == "on")
+                    throw Mistake{name.at, "a torque acts on a body, not on the world", {}};
+                if (shape != nullptr && shape->is_ground)
+                    throw Mistake{name.at, fmt::format("'{}' is a ground: a torque acts on a body", name.text), {}};
+                return static_cast<const RigidBody*>(shape);
+            };
+            load.body = body_of("on");
+            if (fields.find("against")) load.against = body_of("against");
+            load.torque = read(fields.expression("value"), Allowed::rates);
+            loads.push_back(std::move(load));
+        });
+    }
+}
+
+}  // namespace achilles

@@ -1,0 +1,541 @@
+// Reads the tables of bodies, grounds, springs and forces, and places the bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "expression/name_suggestions.hpp"
+#include "system/keys.hpp"
+#include "system/mechanism.hpp"
+
+namespace achilles {
+
+namespace {
+
+constexpr const char* mechanism_keys[] = {"world", "body", "ground", "spring", "damper", "force", "torque"};
+
+const TomlValue* entry_in(const TomlValue& table, std::string_view key) {
+    for (const TomlEntry& entry : table.entries)
+        if (entry.key == key) return &entry.value;
+    return nullptr;
+}
+
+bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
+bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
+bool continues_name(char c) { return begins_name(c) || is_decimal_digit(c) || c == '_'; }
+
+// The end of the number that starts at i: 1.5e-3.
+std::size_t end_of_number(const std::string& text, std::size_t i) {
+    while (i < text.size() && (is_decimal_digit(text[i]) || text[i] == '.')) ++i;
+    if (i + 1 < text.size() && (text[i] == 'e' || text[i] == 'E')) {
+        const std::size_t digits = i + (text[i + 1] == '+' || text[i + 1] == '-' ? 2 : 1);
+        if (digits < text.size() && is_decimal_digit(text[digits]))
+            for (i = digits; i < text.size() && is_decimal_digit(text[i]);) ++i;
+    }
+    return i;
+}
+
+// The end of the name that starts at i: thigh.end.x'.
+std::size_t end_of_name(const std::string& text, std::size_t i) {
+    const auto has = [&](std::size_t at) { return at < text.size(); };
+    while (has(i) && (continues_name(text[i]) || (text[i] == '.' && has(i + 1) && begins_name(text[i + 1])))) ++i;
+    while (has(i) && text[i] == '\'') ++i;
+    return i;
+}
+
+std::vector<std::string> split_at_dots(const std::string& name) {
+    std::vector<std::string> parts(1);
+    for (const char c : name) {
+        if (c == '.')
+            parts.emplace_back();
+        else
+            parts.back() += c;
+    }
+    return parts;
+}
+
+std::vector<std::string> names_of(const std::map<std::string, LocalPoint>& points) {
+    std::vector<std::string> names;
+    for (const auto& [name, point] : points) names.push_back(name);
+    return names;
+}
+
+}  // namespace
+
+bool has_mechanism(const TomlValue& root) {
+    return std::any_of(std::begin(mechanism_keys), std::end(mechanism_keys),
+                       [&](const char* key) { return entry_in(root, key) != nullptr; });
+}
+
+Mechanism::Mechanism(const TomlValue& root, const SystemDescription& system, Names& names, ErrorCollector& mistakes)
+    : symbols_(system), names_(names), mistakes_(mistakes), system_(system) {
+    world_.name = "world";
+    list_names(root, "ground");
+    list_names(root, "body");
+    mistakes_.attempt([&] { read_world(root); });
+    for (Entry& entry : entries_) mistakes_.attempt([&] { place(entry); });
+    for (const char* key : {"spring", "damper"}) read_springs(root, key);
+    read_loads(root);
+}
+
+// The names of all bodies and grounds, before any of them is placed.
+void Mechanism::list_names(const TomlValue& root, const char* key) {
+    for (Fields& fields : tables(root, key, mistakes_)) {
+        fields.allow(keys_of(fields.where()), mistakes_);
+        const bool is_ground = fields.where() == "[[ground]]";
+        const bool is_listed = mistakes_.attempt([&] {
+            const Text name = fields.string("name");
+            if (!is_name(name.text))
+                throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
+                              "a name is a letter followed by letters, digits and underscores"};
+            if (is_world(name.text)) throw Mistake{name.at, "the name 'world' is reserved", "choose another name"};
+            if (Entry* other = entry_of(name.text)) {
+                other->state = Entry::State::failed;  // either of the two may be meant
+                throw Mistake{name.at, fmt::format("the name '{}' is used twice", name.text),
+                              fmt::format("it is already the name at line {}: bodies and grounds need different names",
+                                          other->shape().name_at.line)};
+            }
+            constexpr std::size_t most = 200;
+            if (entries_.size() == most)
+                throw Mistake{fields.table().at, fmt::format("more than {} bodies and grounds", most), {}};
+            Entry entry{fields, nullptr, nullptr};
+            if (is_ground)
+                entry.ground = std::make_unique<GroundSurface>();
+            else
+                entry.body = std::make_unique<RigidBody>();
+            PlacedShape& shape = entry.shape();
+            shape.name = name.text;
+            shape.is_ground = is_ground;
+            shape.name_at = name.at;
+            shape.at = fields.table().at;
+            entries_.push_back(std::move(entry));
+        });
+        are_names_complete_ = are_names_complete_ && is_listed;
+    }
+}
+
+Mechanism::Entry* Mechanism::entry_of(const std::string& name) {
+    const auto entry =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.shape().name == name; });
+    return entry == entries_.end() ? nullptr : &*entry;
+}
+
+std::vector<const RigidBody*> Mechanism::bodies() const {
+    std::vector<const RigidBody*> list;
+    for (const Entry& entry : entries_)
+        if (entry.body && entry.state == Entry::State::done) list.push_back(entry.body.get());
+    return list;
+}
+
+std::vector<const GroundSurface*> Mechanism::grounds() const {
+    std::vector<const GroundSurface*> list;
+    for (const Entry& entry : entries_)
+        if (entry.ground && entry.state == Entry::State::done) list.push_back(entry.ground.get());
+    return list;
+}
+
+void Mechanism::refuse_unknown(const Text& name) const {
+    if (!are_names_complete_) throw ErrorAlreadyReported{};
+    std::vector<std::string> known{"world"};
+    for (const Entry& entry : entries_) known.push_back(entry.shape().name);
+    throw Mistake{name.at,
+                  fmt::format("unknown body or ground '{}'{}", shown(name.text), did_you_mean(name.text, known)),
+                  fmt::format("bodies and grounds are: {}", listed(known))};
+}
+
+PlacedShape* Mechanism::find(const Text& name) {
+    if (is_world(name.text)) return nullptr;
+    Entry* entry = entry_of(name.text);
+    if (entry == nullptr) refuse_unknown(name);
+    place(*entry);
+    return &entry->shape();
+}
+
+NamedPoint Mechanism::find_point(const Text& name, PlacedShape* on) {
+    const std::vector<std::string> parts = split_at_dots(name.text);
+    const bool is_of_on = parts.size() == 1 && on != nullptr && on->points.contains(name.text);
+    if (parts.size() > 2)
+        throw Mistake{name.at, fmt::format("'{}' is not a point", shown(name.text)),
+                      "a point is [x, y], a body, or a body and a point, as in \"thigh.end\""};
+    PlacedShape* carrier = on;
+    if (!is_of_on && parts.size() == 1 && on != nullptr && !entry_of(parts[0]) && !is_world(parts[0])) {
+        throw Mistake{name.at,
+                      fmt::format("unknown point '{}' of '{}'{}", shown(name.text), on->name,
+                                  did_you_mean(name.text, names_of(on->points))),
+                      fmt::format("points of '{}' are: {}", on->name, listed(names_of(on->points)))};
+    }
+    if (!is_of_on) carrier = find({parts[0], name.at, name.is_written});
+    const PlacedShape& shape = carrier ? *carrier : world_;
+    const std::string point_name = is_of_on ? name.text : parts.size() == 2 ? parts[1] : "origin";
+    NamedPoint result;
+    result.carrier = carrier;
+    result.name = is_of_on ? on->name + "." + name.text : name.text;
+    result.is_whole = !is_of_on && parts.size() == 1;
+    result.at = name.at;
+    const auto point = shape.points.find(point_name);
+    if (point != shape.points.end()) {
+        result.point = symbols_.kinematics().point_in(shape.frame, point->second.x, point->second.y);
+        return result;
+    }
+    if (point_name == "origin") {
+        result.point = shape.frame.origin;
+        return result;
+    }
+    throw Mistake{name.at,
+                  fmt::format("unknown point '{}' of '{}'{}", shown(point_name), shape.name,
+                              did_you_mean(point_name, names_of(shape.points))),
+                  shape.points.empty()
+                      ? fmt::format("'{}' has the point origin only", shape.name)
+                      : fmt::format("points of '{}' are: {}", shape.name, listed(names_of(shape.points)))};
+}
+
+NamedPoint Mechanism::read_point(const TomlValue& value, const Fields& fields, std::string_view key, PlacedShape* on) {
+    if (value.kind == TomlValue::Kind::string) return find_point(value.text, on);
+    if (value.kind != TomlValue::Kind::array)
+        throw fields.wrong_type(key, value, "a point, [x, y] or a name such as \"thigh.end\"");
+    const LocalPoint local = read_local(value, fields, key, Allowed::positions);
+    NamedPoint result;
+    result.point = symbols_.kinematics().point_in(on ? on->frame : world_.frame, local.x, local.y);
+    result.carrier = on;
+    result.at = value.at;
+    result.name = fmt::format("[{}, {}]", symbols_.text(local.x), symbols_.text(local.y));
+    if (on != nullptr) result.name += " of " + on->name;
+    return result;
+}
+
+LocalPoint Mechanism::read_local(const TomlValue& value, const Fields& fields, std::string_view key, Allowed allowed) {
+    const std::array<Text, 2> texts = fields.point(key, value);
+    return {read(texts[0], allowed), read(texts[1], allowed)};
+}
+
+// A value such as thigh.end.x' or thigh.angle, for the name of it.
+ProductSum Mechanism::value_of(const std::string& token, const Location& at) {
+    const std::string name = token.substr(0, token.find('\''));
+    const bool is_rate = name.size() < token.size();
+    std::vector<std::string> parts = split_at_dots(name);
+    const std::string last = parts.back();
+    const Kinematics& kinematics = symbols_.kinematics();
+    if (token.size() > name.size() + 1)
+        throw Mistake{at, fmt::format("{} is an acceleration", token), "it follows from the equations of motion"};
+    const bool is_number = parts.size() > 1 && (last == "x" || last == "y" || last == "angle");
+    if (!is_number) {
+        if (parts.size() > 1) find_point({name, at}, nullptr);  // reports unknown names
+        const Entry* entry = entry_of(parts[0]);
+        const char* what = parts.size() > 1 ? "point" : entry == nullptr ? "place" : entry->ground ? "ground" : "body";
+        throw Mistake{
+            at, fmt::format("'{}' is a {}, and a number is needed here", name, what),
+            fmt::format("write {0}.x or {0}.y{1}", name, parts.size() > 1 ? "" : fmt::format(", or {}.angle", name))};
+    }
+    parts.pop_back();
+    if (last == "angle") {
+        if (parts.size() > 1)
+            throw Mistake{at, fmt::format("the point '{}.{}' has no angle", parts[0], parts[1]),
+                          fmt::format("write {}.angle", parts[0])};
+        const PlacedShape* shape = find({parts[0], at});
+        const MovingFrame& frame = shape ? shape->frame : world_.frame;
+        return is_rate ? frame.rate + frame.drift : frame.angle;
+    }
+    const NamedPoint point = find_point({name.substr(0, name.size() - last.size() - 1), at}, nullptr);
+    const PlanarVector vector = is_rate ? point.point.velocity + point.point.drift : point.point.position;
+    return components(vector, {}, kinematics.graph())[last == "x" ? 0 : 1];
+}
+
+Text Mechanism::substituted(const Text& text, const std::string& own) {
+    Text result = text;
+    result.text.clear();
+    const auto has_meaning = [&](const std::string& name) {
+        return names_.places.contains(name) || is_reserved(name) || name == own;
+    };
+    std::size_t done = 0;  // of the original
+    for (std::size_t i = 0; i < text.text.size();) {
+        if (is_decimal_digit(text.text[i]) || text.text[i] == '.') {
+            i = end_of_number(text.text, i);
+            continue;
+        }
+        if (!begins_name(text.text[i])) {
+            ++i;
+            continue;
+        }
+        const std::size_t begin = i;
+        i = end_of_name(text.text, i);
+        const std::string token = text.text.substr(begin, i - begin), bare = token.substr(0, token.find('\''));
+        const bool has_dot = bare.find('.') != bare.npos;
+        if (!has_dot && (has_meaning(bare) || (!entry_of(bare) && !is_world(bare)))) continue;
+        const std::string value = symbols_.text(value_of(token, place_in(text, begin)));
+        const bool is_alone =
+            begin == text.text.find_first_not_of(' ') && text.text.find_first_not_of(' ', i) == std::string::npos;
+        result.text += text.text.substr(done, begin - done);
+        result.pieces.push_back({result.text.size(), place_in(text, begin), false});
+        result.text += is_alone || is_name(value) ? value : "(" + value + ")";
+        result.pieces.push_back({result.text.size(), place_in(text, i), text.is_written});
+        done = i;
+    }
+    result.text += text.text.substr(done);
+    return result;
+}
+
+ProductSum Mechanism::read(const Text& text, Allowed allowed) {
+    const Text plain = substituted(text);
+    try {
+        const Scope& scope = symbols_.scope(allowed);
+        return ProductSum::from(parse(plain.text, scope, symbols_.graph()));
+    } catch (const ParseError& error) {
+        const std::string bare = error.name.substr(0, error.name.find('\''));
+        const bool is_unknown = !error.name.empty() && !symbols_.scope(allowed).forbidden.contains(error.name);
+        if (is_unknown && !is_reserved(bare)) {
+            if (!names_.complete || names_.reported.contains(bare)) throw ErrorAlreadyReported{};
+            names_.reported.insert(bare);
+        }
+        throw Mistake{place_in(plain, error.offset), error.what(), error.hint};
+    } catch (const std::domain_error& error) {
+        throw Mistake{text.at, error.what(), {}};
+    }
+}
+
+PlacedShape* Mechanism::on_of(const Fields& fields) { return fields.find("on") ? find(fields.string("on")) : nullptr; }
+
+// A length or another size that is positive, or may be 0, at the start.
+ProductSum Mechanism::read_positive(const Fields& fields, std::string_view key, const TomlValue& value,
+                                    bool may_be_zero) {
+    const ProductSum size = read(fields.expression(key, value), Allowed::constants);
+    const double number = symbols_.at_start(size);
+    if (may_be_zero ? number < 0.0 : number <= 0.0)
+        throw Mistake{value.kind == TomlValue::Kind::string ? value.text.at : value.at,
+                      fmt::format("'{}' in {} must {}, not {}", key, fields.where(),
+                                  may_be_zero ? "not be negative" : "be positive", number),
+                      {}};
+    return size;
+}
+
+void Mechanism::place(Entry& entry) {
+    using enum Entry::State;
+    PlacedShape& shape = entry.shape();
+    if (entry.state == done) return;
+    if (entry.state == failed) throw ErrorAlreadyReported{};
+    if (entry.state == on_the_way) {
+        std::vector<std::string> circle(std::find(way_.begin(), way_.end(), shape.name), way_.end());
+        circle.push_back(shape.name);
+        throw Mistake{shape.name_at,
+                      fmt::format("the bodies are placed on each other in a circle: {}", fmt::join(circle, " -> ")),
+                      "place one of them by coordinates; for a closed loop choose coordinates that close it, or use a "
+                      "stiff spring"};
+    }
+    entry.state = on_the_way;
+    way_.push_back(shape.name);
+    const bool is_placed = mistakes_.attempt([&] {
+        if (entry.body)
+            place_body(*entry.body, entry.fields);
+        else
+            place_ground(*entry.ground, entry.fields);
+    });
+    way_.pop_back();
+    entry.state = is_placed ? done : failed;
+    if (!is_placed) throw ErrorAlreadyReported{};
+}
+
+void Mechanism::read_world(const TomlValue& root) {
+    const TomlValue* table = entry_in(root, "world");
+    if (table == nullptr) return;
+    Fields fields(*table, "[world]");
+    fields.allow(keys_of("[world]"), mistakes_);
+    gravity_at = table->at;
+    mistakes_.attempt([&] { read_points(world_, fields); });
+    if (const TomlValue* value = fields.find("gravity")) {
+        const LocalPoint g = read_local(*value, fields, "gravity", Allowed::constants_and_time);
+        gravity = {g.x, g.y};
+        gravity_at = value->at;
+    }
+}
+
+void Mechanism::place_body(RigidBody& body, const Fields& fields) {
+    const Kinematics& kinematics = symbols_.kinematics();
+    PlacedShape* on = on_of(fields);
+    body.on = on;
+    const TomlValue* angle = fields.find("angle");
+    const ProductSum turn = angle ? read(fields.expression("angle"), Allowed::positions) : ProductSum{};
+    if (on != nullptr && on->is_ground) {
+        place_on_ground(body, fields, static_cast<GroundSurface&>(*on));
+        body.frame.angle = body.frame.angle + turn;
+        body.frame.rate = body.frame.rate + kinematics.rate_of(turn);
+        body.frame.drift = body.frame.drift + kinematics.drift_of(turn);
+    } else {
+        const MovingFrame& axes = on ? on->frame : world_.frame;
+        const TomlValue* at = fields.find("at");
+        NamedPoint origin;
+        origin.point = axes.origin;
+        origin.name = on ? on->name : "the origin";
+        if (at != nullptr) origin = read_point(*at, fields, "at", on);
+        body.frame = kinematics.frame_at(origin.point, axes, turn);
+        body.placement = "at " + origin.name;
+    }
+    if (angle != nullptr) body.placement += ", rotated by " + symbols_.text(turn);
+    if (on != nullptr && !on->is_ground) body.placement += " on " + on->name;
+    body.mass_at = fields.find("mass") ? fields.find("mass")->at : body.at;
+    read_shape(body, fields);
+    read_mass(body, fields);
+    body.points.insert_or_assign("center", body.center);
+    read_points(body, fields);
+    body.is_hidden = fields.flag_or("hidden", false);
+    if (const TomlValue* color = fields.find("color")) body.color = *color;
+    if (const TomlValue* width = fields.find("width")) body.width = *width;
+}
+
+void Mechanism::read_points(PlacedShape& shape, const Fields& fields) {
+    const TomlValue* points = fields.find("points");
+    if (points == nullptr) return;
+    if (points->kind != TomlValue::Kind::table)
+        throw fields.wrong_type("points", *points, "a table of points, as in {grip = [0, 1]}");
+    for (const TomlEntry& entry : points->entries)
+        mistakes_.attempt([&] {
+            const bool is_reserved_name = entry.key == "x" || entry.key == "y" || entry.key == "angle" ||
+                                          entry.key == "origin" || entry.key == "center" ||
+                                          (!shape.points.empty() && shape.points.contains(entry.key));
+            if (!is_name(entry.key)) throw Mistake{entry.at, fmt::format("'{}' is not a name", shown(entry.key)), {}};
+            if (is_reserved_name)
+                throw Mistake{entry.at, fmt::format("the point name '{}' is reserved", entry.key),
+                              "choose another name"};
+            shape.points.emplace(entry.key, read_local(entry.value, fields, "points", Allowed::positions));
+        });
+}
+
+namespace {
+
+struct ShapeKey {
+    const char* key;
+    TouchShape shape;
+};
+constexpr ShapeKey shape_keys[] = {
+    {"rod", TouchShape::rod},         {"disc", TouchShape::disc}, {"ring", TouchShape::ring},  {"box", TouchShape::box},
+    {"polygon", TouchShape::polygon}, {"line", TouchShape::line}, {"curve", TouchShape::curve}};
+
+}  // namespace
+
+void Mechanism::read_shape(PlacedShape& shape, const Fields& fields) {
+    const ShapeKey* found = nullptr;
+    for (const ShapeKey& each : shape_keys) {
+        const TomlValue* value = fields.find(each.key);
+        if (value == nullptr) continue;
+        if (found != nullptr)
+            throw Mistake{value->at, fmt::format("'{}' has two shapes: {} and {}", shape.name, found->key, each.key),
+                          "write one [[body]] for each, the second with on = \"" + shape.name + "\""};
+        found = &each;
+    }
+    if (found == nullptr) return;
+    const TomlValue& value = *fields.find(found->key);
+    shape.shape = found->shape;
+    const auto read_corners = [&](const std::vector<std::string>& names) {
+        for (std::size_t i = 0; i < value.items.size(); ++i) {
+            shape.corners.push_back(read_local(value.items[i], fields, found->key, Allowed::positions));
+            shape.points.emplace(i < names.size() ? names[i] : fmt::format("corner{}", i + 1), shape.corners[i]);
+        }
+    };
+    switch (found->shape) {
+        case TouchShape::disc:
+        case TouchShape::ring:
+            shape.radius = read_positive(fields, found->key, value, false);
+            break;
+        case TouchShape::rod:
+        case TouchShape::line:
+            if (value.kind != TomlValue::Kind::array || value.items.size() != 2)
+                throw fields.wrong_type(found->key, value, "two points, [from, to]");
+            read_corners({"start", "end"});
+            if (const LocalPoint along = symbols_.direction(shape); along.x.is_zero() && along.y.is_zero())
+                throw Mistake{
+                    value.at, fmt::format("'{}' in {}: its ends are one point", found->key, fields.where()), {}};
+            break;
+        case TouchShape::polygon:
+            if (value.kind != TomlValue::Kind::array || value.items.size() < 3)
+                throw Mistake{
+                    value.at, fmt::format("'polygon' in {} must be at least three points", fields.where()), {}};
+            read_corners({});
+            break;
+        case TouchShape::box: {
+            if (value.kind != TomlValue::Kind::array || value.items.size() != 2)
+                throw fields.wrong_type("box", value, "its width and height, [w, h]");
+            shape.size = {read_positive(fields, "box", value.items[0], false),
+                          read_positive(fields, "box", value.items[1], false)};
+            const ProductSum half = symbols_.number(1, 2), x = half * shape.size.x, y = half * shape.size.y;
+            shape.corners = {{-x, -y}, {x, -y}, {x, y}, {-x, y}};
+            const char* const names[] = {"lower_left", "lower_right", "upper_right", "upper_left"};
+            for (std::size_t i = 0; i < 4; ++i) shape.points.emplace(names[i], shape.corners[i]);
+            break;
+        }
+        default:
+            break;
+    }
+}
+
+namespace {
+
+ProductSum local_cross(const LocalPoint& a, const LocalPoint& b) { return a.x * b.y - a.y * b.x; }
+ProductSum local_dot(const LocalPoint& a, const LocalPoint& b) { return a.x * b.x + a.y * b.y; }
+
+}  // namespace
+
+void Mechanism::read_mass(RigidBody& body, const Fields& fields) {
+    const TomlValue *mass = fields.find("mass"), *inertia = fields.find("inertia"), *center = fields.find("center");
+    if (mass) body.mass = read_positive(fields, "mass", *mass, true).packed();
+    const ProductSum& m = body.mass;
+    if (center) body.center = read_local(*center, fields, "center", Allowed::positions);
+    if (inertia) body.inertia = read_positive(fields, "inertia", *inertia, true);
+    if (m.is_zero() || body.shape == TouchShape::none) return;
+    if (center && !inertia)
+        throw Mistake{
+            center->at,
+            fmt::format("'{}' has a center of its own, so its mass is not spread evenly: 'inertia' is missing",
+                        body.name),
+            "add inertia, about the center of mass"};
+    if (inertia && center) return;
+    if (!std::all_of(body.corners.begin(), body.corners.end(),
+                     [&](const LocalPoint& p) { return symbols_.is_constant(p.x) && symbols_.is_constant(p.y); }))
+        throw Mistake{body.at, fmt::format("the shape of '{}', which carries mass, must not change", body.name),
+                      "use only parameters in it; a body without mass may have any shape"};
+    const ProductSum spread = spread_mass(body);
+    if (inertia)
+        body.how = "";
+    else
+        body.inertia = spread;
+}
+
+// Spreads the mass evenly over the shape: sets the center of mass, and returns the inertia about it.
+ProductSum Mechanism::spread_mass(RigidBody& body) const {
+    const auto number = [&](long top, long bottom) { return symbols_.number(top, bottom); };
+    const ProductSum& m = body.mass;
+    const std::vector<LocalPoint>& p = body.corners;
+    switch (body.shape) {
+        case TouchShape::rod: {
+            const LocalPoint along{p[1].x - p[0].x, p[1].y - p[0].y};
+            body.center = {number(1, 2) * (p[0].x + p[1].x), number(1, 2) * (p[0].y + p[1].y)};
+            body.how = "uniform rod";
+            return m * local_dot(along, along).without_squares() * number(1, 12);
+        }
+        case TouchShape::disc:
+            body.how = "uniform disc";
+            return m * body.radius * body.radius * number(1, 2);
+        case TouchShape::ring:
+            body.how = "thin ring";
+            return m * body.radius * body.radius;
+        case TouchShape::box:
+            body.how = "uniform box";
+            return m * local_dot(body.size, body.size) * number(1, 12);
+        default:
+            break;
+    }
+    // A polygon: sums over the triangles between the origin and each side.
+    ProductSum area, polar;
+    LocalPoint moment;
+    for (std::size_t i = 0; i < p.size(); ++i) {
+        const LocalPoint &a = p[i], &b = p[(i + 1) % p.size()];
+        const ProductSum part = local_cross(a, b);
+        area = area + part;
+        moment = {moment.x + part * (a.x + b.x), moment.y + part * (a.y + b.y)};
+        polar = polar + part * (local_dot(a, a) + local_dot(a, b) + local_dot(b, b));
+    }
+    if (area.is_zero() || symbols_.at_start(area) == 0.0)
+        throw Mistake{body.at, fmt::format("the polygon of '{}' has no area", body.name), {}};
+    body.center = {moment.x / area * number(1, 3), moment.y / area * number(1, 3)};
+    body.how = "uniform polygon";
+    return m * (polar / area * number(1, 6) - local_dot(body.center, body.center));
+}
+
+}  // namespace achilles
