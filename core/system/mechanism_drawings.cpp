@@ -178,7 +178,7 @@ class MechanismPainter {
                 put_point(drawing, "at", body.frame.origin);
                 set_entry(drawing, "size",
                           made_point({symbols_.text(body.size.x), symbols_.text(body.size.y)}, body.at));
-                put(drawing, "angle", symbols_.text(body.frame.angle));
+                if (!body.frame.angle.is_zero()) put(drawing, "angle", symbols_.text(body.frame.angle));
                 break;
             case TouchShape::polygon: {
                 drawing = shape("polyline", body.at);

@@ -1,0 +1,333 @@
+// Every mistake of a mechanism, one at a time: the exact message, location and caret.
+#include <gtest/gtest.h>
+
+#include "core/system/mistakes.hpp"
+#include "core/systems.hpp"
+
+namespace achilles {
+namespace {
+
+const std::string ball_over_floor =
+    R"toml(coordinate = [{name = "x", start = 0.1}, {name = "y", start = 2}, {name = "phi"}]
+parameter = [{name = "m", value = 1}, {name = "r", value = 0.3}, {name = "g", value = 9.81}]
+world = {gravity = [0, "-g"], points = {hook = [0, 5]}}
+body = [
+  {name = "ball", mass = "m", disc = "r", at = ["x", "y"], angle = "phi"},
+]
+ground = [{name = "floor", line = [[-2, 0], [2, 0]]}]
+spring = [{between = ["world.hook", "ball"], stiffness = 3, rest = 1}]
+constraint = [{between = ["ball", "floor"], restitution = 0.5}]
+)toml";
+
+struct MechanismMistake {
+    const char *name, *from, *to, *message;
+};
+
+void PrintTo(const MechanismMistake& one, std::ostream* out) { *out << one.name; }
+
+class MechanismMistakes : public testing::TestWithParam<MechanismMistake> {};
+
+TEST(BallOverFloor, HasNoMistake) { EXPECT_EQ(test::told(ball_over_floor), ""); }
+
+TEST_P(MechanismMistakes, AreToldWithTheirPlace) {
+    const MechanismMistake& one = GetParam();
+    EXPECT_EQ(test::told(test::changed(ball_over_floor, {{one.from, one.to}})), one.message);
+}
+
+const MechanismMistake mechanism_mistakes[] = {
+    {"Acceleration", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball.x''"]}]
+)m",
+     R"m(f.toml:8:37: ball.x'' is an acceleration
+    view = [{name = "v", x = "t", y = ["ball.x''"]}]
+                                        ^
+it follows from the equations of motion)m"},
+    {"AngleOfAPoint", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball.center.angle"]}]
+)m",
+     R"m(f.toml:8:37: the point 'ball.center' has no angle
+    view = [{name = "v", x = "t", y = ["ball.center.angle"]}]
+                                        ^
+write ball.angle)m"},
+    {"CenterWithoutInertia", R"m(disc = "r", )m", R"m(disc = "r", center = [0.1, 0], )m",
+     R"m(f.toml:5:52: 'ball' has a center of its own, so its mass is not spread evenly: 'inertia' is missing
+      {name = "ball", mass = "m", disc = "r", center = [0.1, 0], at = ["x", "y"], angle = "phi"},
+                                                       ^
+add inertia, about the center of mass)m"},
+    {"BodiesInACircle", R"m(at = [")m", R"m(at = "arm.end"},
+  {name = "arm", rod = [[0, 0], [1, 0]], at = ["ball.)m",
+     R"m(f.toml:5:12: the bodies are placed on each other in a circle: ball -> arm -> ball
+      {name = "ball", mass = "m", disc = "r", at = "arm.end"},
+               ^
+place one of them by coordinates; for a closed loop choose coordinates that close it, or use a stiff spring)m"},
+    {"BodyOnItself", R"m("x", ")m", R"m("x", "ball.)m",
+     R"m(f.toml:5:12: the bodies are placed on each other in a circle: ball -> ball
+      {name = "ball", mass = "m", disc = "r", at = ["x", "ball.y"], ang...
+               ^
+place one of them by coordinates; for a closed loop choose coordinates that close it, or use a stiff spring)m"},
+    {"Color", R"m(disc = "r", )m", R"m(disc = "r", color = "red", )m",
+     R"m(f.toml:5:52: 'red' is not a color
+      {name = "ball", mass = "m", disc = "r", color = "red", at = ["x", "y"], angle = "phi"},
+                                                       ^
+write a color as "#rrggbb")m"},
+    {"DiscOnACurve", R"m(line = [[-2, 0], [2, 0])m", R"m(curve = "sin(x)/9", over = [-1, 1)m",
+     R"m(f.toml:9:26: the distance of the disc 'ball' from the curve 'floor' has no closed form
+    constraint = [{between = ["ball", "floor"], restitution = 0.5}]
+                             ^
+use coordinates s, along the curve, and d: place the body with on = "floor", at = ["s", "r + d"]; then between = ["ball", "floor"] gives the gap d, exact while r + d is below the radius of curvature of every valley)m"},
+    {"TwoDots", R"m("phi"},)m", R"m("phi"}, {name = "k", mass = 1, at = "ball.foo.bar"},)m",
+     R"m(f.toml:5:105: 'ball.foo.bar' is not a point
+    ..."x", "y"], angle = "phi"}, {name = "k", mass = 1, at = "ball.foo.bar"},
+                                                               ^
+a point is [x, y], a body, or a body and a point, as in "thigh.end")m"},
+    {"GapBesidesBetween", R"m("floor"], )m", R"m("floor"], gap = "y", )m",
+     R"m(f.toml:9:51: 'gap' is derived from 'between'
+    constraint = [{between = ["ball", "floor"], gap = "y", restitution = 0.5}]
+                                                      ^
+leave one of them out)m"},
+    {"GroundWithoutShape", R"m("floor", line = [[-2, 0], [2, 0]])m", R"m("floor")m",
+     R"m(f.toml:7:11: the ground 'floor' has no shape
+    ground = [{name = "floor"}]
+              ^
+write one of: line = [from, to], curve = "f(x)", disc = r, ring = r)m"},
+    {"UnknownKey", R"m("ball", mass)m", R"m("ball", masss)m",
+     R"m(f.toml:5:19: unknown key 'masss' in [[body]]; did you mean 'mass'?
+      {name = "ball", masss = "m", disc = "r", at = ["x", "y"], angle = "phi"}...
+                      ^
+known keys: name, at, angle, on, mass, rod, disc, ring, box, polygon, center, inertia, points, color, width, hidden)m"},
+    {"KineticBesidesBodies", R"m(0]]}]
+)m",
+     R"m(0]]}]
+lagrangian = {kinetic = "x'^2"}
+)m",
+     R"m(f.toml:8:25: 'kinetic' is derived from the bodies, and may not be given besides
+    lagrangian = {kinetic = "x'^2"}
+                            ^
+leave it out, or leave out [[body]]; potential, dissipation and force may be given)m"},
+    {"StringTooShort", R"m("ball", "floor"])m", R"m("world.hook", "ball"], longest = 1)m",
+     R"m(f.toml:9:26: 'world.hook' and 'ball' start 2.0016662039607267 farther apart than the string is long
+    constraint = [{between = ["world.hook", "ball"], longest = 1, restitution = 0.5}]
+                             ^
+choose a nearer start or a longer string)m"},
+    {"LongestWithoutBetween", R"m(between = ["ball", "floor"])m", R"m(gap = "y", longest = 1)m",
+     R"m(f.toml:9:37: 'longest' in [[constraint]] goes with 'between'
+    constraint = [{gap = "y", longest = 1, restitution = 0.5}]
+                                        ^)m"},
+    {"NormalOfAString", R"m("ball", "floor"])m", R"m("world.hook", "ball"], longest = 10, normal = true)m",
+     R"m(f.toml:9:73: 'normal' goes with a curve only: every other gap is a distance
+    ...etween = ["world.hook", "ball"], longest = 10, normal = true, restitution = 0.5}]
+                                                               ^
+leave it out)m"},
+    {"MassThatChanges", R"m(mass = "m)m", R"m(mass = "m*x)m",
+     R"m(f.toml:5:29: the coordinate 'x' is not allowed here: use only parameters
+      {name = "ball", mass = "m*x", disc = "r", at = ["x", "y"], angle = "phi"},
+                                ^)m"},
+    {"NegativeInertia", R"m(disc = "r", )m", R"m(disc = "r", inertia = -1, )m",
+     R"m(f.toml:5:53: 'inertia' in [[body]] must not be negative, not -1
+      {name = "ball", mass = "m", disc = "r", inertia = -1, at = ["x", "y"], angle = "phi"},
+                                                        ^)m"},
+    {"NegativeMass", R"m(mass = ")m", R"m(mass = "-)m",
+     R"m(f.toml:5:27: 'mass' in [[body]] must not be negative, not -1
+      {name = "ball", mass = "-m", disc = "r", at = ["x", "y"], angle = "phi"},
+                              ^)m"},
+    {"NegativeRadius", R"m(disc = ")m", R"m(disc = "-)m",
+     R"m(f.toml:5:39: 'disc' in [[body]] must be positive, not -0.3
+      {name = "ball", mass = "m", disc = "-r", at = ["x", "y"], angle = "phi"},
+                                          ^)m"},
+    {"GapWithoutCoordinate", R"m(["ball)m", R"m(["world.hook)m",
+     R"m(f.toml:9:26: the gap of world.hook on floor depends on no coordinate: h = 5
+    constraint = [{between = ["world.hook", "floor"], restitution = 0.5}]
+                             ^
+what touches or what is touched must move with a coordinate)m"},
+    {"BoxWithoutCorner", R"m(disc = "r")m", R"m(box = [1, "r"])m",
+     R"m(f.toml:9:28: 'ball' cannot touch as a whole: only a point or a disc touches
+    constraint = [{between = ["ball", "floor"], restitution = 0.5}]
+                               ^
+name a corner, one [[constraint]] for each: ball.lower_left, ball.lower_right, ball.upper_left, ball.upper_right)m"},
+    {"SpringWithoutRest", R"m(3, rest = 1)m", R"m(3)m",
+     R"m(f.toml:8:11: missing key 'rest' in [[spring]]: its length without force
+    spring = [{between = ["world.hook", "ball"], stiffness = 3}]
+              ^
+write rest = 0 for a spring that pulls its ends together)m"},
+    {"GroundWithoutName", R"m(name = "floor", )m", R"m()m",
+     R"m(f.toml:7:11: missing key 'name' in [[ground]]
+    ground = [{line = [[-2, 0], [2, 0]]}]
+              ^)m"},
+    {"NothingTouched", R"m("ball", "floor)m", R"m("ball", "world.hook)m",
+     R"m(f.toml:9:36: 'world.hook' has nothing that can be touched
+    constraint = [{between = ["ball", "world.hook"], restitution = 0.5}]
+                                       ^
+a ground, or a body with a rod, a disc or a ring can; for a string between two points add longest = its length)m"},
+    {"PointTouched", R"m("ball", "floor")m", R"m("ball", [0, 1])m",
+     R"m(f.toml:9:35: nothing can be touched at a point
+    constraint = [{between = ["ball", [0, 1]], restitution = 0.5}]
+                                      ^
+name a ground or a body; for a string between two points add longest = its length)m"},
+    {"OnAGroundWithoutPlace", R"m(at = ["x", "y"])m", R"m(on = "floor")m",
+     R"m(f.toml:5:3: 'ball' is on the ground 'floor': 'at' must be [s, d]
+      {name = "ball", mass = "m", disc = "r", on = "floor", an...
+      ^
+s is the place along the ground, d the distance from it to the free side)m"},
+    {"SpringOnOneBody", R"m("world.hook", "ball)m", R"m("ball", "ball.center)m",
+     R"m(f.toml:8:22: both ends are on one body, ball
+    spring = [{between = ["ball", "ball.center"], stiffness = 3, rest = 1}]
+                         ^
+an end belongs to another body, or to the world)m"},
+    {"ContactOnOneBody", R"m("ball", "floor)m", R"m("ball.center", "ball)m",
+     R"m(f.toml:9:26: both ends are on one body, 'ball': their distance does not change
+    constraint = [{between = ["ball.center", "ball"], restitution = 0.5}]
+                             ^
+a contact is between two bodies, or a body and a ground)m"},
+    {"Penetration", R"m("y", start = )m", R"m("y", start = -0.)m",
+     R"m(f.toml:9:26: 'ball' starts 0.5 behind 'floor'
+    constraint = [{between = ["ball", "floor"], restitution = 0.5}]
+                             ^
+a line is free on the left of from-to; swap its ends?)m"},
+    {"NoMassMoved", R"m(mass = "m", )m", R"m(mass = "m", inertia = "0*m", )m",
+     R"m(f.toml:1:76: no mass moves with 'phi', so M is singular
+    ... = "x", start = 0.1}, {name = "y", start = 2}, {name = "phi"}]
+                                                               ^
+give a body whose place or angle depends on 'phi' a mass or an inertia)m"},
+    {"MassZeroAtTheStart", R"m("m", value = 1}, {name = "r", value = 0.3}, {name = "g", value = 9.81}]
+world = {gravity = [0, "-g"], points = {hook = [0, 5]}}
+body = [
+  {name = "ball", mass = "m)m",
+     R"m("J", value = 0}, {name = "m", value = 1}, {name = "r", value = 0.3}, {name = "g", value = 9.81}]
+world = {gravity = [0, "-g"], points = {hook = [0, 5]}}
+body = [
+  {name = "ball", mass = "m", inertia = "J)m",
+     R"m(f.toml:1:76: the mass matrix is not positive definite at the start (the pivot of 'phi' is 0)
+    ... = "x", start = 0.1}, {name = "y", start = 2}, {name = "phi"}]
+                                                               ^
+every coordinate needs a positive inertia)m"},
+    {"BodyAsNumber", R"m(angle = "phi)m", R"m(angle = "phi + ball)m",
+     R"m(f.toml:5:75: 'ball' is a body, and a number is needed here
+    ...mass = "m", disc = "r", at = ["x", "y"], angle = "phi + ball"},
+                                                               ^
+write ball.x or ball.y, or ball.angle)m"},
+    {"PointAsNumberInView", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball.center"]}]
+)m",
+     R"m(f.toml:8:37: 'ball.center' is a point, and a number is needed here
+    view = [{name = "v", x = "t", y = ["ball.center"]}]
+                                        ^
+write ball.center.x or ball.center.y)m"},
+    {"BodyAsNumberInView", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball"]}]
+)m",
+     R"m(f.toml:8:37: 'ball' is a body, and a number is needed here
+    view = [{name = "v", x = "t", y = ["ball"]}]
+                                        ^
+write ball.x or ball.y, or ball.angle)m"},
+    {"ReservedPoint", R"m(disc = "r", )m", R"m(disc = "r", points = {center = [0,1]}, )m",
+     R"m(f.toml:5:53: the point name 'center' is reserved
+      {name = "ball", mass = "m", disc = "r", points = {center = [0,1]}, at = ["x", "y"], angle = "phi"},
+                                                        ^
+choose another name)m"},
+    {"RateInAPlace", R"m(at = ["x)m", R"m(at = ["x')m",
+     R"m(f.toml:5:50: the rate x' is not allowed here: use only coordinates, parameters and t
+      {name = "ball", mass = "m", disc = "r", at = ["x'", "y"], angle = "phi"},
+                                                     ^)m"},
+    {"InertiaZero", R"m(mass = "m", )m", R"m(mass = "m", inertia = 0, )m",
+     R"m(f.toml:1:76: no mass moves with 'phi', so M is singular
+    ... = "x", start = 0.1}, {name = "y", start = 2}, {name = "phi"}]
+                                                               ^
+give a body whose place or angle depends on 'phi' a mass or an inertia)m"},
+    {"SpringBetweenAndAngle", R"m(rest = 1)m", R"m(rest = 1, angle = "phi")m",
+     R"m(f.toml:8:79: [[spring]] needs either 'between' or 'angle'
+    ..."world.hook", "ball"], stiffness = 3, rest = 1, angle = "phi"}]
+                                                               ^)m"},
+    {"EndsMeet", R"m(rest = 1})m", R"m(rest = 1}, {between = [[0.1, "y"], "ball"], stiffness = 1, rest = 0.1})m",
+     R"m(f.toml:8:72: the ends of the spring meet at the start, so its direction is not defined
+    ...een = ["world.hook", "ball"], stiffness = 3, rest = 1}, {between = [[0.1, "y"], "ball"], stiffness = 1, rest = 0...
+                                                               ^
+choose another start, or rest = 0)m"},
+    {"SpringWithoutEnds", R"m(between = ["world.hook", "ball"], )m", R"m()m",
+     R"m(f.toml:8:11: [[spring]] needs either 'between' or 'angle'
+    spring = [{stiffness = 3, rest = 1}]
+              ^
+between = [point, point], or angle = "an expression")m"},
+    {"LineTheWrongWay", R"m(-2, 0], [)m", R"m(2, 0], [-)m",
+     R"m(f.toml:9:26: 'ball' starts 2.3 behind 'floor'
+    constraint = [{between = ["ball", "floor"], restitution = 0.5}]
+                             ^
+a line is free on the left of from-to; swap its ends?)m"},
+    {"Syntax", R"m("x", "y)m", R"m("x", "y +)m",
+     R"m(f.toml:5:58: the expression ends where a value is expected
+    ... {name = "ball", mass = "m", disc = "r", at = ["x", "y +"], angle = "phi"},
+                                                               ^)m"},
+    {"TimeInM", R"m("phi"},
+)m",
+     R"m("phi"},
+ {name = "table", angle = "t"}, {name = "b", mass = 1, on = "table", at = "ball"},  {name = "c", mass = 1, at = ["x", "y*t"]},
+)m",
+     R"m(f.toml:6:85: the inertia of 'c' depends on t: T = x'^2/2 + t^2*y'^2/2
+    ..."}, {name = "b", mass = 1, on = "table", at = "ball"},  {name = "c", mass = 1, at = ["x", "y*t"]},
+                                                               ^
+a coordinate may not move a mass in a direction that turns with t; measure it in axes that turn as well, with 'on')m"},
+    {"NameTwice", R"m(= "floor)m", R"m(= "ball)m",
+     R"m(f.toml:5:12: the name 'ball' is used twice
+      {name = "ball", mass = "m", disc = "r", at = ["x", "y"], angle = ...
+               ^
+it is already the name at line 7: bodies and grounds need different names)m"},
+    {"TwoShapes", R"m(disc = "r", )m", R"m(disc = "r", ring = 2, )m",
+     R"m(f.toml:5:50: 'ball' has two shapes: disc and ring
+      {name = "ball", mass = "m", disc = "r", ring = 2, at = ["x", "y"], angle = "phi"},
+                                                     ^
+write one [[body]] for each, the second with on = "ball")m"},
+    {"UndefinedInASpring", R"m(rest = 1})m", R"m(rest = 1}, {angle = "log(phi)", stiffness = 1})m",
+     R"m(f.toml:8:72: the potential is not defined at the start: log(phi), with phi = 0
+    ...een = ["world.hook", "ball"], stiffness = 3, rest = 1}, {angle = "log(phi)", stiffness = 1}]
+                                                               ^)m"},
+    {"UnknownBody", R"m(["ball)m", R"m(["bal)m",
+     R"m(f.toml:9:28: unknown body or ground 'bal'; did you mean 'ball'?
+    constraint = [{between = ["bal", "floor"], restitution = 0.5}]
+                               ^
+bodies and grounds are: world, floor, ball)m"},
+    {"UnknownGround", R"m("ball", "floo)m", R"m("ball", "flo)m",
+     R"m(f.toml:9:36: unknown body or ground 'flor'; did you mean 'floor'?
+    constraint = [{between = ["ball", "flor"], restitution = 0.5}]
+                                       ^
+bodies and grounds are: world, floor, ball)m"},
+    {"UnknownInView", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball.x + bal.y"]}]
+)m",
+     R"m(f.toml:8:46: unknown body or ground 'bal'; did you mean 'ball'?
+    view = [{name = "v", x = "t", y = ["ball.x + bal.y"]}]
+                                                 ^
+bodies and grounds are: world, floor, ball)m"},
+    {"UnknownName", R"m("x", "y)m", R"m("x", "y + q)m",
+     R"m(f.toml:5:59: unknown name 'q'
+    ...{name = "ball", mass = "m", disc = "r", at = ["x", "y + q"], angle = "phi"},
+                                                               ^)m"},
+    {"UnknownPointOfWorld", R"m("world.hoo)m", R"m("world.ho)m",
+     R"m(f.toml:8:24: unknown point 'hok' of 'world'; did you mean 'hook'?
+    spring = [{between = ["world.hok", "ball"], stiffness = 3, rest = 1}]
+                           ^
+points of 'world' are: hook)m"},
+    {"UnknownPoint", R"m("world.hook", "ball)m", R"m("world.hook", "ball.centre)m",
+     R"m(f.toml:8:38: unknown point 'centre' of 'ball'; did you mean 'center'?
+    spring = [{between = ["world.hook", "ball.centre"], stiffness = 3, rest = 1}]
+                                         ^
+points of 'ball' are: center)m"},
+    {"NameWorld", R"m(= "floor)m", R"m(= "world)m",
+     R"m(f.toml:7:20: the name 'world' is reserved
+    ground = [{name = "world", line = [[-2, 0], [2, 0]]}]
+                       ^
+choose another name)m"},
+};
+INSTANTIATE_TEST_SUITE_P(OneAtATime, MechanismMistakes, testing::ValuesIn(mechanism_mistakes),
+                         [](const auto& one) { return one.param.name; });
+
+}  // namespace
+}  // namespace achilles
