@@ -34,10 +34,19 @@ Rational content_of(const std::vector<Rational>& numbers) {
         top = gcd(top, numerator(number));
         bottom = lcm(bottom, denominator(number));
     }
-    if (bottom <= 1000) return {abs(top), bottom};
+    if (bottom <= 1000 && bottom % 5 != 0) return {abs(top), bottom};
     const bool is_same = std::all_of(numbers.begin(), numbers.end(),
                                      [&](const Rational& number) { return abs(number) == abs(numbers.front()); });
     return is_same ? Rational(abs(numbers.front())) : Rational(1);
+}
+
+// The order of products in a node. The first product that is not a number gives a sum its sign.
+bool before(const ProductSum::Product& a, const ProductSum::Product& b) { return a.factors < b.factors; }
+bool is_negative_sum(const std::vector<ProductSum::Product>& products) {
+    const auto first = std::min_element(products.begin(), products.end(), [](const auto& a, const auto& b) {
+        return a.factors.empty() != b.factors.empty() ? b.factors.empty() : before(a, b);
+    });
+    return Builder::value(first->coefficient) < 0;
 }
 
 }  // namespace
@@ -202,8 +211,7 @@ ProductSum ProductSum::from(Expression expression) {
     }
     // Like the nodes, products stand in the order of their first factors.
     std::vector<Product>& products = of[expression.id()].products_;
-    std::stable_sort(products.begin(), products.end(),
-                     [](const Product& a, const Product& b) { return a.factors < b.factors; });
+    std::stable_sort(products.begin(), products.end(), before);
     return of[expression.id()];
 }
 
@@ -225,13 +233,9 @@ ProductSum ProductSum::packed() const {
     if (products_.size() < 2) return *this;
     Graph& graph = *graph_;
     std::vector<Rational> numbers;
-    const Product* first = &products_.front();
-    for (const Product& product : products_) {
-        numbers.push_back(Builder::value(product.coefficient));
-        if (product.factors < first->factors) first = &product;
-    }
+    for (const Product& product : products_) numbers.push_back(Builder::value(product.coefficient));
     Rational content = content_of(numbers);
-    if (Builder::value(first->coefficient) < 0) content = -content;
+    if (is_negative_sum(products_)) content = -content;
     ProductSum rest = *this;
     for (Product& product : rest.products_)
         product.coefficient = Builder::number(graph, Rational(Builder::value(product.coefficient) / content));
@@ -320,10 +324,7 @@ std::pair<ProductSum, ProductSum> cosine_and_sine(const ProductSum& angle, Graph
     const ProductSum one = ProductSum::number(graph, 1);
     ProductSum c = one, s;
     if (!rest.is_zero()) {
-        const auto first = std::min_element(
-            rest.products().begin(), rest.products().end(),
-            [](const ProductSum::Product& a, const ProductSum::Product& b) { return a.factors < b.factors; });
-        const bool is_negative = Builder::value(first->coefficient) < 0;
+        const bool is_negative = is_negative_sum(rest.products());
         if (is_negative) rest = -rest;
         c = ProductSum::function(Operation::cos, rest, graph);
         s = ProductSum::function(Operation::sin, rest, graph);

@@ -203,12 +203,25 @@ class MechanismExpander {
         if (on == nullptr || value.items.size() != 2) return;
         // A curve with a parameter of its own: its texts are turned as they are.
         const std::array<std::string, 2> origin = world_point(symbols_, on->frame.origin);
-        const std::string angle = symbols_.text(on->frame.angle), x = value.items[0].text.text,
-                          y = value.items[1].text.text;
-        const Location at = value.at;
-        value = made_point({fmt::format("{} + cos({})*({}) - sin({})*({})", origin[0], angle, x, angle, y),
-                            fmt::format("{} + sin({})*({}) + cos({})*({})", origin[1], angle, x, angle, y)},
-                           at);
+        const auto [c, s] = cosine_and_sine(on->frame.angle, symbols_.graph());
+        const std::string x = value.items[0].text.text, y = value.items[1].text.text;
+        const auto sum = [&](const std::string& start, const ProductSum& of_x, const ProductSum& of_y) {
+            TextSum result(value.at);
+            if (start != "0") result.add({start, value.at, false, {}});
+            for (const auto& [factor, text] : {std::pair(of_x, x), std::pair(of_y, y)})
+                if (!factor.is_zero() && text != "0")
+                    result.add({times(symbols_.text(factor), text), value.at, false, {}});
+            return result.text().text.empty() ? std::string("0") : result.text().text;
+        };
+        value = made_point({sum(origin[0], c, -s), sum(origin[1], s, c)}, value.at);
+    }
+
+    // A product of texts, with as few parentheses as is safe.
+    static std::string times(const std::string& factor, const std::string& text) {
+        const std::string right = is_name(text) ? text : "(" + text + ")";
+        if (factor == "1") return right;
+        if (factor.find(' ') != factor.npos) return "(" + factor + ")*" + right;
+        return factor == "-1" ? "-" + right : factor + "*" + right;
     }
 
     void turn_with(TomlValue& drawing, const PlacedShape* on) {

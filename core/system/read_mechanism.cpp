@@ -369,7 +369,7 @@ void Mechanism::place_body(RigidBody& body, const Fields& fields) {
         body.placement = "at " + origin.name;
     }
     if (angle != nullptr) body.placement += ", rotated by " + symbols_.text(turn);
-    if (on != nullptr && !on->is_ground) body.placement += " on " + on->name;
+    if (angle != nullptr && on != nullptr) body.placement += " against " + on->name;
     body.mass_at = fields.find("mass") ? fields.find("mass")->at : body.at;
     read_shape(body, fields);
     read_mass(body, fields);
