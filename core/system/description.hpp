@@ -110,8 +110,8 @@ struct SummaryContact {
 struct MechanismSummary {
     std::vector<SummaryLine> bodies, springs;
     std::vector<SummaryContact> contacts;  // one for each constraint if there are bodies
-    bool has_signed_length = false;        // of a spring or damper, which goes on below 0 where its ends pass each other
-    bool is_prescribed = false;            // a mass is moved by time: energy is T2 - T0 + V
+    bool has_signed_length = false;  // of a spring or damper, which goes on below 0 where its ends pass each other
+    bool is_prescribed = false;      // a mass is moved by time: energy is T2 - T0 + V
 };
 
 struct SystemDescription {
