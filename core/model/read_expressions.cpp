@@ -200,8 +200,7 @@ bool check_expressions(const SystemDescription& system, Names names, ErrorCollec
     equations.free.contacts.resize(system.constraints.size());
     for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
     ExpressionReader reader(graph, names, mistakes);
-    attempt_within_limits(mistakes, system, equations,
-                          [&] { read_rest(system, layout, graph, equations, reader); });
+    attempt_within_limits(mistakes, system, equations, [&] { read_rest(system, layout, graph, equations, reader); });
     return has_equations;
 }
 

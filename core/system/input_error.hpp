@@ -50,7 +50,7 @@ struct TextPiece {
 struct Text {
     std::string text;
     Location at;
-    bool is_written = true;  // false: created by the reader from what is at `at` (rewrite.hpp)
+    bool is_written = true;           // false: created by the reader from what is at `at` (rewrite.hpp)
     std::vector<TextPiece> pieces{};  // parts from other places, by their begin; the text before the first is as above
 };
 

@@ -42,7 +42,8 @@ const FileEdit in_keys[] = {
      "damper, force, torque, run, view, drawing, truncation, orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
      "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown keys: "
-     "title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, damper, force, torque, "
+     "title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, damper, force, "
+     "torque, "
      "run, view, drawing, truncation, orbit, extra"},
     {"end_time = 5", "zeno = 5",
      "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown keys: start_time, end_time, tolerance, "
