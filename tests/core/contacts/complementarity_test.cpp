@@ -11,11 +11,11 @@ namespace achilles {
 namespace {
 
 using Matrix = ContactMatrix<double>;
-using Vector = ContactVector<double>;
+using Forces = ContactVector<double>;
 using Eigen::Index;
 
 // Largest violation of complementarity and of the signs, relative to the summands of each row.
-double fault(const Matrix& W, const Vector& b, const Complementarity& answer) {
+double fault(const Matrix& W, const Forces& b, const Complementarity& answer) {
     double worst = 0.0;
     for (Index j = 0; j < b.size(); ++j) {
         const double y = b[j] + W.row(j).dot(answer.p);
@@ -37,7 +37,7 @@ TEST(Complementarity, OfOneContact) {
     EXPECT_EQ(leaving->p[0], 0.0);
     EXPECT_EQ(leaving->y[0], 1.0);
     EXPECT_TRUE(leaving->active.empty());
-    EXPECT_TRUE(solve_complementarity(Matrix(0, 0), Vector(0)));
+    EXPECT_TRUE(solve_complementarity(Matrix(0, 0), Forces(0)));
 }
 
 // Taken alone, the second contact would open (theory-gaps.md 8). The first contact, which is held, keeps it closed.
@@ -121,7 +121,7 @@ void regular_problems(int count, unsigned seed) {
     for (int run = 0; run < count; ++run) {
         const Index m = 1 + static_cast<Index>(random() % 8), n = m + static_cast<Index>(random()) % (9 - m);
         Matrix G = random_matrix(m, n, random);
-        Vector b = random_matrix(m, 1, random);
+        Forces b = random_matrix(m, 1, random);
         for (Index j = 0; j < m; ++j) {
             const double unit = std::pow(10.0, exponent(random));
             G.row(j) *= unit;
@@ -134,8 +134,8 @@ void regular_problems(int count, unsigned seed) {
         const Order order = random_order(m, random);
         const auto other = solve_complementarity(renumbered(W, order), renumbered(b, order));
         ASSERT_TRUE(other) << run;
-        const Vector p = renumbered(answer->p, order), y = renumbered(answer->y, order);
-        const Vector weight = renumbered(W, order).diagonal().cwiseSqrt();
+        const Forces p = renumbered(answer->p, order), y = renumbered(answer->y, order);
+        const Forces weight = renumbered(W, order).diagonal().cwiseSqrt();
         const double size = p.cwiseProduct(weight).maxCoeff() + 1e-300;
         // A condition number of 1e9 is accepted and costs nine digits of p. y still equals b + W p to rounding.
         ASSERT_LE((other->y - y).cwiseQuotient(weight).cwiseAbs().maxCoeff(), 1e-11 * (size + b.cwiseAbs().maxCoeff()));
@@ -156,16 +156,16 @@ TEST(Complementarity, OfDependentGradientsAtRandom) {
         Matrix G = random_matrix(m, n, random);
         G.row(0) = (random() % 2 == 0 ? 1.0 : 2.5) * G.row(m - 1);
         const Matrix W = G * G.transpose();
-        const Vector b = G * random_matrix(n, 1, random);
+        const Forces b = G * random_matrix(n, 1, random);
         const auto answer = solve_complementarity(W, b);
         ASSERT_TRUE(answer) << run;
         ASSERT_LE(fault(W, b, *answer), 1e-12) << run;
         if (answer->unique) continue;
         ++several;
         // Other solutions: give one contact a force beforehand and require y = 0 there all the same.
-        const auto norm = [&](const Vector& p) { return W.diagonal().dot(p.cwiseAbs2()); };
+        const auto norm = [&](const Forces& p) { return W.diagonal().dot(p.cwiseAbs2()); };
         for (Index j = 0; j < m; ++j) {
-            Vector given = Vector::Zero(m);
+            Forces given = Forces::Zero(m);
             given[j] = 0.5 * answer->p[j] + (random() % 2 == 0 ? 0.1 : 0.0);
             const auto rest = solve_complementarity(W, b + W * given);
             if (!rest) continue;

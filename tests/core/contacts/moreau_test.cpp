@@ -12,17 +12,17 @@ namespace achilles {
 namespace {
 
 using Matrix = ContactMatrix<double>;
-using Vector = ContactVector<double>;
+using Forces = ContactVector<double>;
 using Eigen::Index;
 using SequenceEnd = ImpactSequence::SequenceEnd;
 
 constexpr ContactSet nobody;
 
-bool order_matters(const Matrix& W, const Matrix& radius, const Vector& e, ContactSet held, ContactSet landing) {
+bool order_matters(const Matrix& W, const Matrix& radius, const Forces& e, ContactSet held, ContactSet landing) {
     return order_dependence(enclosure(W, radius), e, held, landing).matters();
 }
 
-void expect_near(const Vector& x, const Vector& expected) {
+void expect_near(const Forces& x, const Forces& expected) {
     ASSERT_EQ(x.size(), expected.size());
     for (Index j = 0; j < x.size(); ++j) EXPECT_NEAR(x[j], expected[j], 4e-16) << j;
 }
@@ -31,7 +31,7 @@ void expect_near(const Vector& x, const Vector& expected) {
 
 TEST(Moreau, RodDroppedFlat) {
     const Matrix W = pair_with(-0.5);
-    const Vector e = numbers({0.5, 0.5}), before = numbers({-1.0, -1.0});
+    const Forces e = numbers({0.5, 0.5}), before = numbers({-1.0, -1.0});
     EXPECT_EQ(moreau_impact(W, before, e, nobody)->hdot_after, numbers({0.5, 0.5}));
     const auto other = alternatives(W, before, e, nobody);
     ASSERT_EQ(other.size(), 2u);
@@ -43,7 +43,7 @@ TEST(Moreau, RodDroppedFlat) {
 
 TEST(Moreau, TallBlockDroppedFlat) {
     const Matrix W = pair_with(0.25);
-    const Vector e = numbers({0.0, 0.0}), before = numbers({-1.0, -1.0});
+    const Forces e = numbers({0.0, 0.0}), before = numbers({-1.0, -1.0});
     EXPECT_EQ(moreau_impact(W, before, e, nobody)->hdot_after, numbers({0.0, 0.0}));
     const auto other = alternatives(W, before, e, nobody);
     ASSERT_EQ(other.size(), 2u);
@@ -53,7 +53,7 @@ TEST(Moreau, TallBlockDroppedFlat) {
 
 TEST(Moreau, LandingBesideAContactThatIsHeldOrNearlyHeld) {
     const Matrix W = pair_with(-0.3);
-    const Vector e = numbers({0.5, 0.5}), before = numbers({0.0, -1.0});
+    const Forces e = numbers({0.5, 0.5}), before = numbers({0.0, -1.0});
     const auto held = moreau_impact(W, before, e, contacts({0}));
     EXPECT_EQ(held->hdot_after, numbers({0.0, 0.5}));
     EXPECT_TRUE(held->opened.empty());
@@ -66,8 +66,8 @@ TEST(Moreau, LandingBesideAContactThatIsHeldOrNearlyHeld) {
 TEST(Moreau, CradleOfThree) {
     Matrix W(2, 2);
     W << 2.0, -1.0, -1.0, 2.0;
-    const Vector e = numbers({1.0, 1.0}), before = numbers({-1.0, 0.0});
-    const auto velocities = [](const Vector& p) { return numbers({1.0 - p[0], p[0] - p[1], p[1]}); };
+    const Forces e = numbers({1.0, 1.0}), before = numbers({-1.0, 0.0});
+    const auto velocities = [](const Forces& p) { return numbers({1.0 - p[0], p[0] - p[1], p[1]}); };
     const auto together = moreau_impact(W, before, e, nobody);
     expect_near(velocities(together->impulses), numbers({-1.0 / 3.0, 2.0 / 3.0, 2.0 / 3.0}));
     const auto other = alternatives(W, before, e, nobody);
@@ -132,7 +132,7 @@ TEST(Moreau, EndlessImpactsAreTakenToTheirLimit) {
 TEST(Moreau, EqualClosingSpeedsCollideTogether) {
     Matrix W = Matrix::Constant(3, 3, -0.3);
     W.diagonal().setOnes();
-    const auto turns = impacts_in_turn(W, -Vector::Ones(3), Vector::Constant(3, 0.5), nobody, 0);
+    const auto turns = impacts_in_turn(W, -Forces::Ones(3), Forces::Constant(3, 0.5), nobody, 0);
     EXPECT_EQ(turns->hdot_after[1], turns->hdot_after[2]);
     EXPECT_NE(turns->hdot_after[0], turns->hdot_after[1]);
 }
@@ -142,7 +142,7 @@ TEST(Moreau, EqualClosingSpeedsCollideTogether) {
 // Contacts of a random system with M = 1. v- is such that held contacts have hdot = 0.
 struct Scene {
     Matrix G, W;
-    Vector before, e;
+    Forces before, e;
     ContactSet held, landing;
 };
 Scene random_scene(std::mt19937& random) {
@@ -152,7 +152,7 @@ Scene random_scene(std::mt19937& random) {
     scene.W = scene.G * scene.G.transpose();
     scene.held = some_of(m, random);
     scene.before = -random_matrix(m, 1, random).cwiseAbs();
-    scene.e = Vector::Zero(m);
+    scene.e = Forces::Zero(m);
     const bool plastic = random() % 3 == 0;
     for (Index j = 0; j < m; ++j) {
         if (!plastic) scene.e[j] = static_cast<double>(random() % 5) / 4.0;
@@ -163,7 +163,7 @@ Scene random_scene(std::mt19937& random) {
 }
 
 // Change of energy by the impulses p, where v+ = v- + G' p.
-double change_of_energy(const Scene& scene, const Vector& p) { return p.dot(scene.before + 0.5 * scene.W * p); }
+double change_of_energy(const Scene& scene, const Forces& p) { return p.dot(scene.before + 0.5 * scene.W * p); }
 
 TEST(Moreau, LawsAtRandom) {
     std::mt19937 random(5);
@@ -208,16 +208,16 @@ TEST(Moreau, TransmissionAtRandom) {
         const auto [kappa, W] = block->transmission(s.W, i);
         if (W < 1e-4) continue;
         const Matrix n = (s.G.row(i).transpose() + s.G.transpose() * kappa) / W;
-        const Vector along = s.G * n;
+        const Forces along = s.G * n;
         for (Index j = 0; j < m; ++j) ASSERT_NEAR(along[j], j == i ? 1.0 : 0.0, 1e-9) << run;
-        Vector before = Vector::Zero(m);
+        Forces before = Forces::Zero(m);
         before[i] = -1.0;
         const auto impact = moreau_impact(s.W, before, s.e, held);
         const bool pulls = kappa.minCoeff() < 0.0;
         ASSERT_EQ(impact->opened.empty(), !pulls) << run;
         if (pulls) continue;
         ++stays;
-        Vector expected = (1.0 + s.e[i]) / W * kappa;
+        Forces expected = (1.0 + s.e[i]) / W * kappa;
         expected[i] = (1.0 + s.e[i]) / W;
         ASSERT_EQ(impact->impulses, expected) << run;
         const auto solved = solve_complementarity(s.W, (before + s.e.cwiseProduct(before)).eval());
@@ -284,17 +284,17 @@ TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
         const Index m = s.e.size();
         if (!HeldBlock<double>::of(s.W, all_contacts(m), 1e-2)) continue;
         const Order order = random_order(m, random);
-        Vector unit(m);
+        Forces unit(m);
         for (Index j = 0; j < m; ++j) unit[j] = std::exp2(static_cast<double>(random() % 11) - 5.0);
         const Matrix W = renumbered((unit.asDiagonal() * s.W * unit.asDiagonal()).eval(), order);
-        const Vector before = renumbered(unit.cwiseProduct(s.before).eval(), order);
+        const Forces before = renumbered(unit.cwiseProduct(s.before).eval(), order);
         const ContactSet held = renumbered(s.held, order, m);
         for (Index i = 0; i < m; ++i) {
             if (contains(held, i)) continue;
             const auto turns = impacts_in_turn(s.W, s.before, s.e, s.held, at(order, i));
             const auto same = impacts_in_turn(W, before, renumbered(s.e, order), held, i);
             ASSERT_EQ(turns->end, same->end) << run;
-            const Vector expected = renumbered(unit.cwiseProduct(turns->hdot_after).eval(), order);
+            const Forces expected = renumbered(unit.cwiseProduct(turns->hdot_after).eval(), order);
             ASSERT_LE((same->hdot_after - expected).cwiseAbs().maxCoeff(), 1e-8 * expected.maxCoeff() + 1e-8) << run;
             ++compared;
         }
@@ -306,7 +306,7 @@ TEST(Moreau, SequencesDoNotDependOnNumbersOrUnits) {
 
 TEST(ImpactOrder, DependsOnTheSignOfTheCoupling) {
     const Matrix exact = Matrix::Zero(2, 2);
-    const Vector plastic = numbers({0.0, 0.0}), elastic = numbers({0.0, 0.5});
+    const Forces plastic = numbers({0.0, 0.0}), elastic = numbers({0.0, 0.5});
     const ContactSet both = contacts({0, 1});
     EXPECT_FALSE(order_matters(pair_with(0.0), exact, elastic, nobody, both));
     EXPECT_TRUE(order_matters(pair_with(-0.3), exact, elastic, nobody, both));
@@ -325,7 +325,7 @@ TEST(ImpactOrder, DependsOnTheSignOfTheCoupling) {
 }
 
 TEST(ImpactOrder, CountsRoundingAsZeroAndSaysSo) {
-    const Vector e = numbers({0.5, 0.5});
+    const Forces e = numbers({0.5, 0.5});
     const ContactSet both = contacts({0, 1});
     const auto with_radius = [&](double W12, double radius) {
         Matrix radii = Matrix::Zero(2, 2);

@@ -14,11 +14,12 @@ class ProductSums : public testing::Test {
  protected:
     ProductSums() {
         using Rank = ProductSumWriter::Rank;
-        const char* const names[] = {"x", "y", "x'", "y'", "m", "L", "t"};
+        const char* const slot_names[] = {"x", "y", "x'", "y'", "m", "L", "t"};
         const Rank ranks[] = {Rank::state,    Rank::state,    Rank::rate, Rank::rate,
                               Rank::constant, Rank::constant, Rank::state};
-        for (std::uint32_t i = 0; i < 7; ++i) scope_.allowed.emplace(names[i], graph_.symbol(i));
-        writer_ = ProductSumWriter({std::begin(names), std::end(names)}, {std::begin(ranks), std::end(ranks)});
+        for (std::uint32_t i = 0; i < 7; ++i) scope_.allowed.emplace(slot_names[i], graph_.symbol(i));
+        writer_ =
+            ProductSumWriter({std::begin(slot_names), std::end(slot_names)}, {std::begin(ranks), std::end(ranks)});
     }
     ProductSum sum(const std::string& text) { return ProductSum::from(parse(text, scope_, graph_)); }
     std::string written(const std::string& text) { return writer_.text(sum(text)); }

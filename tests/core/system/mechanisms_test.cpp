@@ -335,16 +335,16 @@ TEST_P(Slips, AreDifferencesOfVelocitiesOfMaterialPoints) {
         place[1] += one.moving * std::sin(t);
         const auto [nx, ny] = one.normal(s);
         const auto turned = [&](double x, double y) { return std::array{c * x - d * y, d * x + c * y}; };
-        const auto arm = turned(place[0], place[1]), n = turned(nx, ny);
+        const auto lever = turned(place[0], place[1]), n = turned(nx, ny);
         const double origin[] = {values[3] + 0.3 * std::sin(t), values[4]};
-        values[0] = origin[0] + arm[0] + one.radius * n[0];
-        values[1] = origin[1] + arm[1] + one.radius * n[1];
+        values[0] = origin[0] + lever[0] + one.radius * n[0];
+        values[1] = origin[1] + lever[1] + one.radius * n[1];
         ASSERT_NEAR(value_of(gap, values), 0.0, 1e-14);
         const double spin = values[8];
         const double touches[] = {values[6] + spin * one.radius * n[1], values[7] - spin * one.radius * n[0]};
         const auto material = turned(0.0, one.moving * std::cos(t));
-        const double touched[] = {values[9] + 0.3 * std::cos(t) - turn * arm[1] + material[0] + one.speed * n[1],
-                                  values[10] + turn * arm[0] + material[1] - one.speed * n[0]};
+        const double touched[] = {values[9] + 0.3 * std::cos(t) - turn * lever[1] + material[0] + one.speed * n[1],
+                                  values[10] + turn * lever[0] + material[1] - one.speed * n[0]};
         const double expected =
             ((touches[0] - touched[0]) * n[1] - (touches[1] - touched[1]) * n[0]) * (one.scale ? one.scale(s, t) : 1.0);
         const double largest =
