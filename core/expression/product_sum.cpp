@@ -16,12 +16,12 @@ namespace {
 using boost::multiprecision::denominator, boost::multiprecision::numerator;
 
 // Far above the needs of a chain of twelve links (500 terms), and low enough to end within a second.
-constexpr std::size_t most_products = 10000;
-constexpr long most_exponent = 100000;
+constexpr std::size_t max_products = 10000;
+constexpr long max_exponent = 100000;
 
 int exponent_within_limits(long exponent) {
-    if (std::abs(exponent) > most_exponent)
-        throw ExpressionTooLarge(fmt::format("it takes an exponent above {}", most_exponent));
+    if (std::abs(exponent) > max_exponent)
+        throw ExpressionTooLarge(fmt::format("it takes an exponent above {}", max_exponent));
     return static_cast<int>(exponent);
 }
 
@@ -70,8 +70,8 @@ void ProductSum::add(const Expression& coefficient, const Factors& factors) {
     const auto like =
         std::find_if(products_.begin(), products_.end(), [&](const Product& p) { return p.factors == factors; });
     if (like == products_.end()) {
-        if (products_.size() == most_products)
-            throw ExpressionTooLarge(fmt::format("it takes more than {} terms in one sum", most_products));
+        if (products_.size() == max_products)
+            throw ExpressionTooLarge(fmt::format("it takes more than {} terms in one sum", max_products));
         products_.push_back({coefficient, factors});
         return;
     }

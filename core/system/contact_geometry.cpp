@@ -10,7 +10,7 @@ namespace {
 
 class ContactReader {
  public:
-    ContactReader(Mechanism& mechanism, const Fields& fields)
+    ContactReader(PlacedMechanism& mechanism, const Fields& fields)
         : mechanism_(mechanism),
           symbols_(mechanism.symbols()),
           kinematics_(symbols_.kinematics()),
@@ -18,7 +18,7 @@ class ContactReader {
           fields_(fields),
           between_(fields.need("between")) {}
 
-    ContactGeometry read() {
+    ShapeContact read() {
         if (between_.kind != TomlValue::Kind::array || between_.items.size() != 2)
             throw fields_.wrong_type("between", between_, "[what touches, what is touched]");
         const TomlValue* longest = fields_.find("longest");
@@ -229,19 +229,19 @@ class ContactReader {
                         curve.name, symbols_.text(radius_), disc, curve.name, symbols_.text(radius_))};
     }
 
-    Mechanism& mechanism_;
+    PlacedMechanism& mechanism_;
     const MechanismSymbols& symbols_;
     const Kinematics& kinematics_;
     Graph& graph_;
     const Fields& fields_;
     const TomlValue& between_;
     ProductSum radius_, spin_, turning_, speed_;
-    ContactGeometry result_;
+    ShapeContact result_;
 };
 
 }  // namespace
 
-ContactGeometry read_contact(Mechanism& mechanism, const Fields& fields) {
+ShapeContact read_contact(PlacedMechanism& mechanism, const Fields& fields) {
     return ContactReader(mechanism, fields).read();
 }
 

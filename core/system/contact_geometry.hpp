@@ -11,7 +11,7 @@
 
 namespace achilles {
 
-struct ContactGeometry {
+struct ShapeContact {
     ProductSum gap, slip;
     bool has_slip = true;                  // false: a string
     std::string name;                      // "shank.end on floor"
@@ -24,6 +24,6 @@ struct ContactGeometry {
 };
 
 // The geometry of a [[constraint]] with `between`. Throws Mistake.
-ContactGeometry read_contact(Mechanism& mechanism, const Fields& fields);
+ShapeContact read_contact(PlacedMechanism& mechanism, const Fields& fields);
 
 }  // namespace achilles

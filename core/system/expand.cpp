@@ -141,7 +141,7 @@ class MechanismExpander {
 
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
-            std::optional<ContactGeometry>& contact = contacts_.emplace_back();
+            std::optional<ShapeContact>& contact = contacts_.emplace_back();
             for (const char* key : {"gap", "slip", "restitution"}) substitute_in(*table, key);
             const Fields fields(*table, "[[constraint]]");
             mistakes_.attempt([&] {
@@ -319,9 +319,9 @@ class MechanismExpander {
     SystemDescription& system_;
     Names& names_;
     ErrorCollector& mistakes_;
-    Mechanism mechanism_;
+    PlacedMechanism mechanism_;
     const MechanismSymbols& symbols_;
-    std::vector<std::optional<ContactGeometry>> contacts_;
+    std::vector<std::optional<ShapeContact>> contacts_;
 };
 
 bool has_contact_between(TomlValue& root) {
@@ -334,8 +334,8 @@ bool has_contact_between(TomlValue& root) {
 
 }  // namespace
 
-Expansion expand_mechanism(TomlValue& root, ParsedFile& reading) {
-    Expansion result;
+MechanismExpansion expand_mechanism(TomlValue& root, ParsedFile& reading) {
+    MechanismExpansion result;
     result.has_mechanism = has_mechanism(root) || has_contact_between(root);
     if (!result.has_mechanism) return result;
     try {

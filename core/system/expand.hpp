@@ -11,10 +11,10 @@ namespace achilles {
 // Replaces these tables in the tree of a file, whose coordinates and parameters have been read. Every text that it makes
 // has the location of its origin. Afterwards `has_failed` says whether a mistake was found; the energies and gaps of
 // such a file are missing, and this is not a mistake of its own.
-struct Expansion {
+struct MechanismExpansion {
     bool has_mechanism = false, has_failed = false;
 };
-Expansion expand_mechanism(TomlValue& root, ParsedFile& reading);
+MechanismExpansion expand_mechanism(TomlValue& root, ParsedFile& reading);
 
 // The tree as TOML, in the style of the gallery. [extra] is left out.
 std::string to_toml(const TomlValue& root);

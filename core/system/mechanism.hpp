@@ -113,10 +113,10 @@ struct AppliedLoad {
 };
 
 // Reads and places what the tables say. Bodies are placed at first use, so they may stand in any order.
-class Mechanism {
+class PlacedMechanism {
  public:
     // Adds the mistakes of the tables.
-    Mechanism(const TomlValue& root, const SystemDescription& system, Names& names, ErrorCollector& mistakes);
+    PlacedMechanism(const TomlValue& root, const SystemDescription& system, Names& names, ErrorCollector& mistakes);
 
     const MechanismSymbols& symbols() const { return symbols_; }
     // Those without mistakes, in the order of the file.

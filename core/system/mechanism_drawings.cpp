@@ -59,7 +59,7 @@ namespace {
 
 class MechanismPainter {
  public:
-    MechanismPainter(const Mechanism& mechanism, const std::vector<std::optional<ContactGeometry>>& contacts)
+    MechanismPainter(const PlacedMechanism& mechanism, const std::vector<std::optional<ShapeContact>>& contacts)
         : mechanism_(mechanism), symbols_(mechanism.symbols()), contacts_(contacts), size_(extent()) {}
 
     MechanismDrawings draw() {
@@ -235,7 +235,7 @@ class MechanismPainter {
     }
 
     // What is touched, or the point that touches it.
-    void mark_contact(const ContactGeometry& contact, std::vector<TomlValue>& drawings) const {
+    void mark_contact(const ShapeContact& contact, std::vector<TomlValue>& drawings) const {
         const Location at = contact.point.at;
         if (contact.other) {
             TomlValue string = shape("segment", at);
@@ -264,16 +264,16 @@ class MechanismPainter {
         drawings.push_back(std::move(mark));
     }
 
-    const Mechanism& mechanism_;
+    const PlacedMechanism& mechanism_;
     const MechanismSymbols& symbols_;
-    const std::vector<std::optional<ContactGeometry>>& contacts_;
+    const std::vector<std::optional<ShapeContact>>& contacts_;
     double size_;
 };
 
 }  // namespace
 
-MechanismDrawings draw_mechanism(const Mechanism& mechanism,
-                                 const std::vector<std::optional<ContactGeometry>>& contacts) {
+MechanismDrawings draw_mechanism(const PlacedMechanism& mechanism,
+                                 const std::vector<std::optional<ShapeContact>>& contacts) {
     return MechanismPainter(mechanism, contacts).draw();
 }
 

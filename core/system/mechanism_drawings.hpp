@@ -22,8 +22,8 @@ struct MechanismDrawings {
 };
 
 // `contacts` has an empty entry for a constraint with a typed gap.
-MechanismDrawings draw_mechanism(const Mechanism& mechanism,
-                                 const std::vector<std::optional<ContactGeometry>>& contacts);
+MechanismDrawings draw_mechanism(const PlacedMechanism& mechanism,
+                                 const std::vector<std::optional<ShapeContact>>& contacts);
 
 // The coordinates in the world of a point of a frame, as text.
 std::array<std::string, 2> world_point(const MechanismSymbols& symbols, const MovingPoint& point);

@@ -18,7 +18,7 @@ PlanarVector derivative(const PlanarVector& vector, std::uint32_t slot) {
 
 class TermDeriver {
  public:
-    TermDeriver(const Mechanism& mechanism, const SystemDescription& system, ErrorCollector& mistakes)
+    TermDeriver(const PlacedMechanism& mechanism, const SystemDescription& system, ErrorCollector& mistakes)
         : mechanism_(mechanism),
           symbols_(mechanism.symbols()),
           kinematics_(symbols_.kinematics()),
@@ -154,7 +154,7 @@ class TermDeriver {
         }
     }
 
-    const Mechanism& mechanism_;
+    const PlacedMechanism& mechanism_;
     const MechanismSymbols& symbols_;
     const Kinematics& kinematics_;
     Graph& graph_;
@@ -165,11 +165,12 @@ class TermDeriver {
 
 }  // namespace
 
-MechanismTerms derive_terms(const Mechanism& mechanism, const SystemDescription& system, ErrorCollector& mistakes) {
+MechanismTerms derive_terms(const PlacedMechanism& mechanism, const SystemDescription& system,
+                            ErrorCollector& mistakes) {
     return TermDeriver(mechanism, system, mistakes).derive();
 }
 
-PointDistance distance_between(const Mechanism& mechanism, const NamedPoint& from, const NamedPoint& to,
+PointDistance distance_between(const PlacedMechanism& mechanism, const NamedPoint& from, const NamedPoint& to,
                                bool may_be_signed, const Location& at) {
     const MechanismSymbols& symbols = mechanism.symbols();
     const Kinematics& kinematics = symbols.kinematics();

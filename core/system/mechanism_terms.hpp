@@ -23,7 +23,8 @@ struct MechanismTerms {
 };
 
 // Adds the mistakes that show up here: a coordinate that moves no mass, and inertia that depends on time.
-MechanismTerms derive_terms(const Mechanism& mechanism, const SystemDescription& system, ErrorCollector& mistakes);
+MechanismTerms derive_terms(const PlacedMechanism& mechanism, const SystemDescription& system,
+                            ErrorCollector& mistakes);
 
 // The distance between two points, and its rate.
 struct PointDistance {
@@ -31,7 +32,7 @@ struct PointDistance {
     bool is_signed = false;  // the points stay on one line: positive at the start, and kept when they pass each other
 };
 // Throws Mistake if the points are always together.
-PointDistance distance_between(const Mechanism& mechanism, const NamedPoint& from, const NamedPoint& to,
+PointDistance distance_between(const PlacedMechanism& mechanism, const NamedPoint& from, const NamedPoint& to,
                                bool may_be_signed, const Location& at);
 
 }  // namespace achilles

@@ -8,7 +8,7 @@
 
 namespace achilles {
 
-void Mechanism::place_ground(GroundSurface& ground, const Fields& fields) {
+void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) {
     PlacedShape* on = on_of(fields);
     if (on != nullptr && on->is_ground)
         throw Mistake{fields.string("on").at, fmt::format("'{}' is a ground: a ground stands on a body", on->name),
@@ -42,7 +42,7 @@ void Mechanism::place_ground(GroundSurface& ground, const Fields& fields) {
                    substituted(fields.expression("over", over.items[1]))};
 }
 
-void Mechanism::place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground) {
+void PlacedMechanism::place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground) {
     const Kinematics& kinematics = symbols_.kinematics();
     Graph& graph = symbols_.graph();
     const TomlValue* at = fields.find("at");
@@ -78,7 +78,7 @@ void Mechanism::place_on_ground(RigidBody& body, const Fields& fields, GroundSur
 }
 
 // The velocity along the curve is s' times S - d f''/S^2 with S = sqrt(1 + f'^2), in the axes of its tangent.
-void Mechanism::place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve) {
+void PlacedMechanism::place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve) {
     const Kinematics& kinematics = symbols_.kinematics();
     Graph& graph = symbols_.graph();
     const ProductSum &s = place.x, &d = place.y, one = symbols_.number(1), height = d.packed();
@@ -110,14 +110,14 @@ void Mechanism::place_on_curve(RigidBody& body, const LocalPoint& place, const G
     body.along = along + drift_along;
 }
 
-bool Mechanism::is_rigid(const NamedPoint& a, const NamedPoint& b) const {
+bool PlacedMechanism::is_rigid(const NamedPoint& a, const NamedPoint& b) const {
     if (a.carrier != b.carrier) return false;
     const ProductSum axes = a.carrier ? a.carrier->frame.angle : ProductSum{};
     const auto apart = components(b.point.position - a.point.position, axes, symbols_.graph());
     return symbols_.is_constant(apart[0]) && symbols_.is_constant(apart[1]);
 }
 
-void Mechanism::read_springs(const TomlValue& root, const char* key) {
+void PlacedMechanism::read_springs(const TomlValue& root, const char* key) {
     for (Fields& fields : tables(root, key, mistakes_)) {
         fields.allow(keys_of(fields.where()), mistakes_);
         mistakes_.attempt([&] {
@@ -171,7 +171,7 @@ void Mechanism::read_springs(const TomlValue& root, const char* key) {
     }
 }
 
-void Mechanism::read_loads(const TomlValue& root) {
+void PlacedMechanism::read_loads(const TomlValue& root) {
     for (Fields& fields : tables(root, "force", mistakes_)) {
         fields.allow(keys_of(fields.where()), mistakes_);
         mistakes_.attempt([&] {

@@ -67,7 +67,8 @@ bool has_mechanism(const TomlValue& root) {
                        [&](const char* key) { return entry_in(root, key) != nullptr; });
 }
 
-Mechanism::Mechanism(const TomlValue& root, const SystemDescription& system, Names& names, ErrorCollector& mistakes)
+PlacedMechanism::PlacedMechanism(const TomlValue& root, const SystemDescription& system, Names& names,
+                                 ErrorCollector& mistakes)
     : symbols_(system), names_(names), mistakes_(mistakes), system_(system) {
     world_.name = "world";
     list_names(root, "ground");
@@ -79,7 +80,7 @@ Mechanism::Mechanism(const TomlValue& root, const SystemDescription& system, Nam
 }
 
 // The names of all bodies and grounds, before any of them is placed.
-void Mechanism::list_names(const TomlValue& root, const char* key) {
+void PlacedMechanism::list_names(const TomlValue& root, const char* key) {
     for (Fields& fields : tables(root, key, mistakes_)) {
         fields.allow(keys_of(fields.where()), mistakes_);
         const bool is_ground = fields.where() == "[[ground]]";
@@ -114,27 +115,27 @@ void Mechanism::list_names(const TomlValue& root, const char* key) {
     }
 }
 
-Mechanism::Entry* Mechanism::entry_of(const std::string& name) {
+PlacedMechanism::Entry* PlacedMechanism::entry_of(const std::string& name) {
     const auto entry =
         std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.shape().name == name; });
     return entry == entries_.end() ? nullptr : &*entry;
 }
 
-std::vector<const RigidBody*> Mechanism::bodies() const {
+std::vector<const RigidBody*> PlacedMechanism::bodies() const {
     std::vector<const RigidBody*> list;
     for (const Entry& entry : entries_)
         if (entry.body && entry.state == Entry::State::done) list.push_back(entry.body.get());
     return list;
 }
 
-std::vector<const GroundSurface*> Mechanism::grounds() const {
+std::vector<const GroundSurface*> PlacedMechanism::grounds() const {
     std::vector<const GroundSurface*> list;
     for (const Entry& entry : entries_)
         if (entry.ground && entry.state == Entry::State::done) list.push_back(entry.ground.get());
     return list;
 }
 
-void Mechanism::refuse_unknown(const Text& name) const {
+void PlacedMechanism::refuse_unknown(const Text& name) const {
     if (!are_names_complete_) throw ErrorAlreadyReported{};
     std::vector<std::string> known{"world"};
     for (const Entry& entry : entries_) known.push_back(entry.shape().name);
@@ -143,7 +144,7 @@ void Mechanism::refuse_unknown(const Text& name) const {
                   fmt::format("bodies and grounds are: {}", listed(known))};
 }
 
-PlacedShape* Mechanism::find(const Text& name) {
+PlacedShape* PlacedMechanism::find(const Text& name) {
     if (is_world(name.text)) return nullptr;
     Entry* entry = entry_of(name.text);
     if (entry == nullptr) refuse_unknown(name);
@@ -151,7 +152,7 @@ PlacedShape* Mechanism::find(const Text& name) {
     return &entry->shape();
 }
 
-NamedPoint Mechanism::find_point(const Text& name, PlacedShape* on) {
+NamedPoint PlacedMechanism::find_point(const Text& name, PlacedShape* on) {
     const std::vector<std::string> parts = split_at_dots(name.text);
     const bool is_of_on = parts.size() == 1 && on != nullptr && on->points.contains(name.text);
     if (parts.size() > 2)
@@ -189,7 +190,8 @@ NamedPoint Mechanism::find_point(const Text& name, PlacedShape* on) {
                       : fmt::format("points of '{}' are: {}", shape.name, listed(names_of(shape.points)))};
 }
 
-NamedPoint Mechanism::read_point(const TomlValue& value, const Fields& fields, std::string_view key, PlacedShape* on) {
+NamedPoint PlacedMechanism::read_point(const TomlValue& value, const Fields& fields, std::string_view key,
+                                       PlacedShape* on) {
     if (value.kind == TomlValue::Kind::string) return find_point(value.text, on);
     if (value.kind != TomlValue::Kind::array)
         throw fields.wrong_type(key, value, "a point, [x, y] or a name such as \"thigh.end\"");
@@ -203,13 +205,14 @@ NamedPoint Mechanism::read_point(const TomlValue& value, const Fields& fields, s
     return result;
 }
 
-LocalPoint Mechanism::read_local(const TomlValue& value, const Fields& fields, std::string_view key, Allowed allowed) {
+LocalPoint PlacedMechanism::read_local(const TomlValue& value, const Fields& fields, std::string_view key,
+                                       Allowed allowed) {
     const std::array<Text, 2> texts = fields.point(key, value);
     return {read(texts[0], allowed), read(texts[1], allowed)};
 }
 
 // A value such as thigh.end.x' or thigh.angle, for the name of it.
-ProductSum Mechanism::value_of(const std::string& token, const Location& at) {
+ProductSum PlacedMechanism::value_of(const std::string& token, const Location& at) {
     const std::string name = token.substr(0, token.find('\''));
     const bool is_rate = name.size() < token.size();
     std::vector<std::string> parts = split_at_dots(name);
@@ -240,7 +243,7 @@ ProductSum Mechanism::value_of(const std::string& token, const Location& at) {
     return components(vector, {}, kinematics.graph())[last == "x" ? 0 : 1];
 }
 
-Text Mechanism::substituted(const Text& text, const std::string& own) {
+Text PlacedMechanism::substituted(const Text& text, const std::string& own) {
     Text result = text;
     result.text.clear();
     const auto has_meaning = [&](const std::string& name) {
@@ -274,7 +277,7 @@ Text Mechanism::substituted(const Text& text, const std::string& own) {
     return result;
 }
 
-ProductSum Mechanism::read(const Text& text, Allowed allowed) {
+ProductSum PlacedMechanism::read(const Text& text, Allowed allowed) {
     const Text plain = substituted(text);
     try {
         const Scope& scope = symbols_.scope(allowed);
@@ -292,11 +295,13 @@ ProductSum Mechanism::read(const Text& text, Allowed allowed) {
     }
 }
 
-PlacedShape* Mechanism::on_of(const Fields& fields) { return fields.find("on") ? find(fields.string("on")) : nullptr; }
+PlacedShape* PlacedMechanism::on_of(const Fields& fields) {
+    return fields.find("on") ? find(fields.string("on")) : nullptr;
+}
 
 // A length or another size that is positive, or may be 0, at the start.
-ProductSum Mechanism::read_positive(const Fields& fields, std::string_view key, const TomlValue& value,
-                                    bool may_be_zero) {
+ProductSum PlacedMechanism::read_positive(const Fields& fields, std::string_view key, const TomlValue& value,
+                                          bool may_be_zero) {
     const ProductSum size = read(fields.expression(key, value), Allowed::constants);
     const double number = symbols_.at_start(size);
     if (may_be_zero ? number < 0.0 : number <= 0.0)
@@ -307,7 +312,7 @@ ProductSum Mechanism::read_positive(const Fields& fields, std::string_view key, 
     return size;
 }
 
-void Mechanism::place(Entry& entry) {
+void PlacedMechanism::place(Entry& entry) {
     using enum Entry::State;
     PlacedShape& shape = entry.shape();
     if (entry.state == done) return;
@@ -333,7 +338,7 @@ void Mechanism::place(Entry& entry) {
     if (!is_placed) throw ErrorAlreadyReported{};
 }
 
-void Mechanism::read_world(const TomlValue& root) {
+void PlacedMechanism::read_world(const TomlValue& root) {
     const TomlValue* table = entry_in(root, "world");
     if (table == nullptr) return;
     Fields fields(*table, "[world]");
@@ -347,7 +352,7 @@ void Mechanism::read_world(const TomlValue& root) {
     }
 }
 
-void Mechanism::place_body(RigidBody& body, const Fields& fields) {
+void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
     const Kinematics& kinematics = symbols_.kinematics();
     PlacedShape* on = on_of(fields);
     body.on = on;
@@ -380,7 +385,7 @@ void Mechanism::place_body(RigidBody& body, const Fields& fields) {
     if (const TomlValue* width = fields.find("width")) body.width = *width;
 }
 
-void Mechanism::read_points(PlacedShape& shape, const Fields& fields) {
+void PlacedMechanism::read_points(PlacedShape& shape, const Fields& fields) {
     const TomlValue* points = fields.find("points");
     if (points == nullptr) return;
     if (points->kind != TomlValue::Kind::table)
@@ -410,7 +415,7 @@ constexpr ShapeKey shape_keys[] = {
 
 }  // namespace
 
-void Mechanism::read_shape(PlacedShape& shape, const Fields& fields) {
+void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
     const ShapeKey* found = nullptr;
     for (const ShapeKey& each : shape_keys) {
         const TomlValue* value = fields.find(each.key);
@@ -472,7 +477,7 @@ ProductSum local_dot(const LocalPoint& a, const LocalPoint& b) { return a.x * b.
 
 }  // namespace
 
-void Mechanism::read_mass(RigidBody& body, const Fields& fields) {
+void PlacedMechanism::read_mass(RigidBody& body, const Fields& fields) {
     const TomlValue *mass = fields.find("mass"), *inertia = fields.find("inertia"), *center = fields.find("center");
     if (mass) body.mass = read_positive(fields, "mass", *mass, true).packed();
     const ProductSum& m = body.mass;
@@ -498,7 +503,7 @@ void Mechanism::read_mass(RigidBody& body, const Fields& fields) {
 }
 
 // Spreads the mass evenly over the shape: sets the center of mass, and returns the inertia about it.
-ProductSum Mechanism::spread_mass(RigidBody& body) const {
+ProductSum PlacedMechanism::spread_mass(RigidBody& body) const {
     const auto number = [&](long top, long bottom) { return symbols_.number(top, bottom); };
     const ProductSum& m = body.mass;
     const std::vector<LocalPoint>& p = body.corners;

@@ -48,7 +48,7 @@ struct FileReader {
     const TomlValue& root;
     ErrorCollector& mistakes;
     Names& names;  // of coordinates and parameters, including invalid ones
-    Expansion expansion = {};
+    MechanismExpansion expansion = {};
     std::vector<Fields> constraints = {};  // the tables of system.constraints
 };
 
