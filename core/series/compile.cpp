@@ -248,7 +248,7 @@ class SeriesCompiler {
         };
         switch (seed.kind) {
             case Kind::multiply: {
-                const bool is_scaled = a.series == 0 || b.series == 0;  // one factor is constant in time
+                const bool is_scaled = a.series == 0 || b.series == 0;  // by a factor that is constant in time
                 add(r, b.series, a.series, is_scaled ? 0 : sums_.of(a.series, b.series, false), by_a * by_b);
                 break;
             }
@@ -259,7 +259,7 @@ class SeriesCompiler {
                 add(r, a.series, 0, sums_.of(a.series, a.series, false), sign * by_a * by_a);
                 break;
             case Kind::divide:
-                add(r, a.series, b.series, sums_.of(r, b.series, false));
+                add(r, a.series, b.series, b.series == 0 ? 0 : sums_.of(r, b.series, false));  // 0: constant in time
                 break;
             case Kind::sqrt:
                 add(r, a.series, 0, sums_.of(r, r, false));

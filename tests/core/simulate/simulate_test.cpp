@@ -234,7 +234,7 @@ TEST(Simulate, ARunEndsWhereItsMemoryDoes) {
             << trajectory.outcome.message;
         const double kept = static_cast<double>(trajectory.coefficients.size() * sizeof(double) +
                                                 trajectory.pieces.size() * sizeof(DenseSegment));
-        EXPECT_GT(kept, 0.8 * memory);
+        EXPECT_GT(kept, 0.7 * memory);  // the rest are events
         EXPECT_LT(kept, memory + 4096.0);
         EXPECT_GT(trajectory.end_time, last);
         last = trajectory.end_time;
