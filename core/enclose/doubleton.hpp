@@ -150,8 +150,8 @@ auto with_directions(std::size_t count, const Maker& maker) {
     if (count <= 8) return maker.template operator()<8>();
     if (count <= 12) return maker.template operator()<12>();
     if (count <= 18) return maker.template operator()<18>();
-    if (count <= 26) return maker.template operator()<26>();
-    throw ProofStopped{"too many coordinates and interval parameters for a proof (maximum 26)"};
+    if (count <= 34) return maker.template operator()<34>();
+    throw ProofStopped{"too many coordinates and interval parameters for a proof (maximum 34)"};
 }
 
 }  // namespace achilles

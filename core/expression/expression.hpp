@@ -44,6 +44,14 @@ enum class Operation : std::uint8_t {
     log,
     midpoint  // a number near a, constant in time and in all variables; it cannot be typed
 };
+constexpr bool is_function(Operation operation) { return operation >= Operation::sqrt; }
+constexpr bool is_binary(Operation operation) {
+    return operation == Operation::add || operation == Operation::subtract || operation == Operation::multiply ||
+           operation == Operation::divide || operation == Operation::real_power;
+}
+constexpr bool is_leaf(Operation operation) {
+    return operation == Operation::number || operation == Operation::pi || operation == Operation::symbol;
+}
 
 class Graph;
 

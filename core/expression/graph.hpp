@@ -66,15 +66,6 @@ struct Builder {
     static bool is(Expression e, Operation operation) { return node(e).operation == operation; }
 };
 
-constexpr bool is_function(Operation operation) { return operation >= Operation::sqrt; }
-constexpr bool is_binary(Operation operation) {
-    return operation == Operation::add || operation == Operation::subtract || operation == Operation::multiply ||
-           operation == Operation::divide || operation == Operation::real_power;
-}
-constexpr bool is_leaf(Operation operation) {
-    return operation == Operation::number || operation == Operation::pi || operation == Operation::symbol;
-}
-
 // For every node up to the last output: true if an output needs it.
 std::vector<bool> reachable(std::span<const Expression> outputs);
 

@@ -8,6 +8,7 @@
 #include <tuple>
 #include <vector>
 
+#include "expression/expression.hpp"
 #include "program/machine.hpp"
 #include "series/order.hpp"
 #include "series/series.hpp"
@@ -326,7 +327,8 @@ class SeriesCompiler {
     Form translate(const Instruction& in, std::uint32_t result) {
         const auto form = [&](std::uint32_t reg) { return moves(reg) ? forms_[reg] : Form(); };
         // Midpoints, and what is computed from them alone, are constant in time.
-        if (in.operation == Operation::midpoint || (form(in.a).empty() && form(in.b).empty())) return {};
+        const bool is_constant = form(in.a).empty() && (!is_binary(in.operation) || form(in.b).empty());
+        if (in.operation == Operation::midpoint || is_constant) return {};
         const auto function = [&](Kind kind, double sign = 1.0) {
             const Operand a = operand(in.a);
             return make({.kind = kind, .sign = sign}, a, a, result);

@@ -339,8 +339,9 @@ const FileEdit in_kinetic[] = {
      "theta'^2\"\n               ^\n" +
          of_degree_2},
     {"m/2*(x'^2 + theta'^2)", "m/2*(x'^2 + theta'^2)*(2 + sin(t))",
-     "f.toml:15:12: the term 1/2*m*(sin(t) + 2)*x'^2 of the kinetic energy makes the mass matrix depend on t\n    "
-     "kinetic = \"m/2*(x'^2 + theta'^2)*(2 + sin(t))\"\n               ^\nchoose a coordinate that moves with the "
+     "f.toml:15:12: the term theta'^2*(m*(2 + sin(t)))/2 of the kinetic energy makes the mass matrix depend on "
+     "t\n    kinetic = \"m/2*(x'^2 + theta'^2)*(2 + sin(t))\"\n               ^\nchoose a coordinate that moves with "
+     "the "
      "prescribed motion: with s = l(t)*theta instead of theta, m/2*(l(t)*theta')^2 is m/2*(s' - s*l'(t)/l(t))^2, and "
      "the factor of s'^2 does not depend on t"},
     {"m/2*(x'^2 + theta'^2)", "0",
