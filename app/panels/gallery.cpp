@@ -15,7 +15,7 @@ namespace achilles {
 namespace {
 
 constexpr const char* gallery_title = "Gallery";
-constexpr float card_width = 190.0F, picture_height = 104.0F, gap = 12.0F, widest_gallery = 1260.0F;
+constexpr float card_width = 190.0F, picture_height = 104.0F, card_spacing = 12.0F, widest_gallery = 1260.0F;
 
 bool card(const SystemEntry& entry, bool is_open, float width, const Session& session, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -45,7 +45,7 @@ bool card(const SystemEntry& entry, bool is_open, float width, const Session& se
 }
 
 void show_cards(const Session& session, PanelState& state, Commands& commands) {
-    const float room = ImGui::GetContentRegionAvail().x, between = units(gap);
+    const float room = ImGui::GetContentRegionAvail().x, between = units(card_spacing);
     const int columns = std::max(1, static_cast<int>((room + between) / (units(card_width) + between)));
     const float width = std::floor((room - between * static_cast<float>(columns - 1)) / static_cast<float>(columns));
     std::string group;

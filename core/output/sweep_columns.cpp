@@ -89,7 +89,7 @@ namespace {
 using Column = RunMeasures::Column;
 
 // In the shortest form that is read back as the same double; empty if it is not finite.
-void append(std::string& text, double x) {
+void append_number(std::string& text, double x) {
     if (std::isfinite(x)) fmt::format_to(std::back_inserter(text), FMT_COMPILE("{}"), x + 0.0);
 }
 
@@ -137,18 +137,18 @@ std::string sweep_csv(const SweepTable& table, const Rows& rows) {
     for (std::size_t row = 0; row < rows.count(); ++row) {
         for (std::size_t axis = 0; axis < sweep.axes.size(); ++axis) {
             if (axis > 0) text += ',';
-            append(text, sweep.value(axis, rows.points[row]));
+            append_number(text, sweep.value(axis, rows.points[row]));
         }
         if (table.is_section()) {
             if (!sweep.axes.empty()) text += ',';
-            append(text, rows.times[row]);
+            append_number(text, rows.times[row]);
             text += ',';
             text += joined_names(table.model(), rows.contacts[row], "+");
         }
         for (const Column& column : table.measures().columns()) {
             if (column.kind == Column::Kind::outcome) continue;
             text += ',';
-            if (column.kind == Column::Kind::number) append(text, rows.numbers[next++]);
+            if (column.kind == Column::Kind::number) append_number(text, rows.numbers[next++]);
             if (column.kind == Column::Kind::held && !rows.held[row].empty())
                 text += joined_names(table.model(), rows.held[row], "+");
         }

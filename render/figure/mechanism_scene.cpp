@@ -11,7 +11,7 @@ namespace achilles {
 namespace {
 
 constexpr std::size_t max_poses = 40;
-constexpr double apart = 0.035;  // fraction of the world: closer poses would merge into a blot
+constexpr double min_pose_spacing = 0.035;  // fraction of the world: closer poses would merge into a blot
 constexpr std::uint8_t pose = 55;
 
 // The moving shapes of a drawing with this opacity. Texts are left out, because they would be unreadable.
@@ -67,7 +67,8 @@ void MechanismScene::find_poses() {
         for (AnchorPoint& grip : grips) places.push_back(grip.at(t, state).at);
         const auto is_near = [&](const std::vector<Point>& other) {
             for (std::size_t i = 0; i < places.size(); ++i)
-                if (std::hypot(places[i].x - other[i].x, places[i].y - other[i].y) > apart * limits_.size) return false;
+                if (std::hypot(places[i].x - other[i].x, places[i].y - other[i].y) > min_pose_spacing * limits_.size)
+                    return false;
             return true;
         };
         if (std::any_of(kept.begin(), kept.end(), is_near)) return;
