@@ -360,7 +360,7 @@ std::string quoted(const std::string& text) {
             result += "\\n";
         else if (c == '\t')
             result += "\\t";
-        else if (static_cast<unsigned char>(c) < 0x20)
+        else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
             result += fmt::format("\\u{:04x}", static_cast<unsigned>(c));
         else
             result += c;
