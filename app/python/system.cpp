@@ -11,6 +11,7 @@
 #include "model/read_system.hpp"
 #include "module.hpp"
 #include "output/page.hpp"
+#include "system/read_tables.hpp"
 
 namespace py = pybind11;
 
@@ -106,6 +107,12 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
     return names;
 }
 
+// The file of a system as it was given, or with energies, forces and gaps in place of bodies.
+std::string file_of(const PythonSystem& system, bool is_expanded) {
+    const SystemDescription& description = system.model->description();
+    return is_expanded ? expand_system(description.source_text, description.file) : titled_text(description);
+}
+
 // The derived equations as displayed formulas, each with its description: (words, LaTeX).
 std::vector<std::pair<std::string, std::string>> equations_of(const PythonSystem& system) {
     const EquationSheet sheet = equation_sheet(*system.model, system.model->default_run());
@@ -145,7 +152,8 @@ void bind_systems(py::module_& module) {
         .def_property_readonly("settable", [](const PythonSystem& s) { return settable_names(s.model->description()); })
         .def_property_readonly("options", &options_of)
         .def_property_readonly("units", &units_of)
-        .def("equations", &equations_of, py::call_guard<py::gil_scoped_release>());
+        .def("equations", &equations_of, py::call_guard<py::gil_scoped_release>())
+        .def("to_toml", &file_of, py::call_guard<py::gil_scoped_release>());
     module.def(
         "system",
         [](std::string text, std::string name) {

@@ -359,9 +359,11 @@ void read_pictures(FileReader& reading) {
     if (system.views.empty()) system.views = default_views(system);
 }
 
+bool is_title(const TomlEntry& entry) { return entry.key == "title"; }
+
 // The title comes first, and a file without one is named after itself.
 TomlValue with_title(TomlValue root, const std::string& title) {
-    std::erase_if(root.entries, [](const TomlEntry& entry) { return entry.key == "title"; });
+    std::erase_if(root.entries, is_title);
     TomlValue value;
     value.kind = TomlValue::Kind::string;
     value.text.text = title;
@@ -370,6 +372,14 @@ TomlValue with_title(TomlValue root, const std::string& title) {
 }
 
 }  // namespace
+
+std::string titled_text(const SystemDescription& system) {
+    const TomlValue root = read_toml(system.source_text, system.file);
+    if (std::any_of(root.entries.begin(), root.entries.end(), is_title)) return system.source_text;
+    const std::string_view mark = "\xef\xbb\xbf",
+                           text = system.source_text;  // a byte order mark stands first or not at all
+    return to_toml(with_title({}, system.title)).append(text.starts_with(mark) ? text.substr(mark.size()) : text);
+}
 
 ParsedFile read_tables(std::string text, std::string name, std::string* expanded) {
     const FloatEnvironmentGuard ground;  // decimals are rounded to nearest

@@ -32,6 +32,10 @@ struct ParsedFile {
 // can be read (the text is not TOML, or too large). `expanded` returns the file with energies and gaps in place of bodies.
 ParsedFile read_tables(std::string text, std::string name, std::string* expanded = nullptr);
 
+// The text of a system file with its title. A file without one is named after itself; its title is then put into the
+// first line, so that the text describes the same system under any name.
+std::string titled_text(const SystemDescription& system);
+
 // Throws InputError, with the file's `name`, if the first bytes show that the text is not TOML: a picture, an archive,
 // JSON, a table, UTF-16, another programming language, or nothing.
 void refuse_other_files(std::string_view text, const std::string& name);

@@ -5,6 +5,7 @@ import inspect
 import os
 import pathlib
 import pickle
+import re
 import subprocess
 import sys
 
@@ -25,6 +26,57 @@ def test_systems(source):
     assert ball.units["x'"] == "m/s" and "height" in ball.views and ball.contacts == ["contact"]
     assert ball.options["end_time"] == 20.0 and ball.options["method"] == "taylor"
     assert achilles.gallery()["ball_on_sine"] == ball.title
+
+
+def bytes_of(system):
+    return achilles.simulate(system, end=1.5).to_json()
+
+
+@pytest.mark.filterwarnings("ignore::achilles.AchillesWarning")
+def test_the_file_of_a_system_gives_the_same_bytes(source, tmp_path, program):
+    files = sorted([*source.glob("assets/systems/*.toml"), *source.glob("tests/reference/mechanisms/*.toml")])
+    assert len(files) > 35
+    for file in files:
+        system = achilles.System.from_file(file)
+        assert system.to_toml() == file.read_text() and system.to_toml(expand=True) == program("check", str(file), "--expand")
+        for expand in (False, True):
+            assert (text := system.to_toml(tmp_path / "other.toml", expand=expand)) == (tmp_path / "other.toml").read_text()
+            other = achilles.System.from_file(tmp_path / "other.toml")
+            assert bytes_of(other) == bytes_of(system), file
+            assert not (expand and re.search(r"(?m)^(body *=|\[\[body)", text)), file
+
+
+@pytest.mark.parametrize("head", ["", "# A ball.\n", "\ufeff", "extra = {title = 3}\n"])
+def test_a_file_without_a_title_is_written_with_it(tmp_path, head):
+    text = achilles.System("ball_on_floor").text
+    (tmp_path / "my ball.toml").write_text(head + text.replace("title =", "# title ="), encoding="utf-8")
+    ball = achilles.System.from_file(tmp_path / "my ball.toml")
+    assert ball.title == "my ball" and ball.to_toml().startswith('title = "my ball"\n') and ball.to_toml().endswith(text[-200:])
+    for other in (achilles.System(ball.to_toml()), achilles.System(ball.to_toml(expand=True)), achilles.System(ball.to_toml(), "x.toml")):
+        assert other.title == "my ball" and bytes_of(other) == bytes_of(ball)
+
+
+def test_control_characters_of_a_title_are_escaped():
+    text = achilles.System("ball_on_floor").text
+    ball = achilles.System(text.replace('title = "', r'title = "\u007f\u0001\t\"\\'))
+    assert ball.title.startswith('\x7f\x01\t"\\') and achilles.System(ball.to_toml(expand=True)).title == ball.title
+
+
+def test_a_system_made_of_bodies(source, program):
+    file = source / "tests/reference/mechanisms/kneed_leg.toml"
+    leg = achilles.System.from_file(file)
+    assert leg.coordinates == ["z", "theta", "kappa"] and leg.contacts == ["knee", "foot"] and leg.units["kappa'"] == "rad/s"
+    assert leg.parameters["weight"] == pytest.approx(31 * 9.81) and leg.title == "Kneed leg with foot strike, by bodies"
+    run = achilles.simulate(leg, end=1)
+    assert run.to_json() == achilles.simulate(achilles.System(file.read_text()), end=1).to_json()
+    assert run.to_json() == program("simulate", str(file), "--end", "1", "--json", "-")
+    assert str(run) == program("simulate", str(file), "--end", "1") and "Kneed leg" in str(run)
+    assert {event.contact for event in run.events} >= {"foot"} and run.figure(*leg.views[:1]).svg.startswith("<?xml")
+    assert "mass matrix" in leg.latex() and bytes_of(pickle.loads(pickle.dumps(leg))) == bytes_of(leg)
+    lines = file.read_text().replace('at = "hip"', 'at = "hib"').splitlines()
+    with pytest.raises(achilles.InputError, match="'hib'.*did you mean.*'hip'") as problem:
+        achilles.System("\n".join(lines))
+    assert "hib" in lines[problem.value.line - 1] and "^" in problem.value.caret
 
 
 def test_equations_are_latex():

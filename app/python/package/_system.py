@@ -53,6 +53,19 @@ class System:
         file = os.fspath(path)
         return cls(_core.read_text(file), file)
 
+    def to_toml(self, path: str | os.PathLike[str] | None = None, *, expand: bool = False) -> str:
+        """The text of the system file, also written to `path` if that is given. Its runs have the same bytes.
+
+        It is the text that the system was made from, with its comments, and with a title if it has none. With expand=True, the
+        energies, forces, gaps and drawings that are derived from bodies, springs and contacts stand in place of those, as from
+        `achilles check --expand`.
+        """
+        text = self._core.to_toml(expand)
+        if path is not None:
+            with open(path, "w", encoding="utf-8", newline="") as file:
+                file.write(text)
+        return text
+
     @functools.cached_property
     def equations(self) -> list[tuple[str, str]]:
         """The derived equations as pairs (description, LaTeX). They are simplified, which may take a second."""
