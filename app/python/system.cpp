@@ -7,10 +7,13 @@
 #include "check/check.hpp"
 #include "cli/assets.hpp"
 #include "expression/name_suggestions.hpp"
+#include "expression/parse.hpp"
+#include "expression/repair.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "module.hpp"
 #include "output/page.hpp"
+#include "system/expand.hpp"
 #include "system/read_tables.hpp"
 
 namespace py = pybind11;
@@ -107,10 +110,35 @@ std::vector<std::string> names_of(const std::vector<Named>& list) {
     return names;
 }
 
+// A dict, list, text or number as TOML.
+TomlValue toml_value(const py::handle& value) {
+    TomlValue made;
+    if (py::isinstance<py::dict>(value)) {
+        for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value))
+            made.entries.push_back({py::cast<std::string>(key), {}, toml_value(entry)});
+    } else if (py::isinstance<py::list>(value)) {
+        made.kind = TomlValue::Kind::array;
+        for (const py::handle item : value) made.items.push_back(toml_value(item));
+    } else if (py::isinstance<py::str>(value)) {
+        made.kind = TomlValue::Kind::string;
+        made.text.text = py::cast<std::string>(value);
+    } else {
+        made.kind = TomlValue::Kind::number;
+        made.text.text = py::cast<std::string>(py::repr(value));
+    }
+    return made;
+}
+
 // The file of a system as it was given, or with energies, forces and gaps in place of bodies.
 std::string file_of(const PythonSystem& system, bool is_expanded) {
     const SystemDescription& description = system.model->description();
     return is_expanded ? expand_system(description.source_text, description.file) : titled_text(description);
+}
+
+std::vector<std::string> function_names() {
+    std::vector<std::string> names;
+    for (const Function& function : functions) names.emplace_back(function.name);
+    return names;
 }
 
 // The derived equations as displayed formulas, each with its description: (words, LaTeX).
@@ -160,6 +188,12 @@ void bind_systems(py::module_& module) {
             return std::make_shared<PythonSystem>(std::move(text), std::move(name));
         },
         py::call_guard<py::gil_scoped_release>());
+    module.def("toml", [](const py::dict& tables) { return to_toml(toml_value(tables)); });
+    module.attr("functions") = function_names();
+    module.def("is_name", [](const std::string& text) { return is_name(text); });
+    module.def("is_reserved", [](const std::string& name) { return is_reserved(name); });
+    module.def("spelled_out", [](const std::string& text) { return spelled_out(text); });
+    module.def("instead_of_corner", [](const std::string& function) { return instead_of_corner(function); });
     module.def("option_table", &option_table);
     module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& names) {
         return did_you_mean(word, names);

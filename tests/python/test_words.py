@@ -228,9 +228,9 @@ def test_every_option_of_the_table_is_an_argument(program):
         assert "tolerance: local error per step" in function.__doc__
 
 
-def python_of(text):
-    """Returns the first indented block of a page that begins with `import achilles`."""
-    lines = text[text.index("    import achilles\n"):].splitlines()
+def python_of(text, begin="import achilles"):
+    """Returns the first indented block of a page that begins with this line."""
+    lines = text[text.index(f"    {begin}\n"):].splitlines()
     code = []
     for line in lines:
         if line and not line.startswith("    "):
@@ -248,6 +248,18 @@ def test_the_example_of_a_page_runs(source, tmp_path, monkeypatch, page):
     assert len(text.splitlines()) >= 6 and names["curve"]["zeno_time(2)"].shape == (200,)
     assert (tmp_path / "ball.pdf").exists() == ("ball.pdf" in text)
     assert page == "README.md" or "ball.pdf" in text
+
+
+def test_the_examples_with_sympy_run(source, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    page = (source / "assets/manual/python.md").read_text()
+    names = {"achilles": achilles}
+    for begin in ("import sympy as sp", 'more = achilles.System(pendulum.to_toml() + """'):
+        exec(python_of(page, begin), names)
+    pendulum, more = names["pendulum"], names["more"]
+    assert "contact begins" in capsys.readouterr().out and pendulum.coordinates == ["theta"] and pendulum.contacts == ["wall"]
+    assert (tmp_path / "pendulum.toml").read_text() == pendulum.text and more.views == ["wall"]
+    assert achilles.simulate(more).to_json() == achilles.simulate(pendulum).to_json()
 
 
 def test_the_example_draws_the_papers_figure(source, tmp_path):

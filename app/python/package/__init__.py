@@ -16,8 +16,9 @@
     orbit.period, orbit.multipliers      # a periodic run, and its multipliers
     orbit.branch.value, orbit.branch.q   # the same along a parameter
 
-A system is a name from `achilles list` (`achilles.gallery()`), the path of a file, or a `System` made from text. Numbers are in
-the units of the file, angles in radians, times in seconds. Wrong input raises `InputError`.
+A system is a name from `achilles list` (`achilles.gallery()`), the path of a file, or a `System` made from text or from SymPy
+expressions (`System.from_energies`). Numbers are in the units of the file, angles in radians, times in seconds. Wrong input
+raises `InputError`.
 """
 
 from . import _core

@@ -29,14 +29,14 @@ def text_of(name: str, value: object) -> str:
     if hasattr(value, "item") and getattr(value, "ndim", 0) == 0:
         value = value.item()  # a NumPy scalar
     if isinstance(value, bool) or not isinstance(value, numbers.Real):
-        raise TypeError(f"{name}: a number or a text such as 'pi/6' is expected, not {_kind(value)}")
+        raise TypeError(f"{name}: a number or a text such as 'pi/6' is expected, not {kind_of(value)}")
     return repr(int(value)) if isinstance(value, numbers.Integral) else repr(float(value))
 
 
 def number_in(name: str, value: object, least: float, most: float) -> float:
     """Checks and returns a number in the range [least, most]."""
     if isinstance(value, str):
-        raise TypeError(f"{name}: a number is expected, not {_kind(value)}")
+        raise TypeError(f"{name}: a number is expected, not {kind_of(value)}")
     number = float(text_of(name, value))
     if not least <= number <= most:
         raise InputError(f"{name}: {value} does not lie in [{least}, {most}]")
@@ -56,11 +56,12 @@ def texts_in(name: str, value: object, example: str) -> list[str]:
     texts = [value] if isinstance(value, str) else list(value) if isinstance(value, Iterable) else [value]
     for text in texts:
         if not isinstance(text, str):
-            raise TypeError(f"{name}: a text such as {example!r} is expected, or a list of them, not {_kind(text)}")
+            raise TypeError(f"{name}: a text such as {example!r} is expected, or a list of them, not {kind_of(text)}")
     return texts
 
 
-def _kind(value: object) -> str:
+def kind_of(value: object) -> str:
+    """The type of a wrong argument, and its value, for messages."""
     return "None" if value is None else f"{type(value).__name__} ({value!r})"[:80]
 
 
@@ -73,7 +74,7 @@ class RunArguments:
     def __init__(self, system: Any, set: Mapping[str, object] | None, given: Mapping[str, object]) -> None:
         self.settings, self.options = [], {}
         if set is not None and not isinstance(set, Mapping):
-            raise TypeError(f"set: a dict such as {{\"x'\": 1.5}} is expected, not {_kind(set)}")
+            raise TypeError(f"set: a dict such as {{\"x'\": 1.5}} is expected, not {kind_of(set)}")
         values = dict(set or {})
         for name, value in given.items():
             if name in _flags:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import functools
 import os
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from . import _core
+from ._energies import system_text
 
 
 class System:
@@ -52,6 +54,31 @@ class System:
         """The system of a file."""
         file = os.fspath(path)
         return cls(_core.read_text(file), file)
+
+    @classmethod
+    def from_energies(cls, q: Sequence[Any], T: Any, V: Any, gaps: Mapping[str, tuple[Any, Any]] | tuple[Any, Any],
+                      parameters: Mapping[Any, Any] | None = None, *, rates: Sequence[Any] | None = None,
+                      start: Mapping[Any, Any] | None = None, forces: Mapping[Any, Any] | None = None, dissipation: Any = None,
+                      units: Mapping[Any, str] | None = None, names: Mapping[Any, str] | None = None,
+                      title: str | None = None) -> System:
+        """The system with these coordinates q, kinetic energy T, potential energy V and gaps, which are SymPy expressions.
+
+        q: functions of time, as from sympy.physics.mechanics.dynamicsymbols, whose derivatives are the rates; or symbols
+        gaps: {"knee": (gap, restitution), "wall": ...}, or one pair
+        parameters: the value of every other symbol: a number, a text such as "pi/6", or an expression in other parameters
+        rates: symbols or functions for the rates of q, in the same order; needed if q has symbols
+        start: initial coordinates and rates, {theta1: pi/6, theta1.diff(t): -0.3} or {"theta1'": -0.3}; otherwise 0
+        forces: generalized forces by coordinate, {theta1: tau*cos(om*t)}
+        dissipation: the function R whose negative derivative with respect to each rate is a force
+        units: units of coordinates and parameters, {theta1: "rad"}
+        names: names in the file for symbols whose own names it does not allow, {Symbol("lambda"): "lam"}
+
+        Fractions, pi and roots are written exactly, floats with the fewest digits that read back the same. The time is the
+        argument of the functions, or the symbol t. Raises InputError, which names the part of an expression that a system file
+        cannot contain, such as Abs(x). Views, drawings and options can be appended to `to_toml()`. Needs SymPy.
+        """
+        return cls(system_text(q, T, V, gaps, parameters=parameters, rates=rates, start=start, forces=forces,
+                               dissipation=dissipation, units=units, names=names, title=title))
 
     def to_toml(self, path: str | os.PathLike[str] | None = None, *, expand: bool = False) -> str:
         """The text of the system file, also written to `path` if that is given. Its runs have the same bytes.
