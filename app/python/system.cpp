@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <utility>
 #include <variant>
 
@@ -141,15 +142,36 @@ std::vector<std::string> function_names() {
     return names;
 }
 
+// The text of a file. Throws InputError at the place of a byte that is not UTF-8.
+py::str decoded_text(const std::string& file) {
+    const std::string text = read_text(file);
+    try {
+        return py::str(text);
+    } catch (const py::error_already_set& problem) {
+        if (text.size() > largest_file) parse_system(text, file);  // throws: the last character may be cut off
+        const auto place = py::cast<std::size_t>(problem.value().attr("start"));
+        const std::string before = text.substr(0, place);
+        const auto line = static_cast<int>(std::count(before.begin(), before.end(), '\n')) + 1;
+        const auto column = static_cast<int>(py::len(py::str(before.substr(before.rfind('\n') + 1)))) + 1;
+        throw InputError(file, {line, column}, "this character is not UTF-8", "save the file as UTF-8",
+                         line_of(text, line));
+    }
+}
+
 // The derived equations as displayed formulas, each with its description: (words, LaTeX).
 std::vector<std::pair<std::string, std::string>> equations_of(const PythonSystem& system) {
     const EquationSheet sheet = equation_sheet(*system.model, system.model->default_run());
     std::vector<std::pair<std::string, std::string>> equations;
-    std::string words;
+    std::string words, contact;  // contact: "Contact knee: ", where there are several
     for (const Block& block : sheet.blocks) {
         const bool is_matrix = block.kind == Block::Kind::matrix;
         if (!is_matrix && block.kind != Block::Kind::formula) {
-            if (block.kind == Block::Kind::caption || block.kind == Block::Kind::heading) words = block.words.text;
+            const std::string& text = block.words.text;
+            if (block.kind == Block::Kind::heading) {
+                words = text;
+                contact = text.starts_with("Contact ") ? text + ": " : "";
+            }
+            if (block.kind == Block::Kind::caption) words = contact + text;
             continue;
         }
         std::string right;
@@ -199,7 +221,7 @@ void bind_systems(py::module_& module) {
         return did_you_mean(word, names);
     });
     module.def("find_system", [](const std::string& name) { return find_system(name).string(); });
-    module.def("read_text", [](const std::string& file) { return read_text(file); });
+    module.def("read_text", &decoded_text);
     module.def("system_names", &system_names);
 }
 

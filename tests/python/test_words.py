@@ -72,7 +72,9 @@ def test_a_system_made_of_bodies(source, program):
     assert run.to_json() == program("simulate", str(file), "--end", "1", "--json", "-")
     assert str(run) == program("simulate", str(file), "--end", "1") and "Kneed leg" in str(run)
     assert {event.contact for event in run.events} >= {"foot"} and run.figure(*leg.views[:1]).svg.startswith("<?xml")
-    assert "mass matrix" in leg.latex() and bytes_of(pickle.loads(pickle.dumps(leg))) == bytes_of(leg)
+    words = [words for words, _ in leg.equations]
+    assert words.count("Contact knee: gap") == words.count("Contact foot: contact force while held") == 1
+    assert "mass matrix" in words and bytes_of(pickle.loads(pickle.dumps(leg))) == bytes_of(leg)
     lines = file.read_text().replace('at = "hip"', 'at = "hib"').splitlines()
     with pytest.raises(achilles.InputError, match="'hib'.*did you mean.*'hip'") as problem:
         achilles.System("\n".join(lines))
@@ -131,6 +133,13 @@ def test_mistakes_of_a_file_are_told_with_their_places(tmp_path, program):
     assert len(error.mistakes) >= 2 and error.mistakes[0] is error and error.mistakes[-1].line == 13
     with pytest.raises(achilles.InputError, match="^<text>:8:14: "):
         achilles.System(WRONG)
+    path.write_bytes('title = "Fall"\nsource = "Kn\u00f6del, '.encode() + b'Kn\xf6del"\n')
+    with pytest.raises(achilles.InputError, match="wrong.toml:2:21: this character is not UTF-8") as problem:
+        achilles.System.from_file(path)
+    assert problem.value.caret.endswith("\n" + 24 * " " + "^") and problem.value.hint == "save the file as UTF-8"
+    path.write_text("#" + "\u00f6" * 3_000_000, encoding="utf-8")  # read in blocks: the last character is cut
+    with pytest.raises(achilles.InputError, match="the file is larger than 4 MB"):
+        achilles.System.from_file(path)
     with pytest.raises(achilles.InputError, match="no.such.toml"):
         achilles.System.from_file("no/such.toml")
 
