@@ -27,9 +27,9 @@ class MechanismPage {
         if (mechanism.has_signed_length) say("A signed length goes on below 0 where the ends pass each other.");
         put_contacts();
         if (mechanism.is_prescribed)
-            say("Time moves a mass: M, impacts and lambda are those at frozen t, and `energy` is T2 - T0 + V, where T2 "
+            say("Time moves a mass: M, impacts and lambda are those at frozen t, and 'energy' is T2 - T0 + V, where T2 "
                 "is "
-                "quadratic in the rates and T0 is the kinetic energy at rates zero.");
+                "quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that balance.");
     }
 
  private:

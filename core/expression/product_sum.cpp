@@ -18,6 +18,8 @@ using boost::multiprecision::denominator, boost::multiprecision::numerator;
 // Far above the needs of a chain of twelve links (500 terms), and low enough to end within a second.
 constexpr std::size_t max_products = 10000;
 constexpr long max_exponent = 100000;
+// Nested sums that share their parts are short in a graph and may be endless as a text.
+constexpr std::size_t max_text = 200000;
 
 int exponent_within_limits(long exponent) {
     if (std::abs(exponent) > max_exponent)
@@ -79,20 +81,18 @@ void ProductSum::add(const Expression& coefficient, const Factors& factors) {
     if (like->coefficient.is_zero()) products_.erase(like);
 }
 
-ProductSum operator+(const ProductSum& a, const ProductSum& b) {
+ProductSum operator+(ProductSum a, const ProductSum& b) {
     if (a.is_zero()) return b;
-    ProductSum result = a;
-    for (const auto& [coefficient, factors] : b.products_) result.add(coefficient, factors);
-    return result;
+    for (const auto& [coefficient, factors] : b.products_) a.add(coefficient, factors);
+    return a;
 }
 
-ProductSum operator-(const ProductSum& a) {
-    ProductSum result = a;
-    for (ProductSum::Product& product : result.products_) product.coefficient = -product.coefficient;
-    return result;
+ProductSum operator-(ProductSum a) {
+    for (ProductSum::Product& product : a.products_) product.coefficient = -product.coefficient;
+    return a;
 }
 
-ProductSum operator-(const ProductSum& a, const ProductSum& b) { return a + -b; }
+ProductSum operator-(ProductSum a, const ProductSum& b) { return std::move(a) + -b; }
 
 ProductSum operator*(const ProductSum& a, const ProductSum& b) {
     ProductSum result;
@@ -121,7 +121,7 @@ ProductSum operator*(const ProductSum& a, const ProductSum& b) {
                 merged.push_back(next);
             }
             const ProductSum plain = ProductSum::product(graph, x * y, std::move(merged));
-            result = result + (squares.is_zero() ? plain : plain * squares);
+            result = std::move(result) + (squares.is_zero() ? plain : plain * squares);
         }
     }
     return result;
@@ -243,18 +243,38 @@ ProductSum ProductSum::packed() const {
 }
 
 ProductSum ProductSum::without_squares() const {
+    ProductSum result = *this;
+    while (result.merge_squares()) {
+    }
+    return result;
+}
+
+// Replaces c u cos(a)^2 by c u - c u sin(a)^2 where that leaves fewer terms. False: nowhere.
+bool ProductSum::merge_squares() {
+    const auto like = [&](const Factors& factors) {
+        return std::find_if(products_.begin(), products_.end(), [&](const Product& p) { return p.factors == factors; });
+    };
+    const auto added_terms = [&](const Factors& factors, const Expression& coefficient) {
+        const auto same = like(factors);
+        return same == products_.end() ? 1 : (same->coefficient + coefficient).is_zero() ? -1 : 0;
+    };
     for (const Product& with_cosine : products_) {
         for (const Factor& factor : with_cosine.factors) {
-            const Expression atom(graph_, factor.atom);
-            if (factor.exponent != 2 || !Builder::is(atom, Operation::cos)) continue;
-            const ProductSum square = power(ProductSum::atom(atom), 2);
-            const ProductSum rest = product(*graph_, with_cosine.coefficient, with_cosine.factors) / square;
-            const ProductSum other = rest * power(ProductSum::atom(apply(Operation::sin, Builder::first(atom))), 2);
-            const ProductSum merged = *this - rest * square - other + rest;
-            if (merged.products_.size() < products_.size()) return merged.without_squares();
+            const Expression cosine(graph_, factor.atom), coefficient = with_cosine.coefficient;
+            if (factor.exponent != 2 || !Builder::is(cosine, Operation::cos)) continue;
+            Factors rest = with_cosine.factors;
+            std::erase(rest, factor);
+            const ProductSum sine = atom(apply(Operation::sin, Builder::first(cosine)));
+            const Factors with_sine = (product(*graph_, coefficient, rest) * power(sine, 2)).products_[0].factors;
+            if (added_terms(with_sine, -coefficient) + added_terms(rest, coefficient) > 0) continue;
+            const Factors old = with_cosine.factors;  // add() moves the products
+            add(-coefficient, old);
+            add(-coefficient, with_sine);
+            add(coefficient, rest);
+            return true;
         }
     }
-    return *this;
+    return false;
 }
 
 bool ProductSum::depends_on(std::span<const std::uint32_t> slots) const {
@@ -274,7 +294,7 @@ ProductSum ProductSum::derivative(std::uint32_t slot) const {
             Factors rest = factors;
             if (--rest[i].exponent == 0) rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
             const Expression front = coefficient * graph_->number(factors[i].exponent);
-            sum = sum + product(*graph_, front, std::move(rest)) * from(achilles::derivative(atom, slot));
+            sum = std::move(sum) + product(*graph_, front, std::move(rest)) * from(achilles::derivative(atom, slot));
         }
     }
     return sum;
@@ -363,8 +383,11 @@ std::string joined(std::vector<std::pair<bool, std::string>> terms) {
     const auto plus = std::find_if(terms.begin(), terms.end(), [](const auto& term) { return !term.first; });
     if (plus != terms.end()) std::rotate(terms.begin(), plus, plus + 1);
     std::string result;
-    for (const auto& [is_negative, text] : terms)
+    for (const auto& [is_negative, text] : terms) {
         result += (result.empty() ? is_negative ? "-" : "" : is_negative ? " - " : " + ") + text;
+        if (result.size() > max_text)
+            throw ExpressionTooLarge(fmt::format("it takes more than {} characters as a text", max_text));
+    }
     return result;
 }
 

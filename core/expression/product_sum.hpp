@@ -52,9 +52,9 @@ class ProductSum {
     bool depends_on(std::span<const std::uint32_t> slots) const;
     ProductSum derivative(std::uint32_t slot) const;
 
-    friend ProductSum operator+(const ProductSum& a, const ProductSum& b);
-    friend ProductSum operator-(const ProductSum& a, const ProductSum& b);
-    friend ProductSum operator-(const ProductSum& a);
+    friend ProductSum operator+(ProductSum a, const ProductSum& b);
+    friend ProductSum operator-(ProductSum a, const ProductSum& b);
+    friend ProductSum operator-(ProductSum a);
     friend ProductSum operator*(const ProductSum& a, const ProductSum& b);
     // Divides by a sum in parentheses, or by each factor of a single product. Throws std::domain_error if b is 0.
     friend ProductSum operator/(const ProductSum& a, const ProductSum& b);
@@ -62,6 +62,7 @@ class ProductSum {
 
  private:
     void add(const Expression& coefficient, const Factors& factors);
+    bool merge_squares();
     Graph* graph_ = nullptr;  // null: 0
     std::vector<Product> products_;
 };
@@ -82,6 +83,7 @@ class ProductSumWriter {
     ProductSumWriter(std::vector<std::string> names, std::vector<Rank> ranks)
         : names_(std::move(names)), ranks_(std::move(ranks)) {}
 
+    // Throws ExpressionTooLarge if the text would have more than 200000 characters.
     std::string text(const ProductSum& sum) const;
     Rank rank(Expression expression) const;
     const std::vector<std::string>& names() const { return names_; }

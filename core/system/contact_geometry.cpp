@@ -2,11 +2,31 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
+
 #include "system/mechanism_terms.hpp"
 
 namespace achilles {
 
 namespace {
+
+// The other side of what is touched, for a start that is there.
+struct FreeSide {
+    TouchShape shape;
+    const char *other, *hint;
+};
+constexpr FreeSide free_sides[] = {
+    {TouchShape::line, "behind", "a line is free on the left of from-to; swap its ends?"},
+    {TouchShape::rod, "behind", "a rod is free on the left of from-to; swap its ends?"},
+    {TouchShape::disc, "inside", "choose a start outside: a disc is touched from outside; a ring from inside"},
+    {TouchShape::ring, "outside", "choose a start inside: a ring is touched from inside; a disc from outside"},
+    {TouchShape::curve, "below", "a curve is free above"}};
+
+// For two points, which do not touch each other.
+constexpr std::string_view join_advice =
+    "for a string between two points add longest = its length; two points that stay together are a closed loop: choose "
+    "coordinates that close the loop, or use a stiff spring";
 
 class ContactReader {
  public:
@@ -99,7 +119,7 @@ class ContactReader {
     void read_touched(const TomlValue& value) {
         if (value.kind != TomlValue::Kind::string)
             throw Mistake{value.at, "nothing can be touched at a point",
-                          "name a ground or a body; for a string between two points add longest = its length"};
+                          fmt::format("name a ground or a body; {}", join_advice)};
         const NamedPoint named = mechanism_.find_point(value.text, nullptr);
         const PlacedShape* shape = named.carrier;
         const bool can_be_touched = shape != nullptr && named.is_whole &&
@@ -107,31 +127,38 @@ class ContactReader {
                                      shape->shape == TouchShape::disc || shape->shape == TouchShape::ring);
         if (!can_be_touched)
             throw Mistake{value.text.at, fmt::format("'{}' has nothing that can be touched", shown(value.text.text)),
-                          "a ground, or a body with a rod, a disc or a ring can; for a string between two points add "
-                          "longest = its length"};
+                          fmt::format("a ground, or a body with a rod, a disc or a ring can; {}", join_advice)};
         if (result_.point.carrier == shape) refuse_one_body(shape);
         result_.touched = shape;
     }
 
     void touch() {
         const PlacedShape& touched = *result_.touched;
+        const bool is_curve = touched.shape == TouchShape::curve;
+        const auto* side = std::find_if(std::begin(free_sides), std::end(free_sides),
+                                        [&](const FreeSide& each) { return each.shape == touched.shape; });
         result_.name = fmt::format("{} {} {}", result_.point.name, touched.shape == TouchShape::ring ? "inside" : "on",
                                    touched.name);
         result_.force = "a distance: lambda is the force";
-        result_.behind = fmt::format("'{}' starts {{}} inside '{}'", result_.point.name, touched.name);
-        result_.hint = "choose a start outside";
+        result_.behind = fmt::format("'{}' starts {{}} {} '{}'", result_.point.name, side->other, touched.name);
+        result_.hint = side->hint;
         if (touched.is_ground) speed_ = static_cast<const GroundSurface&>(touched).speed;
         turning_ = touched.frame.rate + touched.frame.drift;
         if (result_.touches != nullptr) spin_ = result_.touches->frame.rate + result_.touches->frame.drift;
-        switch (touched.shape) {
-            case TouchShape::rod:
-            case TouchShape::line:
-                return touch_line(touched);
-            case TouchShape::curve:
-                return touch_curve(static_cast<const GroundSurface&>(touched));
-            default:
-                return touch_round(touched);
-        }
+        const bool is_body = result_.touches != nullptr && !result_.touches->is_ground && result_.point.is_whole;
+        const auto* body = is_body ? static_cast<const RigidBody*>(result_.touches) : nullptr;
+        if (body != nullptr && body->on == &touched && !(is_curve && radius_.is_zero())) return touch_carrier(*body);
+        if (is_curve) return touch_curve(static_cast<const GroundSurface&>(touched));
+        if (touched.radius.is_zero()) return touch_line(touched);
+        touch_round(touched);
+    }
+
+    // A body on the ground that it touches, at [s, d]: h = d - r.
+    void touch_carrier(const RigidBody& body) {
+        result_.gap = body.height - radius_;
+        result_.slip = body.along + radius_ * (spin_ - turning_) - speed_;
+        if (result_.touched->shape == TouchShape::curve)
+            result_.force = "a distance while it is below the radius of curvature of every valley: lambda is the force";
     }
 
     // The place and the velocity of what touches relative to a point of the touched body, as vectors.
@@ -145,6 +172,7 @@ class ContactReader {
 
     // h = n.(p - a) - r, slip = e.(v_p - v_a) - W e.J(p - a) + r (w - W) - speed, with the tangent e and J a quarter turn.
     void touch_line(const PlacedShape& line) {
+        mechanism_.check_direction(line, between_.items[1].text.at);
         const LocalPoint e = symbols_.direction(line), &a = line.corners[0];
         const ProductSum& axes = line.frame.angle;
         const PlanarVector tangent(axes, e.x, e.y), normal(axes, -e.y, e.x);
@@ -153,9 +181,6 @@ class ContactReader {
         result_.gap = height - radius_;
         result_.slip = dot(tangent, motion.velocity, graph_) + turning_.packed() * height.packed() +
                        radius_ * (spin_ - turning_) - speed_;
-        result_.behind = fmt::format("'{}' starts {{}} behind '{}'", result_.point.name, line.name);
-        result_.hint = fmt::format("a {} is free on the left of from-to; swap its ends?",
-                                   line.shape == TouchShape::rod ? "rod" : "line");
     }
 
     // With the distance |d| of the centers: outside h = |d| - r - R, slip = -d x v/|d| + r w + R W - speed;
@@ -172,27 +197,12 @@ class ContactReader {
         result_.gap = is_inside ? R - radius_ - distance : distance - radius_ - R;
         result_.slip = is_inside ? turning + radius_ * spin_ - R * turning_ - speed_
                                  : radius_ * spin_ + R * turning_ - turning - speed_;
-        if (is_inside) {
-            result_.behind = fmt::format("'{}' starts {{}} outside '{}'", result_.point.name, round.name);
-            result_.hint = "choose a start inside: a ring is touched from inside; a disc from outside";
-        } else {
-            result_.hint = "choose a start outside: a disc is touched from outside; a ring from inside";
-        }
     }
 
     // In the axes of the curve h = y - f(x), slip = x' + f' (y' - f_t) - sqrt(1 + f'^2) speed.
     void touch_curve(const GroundSurface& curve) {
-        const RigidBody* body = result_.touches != nullptr && !result_.touches->is_ground
-                                    ? static_cast<const RigidBody*>(result_.touches)
-                                    : nullptr;
         const bool is_normal = fields_.flag_or("normal", false);
-        if (!radius_.is_zero()) {
-            if (body->on != &curve) refuse_disc_on_curve(curve);
-            result_.gap = body->height - radius_;
-            result_.slip = body->along + radius_ * (spin_ - turning_) - speed_;
-            result_.force = "a distance while it is below the radius of curvature of every valley: lambda is the force";
-            return;
-        }
+        if (!radius_.is_zero()) refuse_disc_on_curve(curve);
         const RelativeMotion motion = relative_to(curve.frame.origin);
         const auto [x, y] = components(motion.place, curve.frame.angle, graph_);
         auto [x_rate, y_rate] = components(motion.velocity, curve.frame.angle, graph_);
@@ -206,8 +216,6 @@ class ContactReader {
         const ProductSum stretch = square_root(symbols_.number(1) + power(slope, 2));
         result_.gap = y - at_x(curve.height);
         result_.slip = x_rate + slope.packed() * (y_rate - f_t) - stretch * speed_;
-        result_.behind = fmt::format("'{}' starts {{}} below '{}'", result_.point.name, curve.name);
-        result_.hint = "a curve is free above";
         if (slope.is_zero()) return;
         if (is_normal) {
             result_.gap = result_.gap.packed() / stretch;

@@ -14,6 +14,9 @@ namespace achilles {
 
 namespace {
 
+// The tables that only a mechanism has.
+constexpr const char* mechanism_tables[] = {"world", "body", "ground", "spring", "damper", "force", "torque"};
+
 void remove_entry(TomlValue& table, std::string_view key) {
     std::erase_if(table.entries, [&](const TomlEntry& entry) { return entry.key == key; });
 }
@@ -63,8 +66,7 @@ class MechanismExpander {
             substitute_in(*view, "y");
         }
         if (mistakes_.count() == 0) summarize();
-        for (const char* key : {"world", "body", "ground", "spring", "damper", "force", "torque"})
-            remove_entry(root_, key);
+        for (const char* key : mechanism_tables) remove_entry(root_, key);
     }
 
  private:
@@ -109,6 +111,7 @@ class MechanismExpander {
         if (!has_bodies && kinetic == nullptr) return;  // reported as missing
         const MechanismTerms terms = derive_terms(mechanism_, system_, mistakes_);
         if (mistakes_.count() > 0) return;
+        system_.mechanism.is_prescribed = terms.is_prescribed;
         if (lagrangian == nullptr) lagrangian = &set_entry(root_, "lagrangian", made_table(terms.kinetic.at));
         if (has_bodies)
             set_entry(*lagrangian, "kinetic", made_string(symbols_.text(terms.kinetic.value), terms.kinetic.at));
@@ -144,7 +147,7 @@ class MechanismExpander {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
             for (const char* key : {"gap", "slip", "restitution"}) substitute_in(*table, key);
             const Fields fields(*table, "[[constraint]]");
-            mistakes_.attempt([&] {
+            attempt_part(mistakes_, table->at, "the gap", [&] {
                 if (fields.find("between") == nullptr) {
                     for (const char* key : {"longest", "normal"})
                         if (const TomlValue* value = fields.find(key))
@@ -188,40 +191,19 @@ class MechanismExpander {
                 if (TomlValue* value = find_entry(drawing, key)) place_in_world(*value, fields, key, on, own);
             if (TomlValue* points = find_entry(drawing, "points"); points && points->kind == TomlValue::Kind::array)
                 for (TomlValue& point : points->items) place_in_world(point, fields, "points", on, own);
+            const bool is_named = is_name(own) && !is_reserved(own) && !names_.places.contains(own);
+            if (on != nullptr && is_named)
+                find_entry(drawing, "over")->items[0].text.text =
+                    symbols_.text(ProductSum::from(symbols_.graph().symbol(symbols_.abscissa())));
             turn_with(drawing, on);
         });
     }
 
+    // A point in the axes of `on` becomes one of the world. The name `own` of a curve's parameter becomes the abscissa.
     void place_in_world(TomlValue& value, const Fields& fields, const char* key, PlacedShape* on,
                         const std::string& own) {
-        if (value.kind == TomlValue::Kind::string || (on != nullptr && own.empty())) {
-            const NamedPoint point = mechanism_.read_point(value, fields, key, on);
-            value = made_point(world_point(symbols_, point.point), value.at);
-            return;
-        }
-        substitute_in(value, own);
-        if (on == nullptr || value.items.size() != 2) return;
-        // A curve with a parameter of its own: its texts are turned as they are.
-        const std::array<std::string, 2> origin = world_point(symbols_, on->frame.origin);
-        const auto [c, s] = cosine_and_sine(on->frame.angle, symbols_.graph());
-        const std::string x = value.items[0].text.text, y = value.items[1].text.text;
-        const auto sum = [&](const std::string& start, const ProductSum& of_x, const ProductSum& of_y) {
-            TextSum result(value.at);
-            if (start != "0") result.add({start, value.at, false, {}});
-            for (const auto& [factor, text] : {std::pair(of_x, x), std::pair(of_y, y)})
-                if (!factor.is_zero() && text != "0")
-                    result.add({times(symbols_.text(factor), text), value.at, false, {}});
-            return result.text().text.empty() ? std::string("0") : result.text().text;
-        };
-        value = made_point({sum(origin[0], c, -s), sum(origin[1], s, c)}, value.at);
-    }
-
-    // A product of texts, with as few parentheses as is safe.
-    static std::string times(const std::string& factor, const std::string& text) {
-        const std::string right = is_name(text) ? text : "(" + text + ")";
-        if (factor == "1") return right;
-        if (factor.find(' ') != factor.npos) return "(" + factor + ")*" + right;
-        return factor == "-1" ? "-" + right : factor + "*" + right;
+        if (value.kind != TomlValue::Kind::string && on == nullptr) return substitute_in(value, own);
+        value = made_point(world_point(symbols_, mechanism_.read_point(value, fields, key, on, own).point), value.at);
     }
 
     void turn_with(TomlValue& drawing, const PlacedShape* on) {
@@ -259,11 +241,7 @@ class MechanismExpander {
 
     void summarize() {
         MechanismSummary& summary = system_.mechanism;
-        for (const RigidBody* body : mechanism_.bodies()) {
-            summary.bodies.push_back(summary_of(*body));
-            const bool is_moved = !body->frame.drift.is_zero() || !body->frame.origin.drift.is_zero();
-            summary.is_prescribed = summary.is_prescribed || (!body->mass.is_zero() && is_moved);
-        }
+        for (const RigidBody* body : mechanism_.bodies()) summary.bodies.push_back(summary_of(*body));
         for (const SpringOrDamper& spring : mechanism_.springs) summary.springs.push_back(summary_of(spring, summary));
         for (const auto& contact : contacts_) {
             SummaryContact& line = summary.contacts.emplace_back();
@@ -324,28 +302,32 @@ class MechanismExpander {
     std::vector<std::optional<ShapeContact>> contacts_;
 };
 
-bool has_contact_between(TomlValue& root) {
-    TomlValue* constraints = find_entry(root, "constraint");
-    return constraints != nullptr &&
-           std::any_of(constraints->items.begin(), constraints->items.end(), [](TomlValue& table) {
-               return find_entry(table, "between") != nullptr || find_entry(table, "longest") != nullptr;
+// True if a table of this section has one of the keys.
+bool has_key(const TomlValue& root, const char* section, std::initializer_list<const char*> keys) {
+    const TomlValue* tables = find_entry(root, section);
+    return tables != nullptr && std::any_of(tables->items.begin(), tables->items.end(), [&](const TomlValue& table) {
+               return std::any_of(keys.begin(), keys.end(),
+                                  [&](const char* key) { return find_entry(table, key) != nullptr; });
            });
+}
+
+bool has_mechanism(const TomlValue& root) {
+    const TomlValue* constraints = find_entry(root, "constraint");
+    return std::any_of(std::begin(mechanism_tables), std::end(mechanism_tables),
+                       [&](const char* key) { return find_entry(root, key) != nullptr; }) ||
+           has_key(root, "drawing", {"on"}) || has_key(root, "constraint", {"between", "longest", "normal"}) ||
+           (constraints != nullptr &&
+            std::any_of(constraints->items.begin(), constraints->items.end(),
+                        [](const TomlValue& constraint) { return has_key(constraint, "drawing", {"on"}); }));
 }
 
 }  // namespace
 
 MechanismExpansion expand_mechanism(TomlValue& root, ParsedFile& reading) {
     MechanismExpansion result;
-    result.has_mechanism = has_mechanism(root) || has_contact_between(root);
+    result.has_mechanism = has_mechanism(root);
     if (!result.has_mechanism) return result;
-    try {
-        MechanismExpander(root, reading).expand();
-    } catch (const std::domain_error& problem) {
-        reading.mistakes.add({{1, 1}, fmt::format("the equations of the bodies have a {}", problem.what()), {}, false});
-    } catch (const ExpressionTooLarge& problem) {
-        reading.mistakes.add(
-            {{1, 1}, fmt::format("the equations of the bodies are too large: {}", problem.what()), {}, false});
-    }
+    attempt_part(reading.mistakes, {1, 1}, "the mechanism", [&] { MechanismExpander(root, reading).expand(); });
     result.has_failed = reading.mistakes.count() > 0;
     return result;
 }

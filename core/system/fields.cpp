@@ -37,7 +37,7 @@ void Fields::allow(const std::vector<std::string>& keys, ErrorCollector& mistake
         misspelt_.push_back(meant);
         const std::string question =
             other.empty() ? did_you_mean(entry.key, keys) : fmt::format("; did you mean '{}'?", other);
-        const std::string_view instead = other.empty() ? instead_of_key(entry.key) : "";
+        const std::string_view instead = other.empty() ? instead_of_key(entry.key, where_) : "";
         mistakes.add(
             {entry.at,
              fmt::format("unknown key '{}' in {}{}", shown(entry.key), where_, instead.empty() ? question : ""),
@@ -48,12 +48,7 @@ void Fields::allow(const std::vector<std::string>& keys, ErrorCollector& mistake
     }
 }
 
-const TomlValue* Fields::find(std::string_view key) const {
-    for (const TomlEntry& entry : table_.entries) {
-        if (entry.key == key) return &entry.value;
-    }
-    return nullptr;
-}
+const TomlValue* Fields::find(std::string_view key) const { return find_entry(table_, key); }
 
 const TomlValue& Fields::need(std::string_view key) const {
     need(key, {table_.at, fmt::format("missing key '{}' in {}", key, where_), {}});

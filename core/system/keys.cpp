@@ -12,7 +12,7 @@ std::span<const FileTable> file_tables() {
         {"",
          {{"title", "text, the file's name", "the title in lists, windows and figures"},
           {"source", "text", "the source of the system, for example a paper"},
-          {"coordinate", "tables, 1 to 8", "[[coordinate]], in the order of the components of q"},
+          {"coordinate", "tables, 1 to 16", "[[coordinate]], in the order of the components of q"},
           {"parameter", "tables", "[[parameter]]"},
           {"lagrangian", "table, needed without bodies", "[lagrangian]"},
           {"constraint", "tables, needed", "[[constraint]]: at most 16"},
@@ -171,23 +171,48 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
             words;  // names in other programs; the first entry with a key from `keys` counts
     };
     static constexpr KeyAlias others[] = {
+        {"body", "bodies link links part parts rigid_body particle point_mass"},
+        {"ground", "floor wall walls surface plane terrain obstacle"},
+        {"torque", "motor actuator moment"},
         {"gap", "h distance g phi condition expression height clearance"},
+        {"between", "from to ends points a b bodies pair connects connect body1 body2 geom1 geom2"},
         {"restitution", "e cor bounce epsilon coefficient eps"},
+        {"longest", "length max_length L l max"},
         {"kinetic", "T kinetic_energy T_kin ke KE Ekin"},
         {"potential", "V U potential_energy PE Epot"},
         {"dissipation", "R damping rayleigh D"},
+        {"stiffness", "k K c constant spring_constant"},
+        {"rest", "length l0 L0 l L free_length rest_length natural_length"},
+        {"damping", "d c b D coefficient viscosity damping_constant"},
         {"force", "Q forces tau torque generalized_force input u control"},
         {"rate", "velocity speed v v0 initial_velocity qdot dot rate0 start_rate x_dot y_dot"},
+        {"speed", "velocity v belt"},
         {"start", "q0 x0 y0 initial init initial_value initial_position position"},
-        {"value", "default val"},
+        {"mass", "m M weight"},
+        {"inertia", "I J Izz Jzz moment_of_inertia"},
+        {"center", "centre com cm cog center_of_mass"},
+        {"angle", "theta phi rotation rot orientation euler"},
+        {"on", "parent attached_to relative_to frame base body carrier"},
+        {"rod", "bar length l L"},
+        {"disc", "radius r R circle sphere ball wheel disk cylinder"},
+        {"ring", "hoop"},
+        {"box", "rectangle rect square size height w h block"},
+        {"polygon", "vertices corners"},
+        {"line", "from to start end plane floor wall points"},
+        {"curve", "f y height profile function"},
+        {"against", "reaction from"},
+        {"gravity", "g"},
+        {"value", "default val F M vector torque force magnitude moment"},
         {"range", "min max limits bounds lower upper"},
         {"about", "description comment doc tooltip"},
         {"title", "name"},
         {"name", "title id symbol label"},
         {"label", "ylabel"},
-        {"at", "position center centre pos xy"},
+        {"at", "position center centre pos xy x y point"},
+        {"points", "sites markers"},
         {"shape", "type kind"},
         {"radius", "r"},
+        {"color", "colour rgba"},
         {"width", "linewidth thickness lw"},
         {"from", "start p1 a"},
         {"to", "end p2 b"},
@@ -210,18 +235,43 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
     return "";
 }
 
-std::string_view instead_of_key(std::string_view word) {
+std::string_view instead_of_key(std::string_view word, std::string_view heading) {
     struct KeyAdvice {
         std::string_view words, instead;
+        std::string_view headings = {};  // of the tables where it counts; empty: all
     };
     static constexpr KeyAdvice others[] = {
+        {"joint joints hinge pin revolute prismatic connect weld equality loop to",
+         "there are no joints: place a body on another by on, at and angle, in the coordinates; for a closed loop "
+         "choose "
+         "coordinates that close the loop, or use a stiff spring",
+         "[[body]] a system file"},
+        {"gravity g",
+         "with bodies write world = {gravity = [0, -9.81]}; with energies gravity is a part of the potential, as m*g*y",
+         "a system file"},
+        {"gravity g", "gravity belongs to [world]: world = {gravity = [0, -9.81]}", "[[body]] [[force]] [run]"},
+        {"mass m inertia", "a ground has no mass: write a [[body]] with a rod, disc or ring, which can be touched too",
+         "[[ground]]"},
+        {"angle rotation", "turn the points of its line, or put it on a body without mass", "[[ground]]"},
+        {"box polygon rod", "write one [[ground]] with a line for each side, or a [[body]]", "[[ground]]"},
+        {"start rate velocity speed", "start and rate belong to the [[coordinate]] that places the body", "[[body]]"},
+        {"fixed static", "leave it out: a body whose place has no coordinate stands still; or write a [[ground]]",
+         "[[body]]"},
+        {"restitution e bounce", "restitution belongs to the [[constraint]] of two bodies, or of a body and a ground",
+         "[[body]] [[ground]]"},
+        {"damping damper", "write a [[damper]] with the same ends", "[[spring]]"},
         {"friction mu mu_s mu_k friction_coefficient", "contacts have no friction here: leave it out"},
         {"gravity g", "gravity is a part of the potential, as m*g*y, with a [[parameter]] g"},
-        {"stiffness k c contact_stiffness", "contacts are rigid: a spring belongs to the potential, as k/2*x^2"},
-        {"mass m inertia", "a mass is a part of the kinetic energy, as m/2*x'^2, with a [[parameter]] m"},
+        {"stiffness k", "write a [[spring]] with the same ends", "[[damper]]"},
+        {"stiffness k c contact_stiffness",
+         "contacts are rigid: a spring belongs to the potential, as k/2*x^2, or is a [[spring]]"},
+        {"mass m inertia",
+         "a mass is a part of the kinetic energy, as m/2*x'^2, with a [[parameter]] m, or belongs to a [[body]]"},
         {"dt step step_size timestep h max_step", "the step follows from the tolerance in [run]"}};
-    for (const KeyAdvice& other : others)
-        if (has_word(other.words, word)) return other.instead;
+    for (const KeyAdvice& other : others) {
+        const bool is_here = other.headings.empty() || other.headings.find(heading) != other.headings.npos;
+        if (is_here && has_word(other.words, word)) return other.instead;
+    }
     return "";
 }
 

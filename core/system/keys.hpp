@@ -28,7 +28,8 @@ std::vector<std::string> keys_of(std::string_view heading);
 // The key that a word of another program stands for, such as restitution for e; "" if there is none.
 std::string other_key(std::string_view word, const std::vector<std::string>& keys);
 
-// Advice on a word of another program without a corresponding key: friction, gravity, dt; "" if there is none.
-std::string_view instead_of_key(std::string_view word);
+// Advice on a word of another program without a corresponding key in the table with this heading: friction, gravity, dt;
+// "" if there is none.
+std::string_view instead_of_key(std::string_view word, std::string_view heading);
 
 }  // namespace achilles

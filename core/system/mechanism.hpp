@@ -74,7 +74,6 @@ struct PlacedShape {
 struct RigidBody : PlacedShape {
     ProductSum mass, inertia;  // about the center of mass
     LocalPoint center;
-    Location mass_at;
     const PlacedShape* on = nullptr;  // may be a ground
     ProductSum height, along;         // on a ground: the distance of its origin, and its velocity along the tangent
     std::string placement;            // for messages: "at hip, rotated by theta"
@@ -120,22 +119,26 @@ class PlacedMechanism {
 
     const MechanismSymbols& symbols() const { return symbols_; }
     // Those without mistakes, in the order of the file.
-    std::vector<const RigidBody*> bodies() const;
-    std::vector<const GroundSurface*> grounds() const;
+    std::vector<const RigidBody*> bodies() const { return placed(&Entry::body); }
+    std::vector<const GroundSurface*> grounds() const { return placed(&Entry::ground); }
     std::array<ProductSum, 2> gravity;
     std::vector<SpringOrDamper> springs;  // and dampers, in the order of the file
     std::vector<AppliedLoad> loads;
     Location gravity_at;
 
-    // An expression with values such as thigh.end.x replaced by their text. Throws Mistake.
+    // An expression with values such as thigh.end.x replaced by their text; `own` is a name of its own. Throws Mistake.
     Text substituted(const Text& text, const std::string& own = "");
-    ProductSum read(const Text& text, MechanismSymbols::Allowed allowed);
+    // `own` is a name that stands for the abscissa.
+    ProductSum read(const Text& text, MechanismSymbols::Allowed allowed, const std::string& own = "");
     // A point [x, y] or a name, in the axes of a body or ground (null: the world). Throw Mistake.
-    NamedPoint read_point(const TomlValue& value, const Fields& fields, std::string_view key, PlacedShape* on);
+    NamedPoint read_point(const TomlValue& value, const Fields& fields, std::string_view key, PlacedShape* on,
+                          const std::string& own = "");
     // A body or ground by its name; null for the world. Throws Mistake.
     PlacedShape* find(const Text& name);
     // The point of a name such as thigh.end. Throws Mistake.
     NamedPoint find_point(const Text& name, PlacedShape* on);
+    // Throws Mistake, at a place, if a line or rod that is touched turns in its axes: the slip leaves that out.
+    void check_direction(const PlacedShape& shape, const Location& at) const;
     // True if two points are on one body and do not move in it.
     bool is_rigid(const NamedPoint& a, const NamedPoint& b) const;
     static bool is_world(const std::string& name) { return name == "world"; }
@@ -149,6 +152,13 @@ class PlacedMechanism {
         enum class State { unseen, on_the_way, done, failed } state = State::unseen;
         PlacedShape& shape() const { return body ? static_cast<PlacedShape&>(*body) : *ground; }
     };
+    template <class Shape>
+    std::vector<const Shape*> placed(std::unique_ptr<Shape> Entry::*shape) const {
+        std::vector<const Shape*> list;
+        for (const Entry& entry : entries_)
+            if (entry.*shape && entry.state == Entry::State::done) list.push_back((entry.*shape).get());
+        return list;
+    }
     void list_names(const TomlValue& root, const char* key);
     void read_world(const TomlValue& root);
     void read_springs(const TomlValue& root, const char* key);
@@ -157,14 +167,14 @@ class PlacedMechanism {
     void place(Entry& entry);
     void place_body(RigidBody& body, const Fields& fields);
     void place_ground(GroundSurface& ground, const Fields& fields);
-    void place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground);
+    void place_on_ground(RigidBody& body, const Fields& fields, const GroundSurface& ground);
     void place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve);
     void read_shape(PlacedShape& shape, const Fields& fields);
     void read_mass(RigidBody& body, const Fields& fields);
     ProductSum spread_mass(RigidBody& body) const;
     void read_points(PlacedShape& shape, const Fields& fields);
     LocalPoint read_local(const TomlValue& value, const Fields& fields, std::string_view key,
-                          MechanismSymbols::Allowed allowed);
+                          MechanismSymbols::Allowed allowed, const std::string& own = "");
     ProductSum read_positive(const Fields& fields, std::string_view key, const TomlValue& value, bool may_be_zero);
     ProductSum value_of(const std::string& token, const Location& at);
     PlacedShape* on_of(const Fields& fields);
@@ -180,7 +190,22 @@ class PlacedMechanism {
     const SystemDescription& system_;
 };
 
-// True if the file has a table of this section.
-bool has_mechanism(const TomlValue& root);
+inline constexpr std::string_view closed_loop_advice =
+    "for a closed loop choose coordinates that close the loop, or use a stiff spring";
+
+// Makes a part of a mechanism, such as "the place of 'thigh'", from the table at `at`. Adds its mistakes; a division by
+// zero and an expression that is too large are mistakes of the table. Returns true if there are none.
+template <class Make>
+bool attempt_part(ErrorCollector& mistakes, const Location& at, const std::string& part, const Make& make) {
+    return mistakes.attempt([&] {
+        try {
+            make();
+        } catch (const std::domain_error& problem) {
+            throw Mistake{at, part + " has a " + problem.what(), {}};
+        } catch (const ExpressionTooLarge& problem) {
+            throw Mistake{at, part + " is too large: " + problem.what(), {}};
+        }
+    });
+}
 
 }  // namespace achilles

@@ -30,43 +30,48 @@ class TermDeriver {
 
     MechanismTerms derive() {
         add_masses();
-        for (const SpringOrDamper& each : mechanism_.springs) mistakes_.attempt([&] { add_spring(each); });
-        for (const AppliedLoad& load : mechanism_.loads) add_load(load);
+        for (const SpringOrDamper& each : mechanism_.springs)
+            attempt_part(mistakes_, each.at, each.is_damper ? "the force of this damper" : "the energy of this spring",
+                         [&] { add_spring(each); });
+        for (const AppliedLoad& load : mechanism_.loads)
+            attempt_part(mistakes_, load.at, "this load", [&] { add_load(load); });
         return std::move(result_);
     }
 
  private:
     void add_masses() {
-        ProductSum mixed, drifting, weight;  // T1, T0 and the potential of gravity
-        Location drift_at;
-        const PlanarVector gravity({}, mechanism_.gravity[0], mechanism_.gravity[1]);
-        const ProductSum half = symbols_.number(1, 2);
-        for (const RigidBody* body : mechanism_.bodies()) {
-            const ProductSum &m = body->mass, &J = body->inertia;
-            if (m.is_zero() && J.is_zero()) continue;
-            const MovingPoint center = kinematics_.point_in(body->frame, body->center.x, body->center.y);
-            const ProductSum rate = body->frame.rate.packed(), drift = body->frame.drift.packed();
-            const ProductSum own = half * m * dot(center.velocity, center.velocity, graph_) + half * J * rate * rate;
-            if (symbols_.depends_on_time(own)) {
-                mistakes_.add(
-                    {body->at,
-                     fmt::format("the inertia of '{}' depends on t: T = {}", body->name, shown(symbols_.text(own))),
-                     "a coordinate may not move a mass in a direction that turns with t; measure it in axes that "
-                     "turn as well, with 'on'"});
-                continue;
-            }
-            if (result_.kinetic.at.line == 0) result_.kinetic.at = body->at;
-            result_.kinetic.value = result_.kinetic.value + own;
-            if (!gravity.is_zero()) weight = weight - m * dot(gravity, center.position, graph_);
-            if (center.drift.is_zero() && drift.is_zero()) continue;
-            if (drift_at.line == 0) drift_at = body->at;
-            mixed = mixed + m * dot(center.velocity, center.drift, graph_) + J * rate * drift;
-            drifting = drifting + half * m * dot(center.drift, center.drift, graph_) + half * J * drift * drift;
-        }
-        add_potential(weight, mechanism_.gravity_at);
-        add_potential(-drifting, drift_at);
-        add_inertial_forces(mixed, drift_at);
+        for (const RigidBody* body : mechanism_.bodies())
+            attempt_part(mistakes_, body->at, fmt::format("the energy of '{}'", body->name), [&] { add_mass(*body); });
+        const Location at = drift_at_.line > 0 ? drift_at_ : mechanism_.gravity_at;
+        attempt_part(mistakes_, at, "the potential of the bodies", [&] {
+            add_potential(weight_, mechanism_.gravity_at);
+            add_potential(-drifting_, drift_at_);
+            add_inertial_forces(mixed_, drift_at_);
+        });
         check_masses();
+    }
+
+    void add_mass(const RigidBody& body) {
+        const ProductSum &m = body.mass, &J = body.inertia;
+        if (m.is_zero() && J.is_zero()) return;
+        const MovingPoint center = kinematics_.point_in(body.frame, body.center.x, body.center.y);
+        const ProductSum rate = body.frame.rate.packed(), drift = body.frame.drift.packed(),
+                         half = symbols_.number(1, 2);
+        const ProductSum own = half * m * dot(center.velocity, center.velocity, graph_) + half * J * rate * rate;
+        if (symbols_.depends_on_time(own))
+            throw Mistake{body.at,
+                          fmt::format("the inertia of '{}' depends on t: T = {}", body.name, shown(symbols_.text(own))),
+                          "a coordinate may not move a mass in a direction that turns with t; measure it in axes that "
+                          "turn as well, with 'on'"};
+        if (result_.kinetic.at.line == 0) result_.kinetic.at = body.at;
+        result_.kinetic.value = result_.kinetic.value + own;
+        const PlanarVector gravity({}, mechanism_.gravity[0], mechanism_.gravity[1]);
+        if (!gravity.is_zero()) weight_ = weight_ - m * dot(gravity, center.position, graph_);
+        if (center.drift.is_zero() && drift.is_zero()) return;
+        if (drift_at_.line == 0) drift_at_ = body.at;
+        result_.is_prescribed = true;
+        mixed_ = mixed_ + m * dot(center.velocity, center.drift, graph_) + J * rate * drift;
+        drifting_ = drifting_ + half * m * dot(center.drift, center.drift, graph_) + half * J * drift * drift;
     }
 
     // Every coordinate must move a mass; otherwise M is singular.
@@ -119,8 +124,13 @@ class TermDeriver {
             length.value = spring.angle;
             length.rate = kinematics_.rate_of(spring.angle) + kinematics_.drift_of(spring.angle);
         }
+        if (!symbols_.depends_on_coordinates(length.value))
+            throw Mistake{spring.at,
+                          fmt::format("the {} of this {} depends on no coordinate", spring.between ? "length" : "angle",
+                                      spring.is_damper ? "damper" : "spring"),
+                          spring.between ? "one of its ends must move with a coordinate" : ""};
         if (spring.is_damper) {
-            if (!length.rate.is_zero()) result_.dissipation.push_back({half * power(length.rate, 2), spring.at});
+            result_.dissipation.push_back({half * power(length.rate, 2), spring.at});
             return;
         }
         const double start = symbols_.at_start(length.value), rest = symbols_.at_start(spring.rest);
@@ -132,26 +142,34 @@ class TermDeriver {
             add_potential(half * dot(d, d, graph_), spring.at);
             return;
         }
-        const ProductSum energy = half * power(length.value - spring.rest, 2);
-        if (symbols_.depends_on_coordinates(energy)) result_.potential.push_back({energy, spring.at});
+        result_.potential.push_back({half * power(length.value - spring.rest, 2), spring.at});
     }
 
     void add_load(const AppliedLoad& load) {
         const PlanarVector force(load.axes.angle, load.x.packed(), load.y.packed());
+        bool has_motion = false;
         for (std::size_t i = 0; i < kinematics_.rates().size(); ++i) {
             const std::uint32_t rate = kinematics_.rates()[i];
             ProductSum sum;
             if (load.point) {
                 PlanarVector motion = derivative(load.point->point.velocity, rate);
                 if (load.against_point) motion = motion - derivative(load.against_point->point.velocity, rate);
+                has_motion = has_motion || !motion.is_zero();
                 sum = dot(motion, force, graph_);
             } else {
                 ProductSum turning = load.body->frame.rate.derivative(rate);
                 if (load.against != nullptr) turning = turning - load.against->frame.rate.derivative(rate);
+                has_motion = has_motion || !turning.is_zero();
                 sum = turning * load.torque.packed();
             }
             add_force(i, sum, load.at);
         }
+        if (!has_motion)
+            throw Mistake{
+                load.at,
+                load.point ? fmt::format("'{}', where this force acts, moves with no coordinate", load.point->name)
+                           : fmt::format("'{}', on which this torque acts, turns with no coordinate", load.body->name),
+                {}};
     }
 
     const PlacedMechanism& mechanism_;
@@ -161,6 +179,8 @@ class TermDeriver {
     const SystemDescription& system_;
     ErrorCollector& mistakes_;
     MechanismTerms result_;
+    ProductSum mixed_, drifting_, weight_;  // T1, T0 and the potential of gravity
+    Location drift_at_;                     // of the first mass that time moves
 };
 
 }  // namespace

@@ -20,9 +20,11 @@ struct MechanismTerms {
     DerivedTerm kinetic;
     std::vector<DerivedTerm> potential, dissipation;
     std::vector<std::vector<DerivedTerm>> forces;  // by coordinate
+    bool is_prescribed = false;                    // time moves a mass
 };
 
-// Adds the mistakes that show up here: a coordinate that moves no mass, and inertia that depends on time.
+// Adds the mistakes that show up here: a coordinate that moves no mass, inertia that depends on time, and springs,
+// dampers and loads that act on no coordinate.
 MechanismTerms derive_terms(const PlacedMechanism& mechanism, const SystemDescription& system,
                             ErrorCollector& mistakes);
 

@@ -28,11 +28,9 @@ void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) 
     }
     if (const TomlValue* speed = fields.find("speed"))
         ground.speed = read(fields.expression("speed", *speed), Allowed::constants_and_time);
-    if (ground.shape == TouchShape::line && (!symbols_.is_constant(ground.corners[1].x - ground.corners[0].x) ||
-                                             !symbols_.is_constant(ground.corners[1].y - ground.corners[0].y)))
-        throw Mistake{fields.need("line").at,
-                      fmt::format("the direction of the line '{}' must not change", ground.name),
-                      "put it on a body without mass that turns"};
+    if (ground.shape == TouchShape::line) check_direction(ground, fields.need("line").at);
+    if (const TomlValue* over = fields.find("over"); over != nullptr && ground.shape != TouchShape::curve)
+        throw Mistake{over->at, "'over' belongs to a curve", "leave it out: a line is infinite"};
     if (ground.shape != TouchShape::curve) return;
     ground.height = read(fields.expression("curve"), Allowed::curve).expression(symbols_.graph());
     const TomlValue& over = fields.need("over");
@@ -42,39 +40,35 @@ void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) 
                    substituted(fields.expression("over", over.items[1]))};
 }
 
-void PlacedMechanism::place_on_ground(RigidBody& body, const Fields& fields, GroundSurface& ground) {
+// Places a body at [s, d], and finds the velocity of its origin along the tangent, in the axes of the ground.
+void PlacedMechanism::place_on_ground(RigidBody& body, const Fields& fields, const GroundSurface& ground) {
     const Kinematics& kinematics = symbols_.kinematics();
-    Graph& graph = symbols_.graph();
     const TomlValue* at = fields.find("at");
     if (at == nullptr || at->kind != TomlValue::Kind::array)
         throw Mistake{at ? at->at : body.at,
                       fmt::format("'{}' is on the ground '{}': 'at' must be [s, d]", body.name, ground.name),
                       "s is the place along the ground, d the distance from it to the free side"};
     const LocalPoint place = read_local(*at, fields, "at", Allowed::positions);
-    const ProductSum &s = place.x, &d = place.y;
+    const ProductSum &s = place.x, &d = place.y, s_rate = kinematics.rate_of(s) + kinematics.drift_of(s);
     body.height = d;
     body.placement = fmt::format("on {} at {}, {} from it", ground.name, symbols_.text(s), symbols_.text(d));
     const MovingFrame& base = ground.frame;
-    const ProductSum quarter = symbols_.number(1, 2) * ProductSum::from(graph.pi());
+    if (ground.shape == TouchShape::curve) return place_on_curve(body, place, ground);
     if (ground.shape == TouchShape::line) {
         const LocalPoint& from = ground.corners[0];
-        const MovingFrame along = kinematics.frame_at(kinematics.point_in(base, from.x, from.y), base,
-                                                      symbols_.angle_of(symbols_.direction(ground)));
-        body.frame = along;
-        body.frame.origin = kinematics.point_in(along, s, d);
-        body.along = kinematics.rate_of(s) + kinematics.drift_of(s);
+        body.frame = kinematics.frame_at(kinematics.point_in(base, from.x, from.y), base,
+                                         symbols_.angle_of(symbols_.direction(ground)));
+        body.frame.origin = kinematics.point_in(body.frame, s, d);
+        body.along = s_rate;
         return;
     }
-    if (ground.shape == TouchShape::disc || ground.shape == TouchShape::ring) {
-        const bool is_outside = ground.shape == TouchShape::disc;
-        const MovingFrame radial = kinematics.frame_at(base.origin, base, s);
-        const ProductSum distance = is_outside ? ground.radius + d : ground.radius - d;
-        body.frame = radial;
-        body.frame.origin = kinematics.point_in(radial, distance, {});
-        body.frame.angle = radial.angle + (is_outside ? -quarter : quarter);
-        return;
-    }
-    place_on_curve(body, place, ground);
+    // The tangent is the normal turned right: clockwise around a disc, counterclockwise in a ring.
+    const ProductSum side = symbols_.number(ground.shape == TouchShape::disc ? 1 : -1);
+    const ProductSum distance = ground.radius + side * d;
+    body.frame = kinematics.frame_at(base.origin, base, s);
+    body.frame.origin = kinematics.point_in(body.frame, distance, {});
+    body.frame.angle = body.frame.angle - side * symbols_.number(1, 2) * ProductSum::from(symbols_.graph().pi());
+    body.along = -(side * distance.packed() * s_rate);
 }
 
 // The velocity along the curve is s' times S - d f''/S^2 with S = sqrt(1 + f'^2), in the axes of its tangent.
@@ -108,6 +102,15 @@ void PlacedMechanism::place_on_curve(RigidBody& body, const LocalPoint& place, c
     body.frame.rate = base.rate + tilt_rate;
     body.frame.drift = base.drift + tilt_drift;
     body.along = along + drift_along;
+}
+
+void PlacedMechanism::check_direction(const PlacedShape& shape, const Location& at) const {
+    const LocalPoint &from = shape.corners[0], &to = shape.corners[1];
+    if (symbols_.is_constant(to.x - from.x) && symbols_.is_constant(to.y - from.y)) return;
+    throw Mistake{at,
+                  fmt::format("the direction of the {} '{}', which is touched, must not change",
+                              shape.is_ground ? "line" : "rod", shape.name),
+                  "turn the axes that it is in: put it on a body without mass that turns"};
 }
 
 bool PlacedMechanism::is_rigid(const NamedPoint& a, const NamedPoint& b) const {

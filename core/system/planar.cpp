@@ -1,6 +1,7 @@
 #include "system/planar.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace achilles {
 
@@ -42,7 +43,7 @@ ProductSum over_pairs(const PlanarVector& a, const PlanarVector& b, Graph& graph
     for (const RotatedVector& u : a.terms) {
         for (const RotatedVector& w : b.terms) {
             const auto [c, s] = cosine_and_sine(w.angle - u.angle, graph);
-            sum = sum + c * even(u, w) + s * odd(u, w);
+            sum = std::move(sum) + c * even(u, w) + s * odd(u, w);
         }
     }
     return sum.without_squares();
@@ -70,7 +71,7 @@ std::array<ProductSum, 2> components(const PlanarVector& vector, const ProductSu
 ProductSum Kinematics::rate_of(const ProductSum& quantity) const {
     ProductSum sum;
     for (std::size_t i = 0; i < q_.size(); ++i)
-        sum = sum + quantity.derivative(q_[i]) * ProductSum::from(graph_.symbol(v_[i]));
+        sum = std::move(sum) + quantity.derivative(q_[i]) * ProductSum::from(graph_.symbol(v_[i]));
     return sum;
 }
 

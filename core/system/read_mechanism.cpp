@@ -12,35 +12,25 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* mechanism_keys[] = {"world", "body", "ground", "spring", "damper", "force", "torque"};
+constexpr std::size_t max_shapes = 200;    // bodies and grounds
+constexpr std::size_t max_text = 1000000;  // characters of an expression with the values of bodies
 
-const TomlValue* entry_in(const TomlValue& table, std::string_view key) {
-    for (const TomlEntry& entry : table.entries)
-        if (entry.key == key) return &entry.value;
-    return nullptr;
-}
-
-bool begins_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
-bool is_decimal_digit(char c) { return c >= '0' && c <= '9'; }
-bool continues_name(char c) { return begins_name(c) || is_decimal_digit(c) || c == '_'; }
-
-// The end of the number that starts at i: 1.5e-3.
-std::size_t end_of_number(const std::string& text, std::size_t i) {
-    while (i < text.size() && (is_decimal_digit(text[i]) || text[i] == '.')) ++i;
-    if (i + 1 < text.size() && (text[i] == 'e' || text[i] == 'E')) {
-        const std::size_t digits = i + (text[i + 1] == '+' || text[i + 1] == '-' ? 2 : 1);
-        if (digits < text.size() && is_decimal_digit(text[digits]))
-            for (i = digits; i < text.size() && is_decimal_digit(text[i]);) ++i;
+// The names in an expression with the parts after their dots and with their primes, such as thigh.end.x', as pieces of
+// the text.
+std::vector<std::string_view> dotted_names_in(std::string_view text) {
+    std::vector<std::string_view> names;
+    for (std::size_t at = 0; at < text.size();) {
+        const auto letter_at = [&](std::size_t i) { return i < text.size() && is_name(text.substr(i, 1)); };
+        const auto is_part = [&](std::size_t i) {
+            return letter_at(i) || (i < text.size() && ((text[i] >= '0' && text[i] <= '9') || text[i] == '_'));
+        };
+        std::size_t end = at;
+        while (is_part(end) || (end < text.size() && text[end] == '.' && letter_at(end + 1))) ++end;
+        while (end > at && end < text.size() && text[end] == '\'') ++end;
+        if (letter_at(at)) names.push_back(text.substr(at, end - at));
+        at = std::max(end, at + 1);
     }
-    return i;
-}
-
-// The end of the name that starts at i: thigh.end.x'.
-std::size_t end_of_name(const std::string& text, std::size_t i) {
-    const auto has = [&](std::size_t at) { return at < text.size(); };
-    while (has(i) && (continues_name(text[i]) || (text[i] == '.' && has(i + 1) && begins_name(text[i + 1])))) ++i;
-    while (has(i) && text[i] == '\'') ++i;
-    return i;
+    return names;
 }
 
 std::vector<std::string> split_at_dots(const std::string& name) {
@@ -54,18 +44,19 @@ std::vector<std::string> split_at_dots(const std::string& name) {
     return parts;
 }
 
-std::vector<std::string> names_of(const std::map<std::string, LocalPoint>& points) {
-    std::vector<std::string> names;
-    for (const auto& [name, point] : points) names.push_back(name);
+std::vector<std::string> point_names(const PlacedShape& shape) {
+    std::vector<std::string> names{"origin"};
+    for (const auto& [name, point] : shape.points) names.push_back(name);
     return names;
 }
 
-}  // namespace
-
-bool has_mechanism(const TomlValue& root) {
-    return std::any_of(std::begin(mechanism_keys), std::end(mechanism_keys),
-                       [&](const char* key) { return entry_in(root, key) != nullptr; });
+Mistake unknown_point(const Text& name, const std::string& point, const PlacedShape& shape) {
+    const std::vector<std::string> known = point_names(shape);
+    return {name.at, fmt::format("unknown point '{}' of '{}'{}", shown(point), shape.name, did_you_mean(point, known)),
+            fmt::format("points of '{}' are: {}", shape.name, listed(known))};
 }
+
+}  // namespace
 
 PlacedMechanism::PlacedMechanism(const TomlValue& root, const SystemDescription& system, Names& names,
                                  ErrorCollector& mistakes)
@@ -96,9 +87,8 @@ void PlacedMechanism::list_names(const TomlValue& root, const char* key) {
                               fmt::format("it is already the name at line {}: bodies and grounds need different names",
                                           other->shape().name_at.line)};
             }
-            constexpr std::size_t most = 200;
-            if (entries_.size() == most)
-                throw Mistake{fields.table().at, fmt::format("more than {} bodies and grounds", most), {}};
+            if (entries_.size() == max_shapes)
+                throw Mistake{fields.table().at, fmt::format("more than {} bodies and grounds", max_shapes), {}};
             Entry entry{fields, nullptr, nullptr};
             if (is_ground)
                 entry.ground = std::make_unique<GroundSurface>();
@@ -121,20 +111,6 @@ PlacedMechanism::Entry* PlacedMechanism::entry_of(const std::string& name) {
     return entry == entries_.end() ? nullptr : &*entry;
 }
 
-std::vector<const RigidBody*> PlacedMechanism::bodies() const {
-    std::vector<const RigidBody*> list;
-    for (const Entry& entry : entries_)
-        if (entry.body && entry.state == Entry::State::done) list.push_back(entry.body.get());
-    return list;
-}
-
-std::vector<const GroundSurface*> PlacedMechanism::grounds() const {
-    std::vector<const GroundSurface*> list;
-    for (const Entry& entry : entries_)
-        if (entry.ground && entry.state == Entry::State::done) list.push_back(entry.ground.get());
-    return list;
-}
-
 void PlacedMechanism::refuse_unknown(const Text& name) const {
     if (!are_names_complete_) throw ErrorAlreadyReported{};
     std::vector<std::string> known{"world"};
@@ -154,48 +130,36 @@ PlacedShape* PlacedMechanism::find(const Text& name) {
 
 NamedPoint PlacedMechanism::find_point(const Text& name, PlacedShape* on) {
     const std::vector<std::string> parts = split_at_dots(name.text);
-    const bool is_of_on = parts.size() == 1 && on != nullptr && on->points.contains(name.text);
     if (parts.size() > 2)
         throw Mistake{name.at, fmt::format("'{}' is not a point", shown(name.text)),
                       "a point is [x, y], a body, or a body and a point, as in \"thigh.end\""};
-    PlacedShape* carrier = on;
-    if (!is_of_on && parts.size() == 1 && on != nullptr && !entry_of(parts[0]) && !is_world(parts[0])) {
-        throw Mistake{name.at,
-                      fmt::format("unknown point '{}' of '{}'{}", shown(name.text), on->name,
-                                  did_you_mean(name.text, names_of(on->points))),
-                      fmt::format("points of '{}' are: {}", on->name, listed(names_of(on->points)))};
-    }
-    if (!is_of_on) carrier = find({parts[0], name.at, name.is_written});
-    const PlacedShape& shape = carrier ? *carrier : world_;
-    const std::string point_name = is_of_on ? name.text : parts.size() == 2 ? parts[1] : "origin";
+    const bool is_alone = parts.size() == 1;
+    const bool is_of_on = is_alone && on != nullptr && (on->points.contains(name.text) || name.text == "origin");
+    if (is_alone && on != nullptr && !is_of_on && !entry_of(name.text) && !is_world(name.text))
+        throw unknown_point(name, name.text, *on);
     NamedPoint result;
-    result.carrier = carrier;
+    result.carrier = is_of_on ? on : find({parts[0], name.at, name.is_written});
     result.name = is_of_on ? on->name + "." + name.text : name.text;
-    result.is_whole = !is_of_on && parts.size() == 1;
+    result.is_whole = is_alone && !is_of_on;
     result.at = name.at;
+    const PlacedShape& shape = result.carrier ? *result.carrier : world_;
+    const std::string& point_name = parts.back();
     const auto point = shape.points.find(point_name);
-    if (point != shape.points.end()) {
-        result.point = symbols_.kinematics().point_in(shape.frame, point->second.x, point->second.y);
-        return result;
-    }
-    if (point_name == "origin") {
+    if (result.is_whole || point_name == "origin")
         result.point = shape.frame.origin;
-        return result;
-    }
-    throw Mistake{name.at,
-                  fmt::format("unknown point '{}' of '{}'{}", shown(point_name), shape.name,
-                              did_you_mean(point_name, names_of(shape.points))),
-                  shape.points.empty()
-                      ? fmt::format("'{}' has the point origin only", shape.name)
-                      : fmt::format("points of '{}' are: {}", shape.name, listed(names_of(shape.points)))};
+    else if (point != shape.points.end())
+        result.point = symbols_.kinematics().point_in(shape.frame, point->second.x, point->second.y);
+    else
+        throw unknown_point(name, point_name, shape);
+    return result;
 }
 
 NamedPoint PlacedMechanism::read_point(const TomlValue& value, const Fields& fields, std::string_view key,
-                                       PlacedShape* on) {
+                                       PlacedShape* on, const std::string& own) {
     if (value.kind == TomlValue::Kind::string) return find_point(value.text, on);
     if (value.kind != TomlValue::Kind::array)
         throw fields.wrong_type(key, value, "a point, [x, y] or a name such as \"thigh.end\"");
-    const LocalPoint local = read_local(value, fields, key, Allowed::positions);
+    const LocalPoint local = read_local(value, fields, key, Allowed::positions, own);
     NamedPoint result;
     result.point = symbols_.kinematics().point_in(on ? on->frame : world_.frame, local.x, local.y);
     result.carrier = on;
@@ -206,9 +170,9 @@ NamedPoint PlacedMechanism::read_point(const TomlValue& value, const Fields& fie
 }
 
 LocalPoint PlacedMechanism::read_local(const TomlValue& value, const Fields& fields, std::string_view key,
-                                       Allowed allowed) {
+                                       Allowed allowed, const std::string& own) {
     const std::array<Text, 2> texts = fields.point(key, value);
-    return {read(texts[0], allowed), read(texts[1], allowed)};
+    return {read(texts[0], allowed, own), read(texts[1], allowed, own)};
 }
 
 // A value such as thigh.end.x' or thigh.angle, for the name of it.
@@ -246,41 +210,40 @@ ProductSum PlacedMechanism::value_of(const std::string& token, const Location& a
 Text PlacedMechanism::substituted(const Text& text, const std::string& own) {
     Text result = text;
     result.text.clear();
-    const auto has_meaning = [&](const std::string& name) {
-        return names_.places.contains(name) || is_reserved(name) || name == own;
-    };
     std::size_t done = 0;  // of the original
-    for (std::size_t i = 0; i < text.text.size();) {
-        if (is_decimal_digit(text.text[i]) || text.text[i] == '.') {
-            i = end_of_number(text.text, i);
+    for (const std::string_view token : dotted_names_in(text.text)) {
+        const auto begin = static_cast<std::size_t>(token.data() - text.text.data()), end = begin + token.size();
+        const std::string bare(token.substr(0, token.find('\''))), first = bare.substr(0, bare.find('.'));
+        const bool is_known = entry_of(first) != nullptr || is_world(first);
+        const std::size_t next = std::min(text.text.find_first_not_of(' ', end), text.text.size());
+        if (first == bare ? !is_known || names_.places.contains(bare) || is_reserved(bare) || bare == own
+                          : !is_known && text.text.compare(next, 1, "(") == 0)  // np.sin(x)
             continue;
+        std::string value;
+        try {
+            value = symbols_.text(value_of(std::string(token), place_in(text, begin)));
+        } catch (const ExpressionTooLarge& problem) {
+            throw Mistake{place_in(text, begin), fmt::format("{} is too large: {}", token, problem.what()), {}};
         }
-        if (!begins_name(text.text[i])) {
-            ++i;
-            continue;
-        }
-        const std::size_t begin = i;
-        i = end_of_name(text.text, i);
-        const std::string token = text.text.substr(begin, i - begin), bare = token.substr(0, token.find('\''));
-        const bool has_dot = bare.find('.') != bare.npos;
-        if (!has_dot && (has_meaning(bare) || (!entry_of(bare) && !is_world(bare)))) continue;
-        const std::string value = symbols_.text(value_of(token, place_in(text, begin)));
-        const bool is_alone =
-            begin == text.text.find_first_not_of(' ') && text.text.find_first_not_of(' ', i) == std::string::npos;
+        const bool is_alone = begin == text.text.find_first_not_of(' ') && next == text.text.size();
         result.text += text.text.substr(done, begin - done);
         result.pieces.push_back({result.text.size(), place_in(text, begin), false});
         result.text += is_alone || is_name(value) ? value : "(" + value + ")";
-        result.pieces.push_back({result.text.size(), place_in(text, i), text.is_written});
-        done = i;
+        result.pieces.push_back({result.text.size(), place_in(text, end), text.is_written});
+        if (result.text.size() > max_text)
+            throw Mistake{text.at, "this expression is too large with the values of bodies", {}};
+        done = end;
     }
     result.text += text.text.substr(done);
     return result;
 }
 
-ProductSum PlacedMechanism::read(const Text& text, Allowed allowed) {
-    const Text plain = substituted(text);
+ProductSum PlacedMechanism::read(const Text& text, Allowed allowed, const std::string& own) {
+    const Text plain = substituted(text, own);
     try {
-        const Scope& scope = symbols_.scope(allowed);
+        if (own.empty()) return ProductSum::from(parse(plain.text, symbols_.scope(allowed), symbols_.graph()));
+        Scope scope = symbols_.scope(allowed);
+        scope.allowed.insert_or_assign(own, symbols_.graph().symbol(symbols_.abscissa()));
         return ProductSum::from(parse(plain.text, scope, symbols_.graph()));
     } catch (const ParseError& error) {
         const std::string bare = error.name.substr(0, error.name.find('\''));
@@ -322,12 +285,11 @@ void PlacedMechanism::place(Entry& entry) {
         circle.push_back(shape.name);
         throw Mistake{shape.name_at,
                       fmt::format("the bodies are placed on each other in a circle: {}", fmt::join(circle, " -> ")),
-                      "place one of them by coordinates; for a closed loop choose coordinates that close it, or use a "
-                      "stiff spring"};
+                      fmt::format("place one of them by coordinates; {}", closed_loop_advice)};
     }
     entry.state = on_the_way;
     way_.push_back(shape.name);
-    const bool is_placed = mistakes_.attempt([&] {
+    const bool is_placed = attempt_part(mistakes_, shape.at, fmt::format("the place of '{}'", shape.name), [&] {
         if (entry.body)
             place_body(*entry.body, entry.fields);
         else
@@ -339,16 +301,20 @@ void PlacedMechanism::place(Entry& entry) {
 }
 
 void PlacedMechanism::read_world(const TomlValue& root) {
-    const TomlValue* table = entry_in(root, "world");
+    const TomlValue* table = find_entry(root, "world");
     if (table == nullptr) return;
     Fields fields(*table, "[world]");
     fields.allow(keys_of("[world]"), mistakes_);
-    gravity_at = table->at;
     mistakes_.attempt([&] { read_points(world_, fields); });
     if (const TomlValue* value = fields.find("gravity")) {
+        gravity_at = value->at;
+        const bool is_string = value->kind == TomlValue::Kind::string;
+        if (is_string || value->kind == TomlValue::Kind::number)
+            throw Mistake{
+                value->at, "'gravity' in [world] must be a vector [gx, gy]",
+                fmt::format("write gravity = [0, {0}{1}{0}]", is_string ? "\"" : "", shown(value->text.text))};
         const LocalPoint g = read_local(*value, fields, "gravity", Allowed::constants_and_time);
         gravity = {g.x, g.y};
-        gravity_at = value->at;
     }
 }
 
@@ -375,7 +341,6 @@ void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
     }
     if (angle != nullptr) body.placement += ", rotated by " + symbols_.text(turn);
     if (angle != nullptr && on != nullptr) body.placement += " against " + on->name;
-    body.mass_at = fields.find("mass") ? fields.find("mass")->at : body.at;
     read_shape(body, fields);
     read_mass(body, fields);
     body.points.insert_or_assign("center", body.center);
@@ -392,9 +357,8 @@ void PlacedMechanism::read_points(PlacedShape& shape, const Fields& fields) {
         throw fields.wrong_type("points", *points, "a table of points, as in {grip = [0, 1]}");
     for (const TomlEntry& entry : points->entries)
         mistakes_.attempt([&] {
-            const bool is_reserved_name = entry.key == "x" || entry.key == "y" || entry.key == "angle" ||
-                                          entry.key == "origin" || entry.key == "center" ||
-                                          (!shape.points.empty() && shape.points.contains(entry.key));
+            constexpr std::string_view of_every_body = "x y angle origin center";
+            const bool is_reserved_name = has_word(of_every_body, entry.key) || shape.points.contains(entry.key);
             if (!is_name(entry.key)) throw Mistake{entry.at, fmt::format("'{}' is not a name", shown(entry.key)), {}};
             if (is_reserved_name)
                 throw Mistake{entry.at, fmt::format("the point name '{}' is reserved", entry.key),
@@ -422,7 +386,8 @@ void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
         if (value == nullptr) continue;
         if (found != nullptr)
             throw Mistake{value->at, fmt::format("'{}' has two shapes: {} and {}", shape.name, found->key, each.key),
-                          "write one [[body]] for each, the second with on = \"" + shape.name + "\""};
+                          shape.is_ground ? "write one [[ground]] for each"
+                                          : "write one [[body]] for each, the second with on = \"" + shape.name + "\""};
         found = &each;
     }
     if (found == nullptr) return;
@@ -430,6 +395,11 @@ void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
     shape.shape = found->shape;
     const auto read_corners = [&](const std::vector<std::string>& names) {
         for (std::size_t i = 0; i < value.items.size(); ++i) {
+            if (value.items[i].kind == TomlValue::Kind::string)
+                throw Mistake{
+                    value.items[i].text.at,
+                    fmt::format("'{}' in {} is described in axes of its own, by [x, y]", found->key, fields.where()),
+                    fmt::format("place its start with at, and turn it with angle; {}", closed_loop_advice)};
             shape.corners.push_back(read_local(value.items[i], fields, found->key, Allowed::positions));
             shape.points.emplace(i < names.size() ? names[i] : fmt::format("corner{}", i + 1), shape.corners[i]);
         }
@@ -444,7 +414,7 @@ void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
             if (value.kind != TomlValue::Kind::array || value.items.size() != 2)
                 throw fields.wrong_type(found->key, value, "two points, [from, to]");
             read_corners({"start", "end"});
-            if (const LocalPoint along = symbols_.direction(shape); along.x.is_zero() && along.y.is_zero())
+            if (shape.corners[0].x == shape.corners[1].x && shape.corners[0].y == shape.corners[1].y)
                 throw Mistake{
                     value.at, fmt::format("'{}' in {}: its ends are one point", found->key, fields.where()), {}};
             break;
@@ -496,10 +466,8 @@ void PlacedMechanism::read_mass(RigidBody& body, const Fields& fields) {
         throw Mistake{body.at, fmt::format("the shape of '{}', which carries mass, must not change", body.name),
                       "use only parameters in it; a body without mass may have any shape"};
     const ProductSum spread = spread_mass(body);
-    if (inertia)
-        body.how = "";
-    else
-        body.inertia = spread;
+    if (!inertia) body.inertia = spread;
+    if (inertia) body.how.clear();
 }
 
 // Spreads the mass evenly over the shape: sets the center of mass, and returns the inertia about it.

@@ -371,6 +371,12 @@ std::string right_heading(std::string_view message, const std::string& line) {
 
 }  // namespace
 
+const TomlValue* find_entry(const TomlValue& table, std::string_view key) {
+    for (const TomlEntry& entry : table.entries)
+        if (entry.key == key) return &entry.value;
+    return nullptr;
+}
+
 std::string_view kind_name(TomlValue::Kind kind) {
     switch (kind) {
         case TomlValue::Kind::string:

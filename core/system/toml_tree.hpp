@@ -29,6 +29,9 @@ struct TomlEntry {
     TomlValue value;
 };
 
+// The value of a key of a table; null if there is none.
+const TomlValue* find_entry(const TomlValue& table, std::string_view key);
+
 // "a string", "a number", "an array", ...
 std::string_view kind_name(TomlValue::Kind kind);
 

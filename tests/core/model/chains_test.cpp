@@ -51,6 +51,27 @@ std::string chain(int links, Angles angles, double wall, double end_time) {
            fmt::format("run = {{end_time = {}}}\n", end_time);
 }
 
+// The same in relative angles, typed as bodies. With fewer coordinates than links, the angles repeat. `masses`: each link
+// has a mass of its own, so that the terms of two links do not meet.
+std::string chain_of_bodies(int links, int coordinates, double end_time, bool has_masses = false) {
+    std::string text = "coordinate = [\n", masses;
+    for (int i = 1; i <= coordinates; ++i)
+        text += fmt::format("    {{name = \"a{}\", start = {}, unit = \"rad\"}},\n", i, i == 1 ? 0.5 : 0.0);
+    for (int i = 1; has_masses && i <= links; ++i) masses += fmt::format(", {{name = \"m{}\", value = 1.0}}", i);
+    text += "]\nparameter = [{name = \"m\", value = 1.0}, {name = \"l\", value = 0.5}, {name = \"g\", value = 9.81}" +
+            masses + "]\nworld = {gravity = [0, \"-g\"]}\nbody = [\n";
+    for (int i = 1; i <= links; ++i)
+        text +=
+            fmt::format("    {{name = \"link{}\", mass = \"m{}\", rod = [[0, 0], [0, \"-l\"]], angle = \"a{}\"{}}},\n",
+                        i, has_masses ? std::to_string(i) : "", (i - 1) % coordinates + 1,
+                        i == 1 ? "" : fmt::format(", on = \"link{}\", at = \"end\"", i - 1));
+    return text + fmt::format(
+                      "]\nground = [{{name = \"wall\", line = [[-10, 0], [-10, -1]]}}]\n"
+                      "constraint = [{{between = [\"link{}.end\", \"wall\"], restitution = 0.5}}]\n"
+                      "run = {{end_time = {}}}\n",
+                      links, end_time);
+}
+
 std::shared_ptr<const Model> free_chain(int links, Angles angles) { return test::typed(chain(links, angles, 10, 20)); }
 
 // The accelerations of the chain in absolute angles, by the mass matrix in numbers.
@@ -168,6 +189,42 @@ TEST(Chains, OfEightLinksRunInLessThanASecond) {
 #endif
         EXPECT_LT(run.statistics.energy_drift, 1e-10);
     }
+}
+
+TEST(ChainsOfBodies, OfTwelveLinksAreDerivedInSeconds) {
+    const auto begin = std::chrono::steady_clock::now();
+    const auto model = test::typed(chain_of_bodies(12, 12, 1));
+    model->motion({});
+    model->motion(Mode::holding(ContactSet::of(0)));
+    model->bouncing();
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+    EXPECT_LT(4 * model->equations().energy.graph().size(), 6000000u);
+}
+
+TEST(ChainsOfBodies, MoveAsTheTypedChainDoesInLessThanASecond) {
+    const auto model = test::typed(chain_of_bodies(8, 8, 20));
+    const Trajectory run = simulate(model, model->default_run());
+    EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time);
+#ifndef __SANITIZE_ADDRESS__
+    EXPECT_LT(run.statistics.seconds, 1.0);
+#endif
+    const auto typed = test::typed(chain(8, Angles::relative, 10, 2));
+    const auto short_run = test::typed(chain_of_bodies(8, 8, 2));
+    const State one = simulate(typed, typed->default_run()).end,
+                two = simulate(short_run, short_run->default_run()).end;
+    EXPECT_LT((one.q - two.q).norm(), 1e-8);
+    EXPECT_LT((one.v - two.v).norm(), 1e-7);
+}
+
+// Too many coordinates, and equations that are too large, end with a message within seconds.
+TEST(ChainsOfBodies, OfFortyLinksAreRefused) {
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string forty = test::told(chain_of_bodies(40, 40, 1));
+    EXPECT_EQ(forty.find("f.toml:18:14: more than 16 coordinates\n"), 0U) << forty;
+    const std::string large = test::told(chain_of_bodies(40, 16, 1, true));
+    EXPECT_NE(large.find("too large: it takes more than"), large.npos) << large;
+    EXPECT_NE(large.find("link"), large.npos) << large;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
 }
 
 // The same motion in both coordinates, with impacts, certified Zeno points and contact.

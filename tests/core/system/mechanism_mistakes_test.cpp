@@ -1,6 +1,8 @@
 // Every mistake of a mechanism, one at a time: the exact message, location and caret.
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "core/system/mistakes.hpp"
 #include "core/systems.hpp"
 
@@ -63,12 +65,12 @@ add inertia, about the center of mass)m"},
      R"m(f.toml:5:12: the bodies are placed on each other in a circle: ball -> arm -> ball
       {name = "ball", mass = "m", disc = "r", at = "arm.end"},
                ^
-place one of them by coordinates; for a closed loop choose coordinates that close it, or use a stiff spring)m"},
+place one of them by coordinates; for a closed loop choose coordinates that close the loop, or use a stiff spring)m"},
     {"BodyOnItself", R"m("x", ")m", R"m("x", "ball.)m",
      R"m(f.toml:5:12: the bodies are placed on each other in a circle: ball -> ball
       {name = "ball", mass = "m", disc = "r", at = ["x", "ball.y"], ang...
                ^
-place one of them by coordinates; for a closed loop choose coordinates that close it, or use a stiff spring)m"},
+place one of them by coordinates; for a closed loop choose coordinates that close the loop, or use a stiff spring)m"},
     {"Color", R"m(disc = "r", )m", R"m(disc = "r", color = "red", )m",
      R"m(f.toml:5:52: 'red' is not a color
       {name = "ball", mass = "m", disc = "r", color = "red", at = ["x", "y"], angle = "phi"},
@@ -161,12 +163,12 @@ write rest = 0 for a spring that pulls its ends together)m"},
      R"m(f.toml:9:36: 'world.hook' has nothing that can be touched
     constraint = [{between = ["ball", "world.hook"], restitution = 0.5}]
                                        ^
-a ground, or a body with a rod, a disc or a ring can; for a string between two points add longest = its length)m"},
+a ground, or a body with a rod, a disc or a ring can; for a string between two points add longest = its length; two points that stay together are a closed loop: choose coordinates that close the loop, or use a stiff spring)m"},
     {"PointTouched", R"m("ball", "floor")m", R"m("ball", [0, 1])m",
      R"m(f.toml:9:35: nothing can be touched at a point
     constraint = [{between = ["ball", [0, 1]], restitution = 0.5}]
                                       ^
-name a ground or a body; for a string between two points add longest = its length)m"},
+name a ground or a body; for a string between two points add longest = its length; two points that stay together are a closed loop: choose coordinates that close the loop, or use a stiff spring)m"},
     {"OnAGroundWithoutPlace", R"m(at = ["x", "y"])m", R"m(on = "floor")m",
      R"m(f.toml:5:3: 'ball' is on the ground 'floor': 'at' must be [s, d]
       {name = "ball", mass = "m", disc = "r", on = "floor", an...
@@ -314,12 +316,12 @@ bodies and grounds are: world, floor, ball)m"},
      R"m(f.toml:8:24: unknown point 'hok' of 'world'; did you mean 'hook'?
     spring = [{between = ["world.hok", "ball"], stiffness = 3, rest = 1}]
                            ^
-points of 'world' are: hook)m"},
+points of 'world' are: origin, hook)m"},
     {"UnknownPoint", R"m("world.hook", "ball)m", R"m("world.hook", "ball.centre)m",
      R"m(f.toml:8:38: unknown point 'centre' of 'ball'; did you mean 'center'?
     spring = [{between = ["world.hook", "ball.centre"], stiffness = 3, rest = 1}]
                                          ^
-points of 'ball' are: center)m"},
+points of 'ball' are: origin, center)m"},
     {"NameWorld", R"m(= "floor)m", R"m(= "world)m",
      R"m(f.toml:7:20: the name 'world' is reserved
     ground = [{name = "world", line = [[-2, 0], [2, 0]]}]
@@ -328,6 +330,98 @@ choose another name)m"},
 };
 INSTANTIATE_TEST_SUITE_P(OneAtATime, MechanismMistakes, testing::ValuesIn(mechanism_mistakes),
                          [](const auto& one) { return one.param.name; });
+
+// Words of other programs, keys in the wrong table, and what has no effect: what the message says.
+struct ForeignWord {
+    const char *from, *to, *answer;
+};
+void PrintTo(const ForeignWord& one, std::ostream* out) { *out << one.to; }
+
+class ForeignWords : public testing::TestWithParam<ForeignWord> {};
+
+TEST_P(ForeignWords, AreAnsweredWithTheKey) {
+    const ForeignWord& one = GetParam();
+    const std::string answer = test::told(test::changed(ball_over_floor, {{one.from, one.to}}));
+    EXPECT_NE(answer.find(one.answer), answer.npos) << answer;
+    EXPECT_EQ(answer.find("f.toml:"), 0U) << answer;
+}
+
+const ForeignWord foreign_words[] = {
+    {"body = [", "bodies = [", "did you mean 'body'?"},
+    {"mass = \"m\"", "m = \"m\"", "did you mean 'mass'?"},
+    {"disc = \"r\"", "radius = \"r\"", "did you mean 'disc'?"},
+    {"disc = \"r\"", "length = 1", "did you mean 'rod'?"},
+    {"disc = \"r\"", "disc = \"r\", com = [0, 1]", "did you mean 'center'?"},
+    {"disc = \"r\"", "disc = \"r\", I = 1", "did you mean 'inertia'?"},
+    {"disc = \"r\"", "disc = \"r\", parent = \"floor\"", "did you mean 'on'?"},
+    {"disc = \"r\"", "disc = \"r\", gravity = 9.81", "gravity belongs to [world]"},
+    {"disc = \"r\"", "disc = \"r\", velocity = 1", "start and rate belong to the [[coordinate]]"},
+    {"disc = \"r\"", "disc = \"r\", restitution = 1", "restitution belongs to the [[constraint]]"},
+    {"disc = \"r\"", "rod = [[0, 0], [1, 0]], to = \"world.hook\"", "choose coordinates that close the loop"},
+    {"at = [\"x\"", "pos = [\"x\"", "did you mean 'at'?"},
+    {"angle = \"phi\"", "theta = \"phi\"", "did you mean 'angle'?"},
+    {"world = {gravity = [0, \"-g\"], points", "gravity = [0, -9.81]\nworld = {points",
+     "with bodies write world = {gravity = [0, -9.81]}"},
+    {"gravity = [0, \"-g\"]", "g = [0, \"-g\"]", "did you mean 'gravity'?"},
+    {"name = \"floor\"", "name = \"floor\", mass = 1", "a ground has no mass"},
+    {"name = \"floor\"", "name = \"floor\", angle = 0.1", "turn the points of its line"},
+    {"name = \"floor\", line", "name = \"floor\", from", "did you mean 'line'?"},
+    {"stiffness = 3", "k = 3", "did you mean 'stiffness'?"},
+    {"rest = 1", "length = 1", "did you mean 'rest'?"},
+    {"rest = 1", "rest = 1, damping = 2", "write a [[damper]] with the same ends"},
+    {"{between = [\"ball\"", "{bodies = [\"ball\"", "did you mean 'between'?"},
+    {"restitution = 0.5", "restitution = 0.5, length = 2", "did you mean 'longest'?"},
+    {"spring = [", "joint = [{name = \"hinge\"}]\nspring = [", "choose coordinates that close the loop"},
+    {"spring = [", "floor = [{name = \"f\"}]\nspring = [", "did you mean 'ground'?"},
+    {"spring = [", "force = [{at = \"ball\", F = [0, 1]}]\nspring = [", "did you mean 'value'?"},
+    {"spring = [", "torque = [{body = \"ball\", value = 1}]\nspring = [", "did you mean 'on'?"},
+    {"spring = [", "damper = [{between = [\"world\", \"ball\"], c = 1}]\nspring = [", "did you mean 'damping'?"},
+    {"[2, 0]]", "[2, 0]], disc = 1", "write one [[ground]] for each"},
+    {"[2, 0]]", "[2, 0]], over = [0, 1]", "'over' belongs to a curve"},
+    {"gravity = [0, \"-g\"]", "gravity = -9.81", "write gravity = [0, -9.81]"},
+    {"gravity = [0, \"-g\"]", "gravity = \"-g\"", "write gravity = [0, \"-g\"]"},
+    {"disc = \"r\"", "rod = [\"world.hook\", [0, 1]]", "place its start with at"},
+    {"spring = [", "force = [{at = \"world.hook\", value = [1, 0]}]\nspring = [",
+     "'world.hook', where this force acts, moves with no coordinate"},
+    {"body = [", "torque = [{on = \"stand\", value = 1}]\nbody = [{name = \"stand\"},",
+     "'stand', on which this torque acts, turns with no coordinate"},
+    {"between = [\"world.hook\", \"ball\"], stiffness", "angle = 1, stiffness",
+     "the angle of this spring depends on no coordinate"},
+    {"\"ball\"], stiffness", "[0, \"sin(t)\"]], stiffness", "the length of this spring depends on no coordinate"},
+};
+INSTANTIATE_TEST_SUITE_P(All, ForeignWords, testing::ValuesIn(foreign_words));
+
+// The slip leaves out how the direction turns in the axes of the rod.
+TEST(TouchedRods, MayNotTurnInTheirAxes) {
+    const std::string message = test::told(test::changed(
+        ball_over_floor, {{"body = [", "body = [{name = \"bar\", rod = [[-9, 0], [9, \"x\"]], at = [0, -3]},"},
+                          {"\"ball\", \"floor\"", "\"ball\", \"bar\""}}));
+    EXPECT_EQ(message.find("f.toml:9:36: the direction of the rod 'bar', which is touched, must not change"), 0U)
+        << message;
+}
+
+// Keys of mechanisms in a file without bodies are not ignored.
+TEST(MechanismKeys, AreReadWithoutBodies) {
+    const auto edited = [](const std::string& from, const std::string& to) {
+        return test::told(test::changed(test::good, {{from, to}}));
+    };
+    EXPECT_NE(
+        edited("restitution", "normal = true\nrestitution").find("'normal' in [[constraint]] goes with 'between'"),
+        std::string::npos);
+    EXPECT_NE(edited("shape = \"curve\"", "shape = \"curve\"\non = \"thigh\"").find("unknown body or ground 'thigh'"),
+              std::string::npos);
+}
+
+// Values of values, each used twice, grow without end as a text.
+TEST(MechanismTexts, ThatGrowWithoutEndAreRefusedAtOnce) {
+    std::string text = "coordinate = [{name = \"x\"}]\nbody = [{name = \"b0\", mass = 1, at = [\"x\", 0]},\n";
+    for (int i = 1; i <= 60; ++i)
+        text += fmt::format("{{name = \"b{0}\", at = [\"sin(b{1}.x) + cos(b{1}.x)\", 0]}},\n", i, i - 1);
+    const auto begin = std::chrono::steady_clock::now();
+    const std::string message = test::told(text + "]\nconstraint = [{gap = \"x + 1\", restitution = 0}]\n");
+    EXPECT_NE(message.find("is too large: it takes more than 200000 characters as a text"), message.npos) << message;
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+}
 
 }  // namespace
 }  // namespace achilles

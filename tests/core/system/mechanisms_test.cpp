@@ -1,12 +1,11 @@
-// Mechanisms typed as bodies: the reference mechanisms give their events, the expanded file is the same system, and slips
-// are the differences of the velocities of material points.
+// Mechanisms typed as bodies: the reference mechanisms give their events, and the expanded file is the same system.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <random>
 
 #include "core/systems.hpp"
 #include "expression/parse.hpp"
@@ -139,6 +138,8 @@ const SameMechanism same_mechanisms[] = {
      "damping = \"d\"}]",
      "rod = [[0, 0], [0, -0.6]]|torque = [{on = \"lower\", value = \"3*(0.2 - b) - d*(lower.angle' - upper.angle')\", "
      "against = \"upper\"}]"},
+    {"OriginByName", "rod = [[0, 0], [0, -0.6]]|force = [{on = \"lower\", at = \"origin\", value = [2, 1]}]",
+     "rod = [[0, 0], [0, -0.6]]|force = [{on = \"lower\", at = [0, 0], value = [2, 1]}]"},
     {"FollowerForce", "rod = [[0, 0], [0, -0.6]]|force = [{on = \"lower\", at = \"end\", value = [2, \"x'\"]}]",
      "rod = [[0, 0], [0, -0.6]]|force = [{at = \"lower.end\", value = [\"2*cos(lower.angle) - x'*sin(lower.angle)\", "
      "\"2*sin(lower.angle) + x'*cos(lower.angle)\"]}]"},
@@ -163,6 +164,29 @@ TEST_P(SameMechanisms, MoveAlike) {
 
 INSTANTIATE_TEST_SUITE_P(Said, SameMechanisms, testing::ValuesIn(same_mechanisms),
                          [](const auto& one) { return one.param.name; });
+
+// ---- drawings ----
+
+// A curve in the axes of a body keeps its parameter, with a name that the file does not use.
+TEST(DrawingsOnBodies, AreTurnedWithTheirParameter) {
+    const SystemDescription system = parse_system(
+        links("disc = 0.1",
+              "drawing = [{shape = \"curve\", on = \"lower\", over = [\"w\", -1, \"x + 1\"], at = [\"w + x\", "
+              "\"w^2\"]}]\n"));
+    const auto is_curve = [](const DrawingDescription& each) { return each.shape == DrawingDescription::Shape::curve; };
+    const auto curve = std::find_if(system.drawings.begin(), system.drawings.end(), is_curve);
+    ASSERT_NE(curve, system.drawings.end());
+    Graph graph;
+    Scope scope;
+    const std::string names[] = {"x", "a", "b", curve->over};
+    for (std::uint32_t i = 0; i < 4; ++i) scope.allowed.emplace(names[i], graph.symbol(i));
+    const double x = 0.3, a = 0.4, b = -0.7, w = 0.6, u = w + x, v = w * w, angle = a + b;
+    const double values[] = {x, a, b, w};
+    const auto value = [&](std::size_t i) { return value_of(parse(curve->points[0][i].text, scope, graph), values); };
+    EXPECT_NEAR(value(0), x + 0.7 * std::sin(a) + u * std::cos(angle) - v * std::sin(angle), 1e-15);
+    EXPECT_NEAR(value(1), -0.7 * std::cos(a) + u * std::sin(angle) + v * std::cos(angle), 1e-15);
+    EXPECT_EQ(curve->over_limits[1].text, "x + 1");
+}
 
 // ---- prescribed motion ----
 
@@ -193,168 +217,6 @@ run = {end_time = 2.0, tolerance = 1e-13}
     EXPECT_NEAR(end[1], begin[1] + 2.0 * begin[3], 1e-10);
     for (std::size_t i = 2; i < 5; ++i) EXPECT_NEAR(end[i], begin[i], 1e-10) << i;
 }
-
-// ---- slips ----
-
-// Contact of a disc or a point with something that moves, turns and drifts. The frame of the touched body has the origin
-// (u + 0.3 sin t, w) and the angle psi + 0.2 t; what touches is at (x, y) with the angle phi.
-struct SlipCase {
-    const char* name;
-    const char* touched;  // the body or ground `t`
-    const char* touches;  // the body `a`
-    const char* between;
-    // In the frame of the touched body, by a parameter: the place of contact, the normal, and the surface velocity.
-    std::function<std::array<double, 2>(double)> place, normal;
-    double radius, speed;
-    std::function<double(double, double)> scale;  // of the slip, at the parameter and time
-    double moving = 0.0;                          // factor of cos(t) in the velocity along y of the touched material
-};
-
-constexpr double line_angle = 0.4;
-
-std::array<double, 2> along_circle(double s) { return {std::cos(s), std::sin(s)}; }
-
-const SlipCase slip_cases[] = {
-    {"DiscOnLine",
-     R"toml(ground = [{name = "t", line = [[0.1, 0.2], ["0.1 + cos(al)", "0.2 + sin(al)"]], on = "base", speed = 0.7}])toml",
-     "disc = 0.3",
-     R"toml(["a", "t"])toml",
-     [](double s) {
-         return std::array{0.1 + s * std::cos(line_angle), 0.2 + s * std::sin(line_angle)};
-     },
-     [](double) {
-         return std::array{-std::sin(line_angle), std::cos(line_angle)};
-     },
-     0.3,
-     0.7,
-     {}},
-    {"PointOnRod",
-     R"toml(body = [{name = "t", rod = [[0, 0], [0, 2]], on = "base"}])toml",
-     "points = {tip = [0, 0]}",
-     R"toml(["a.tip", "t"])toml",
-     [](double s) {
-         return std::array{0.0, s};
-     },
-     [](double) {
-         return std::array{-1.0, 0.0};
-     },
-     0.0,
-     0.0,
-     {}},
-    {"DiscOnDisc",
-     R"toml(body = [{name = "t", disc = 0.5, on = "base"}])toml",
-     "disc = 0.3",
-     R"toml(["a", "t"])toml",
-     [](double s) {
-         return std::array{0.5 * std::cos(s), 0.5 * std::sin(s)};
-     },
-     along_circle,
-     0.3,
-     0.0,
-     {}},
-    {"DiscInRing",
-     R"toml(ground = [{name = "t", ring = 2, on = "base", speed = -0.4}])toml",
-     "disc = 0.3",
-     R"toml(["a", "t"])toml",
-     [](double s) {
-         return std::array{2.0 * std::cos(s), 2.0 * std::sin(s)};
-     },
-     [](double s) {
-         return std::array{-std::cos(s), -std::sin(s)};
-     },
-     0.3,
-     -0.4,
-     {}},
-    {"PointOnCurve",
-     R"toml(ground = [{name = "t", curve = "0.3*sin(x) + 0.1*sin(t)", over = [-5, 5], on = "base", speed = 0.2}])toml",
-     "points = {tip = [0, 0]}", R"toml(["a.tip", "t"])toml",
-     [](double s) {
-         return std::array{s, 0.3 * std::sin(s)};
-     },
-     [](double s) {
-         const double slope = 0.3 * std::cos(s), k = std::sqrt(1 + slope * slope);
-         return std::array{-slope / k, 1 / k};
-     },
-     0.0, 0.2, [](double s, double) { return std::sqrt(1 + 0.09 * std::cos(s) * std::cos(s)); }, 0.1},
-};
-
-std::string slip_system(const SlipCase& one) {
-    const std::string touched = one.touched;
-    const bool is_ground = touched.starts_with("ground");
-    std::string text =
-        R"toml(coordinate = [{name = "x"}, {name = "y"}, {name = "phi"}, {name = "u"}, {name = "w"}, {name = "psi"}]
-parameter = [{name = "al", value = 0.4}]
-[[body]]
-name = "base"
-mass = 2
-inertia = 3
-at = ["u + 0.3*sin(t)", "w"]
-angle = "psi + 0.2*t"
-[[body]]
-name = "a"
-mass = 1
-inertia = 1
-at = ["x", "y"]
-angle = "phi"
-)toml" + std::string(one.touches) +
-        "\n";
-    // The touched table is inline; the arrays of tables above are written out.
-    const std::size_t open = touched.find('{'), close = touched.rfind('}');
-    std::string inner = touched.substr(open + 1, close - open - 1);
-    text += is_ground ? "[[ground]]\n" : "[[body]]\n";
-    int depth = 0;
-    for (const char c : inner) {
-        depth += (c == '[' || c == '{') - (c == ']' || c == '}');
-        text += c == ',' && depth == 0 ? '\n' : c;
-    }
-    return text + "\n[[constraint]]\nrestitution = 0.5\nbetween = " + one.between + "\n";
-}
-
-void PrintTo(const SlipCase& one, std::ostream* out) { *out << one.name; }
-
-class Slips : public testing::TestWithParam<SlipCase> {};
-
-TEST_P(Slips, AreDifferencesOfVelocitiesOfMaterialPoints) {
-    const SlipCase& one = GetParam();
-    const SystemDescription system = parse_system(slip_system(one), "slip.toml");
-    Graph graph;
-    Scope scope;
-    const char* const names[] = {"x", "y", "phi", "u", "w", "psi", "x'", "y'", "phi'", "u'", "w'", "psi'", "al", "t"};
-    for (std::uint32_t i = 0; i < 14; ++i) scope.allowed.emplace(names[i], graph.symbol(i));
-    const Expression slip = parse(system.constraints[0].slip.text, scope, graph),
-                     gap = parse(system.constraints[0].gap.text, scope, graph);
-    std::mt19937 random(41);
-    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-    for (int state = 0; state < 1000; ++state) {
-        double values[14];
-        for (double& value : values) value = uniform(random);
-        values[12] = line_angle;
-        const double s = 3.0 * uniform(random), t = values[13];
-        const double angle = values[5] + 0.2 * t, c = std::cos(angle), d = std::sin(angle), turn = values[11] + 0.2;
-        std::array<double, 2> place = one.place(s);
-        place[1] += one.moving * std::sin(t);
-        const auto [nx, ny] = one.normal(s);
-        const auto turned = [&](double x, double y) { return std::array{c * x - d * y, d * x + c * y}; };
-        const auto lever = turned(place[0], place[1]), n = turned(nx, ny);
-        const double origin[] = {values[3] + 0.3 * std::sin(t), values[4]};
-        values[0] = origin[0] + lever[0] + one.radius * n[0];
-        values[1] = origin[1] + lever[1] + one.radius * n[1];
-        ASSERT_NEAR(value_of(gap, values), 0.0, 1e-14);
-        const double spin = values[8];
-        const double touches[] = {values[6] + spin * one.radius * n[1], values[7] - spin * one.radius * n[0]};
-        const auto material = turned(0.0, one.moving * std::cos(t));
-        const double touched[] = {values[9] + 0.3 * std::cos(t) - turn * lever[1] + material[0] + one.speed * n[1],
-                                  values[10] + turn * lever[0] + material[1] - one.speed * n[0]};
-        const double expected =
-            ((touches[0] - touched[0]) * n[1] - (touches[1] - touched[1]) * n[0]) * (one.scale ? one.scale(s, t) : 1.0);
-        const double largest =
-            std::max({std::abs(touches[0]), std::abs(touches[1]), std::abs(touched[0]), std::abs(touched[1])});
-        EXPECT_NEAR(value_of(slip, values), expected, 1e-14 * largest)
-            << "state " << state << ": " << system.constraints[0].slip.text;
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(OfPairs, Slips, testing::ValuesIn(slip_cases), [](const auto& one) { return one.param.name; });
 
 }  // namespace
 }  // namespace achilles
