@@ -113,7 +113,7 @@ ProductSum operator*(const ProductSum& a, const ProductSum& b) {
                 if (next.exponent == 0) continue;
                 const Expression atom(&graph, next.atom);
                 if (Builder::is(atom, Operation::sqrt) && std::abs(next.exponent) > 1) {  // sqrt(u)^2 = u
-                    const ProductSum square = power(ProductSum::from(Builder::first(atom)), next.exponent / 2);
+                    const ProductSum square = power(ProductSum::from_part(Builder::first(atom)), next.exponent / 2);
                     squares = squares.is_zero() ? square : squares * square;
                     next.exponent %= 2;
                     if (next.exponent == 0) continue;
@@ -147,7 +147,7 @@ ProductSum power(const ProductSum& base, int exponent) {
         const Expression e(&graph, atom);
         const int all = exponent_within_limits(long{one} * exponent);
         if (Builder::is(e, Operation::sqrt)) {
-            factor = power(ProductSum::from(Builder::first(e)), all / 2);
+            factor = power(ProductSum::from_part(Builder::first(e)), all / 2);
             if (all % 2 != 0) factor = factor * ProductSum::product(graph, graph.number(1), {{atom, all % 2}});
         } else {
             factor = ProductSum::product(graph, graph.number(1), {{atom, all}});
@@ -157,7 +157,7 @@ ProductSum power(const ProductSum& base, int exponent) {
     return exponent == 0 ? ProductSum::number(graph, 1) : result;
 }
 
-ProductSum ProductSum::from(Expression expression) {
+ProductSum ProductSum::collect(Expression expression, bool keeps_functions) {
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
     std::vector<ProductSum> of(needed.size());
     Graph& graph = expression.graph();
@@ -167,6 +167,10 @@ ProductSum ProductSum::from(Expression expression) {
         const Expression e(&graph, id);
         const auto& a = of[is_leaf(node.operation) ? 0 : node.a];
         const auto& b = of[is_binary(node.operation) ? node.b : 0];
+        if (keeps_functions && is_function(node.operation)) {
+            of[id] = atom(e);
+            continue;
+        }
         switch (node.operation) {
             case Operation::number:
                 of[id] = product(graph, e, {});
@@ -331,12 +335,12 @@ std::pair<ProductSum, ProductSum> cosine_and_sine(const ProductSum& angle, Graph
         if (factors.size() != 1 || factors[0].exponent != 1) continue;
         const Expression atom(&graph, factors[0].atom);
         const Rational& number = Builder::value(coefficient);
-        const ProductSum term = ProductSum::from(coefficient * atom);
+        const ProductSum term = ProductSum::product(graph, coefficient, factors);
         if (Builder::is(atom, Operation::pi) && denominator(Rational(2 * number)) == 1) {
             quarters = static_cast<int>(numerator(Rational(2 * number)) % 4);
             rest = rest - term;
         } else if (Builder::is(atom, Operation::atan) && abs(number) == 1 && tangent.is_zero()) {
-            tangent = ProductSum::from(Builder::first(atom));
+            tangent = ProductSum::from_part(Builder::first(atom));
             is_negative_tangent = number < 0;
             rest = rest - term;
         }
@@ -408,8 +412,10 @@ std::string with_exponent(const std::string& base, int exponent) {
 
 }  // namespace
 
-Rank ProductSumWriter::rank(Expression expression) const {
-    Rank highest = Rank::constant;
+Rank ProductSumWriter::rank(Expression expression) {
+    const auto [known, is_new] = known_ranks_.try_emplace(expression.id(), Rank::constant);
+    if (!is_new) return known->second;
+    Rank& highest = known->second;
     const std::vector<bool> needed = reachable(std::span(&expression, 1));
     for (std::uint32_t id = 0; id < needed.size(); ++id) {
         const Graph::Node& node = expression.graph().node(id);
@@ -419,7 +425,12 @@ Rank ProductSumWriter::rank(Expression expression) const {
 }
 
 // The text of a factor, in parentheses if it is a sum.
-std::string ProductSumWriter::base(Expression atom) const {
+std::string ProductSumWriter::base(Expression atom) {
+    const auto known = bases_.find(atom.id());
+    return known != bases_.end() ? known->second : bases_.emplace(atom.id(), factor_text(atom)).first->second;
+}
+
+std::string ProductSumWriter::factor_text(Expression atom) {
     if (Builder::is(atom, Operation::symbol)) return names_[Builder::node(atom).a];
     if (Builder::is(atom, Operation::pi)) return "pi";
     if (is_sum_node(atom)) return fmt::format("({})", text(ProductSum::from(atom)));
@@ -433,8 +444,8 @@ std::string ProductSumWriter::base(Expression atom) const {
 }
 
 // |coefficient| * factors, with `bracket`, a sum of constants, among the constant factors.
-std::string ProductSumWriter::product(Graph& graph, const Expression& coefficient, const ProductSum::Factors& factors,
-                                      const std::string& bracket) const {
+std::string ProductSumWriter::product(const Expression& coefficient, const ProductSum::Factors& factors,
+                                      const std::string& bracket) {
     struct Written {
         int order;
         std::uint32_t slot;
@@ -443,7 +454,7 @@ std::string ProductSumWriter::product(Graph& graph, const Expression& coefficien
     };
     std::vector<Written> written;
     for (const auto& [atom, exponent] : factors) {
-        const Expression e(&graph, atom);
+        const Expression e(&graph_, atom);
         const bool is_symbol = is_leaf(Builder::node(e).operation);
         const Rank highest = rank(e);
         const int order = 2 * static_cast<int>(highest) + (is_symbol ? 0 : 1);
@@ -474,7 +485,7 @@ std::string ProductSumWriter::product(Graph& graph, const Expression& coefficien
 }
 
 // Products with the same factors that change in a run, as those factors times a bracket of constants.
-std::string ProductSumWriter::group(Graph& graph, const Group& group, bool& is_negative) const {
+std::string ProductSumWriter::group(const Group& group, bool& is_negative) {
     ProductSum::Factors shared = group.constants.front().factors;
     std::vector<Rational> numbers;
     for (const auto& [coefficient, factors] : group.constants) {
@@ -488,7 +499,7 @@ std::string ProductSumWriter::group(Graph& graph, const Group& group, bool& is_n
         return all;
     };
     if (group.constants.size() == 1)
-        return product(graph, group.constants[0].coefficient, with_shared(group.constants[0].factors), "");
+        return product(group.constants[0].coefficient, with_shared(group.constants[0].factors), "");
     const Rational content = is_negative ? Rational(-content_of(numbers)) : content_of(numbers);
     std::vector<std::pair<bool, std::string>> terms;
     for (const auto& [coefficient, factors] : group.constants) {
@@ -499,28 +510,27 @@ std::string ProductSumWriter::group(Graph& graph, const Group& group, bool& is_n
             if (factor.exponent != 0) rest.push_back(factor);
         }
         const Rational number = Builder::value(coefficient) / content;
-        terms.emplace_back(number < 0, product(graph, Builder::number(graph, number), rest, ""));
+        terms.emplace_back(number < 0, product(Builder::number(graph_, number), rest, ""));
     }
-    return product(graph, Builder::number(graph, content), with_shared(shared), joined(terms));
+    return product(Builder::number(graph_, content), with_shared(shared), joined(terms));
 }
 
-std::string ProductSumWriter::text(const ProductSum& sum) const {
+std::string ProductSumWriter::text(const ProductSum& sum) {
     if (sum.is_zero()) return "0";
-    Graph& graph = sum.products().front().coefficient.graph();
     for (const auto& [coefficient, factors] : sum.products()) {  // a sum in parentheses alone needs none
-        const Expression atom(&graph, factors.empty() ? coefficient.id() : factors.front().atom);
+        const Expression atom(&graph_, factors.empty() ? coefficient.id() : factors.front().atom);
         if (factors.size() != 1 || factors[0].exponent != 1 || !is_sum_node(atom)) continue;
         if (abs(Builder::value(coefficient)) != 1) continue;
         ProductSum others;
         for (const ProductSum::Product& other : sum.products())
             if (other.factors != factors) others = others + sum.term(other);
-        return text(others + ProductSum::product(graph, coefficient, {}) * ProductSum::from(atom));
+        return text(others + ProductSum::product(graph_, coefficient, {}) * ProductSum::from(atom));
     }
     std::vector<Group> groups;
     for (const auto& [coefficient, factors] : sum.products()) {
         ProductSum::Factors constant, other;
         for (const ProductSum::Factor& factor : factors)
-            (rank({&graph, factor.atom}) == Rank::constant ? constant : other).push_back(factor);
+            (rank({&graph_, factor.atom}) == Rank::constant ? constant : other).push_back(factor);
         auto like = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.factors == other; });
         if (other.empty() || like == groups.end()) like = groups.insert(groups.end(), Group{other, {}});
         like->constants.push_back({coefficient, constant});
@@ -528,7 +538,7 @@ std::string ProductSumWriter::text(const ProductSum& sum) const {
     std::vector<std::pair<bool, std::string>> terms;
     for (const Group& each : groups) {
         bool is_negative = false;
-        std::string written = group(graph, each, is_negative);
+        std::string written = group(each, is_negative);
         terms.emplace_back(is_negative, std::move(written));
     }
     return joined(terms);

@@ -7,6 +7,7 @@
 
 #include <compare>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <utility>
@@ -35,7 +36,10 @@ class ProductSum {
     static ProductSum function(Operation function, const ProductSum& argument, Graph& graph);
     static ProductSum number(Graph& graph, long numerator, long denominator = 1);
     // Collects the terms of an expression; its parentheses stay, except around sums of sums.
-    static ProductSum from(Expression expression);
+    static ProductSum from(Expression expression) { return collect(expression, false); }
+    // The same for a part of a sum, whose functions are simple already: they stay. Sums call this, because from() inside
+    // from() would take twice the time for each level of nested functions.
+    static ProductSum from_part(Expression expression) { return collect(expression, true); }
 
     bool is_zero() const { return products_.empty(); }
     bool is_single() const { return products_.size() == 1; }
@@ -61,6 +65,7 @@ class ProductSum {
     friend bool operator==(const ProductSum& a, const ProductSum& b) { return (a - b).is_zero(); }
 
  private:
+    static ProductSum collect(Expression expression, bool keeps_functions);
     void add(const Expression& coefficient, const Factors& factors);
     bool merge_squares();
     Graph* graph_ = nullptr;  // null: 0
@@ -79,26 +84,29 @@ std::pair<ProductSum, ProductSum> cosine_and_sine(const ProductSum& angle, Graph
 class ProductSumWriter {
  public:
     enum class Rank : std::uint8_t { constant, state, rate };
-    // Both by slot.
-    ProductSumWriter(std::vector<std::string> names, std::vector<Rank> ranks)
-        : names_(std::move(names)), ranks_(std::move(ranks)) {}
+    // Writes sums of this graph. `names` and `ranks` are by slot.
+    ProductSumWriter(Graph& graph, std::vector<std::string> names, std::vector<Rank> ranks)
+        : graph_(graph), names_(std::move(names)), ranks_(std::move(ranks)) {}
 
     // Throws ExpressionTooLarge if the text would have more than 200000 characters.
-    std::string text(const ProductSum& sum) const;
-    Rank rank(Expression expression) const;
-    const std::vector<std::string>& names() const { return names_; }
+    std::string text(const ProductSum& sum);
+    Rank rank(Expression expression);
 
  private:
     struct Group {
         ProductSum::Factors factors;
         std::vector<ProductSum::Product> constants;
     };
-    std::string group(Graph& graph, const Group& group, bool& is_negative) const;
-    std::string product(Graph& graph, const Expression& coefficient, const ProductSum::Factors& factors,
-                        const std::string& bracket) const;
-    std::string base(Expression atom) const;
+    std::string group(const Group& group, bool& is_negative);
+    std::string product(const Expression& coefficient, const ProductSum::Factors& factors, const std::string& bracket);
+    std::string base(Expression atom);
+    std::string factor_text(Expression atom);
+    Graph& graph_;
     std::vector<std::string> names_;
     std::vector<Rank> ranks_;
+    // By the id of a factor: a factor that is shared is written once.
+    std::map<std::uint32_t, std::string> bases_;
+    std::map<std::uint32_t, Rank> known_ranks_;
 };
 
 }  // namespace achilles

@@ -31,7 +31,7 @@ class MechanismSymbols {
 
     enum class Allowed { constants, constants_and_time, positions, rates, curve };  // curve: x, t and parameters
     const Scope& scope(Allowed allowed) const { return scopes_[static_cast<std::size_t>(allowed)]; }
-    std::string text(const ProductSum& sum) const { return writer_.text(sum); }
+    std::string text(const ProductSum& sum) const { return writer_->text(sum); }
     // NaN if a value is missing or undefined.
     double at_start(const ProductSum& sum) const;
     bool is_constant(const ProductSum& sum) const;  // depends on parameters only
@@ -53,7 +53,7 @@ class MechanismSymbols {
     std::uint32_t abscissa_ = 0;
     std::vector<double> start_;  // by slot
     Scope scopes_[5];
-    ProductSumWriter writer_{{}, {}};
+    std::unique_ptr<ProductSumWriter> writer_;
 };
 
 // What bodies and grounds have in common: a place with named points.

@@ -85,13 +85,13 @@ MechanismSymbols::MechanismSymbols(const SystemDescription& system) : graph_(std
     scopes_[static_cast<std::size_t>(Allowed::rates)] = std::move(rates);
     scopes_[static_cast<std::size_t>(Allowed::curve)] = std::move(curve);
     kinematics_ = std::make_unique<Kinematics>(*graph_, std::move(q), std::move(v), time);
-    writer_ = ProductSumWriter(std::move(names), std::move(ranks));
+    writer_ = std::make_unique<ProductSumWriter>(*graph_, std::move(names), std::move(ranks));
 }
 
 double MechanismSymbols::at_start(const ProductSum& sum) const { return value_of(sum.expression(*graph_), start_); }
 
 bool MechanismSymbols::is_constant(const ProductSum& sum) const {
-    return writer_.rank(sum.expression(*graph_)) == ProductSumWriter::Rank::constant;
+    return writer_->rank(sum.expression(*graph_)) == ProductSumWriter::Rank::constant;
 }
 
 ProductSum MechanismSymbols::positive_root(const ProductSum& square) const {

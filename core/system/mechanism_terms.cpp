@@ -115,6 +115,15 @@ class TermDeriver {
         if (!force.is_zero()) result_.forces[coordinate].push_back({force, at});
     }
 
+    // The sum of the coordinates in the world at the start: what their difference is 0 against.
+    double size_of_places(const std::array<NamedPoint, 2>& points) const {
+        double size = 0.0;
+        for (const NamedPoint& point : points)
+            for (const ProductSum& part : components(point.point.position, {}, graph_))
+                size += std::abs(symbols_.at_start(part));
+        return size;
+    }
+
     void add_spring(const SpringOrDamper& spring) {
         const ProductSum half = symbols_.number(1, 2) * spring.coefficient;
         PointDistance length;
@@ -134,7 +143,7 @@ class TermDeriver {
             return;
         }
         const double start = symbols_.at_start(length.value), rest = symbols_.at_start(spring.rest);
-        if (spring.between && start == 0.0 && rest > 0.0)
+        if (spring.between && rest > 0.0 && std::abs(start) <= 1e-14 * size_of_places(*spring.between))
             throw Mistake{spring.at, "the ends of the spring meet at the start, so its direction is not defined",
                           "choose another start, or rest = 0"};
         if (spring.between && spring.rest.is_zero() && !length.is_signed) {

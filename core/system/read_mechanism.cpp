@@ -117,7 +117,8 @@ void PlacedMechanism::refuse_unknown(const Text& name) const {
     for (const Entry& entry : entries_) known.push_back(entry.shape().name);
     throw Mistake{name.at,
                   fmt::format("unknown body or ground '{}'{}", shown(name.text), did_you_mean(name.text, known)),
-                  fmt::format("bodies and grounds are: {}", listed(known))};
+                  world_.points.contains(name.text) ? fmt::format("write \"world.{}\"", name.text)
+                                                    : fmt::format("bodies and grounds are: {}", listed(known))};
 }
 
 PlacedShape* PlacedMechanism::find(const Text& name) {

@@ -27,7 +27,7 @@ TEST(ProofsOfMechanisms, AreAsWideAndAsFastAsThoseOfTypedEnergies) {
         const std::string name = typed_twice[i / 2];
         const auto model = model_in(i % 2 == 0 ? "hand_typed" : "mechanisms", name);
         EnclosureProblem claim = problem_from_decimals(model_in("hand_typed", name)->default_run());
-        const Run own = model->default_run();  // parameters in its own order
+        const achilles::Run own = model->default_run();  // parameters in its own order
         claim.parameters = problem_from_decimals(own).parameters;
         claim.run.parameters = own.parameters;
         sizes[i] = model->motion({}).program.size();

@@ -224,7 +224,7 @@ TEST(ChainsOfBodies, OfFortyLinksAreRefused) {
     const std::string large = test::told(chain_of_bodies(40, 16, 1, true));
     EXPECT_NE(large.find("too large: it takes more than"), large.npos) << large;
     EXPECT_NE(large.find("link"), large.npos) << large;
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(20));
 }
 
 // The same motion in both coordinates, with impacts, certified Zeno points and contact.
