@@ -80,12 +80,13 @@ class MechanismExpander {
     }
 
     // Replaces values such as thigh.end.x in a string, or in all strings of an array.
-    void substitute_in(TomlValue& value, const std::string& own = "") {
-        if (value.kind == TomlValue::Kind::string &&
-            !mistakes_.attempt([&] { value.text = mechanism_.substituted(value.text, own); }))
-            value.text = {"0", value.text.at, false, {}};  // so that the name is reported once
+    bool substitute_in(TomlValue& value, const std::string& own = "") {
+        bool is_done = value.kind != TomlValue::Kind::string ||
+                       mistakes_.attempt([&] { value.text = mechanism_.substituted(value.text, own); });
+        if (!is_done) value.text = {"0", value.text.at, false, {}};  // so that the name is reported once
         if (value.kind == TomlValue::Kind::array)
-            for (TomlValue& item : value.items) substitute_in(item, own);
+            for (TomlValue& item : value.items) is_done = substitute_in(item, own) && is_done;
+        return is_done;
     }
     void substitute_in(TomlValue& table, const char* key, const std::string& own = "") {
         if (TomlValue* value = find_entry(table, key)) substitute_in(*value, own);
@@ -145,7 +146,9 @@ class MechanismExpander {
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
-            for (const char* key : {"gap", "slip", "restitution"}) substitute_in(*table, key);
+            for (const char* key : {"slip", "restitution"}) substitute_in(*table, key);
+            TomlValue* typed = find_entry(*table, "gap");
+            if (typed != nullptr && !substitute_in(*typed)) remove_entry(*table, "gap");  // 0 would be a second mistake
             const Fields fields(*table, "[[constraint]]");
             attempt_part(mistakes_, table->at, "the gap", [&] {
                 if (fields.find("between") == nullptr) {
@@ -202,7 +205,10 @@ class MechanismExpander {
     // A point in the axes of `on` becomes one of the world. The name `own` of a curve's parameter becomes the abscissa.
     void place_in_world(TomlValue& value, const Fields& fields, const char* key, PlacedShape* on,
                         const std::string& own) {
-        if (value.kind != TomlValue::Kind::string && on == nullptr) return substitute_in(value, own);
+        if (value.kind != TomlValue::Kind::string && on == nullptr) {
+            substitute_in(value, own);
+            return;
+        }
         value = made_point(world_point(symbols_, mechanism_.read_point(value, fields, key, on, own).point), value.at);
     }
 

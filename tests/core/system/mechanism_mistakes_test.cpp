@@ -211,6 +211,11 @@ every coordinate needs a positive inertia)m"},
     ...mass = "m", disc = "r", at = ["x", "y"], angle = "phi + ball"},
                                                                ^
 write ball.x or ball.y, or ball.angle)m"},
+    {"BodyAsNumberInGap", R"m(between = ["ball", "floor"])m", R"m(gap = "y + ball")m",
+     R"m(f.toml:9:27: 'ball' is a body, and a number is needed here
+    constraint = [{gap = "y + ball", restitution = 0.5}]
+                              ^
+write ball.x or ball.y, or ball.angle)m"},
     {"PointAsNumberInView", R"m(0]]}]
 )m",
      R"m(0]]}]
