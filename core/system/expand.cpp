@@ -115,7 +115,9 @@ class MechanismExpander {
         system_.mechanism.is_prescribed = terms.is_prescribed;
         if (lagrangian == nullptr) lagrangian = &set_entry(root_, "lagrangian", made_table(terms.kinetic.at));
         if (has_bodies)
-            set_entry(*lagrangian, "kinetic", made_string(symbols_.text(terms.kinetic.value), terms.kinetic.at));
+            attempt_part(mistakes_, terms.kinetic.at, "the kinetic energy of the bodies", [&] {
+                set_entry(*lagrangian, "kinetic", made_string(symbols_.text(terms.kinetic.value), terms.kinetic.at));
+            });
         put_sum(*lagrangian, "potential", terms.potential, "0", terms.kinetic.at);
         put_sum(*lagrangian, "dissipation", terms.dissipation, "", terms.kinetic.at);
         const std::vector<TomlValue*> coordinates = tables_of(root_, "coordinate");
@@ -133,7 +135,10 @@ class MechanismExpander {
         if (!typed.text.empty() && terms.empty()) return;
         TextSum sum(terms.empty() ? at : terms.front().at);
         sum.add(typed);
-        for (const DerivedTerm& term : terms) sum.add({symbols_.text(term.value), term.at, false, {}});
+        for (const DerivedTerm& term : terms)
+            attempt_part(mistakes_, term.at, fmt::format("the {}", key), [&] {
+                sum.add({symbols_.text(term.value), term.at, false, {}});
+            });
         if (sum.text().text.empty() && otherwise.empty()) return;
         TomlValue value = made_string(otherwise, at);
         if (!sum.text().text.empty()) {

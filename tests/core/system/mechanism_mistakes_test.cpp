@@ -1,7 +1,7 @@
 // Every mistake of a mechanism, one at a time: the exact message, location and caret.
 #include <gtest/gtest.h>
 
-#include <chrono>
+#include <ctime>
 
 #include "core/system/mistakes.hpp"
 #include "core/systems.hpp"
@@ -425,10 +425,10 @@ TEST(MechanismTexts, ThatGrowWithoutEndAreRefusedAtOnce) {
     std::string text = "coordinate = [{name = \"x\"}]\nbody = [{name = \"b0\", mass = 1, at = [\"x\", 0]},\n";
     for (int i = 1; i <= 60; ++i)
         text += fmt::format("{{name = \"b{0}\", at = [\"sin(b{1}.x) + cos(b{1}.x)\", 0]}},\n", i, i - 1);
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     const std::string message = test::told(text + "]\nconstraint = [{gap = \"x + 1\", restitution = 0}]\n");
     EXPECT_NE(message.find("is too large: it takes more than 200000 characters as a text"), message.npos) << message;
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(5));
+    EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 5.0);
 }
 
 }  // namespace
