@@ -1,6 +1,6 @@
 // The mechanism view: the mechanism at the current time with trail, velocity and contact force. The wheel zooms,
-// dragging the background pans, a double click fits. Dragging the body changes the initial position, dragging the tip
-// of the velocity arrow the initial velocity.
+// dragging the background pans, a double click fits. Dragging any point of a body changes the initial position, dragging
+// the tip of the velocity arrow the initial velocity.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "figure/drag.hpp"
 #include "figure/label.hpp"
 #include "figure/mechanism_scene.hpp"
 #include "paint/paint.hpp"
@@ -337,14 +338,13 @@ Point wanted(const MechanismDrag& held) {
 }
 
 void drag_body(const Session& session, const Picture& picture, const MechanismDrag& held, Commands& commands) {
-    auto grips = session.mechanism().grips(session.run().parameters);
-    if (held.grip >= grips.size()) return;
-    const Point place = picture.placement.world(wanted(held));
     const Run& run = session.run();
-    if (const auto wanted_q = held_at(grips[held.grip], run.options.start_time, {run.q, run.v}, place)) {
-        const Vector q = start_towards(session, *wanted_q);
-        commands.emplace_back(start_of(session, &q, nullptr));
-    }
+    auto point = held.material ? session.mechanism().grip(*held.material, run.parameters) : std::nullopt;
+    if (!held.material)
+        if (auto grips = session.mechanism().grips(run.parameters); held.grip < grips.size()) point = grips[held.grip];
+    if (!point) return;
+    const Vector q = dragged_start(*session.model(), run, *point, picture.placement.world(wanted(held)));
+    commands.emplace_back(start_of(session, &q, nullptr));
 }
 
 void drag_arrow(const Session& session, const Picture& picture, const MechanismDrag& held, Commands& commands) {
@@ -357,36 +357,58 @@ void drag_arrow(const Session& session, const Picture& picture, const MechanismD
     if (const auto v = body->rates(session.run().v, velocity)) commands.emplace_back(start_of(session, nullptr, &*v));
 }
 
-// The object under the mouse: the tip of the velocity arrow, else the nearest body.
+// The object under the mouse: the tip of the velocity arrow, else the nearest center of a body or end of a line, else
+// the nearest point of one.
 struct Aim {
     DragTarget what = DragTarget::background;
     std::size_t grip = 0;
-    Point at;            // pixels
-    double reach = 0.0;  // radius of its ring
+    std::optional<MaterialPoint> material;  // in place of the grip
+    Point at;                               // pixels
+    double reach = 0.0;                     // radius of its ring
 };
 
-Aim aim(const Session& session, const Picture& picture, const ImVec2& mouse) {
+// The point of a line, box or polygon under the mouse that the coordinates can move.
+Aim aim_between(const Session& session, const Picture& picture, const MechanismDrag& held, const ImVec2& mouse) {
+    const double reach = units(6.0F), t = shown_time(session, held);
+    const State state = shown_state(session, held);
+    const auto& parameters = (holds_start(held) ? session.run() : session.trajectory().run).parameters;
+    const auto material = session.mechanism().material_point(picture.placement.world({mouse.x, mouse.y}),
+                                                             reach / picture.placement.unit, t, state, parameters);
+    auto grip = material ? session.mechanism().grip(*material, parameters) : std::nullopt;
+    const auto body = grip ? Body::of(*grip, t, state) : std::nullopt;
+    if (!body || !body->moves()) return {};
+    return {DragTarget::body, 0, material, picture.placement.pixel(body->at()), reach};
+}
+
+Aim aim(const Session& session, const Picture& picture, const MechanismDrag& held, const ImVec2& mouse) {
     const double reach = units(9.0F);
     Aim best;
     if (picture.bodies.empty()) return best;
     if (session.scene().shows("velocity") && distance(picture.tip, mouse) <= reach &&
         distance(picture.tip, pixel(picture.centers.front())) > reach)
-        return {DragTarget::arrow, 0, picture.tip, reach};
+        return {DragTarget::arrow, 0, {}, picture.tip, reach};
     double least = 0.0;
     for (std::size_t i = 0; i < picture.bodies.size(); ++i) {
         const double own = std::max(reach, picture.bodies[i].radius() * picture.placement.unit);
         const double far = distance(picture.centers[i], mouse);
         if (far > own || !picture.bodies[i].moves() || (best.what == DragTarget::body && far >= least)) continue;
-        best = {DragTarget::body, i, picture.centers[i], own};
+        best = {DragTarget::body, i, {}, picture.centers[i], own};
         least = far;
     }
-    return best;
+    return best.what == DragTarget::body ? best : aim_between(session, picture, held, mouse);
 }
 
 void take_hold(const Session& session, const Picture& picture, const Aim& aim, MechanismDrag& held) {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const Point offset = aim.what == DragTarget::background ? Point{} : Point{aim.at.x - mouse.x, aim.at.y - mouse.y};
-    held = {aim.what, false, aim.grip, offset, picture.placement, session.trail().fastest, session.trail().strongest};
+    held = {aim.what,
+            false,
+            aim.grip,
+            aim.material,
+            offset,
+            picture.placement,
+            session.trail().fastest,
+            session.trail().strongest};
 }
 
 void drag(const Session& session, const Picture& picture, MechanismDrag& held, Commands& commands) {
@@ -421,7 +443,7 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     mark_places(picture, state);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     const bool is_hovered = ImGui::IsItemHovered();
-    const Aim under = aim(session, picture, mouse);
+    const Aim under = aim(session, picture, state.held, mouse);
     if (is_hovered && ImGui::GetIO().MouseWheel != 0.0F)
         commands.emplace_back(zoomed_view(picture, mouse, std::pow(0.85, double{ImGui::GetIO().MouseWheel}), {}));
     if (is_hovered && under.what != DragTarget::background) {

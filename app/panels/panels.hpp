@@ -137,6 +137,7 @@ struct MechanismDrag {
     enum class DragTarget { none, body, arrow, background } what = DragTarget::none;
     bool has_moved = false;                 // from then on the start is shown, which the drag changes
     std::size_t grip = 0;                   // which body, index into Mechanism::grips()
+    std::optional<MaterialPoint> material;  // in place of it: a point between its ends, or in a box
     Point offset;                           // from the mouse to the target, pixels
     Placement placement;                    // frozen placement of the picture
     double fastest = 0.0, strongest = 0.0;  // frozen reference values of the arrow scale

@@ -9,6 +9,7 @@
 
 #include "figure/axes.hpp"
 #include "figure/compose.hpp"
+#include "figure/drag.hpp"
 #include "figure/label.hpp"
 #include "figure/palette.hpp"
 #include "figure/plane.hpp"
@@ -461,7 +462,7 @@ void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, 
     State wanted{session.run().q, session.run().v};
     x.of(wanted) = to.x / x.factor;
     y.of(wanted) = to.y / y.factor;
-    wanted.q = start_towards(session, wanted.q);
+    wanted.q = start_towards(*session.model(), session.run(), wanted.q);
     commands.emplace_back(command::SetStart{{{x.text, x.of(wanted)}, {y.text, y.of(wanted)}}});
 }
 

@@ -212,27 +212,6 @@ void name_event(const Session& session, int number) {
     show_tooltip(text);
 }
 
-Vector start_towards(const Session& session, const Vector& q) {
-    Run run = session.run();
-    const Vector from = run.q;
-    const auto can_start = [&](double share) {
-        run.q = share == 1.0 ? q : Vector(from + share * (q - from));
-        try {
-            session.model()->check(run);
-            return true;
-        } catch (const InputError&) {
-            return false;
-        }
-    };
-    if (can_start(1.0)) return q;
-    double low = 0.0, high = 1.0;
-    for (int i = 0; i < 30; ++i) {
-        const double middle = 0.5 * (low + high);
-        (can_start(middle) ? low : high) = middle;
-    }
-    return from + low * (q - from);
-}
-
 std::string typeset_sentence(std::string text) {
     for (const auto& [plain, symbol] :
          {std::pair{"tau_inf", "\u03c4\u221e"}, std::pair{"tau_k", "\u03c4\u2096"}, std::pair{"_inf", "\u221e"},

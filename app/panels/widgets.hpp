@@ -114,9 +114,6 @@ class NearestEvent {
 };
 // A tooltip beside the mouse that names the event.
 void name_event(const Session& session, int number);
-// Moves the start from its current value toward `q` as far as the run can start, so that a body dragged into the ground
-// stays on the surface.
-Vector start_towards(const Session& session, const Vector& q);
 // Replaces plain-text notation in a sentence from core by typeset symbols.
 std::string typeset_sentence(std::string text);
 // "12.3", with a real minus sign.

@@ -3,9 +3,9 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "figure/trace.hpp"
+#include "number/dense.hpp"
 #include "simulate/contact_forces.hpp"
 
 namespace achilles {
@@ -74,23 +74,66 @@ std::optional<Vector> Body::rates(const Vector& v, const Point& velocity) const 
     return result;
 }
 
-std::optional<Vector> held_at(AnchorPoint& grip, double t, State state, const Point& place) {
-    constexpr int rounds = 30;
-    double distance = std::numeric_limits<double>::infinity();
-    for (int round = 0; round < rounds; ++round) {
-        const auto body = Body::of(grip, t, state);
-        if (!body) return std::nullopt;
-        const Point missing{place.x - body->at().x, place.y - body->at().y};
-        const double before = distance;
-        distance = std::hypot(missing.x, missing.y);
-        if (distance < 1e-12 || std::abs(before - distance) < 1e-12 * (1.0 + distance)) break;
-        const Vector zero = Vector::Zero(state.q.size());
-        const auto step = body->rates(zero, missing);
-        if (!step) return std::nullopt;
-        // At most one unit (radian) per step, because the linearization of an angle is useless beyond that.
-        state.q += *step / std::max(1.0, step->norm());
+namespace {
+
+// The part of a direction along which the kept functions do not change.
+Vector along(const KeptFunctions& kept, const Vector& direction) {
+    if (kept.values.size() == 0) return direction;
+    return direction - least_solution(kept.gradients, Eigen::VectorXd(kept.gradients * direction));
+}
+
+// Coordinates near q at which the kept functions are 0 (Newton).
+Vector returned(const KeptFunctionsAt& kept, Vector q) {
+    constexpr int rounds = 10;
+    for (int round = 0; kept && round < rounds; ++round) {
+        const KeptFunctions now = kept(q);
+        if (now.values.size() == 0) break;
+        const Eigen::VectorXd step = least_solution(now.gradients, Eigen::VectorXd(-now.values));
+        q += step;
+        if (!(step.norm() > 1e-14 * (1.0 + q.norm()))) break;
     }
-    return state.q;
+    return q;
+}
+
+}  // namespace
+
+void Body::keep(const KeptFunctions& kept) {
+    jx_ = along(kept, jx_);
+    jy_ = along(kept, jy_);
+}
+
+std::optional<Vector> held_at(AnchorPoint& grip, double t, const State& state, const Point& place,
+                              const KeptFunctionsAt& kept) {
+    constexpr int rounds = 30, max_halvings = 20;
+    State now = state, next = state;
+    const auto distance_at = [&](const State& there) {
+        const Point at = grip.at(t, there).at;
+        return std::hypot(place.x - at.x, place.y - at.y);
+    };
+    now.q = returned(kept, state.q);
+    double distance = distance_at(now);
+    for (int round = 0; round < rounds; ++round) {
+        auto body = Body::of(grip, t, now);
+        if (!body) return std::nullopt;
+        if (distance < 1e-12) break;
+        if (kept) body->keep(kept(now.q));
+        const Vector zero = Vector::Zero(now.q.size());
+        const auto step = body->rates(zero, {place.x - body->at().x, place.y - body->at().y});
+        if (!step) return std::nullopt;
+        // At most one unit (radian) per step, because the linearization of an angle is useless beyond that. The step of
+        // a point that cannot reach the place, such as a pendulum pulled away from its pivot, may lead too far.
+        double share = 1.0 / std::max(1.0, step->norm()), reached = distance;
+        for (int halving = 0; halving < max_halvings && !(reached < distance); ++halving, share *= 0.5) {
+            next.q = returned(kept, now.q + share * *step);
+            reached = distance_at(next);
+        }
+        if (!(reached < distance)) break;
+        const bool is_there = distance - reached < 1e-12 * (1.0 + distance);
+        now.q = next.q;
+        distance = reached;
+        if (is_there) break;
+    }
+    return now.q;
 }
 
 Vector contact_force(const Trajectory& trajectory, const Sample& sample) {

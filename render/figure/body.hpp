@@ -11,6 +11,13 @@
 
 namespace achilles {
 
+// Functions of the coordinates that are kept at 0 while a point is dragged, such as gaps; gradients row by row.
+struct KeptFunctions {
+    Eigen::VectorXd values;
+    Eigen::MatrixXd gradients;
+};
+using KeptFunctionsAt = std::function<KeptFunctions(const Vector& q)>;
+
 class Body {
  public:
     // The body at a time and state: position p = p(q) in the world and Jacobian J = dp/dq by central differences.
@@ -26,6 +33,8 @@ class Body {
     // Force F at the body that is equivalent to the generalized force Q: J'F = Q, least squares. nullopt if no force at
     // the body is equivalent.
     std::optional<Point> force(const Vector& Q) const;
+    // Only rates along which these functions do not change count from now on.
+    void keep(const KeptFunctions& kept);
     // Rates nearest to v that give the body this velocity, or the nearest velocity that it can have. nullopt if they
     // are not finite.
     std::optional<Vector> rates(const Vector& v, const Point& velocity) const;
@@ -36,9 +45,11 @@ class Body {
     Vector jx_, jy_;  // rows of J
 };
 
-// Coordinates that move the body to `place` at time t, starting from those of `state` (Gauss-Newton). A body that moves
-// on a line gets as close as it can. nullopt if a position or a step is not finite.
-std::optional<Vector> held_at(AnchorPoint& grip, double t, State state, const Point& place);
+// Coordinates that move the body to `place` at time t, starting from those of `state` (Gauss-Newton, each step nearer
+// than the one before). A body that moves on a line, or that cannot reach the place, gets as close as it can. nullopt if
+// a position or a step is not finite.
+std::optional<Vector> held_at(AnchorPoint& grip, double t, const State& state, const Point& place,
+                              const KeptFunctionsAt& kept = {});
 
 // A point of the trail. A point that is not finite breaks the trail.
 struct WayPoint {

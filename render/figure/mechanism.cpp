@@ -263,6 +263,17 @@ AnchorPoint::Hold AnchorPoint::at(double t, const State& state) {
     set_state(*run_, state);
     run_->input(t_) = t;
     run_->run();
+    if (material_) {
+        const auto corner = [&](std::size_t i) -> Point {
+            if (sizes_ == 0) return {run_->output(2 * i), run_->output(2 * i + 1)};
+            return box_corners({run_->output(0), run_->output(1)}, run_->output(2), run_->output(3),
+                               run_->output(4))[i];
+        };
+        const Point from = corner(material_->corner), a = corner(material_->ends[0]), b = corner(material_->ends[1]);
+        const auto [s, u] = material_->shares;
+        return {{from.x + s * (a.x - from.x) + u * (b.x - from.x), from.y + s * (a.y - from.y) + u * (b.y - from.y)},
+                0.0};
+    }
     double radius = sizes_ > 0 ? run_->output(2) : 0.0;
     if (sizes_ > 1) radius = 0.5 * std::min(radius, run_->output(3));
     return {{run_->output(first_), run_->output(first_ + 1)}, radius};
@@ -309,6 +320,79 @@ std::vector<AnchorPoint> Mechanism::grips(std::span<const double> parameters) co
         if (last > 0) all.push_back(grip_of(item, 0, parameters));
     }
     return all;
+}
+
+namespace {
+
+bool is_line(DrawingShape shape) { return shape == DrawingShape::segment || shape == DrawingShape::polyline; }
+
+double cross(const Point& a, const Point& b, const Point& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
+// Whether a point is inside a polygon (even-odd rule).
+bool is_inside(const Point& p, const std::vector<Point>& polygon) {
+    bool is_in = false;
+    for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+        const Point &a = polygon[i], &b = polygon[j];
+        if ((a.y > p.y) != (b.y > p.y) && p.x < a.x + (p.y - a.y) / (b.y - a.y) * (b.x - a.x)) is_in = !is_in;
+    }
+    return is_in;
+}
+
+// A point in terms of the first two edges of a polygon that are not parallel.
+std::optional<MaterialPoint> in_polygon(const Point& p, const std::vector<Point>& corners) {
+    for (std::size_t i = 0; i + 2 < corners.size(); ++i) {
+        const Point &from = corners[i], &a = corners[i + 1], &b = corners[i + 2];
+        const double area = cross(from, a, b);
+        if (std::abs(area) > 1e-9 * std::hypot(a.x - from.x, a.y - from.y) * std::hypot(b.x - from.x, b.y - from.y))
+            return MaterialPoint{0, i, {i + 1, i + 2}, {cross(from, p, b) / area, cross(from, a, p) / area}};
+    }
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<MaterialPoint> Mechanism::material_point(const Point& at, double reach, double t, const State& state,
+                                                       std::span<const double> parameters) const {
+    std::optional<MaterialPoint> found;
+    double least = reach;
+    // What is drawn later lies above.
+    const auto offer = [&](std::size_t drawing, double distance, MaterialPoint point) {
+        if (!(distance <= least)) return;
+        least = distance;
+        found = point;
+        found->drawing = drawing;
+    };
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+        const bool is_box = items_[i].description.shape == DrawingShape::box;
+        if (!items_[i].moves || (!is_box && !is_line(items_[i].description.shape))) continue;
+        Evaluator<double> run = model_.evaluator(items_[i].program, parameters);
+        const std::vector<Point> corners = place(items_[i], run, t, state).points;
+        const Point &first = corners.front(), &last = corners.back();
+        // A line above or beside an area is easier to hit where it counts as nearer than the inside.
+        const bool is_area = is_box || items_[i].description.fill || (first.x == last.x && first.y == last.y);
+        if (is_area && is_inside(at, corners))
+            if (const auto inside = in_polygon(at, corners)) offer(i, 0.5 * reach, *inside);
+        for (std::size_t k = 0; k + 1 < corners.size(); ++k) {
+            const Point &a = corners[k], &b = corners[k + 1];
+            const double x = b.x - a.x, y = b.y - a.y, length = x * x + y * y;
+            const double s = length > 0.0 ? std::clamp(((at.x - a.x) * x + (at.y - a.y) * y) / length, 0.0, 1.0) : 0.0;
+            offer(i, std::hypot(at.x - a.x - s * x, at.y - a.y - s * y), {0, k, {k + 1, k}, {s, 0.0}});
+        }
+    }
+    return found;
+}
+
+std::optional<AnchorPoint> Mechanism::grip(const MaterialPoint& point, std::span<const double> parameters) const {
+    if (point.drawing >= items_.size()) return std::nullopt;
+    const Item& item = items_[point.drawing];
+    const bool is_box = item.description.shape == DrawingShape::box;
+    const std::size_t corners = is_box ? 4 : is_line(item.description.shape) ? item.description.points.size() : 0;
+    if (std::max({point.corner, point.ends[0], point.ends[1]}) >= corners) return std::nullopt;
+    AnchorPoint grip = grip_of(item, 0, parameters);
+    grip.material_ = point;
+    return grip;
 }
 
 std::vector<std::pair<std::size_t, AnchorPoint>> Mechanism::discs(std::span<const double> parameters) const {

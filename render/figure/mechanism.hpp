@@ -1,6 +1,7 @@
 // The drawing of a mechanism from its system file, evaluated at a state.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <optional>
 #include <span>
@@ -14,6 +15,14 @@
 
 namespace achilles {
 
+// A point that moves with a body, in terms of its drawing: a corner, plus shares of two edges that begin there.
+struct MaterialPoint {
+    std::size_t drawing = 0;                 // index among the file's drawings
+    std::size_t corner = 0;                  // of its points, or of the corners of a box
+    std::array<std::size_t, 2> ends{};       // of the edges
+    std::array<double, 2> shares{0.0, 0.0};  // of the edges
+};
+
 // The reference point of a mechanism: the center of the last moving disc or box, else the end of the last moving line.
 // It evaluates its program, so use one per thread.
 class AnchorPoint {
@@ -26,10 +35,11 @@ class AnchorPoint {
 
  private:
     friend class Mechanism;
-    std::optional<Evaluator<double>> run_;  // nullopt: the coordinates are the position
-    std::size_t t_ = 0;                     // input slot of t
-    std::size_t first_ = 0;                 // output slot of the point's x
-    std::size_t sizes_ = 0;                 // number of size outputs after the point: a radius, or width and height
+    std::optional<Evaluator<double>> run_;   // nullopt: the coordinates are the position
+    std::size_t t_ = 0;                      // input slot of t
+    std::size_t first_ = 0;                  // output slot of the point's x
+    std::size_t sizes_ = 0;                  // number of size outputs after the point: a radius, or width and height
+    std::optional<MaterialPoint> material_;  // in place of that point; with sizes, of a box
 };
 
 class Mechanism {
@@ -53,6 +63,12 @@ class Mechanism {
     // The body, then every point that the mouse can drag: centers and both ends of lines that move. One end of such a
     // line may be fixed.
     std::vector<AnchorPoint> grips(std::span<const double> parameters) const;
+    // The point of a moving line, or inside a moving box or polygon, that is nearest to `at`. nullopt if none is within
+    // `reach`.
+    std::optional<MaterialPoint> material_point(const Point& at, double reach, double t, const State& state,
+                                                std::span<const double> parameters) const;
+    // nullopt if the mechanism has no such drawing.
+    std::optional<AnchorPoint> grip(const MaterialPoint& point, std::span<const double> parameters) const;
     // Index among the file's drawings, center and radius of every moving disc that is not itself a contact surface.
     std::vector<std::pair<std::size_t, AnchorPoint>> discs(std::span<const double> parameters) const;
     // Whether the drawing has only a note that there is nothing to draw.

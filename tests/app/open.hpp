@@ -13,9 +13,12 @@ inline SystemDescription system(const std::string& name) {
     return read_system(ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml");
 }
 
+// The name of a mechanism typed as bodies, for the functions below.
+inline std::string mechanism(const std::string& name) { return "../../tests/reference/mechanisms/" + name; }
+
 inline SystemSource library() {
     return {[](const std::string& name) -> std::filesystem::path {
-                if (name.find('/') != std::string::npos) return name;
+                if (name.find('/') != std::string::npos && !name.starts_with("../")) return name;
                 return ACHILLES_SOURCE_DIR "/assets/systems/" + name + ".toml";
             },
             {}};

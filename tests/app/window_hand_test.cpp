@@ -9,6 +9,7 @@
 #include "app/program.hpp"
 #include "cli/inputs.hpp"
 #include "figure/axes.hpp"
+#include "journal/journal.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -92,6 +93,64 @@ TEST(MechanismDrag, ABodyThatIsPushedIntoTheGroundStaysOnIt) {
         hands.rest(2);
         EXPECT_NEAR(*hands.session.value("y"), 1.0, 0.02) << place;
     }
+}
+
+// The place of the end of a line or center of a body that is nearest to a point of the world.
+std::string place_of(Hands& hands, const Point& world) {
+    auto grips = hands.session.mechanism().grips(hands.session.run().parameters);
+    const State start = hands.session.run().start();
+    std::string nearest;
+    double least = HUGE_VAL;
+    for (std::size_t i = 0; i < grips.size(); ++i) {
+        const double away = distance(grips[i].at(start.t, start).at, world);
+        if (away < least) nearest = i == 0 ? "body" : "body " + std::to_string(i + 1), least = away;
+    }
+    return nearest;
+}
+
+// A leg typed as bodies, held between the ends of its thigh and of its shank.
+TEST(MechanismDrag, ABodyIsHeldWhereTheHandTakesIt) {
+    Hands hands(test::mechanism("kneed_leg"));
+    const auto value = [&](const char* name) { return *hands.session.value(name); };
+    const auto hip = [&] { return Point{0.0, value("z")}; };
+    const auto knee = [&] {
+        return Point{value("Lt") * std::sin(value("theta")), value("z") - value("Lt") * std::cos(value("theta"))};
+    };
+    const auto foot = [&] {
+        const double shank = value("theta") - value("kappa");
+        return Point{knee().x + value("Ls") * std::sin(shank), knee().y - value("Ls") * std::cos(shank)};
+    };
+    const std::string at_hip = place_of(hands, hip()), at_knee = place_of(hands, knee()),
+                      at_foot = place_of(hands, foot());
+    const auto middle = [&](const std::string& a, const std::string& b) {
+        const Point p = hands.middle(a), q = hands.middle(b);
+        return Point{0.5 * (p.x + q.x), 0.5 * (p.y + q.y)};
+    };
+    for (const auto& [a, b] : {std::pair{at_hip, at_knee}, {at_knee, at_foot}}) {
+        const Point from = middle(a, b);
+        hands.hand.mouse_x = from.x, hands.hand.mouse_y = from.y;
+        hands.rest(2);
+        hands.hand.left = true;
+        hands.rest(1);
+        for (int i = 0; i < 8; ++i) {
+            hands.hand.mouse_x += 3.0, hands.hand.mouse_y -= 2.0;
+            hands.rest(2);
+            EXPECT_EQ(hands.session.error(), "");
+            EXPECT_LT(distance(middle(a, b), mouse(hands)), 1.0) << a << " to " << b << ", step " << i;
+        }
+        // Far below the floor: the foot stands on it.
+        if (b == at_foot) hands.hand.mouse_y += 400.0;
+        hands.rest(2);
+        hands.hand.left = false;
+        hands.rest(2);
+    }
+    EXPECT_GE(foot().y, -1e-12);
+    EXPECT_LT(foot().y, 1e-6);
+    // The drag is made of commands on coordinates: a journal repeats it.
+    Session again = test::session(test::mechanism("kneed_leg"));
+    for (const Command& command : parse_journal(journal_text(hands.all))) again.apply(command);
+    EXPECT_EQ(to_text(again.trajectory()), to_text(hands.session.trajectory()));
+    EXPECT_NE(*again.value("theta"), again.file_run().q[1]);
 }
 
 TEST(MechanismDrag, ThePictureMovesOnlyAfterTheHandLetsGo) {

@@ -1,0 +1,16 @@
+// Dragging: the coordinates of a start with which a point of the mechanism is where the mouse wants it.
+#pragma once
+
+#include "figure/body.hpp"
+
+namespace achilles {
+
+// Moves the start of a run toward `q` as far as the run can start, so that what is dragged into the ground stays on it.
+Vector start_towards(const Model& model, const Run& run, const Vector& q);
+
+// The coordinates of a start, from those of the run, with which the point is as near to `place` as the coordinates and
+// the gaps let it come. A contact that would be penetrated is kept at gap 0, so that the point slides along the surface.
+// Every result is one from which the run can start; the start of the run itself if there is no nearer one.
+Vector dragged_start(const Model& model, const Run& run, AnchorPoint& point, const Point& place);
+
+}  // namespace achilles
