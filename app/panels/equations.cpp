@@ -69,10 +69,32 @@ class Setter {
                 return matrix(left, block.rows);
             case Block::Kind::formula:
                 return formula(left, read_formula(block.right, names_));
-            case Block::Kind::title:
             case Block::Kind::lines:
+                return table(block.rows);
+            case Block::Kind::title:
             case Block::Kind::sentence:
                 return lines(in_words(read_sentence(left, names_)), caption_size * size_, 0.0F, Ink::caption);
+        }
+    }
+
+    // A table of names and sentences. A row without a name continues the one above.
+    void table(const std::vector<std::vector<std::string>>& rows) {
+        const float size = caption_size * size_;
+        float left = 0.0F;
+        for (const auto& row : rows) left = std::max(left, set(read_sentence(row.front(), names_), size, font_).width);
+        left = std::min(left + size_, 0.4F * column_);
+        for (const auto& row : rows) {
+            if (!row.front().empty()) begin(0.0F);
+            FormulaBox line = set(read_sentence(row.front(), names_), size, font_);
+            if (line.width > left - 0.5F * size_) put(std::exchange(line, {}), 0.0F, Ink::formula);
+            Formula sentence = read_sentence(row.back(), names_);
+            for (FormulaPiece& piece : sentence.pieces)
+                if (piece.kind == FormulaPiece::Kind::letters && piece.label.find('^') != std::string::npos)
+                    piece.label = typeset_unit(piece.label);
+            for (const FormulaBox& part : set_in_lines(in_words(sentence), size, font_, column_ - left, 0.0F)) {
+                line.put(part, left, 0.0F);
+                put(std::exchange(line, {}), 0.0F, Ink::formula);
+            }
         }
     }
 
@@ -278,6 +300,22 @@ const EquationSheet* EquationsView::sheet(const std::shared_ptr<const Model>& mo
     return sheet_.get();
 }
 
+const EquationSheet& EquationsView::mechanism(const std::shared_ptr<const Model>& model, const Run& run) {
+    if (model == mechanism_model_ && mechanism_run_ == run) return mechanism_;
+    mechanism_model_ = model;
+    mechanism_run_ = run;
+    mechanism_ = mechanism_sheet(*model, run);
+    mechanism_key_.clear();
+    return mechanism_;
+}
+
+const TypesetSheet& EquationsView::typeset_mechanism(float size, const FormulaFont& font, float width, float height) {
+    const std::vector<float> key{size, width, height};
+    if (key == mechanism_key_) return typeset_mechanism_;
+    mechanism_key_ = key;
+    return typeset_mechanism_ = set_sheet(mechanism_, size, font, width, height);
+}
+
 const TypesetSheet& EquationsView::typeset_sheet(float size, const FormulaFont& font, float width, float height) {
     const std::vector<float> key{size, width, height};
     if (typeset_key_ == key) return typeset_;
@@ -467,21 +505,27 @@ void show_equations(const Session& session, PanelState& state, Commands& command
     ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(page_padding), units(8.0F)});
     begin_padded_child("equations", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
+    const Rectangle room = remaining();
+    // Reserve the width of a scroll bar, so that its appearance does not change the layout.
+    const float bar = ImGui::GetStyle().ScrollbarSize, size = ImGui::GetFontSize();
+    const float width = ImGui::GetWindowWidth() - 2.0F * units(page_padding) - bar;
+    const float height = ImGui::GetWindowHeight() - 2.0F * units(8.0F);
+    std::erase_if(state.places, [](const auto& place) { return place.first.starts_with("equation "); });
+    // The mechanism stands above the equations. It is there at once, while they may take seconds.
+    const EquationSheet& mechanism = view.mechanism(session.model(), session.run());
+    const TypesetSheet& bodies = view.typeset_mechanism(size, formula_font(), width, height);
+    PageDrawing(session, state, mechanism, {room.x, room.y}).draw(bodies);
+    const float top = room.y + std::ceil(bodies.height + (bodies.lines.empty() ? 0.0F : before_heading * size));
+    ImGui::SetCursorScreenPos({room.x, top});
     if (sheet == nullptr) {
         ImGui::TextDisabled("The equations are being simplified\u2026");
     } else {
-        const Rectangle room = remaining();
-        // Reserve the width of a scroll bar, so that its appearance does not change the layout.
-        const float bar = ImGui::GetStyle().ScrollbarSize;
-        const float width = ImGui::GetWindowWidth() - 2.0F * units(page_padding) - bar;
-        const TypesetSheet& page = view.typeset_sheet(ImGui::GetFontSize(), formula_font(), width,
-                                                      ImGui::GetWindowHeight() - 2.0F * units(8.0F));
-        std::erase_if(state.places, [](const auto& place) { return place.first.starts_with("equation "); });
-        PageDrawing drawing(session, state, *sheet, {room.x, room.y});
+        const TypesetSheet& page = view.typeset_sheet(size, formula_font(), width, height);
+        PageDrawing drawing(session, state, *sheet, {room.x, top});
         drawing.draw(page);
         for (const TypesetSheet::ConditionPlace& now : page.now) drawing.draw(now, view);
-        ImGui::SetCursorScreenPos({room.x, room.y});
-        ImGui::Dummy({page.width, page.height});
+        ImGui::SetCursorScreenPos({room.x, top});
+        ImGui::Dummy({std::max(page.width, bodies.width), page.height});
     }
     ImGui::EndChild();
     ImGui::PopStyleVar();

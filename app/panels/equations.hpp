@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,6 +44,10 @@ class EquationsView {
     bool is_under_way() const { return is_under_way_; }
     // The sheet returned last by sheet(), which must not be null, typeset. Kept until the size changes.
     const TypesetSheet& typeset_sheet(float size, const FormulaFont& font, float width, float height);
+    // What the reader understood of the mechanism, with the values at the start of this run, and the same typeset. Both
+    // are kept until the run or the size changes.
+    const EquationSheet& mechanism(const std::shared_ptr<const Model>& model, const Run& run);
+    const TypesetSheet& typeset_mechanism(float size, const FormulaFont& font, float width, float height);
     // The quantity that determines the sign of a condition's hddot, at a state.
     double value(std::size_t condition, const Model& model, const Run& run, const State& state, double t);
 
@@ -55,6 +60,11 @@ class EquationsView {
     SheetResult sheet_;
     std::vector<float> typeset_key_;
     TypesetSheet typeset_;
+    std::shared_ptr<const Model> mechanism_model_;
+    std::optional<Run> mechanism_run_;
+    EquationSheet mechanism_;
+    std::vector<float> mechanism_key_;
+    TypesetSheet typeset_mechanism_;
     std::map<std::size_t, Evaluator<double>> evaluators_;
     std::vector<double> parameters_;  // values in `evaluators_`
 };

@@ -255,6 +255,13 @@ std::string check_report(const Model& model, const Run& run, double deriving, No
 
 namespace {
 
+std::vector<EquationSheet::Symbol> symbols_of(const Model& model) {
+    std::vector<EquationSheet::Symbol> symbols;
+    for (std::uint32_t slot = 0; slot <= model.layout().t(); ++slot)
+        symbols.push_back({write_name(model.slot_names()[slot], Notation::latex).text, model.slot_names()[slot]});
+    return symbols;
+}
+
 // The Zeno conditions come first.
 class SheetWriter : EquationsOnPage {
  public:
@@ -276,9 +283,7 @@ class SheetWriter : EquationsOnPage {
         if (forces) matrix({"Q", "Q"}, simplified_.Q, model_.equations().Q, 1);
         for (std::size_t i = 0; i < model_.contacts(); ++i) contact(i, forces, true);
         result.blocks = page_.blocks();
-        const Layout& layout = model_.layout();
-        for (std::uint32_t slot = 0; slot <= layout.t(); ++slot)
-            result.symbols.push_back({name(model_.slot_names()[slot]), model_.slot_names()[slot]});
+        result.symbols = symbols_of(model_);
         return result;
     }
 
@@ -307,6 +312,15 @@ class SheetWriter : EquationsOnPage {
 EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop) {
     const SimplifiedEquations simplified(model, run, std::move(stop));
     return SheetWriter(model, run, simplified).write();
+}
+
+EquationSheet mechanism_sheet(const Model& model, const Run& run) {
+    Page page(Notation::latex);
+    put_mechanism(page, model, run);
+    EquationSheet result;
+    result.blocks = page.blocks();
+    result.symbols = symbols_of(model);
+    return result;
 }
 
 }  // namespace achilles

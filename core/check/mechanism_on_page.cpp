@@ -3,6 +3,9 @@
 #include <fmt/args.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+
+#include "expression/notation.hpp"
 #include "expression/parse.hpp"
 #include "model/scopes.hpp"
 #include "system/units.hpp"
@@ -14,7 +17,10 @@ namespace {
 class MechanismPage {
  public:
     MechanismPage(Page& page, const Model& model, const Run& run)
-        : page_(page), system_(model.description()), scope_(force_scope(system_, model.layout(), graph_)) {
+        : page_(page),
+          system_(model.description()),
+          names_(model.slot_names()),
+          scope_(force_scope(system_, model.layout(), graph_)) {
         for (const Vector* part : {&run.q, &run.v}) start_.insert(start_.end(), part->begin(), part->end());
         start_.insert(start_.end(), run.parameters.begin(), run.parameters.end());
         start_.push_back(run.options.start_time);
@@ -33,8 +39,24 @@ class MechanismPage {
     }
 
  private:
-    std::string words(const std::string& plain) const {
-        return page_.notation() == Notation::text ? plain : Page::escaped(plain);
+    bool is_text() const { return page_.notation() == Notation::text; }
+
+    // Words in which backquotes enclose expressions.
+    std::string words(const std::string& plain) {
+        std::string result;
+        for (std::size_t at = 0; at < plain.size();) {
+            const bool is_formula = plain[at] == '`';
+            const std::size_t begin = at + (is_formula ? 1 : 0), end = std::min(plain.find('`', begin), plain.size());
+            const std::string part = plain.substr(begin, end - begin);
+            result += is_formula ? formula("", part) : is_text() ? part : Page::escaped(part);
+            at = end + (is_formula ? 1 : 0);
+        }
+        return result;
+    }
+    // "h = ": what stands on the left, if anything.
+    std::string formula(const std::string& left, const std::string& expression) {
+        if (is_text()) return left + expression;
+        return fmt::format("${}{}$", left, write(parse(expression, scope_, graph_), names_, Notation::latex).text);
     }
     void say(const std::string& sentence) { page_.sentence({sentence, Page::escaped(sentence)}); }
 
@@ -64,9 +86,10 @@ class MechanismPage {
         for (std::size_t i = 0; i < system_.mechanism.contacts.size(); ++i) {
             const SummaryContact& contact = system_.mechanism.contacts[i];
             if (contact.name.empty()) continue;
-            rows.push_back({words(system_.constraints[i].name),
-                            words(fmt::format("{}: h = {}, {}", contact.name, contact.gap, contact.force))});
-            if (!contact.slip.empty()) rows.push_back({"", words("slip = " + contact.slip)});
+            rows.push_back(
+                {words(system_.constraints[i].name),
+                 fmt::format("{}: {}, {}", words(contact.name), formula("h = ", contact.gap), words(contact.force))});
+            if (!contact.slip.empty()) rows.push_back({"", words("slip = ") + formula("", contact.slip)});
         }
         if (rows.empty()) return;
         page_.heading("Contacts");
@@ -75,6 +98,7 @@ class MechanismPage {
 
     Page& page_;
     const SystemDescription& system_;
+    const std::span<const std::string> names_;
     Graph graph_;
     Scope scope_;
     std::vector<double> start_;  // by slot

@@ -288,7 +288,7 @@ class MechanismExpander {
     SummaryLine summary_of(const SpringOrDamper& spring, MechanismSummary& summary) const {
         SummaryLine line{spring.is_damper ? "damper" : "spring", {}, {symbols_.text(spring.coefficient)}};
         line.pattern = spring.between ? fmt::format("{} to {}: ", (*spring.between)[0].name, (*spring.between)[1].name)
-                                      : fmt::format("angle {}: ", symbols_.text(spring.angle));
+                                      : fmt::format("angle `{}`: ", symbols_.text(spring.angle));
         line.pattern += spring.is_damper ? "d = {0}" : "k = {0}";
         if (spring.between) {
             const auto& [from, to] = *spring.between;

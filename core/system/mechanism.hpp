@@ -76,7 +76,7 @@ struct RigidBody : PlacedShape {
     LocalPoint center;
     const PlacedShape* on = nullptr;  // may be a ground
     ProductSum height, along;         // on a ground: the distance of its origin, and its velocity along the tangent
-    std::string placement;            // for messages: "at hip, rotated by theta"
+    std::string placement;            // for the summary: "at hip, rotated by `theta`"
     std::string how;                  // "uniform rod"; "" if mass or inertia are as typed
 };
 

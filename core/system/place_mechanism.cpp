@@ -51,7 +51,7 @@ void PlacedMechanism::place_on_ground(RigidBody& body, const Fields& fields, con
     const LocalPoint place = read_local(*at, fields, "at", Allowed::positions);
     const ProductSum &s = place.x, &d = place.y, s_rate = kinematics.rate_of(s) + kinematics.drift_of(s);
     body.height = d;
-    body.placement = fmt::format("on {} at {}, {} from it", ground.name, symbols_.text(s), symbols_.text(d));
+    body.placement = fmt::format("on {} at `{}`, `{}` from it", ground.name, symbols_.text(s), symbols_.text(d));
     const MovingFrame& base = ground.frame;
     if (ground.shape == TouchShape::curve) return place_on_curve(body, place, ground);
     if (ground.shape == TouchShape::line) {

@@ -340,7 +340,7 @@ void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
         body.frame = kinematics.frame_at(origin.point, axes, turn);
         body.placement = "at " + origin.name;
     }
-    if (angle != nullptr) body.placement += ", rotated by " + symbols_.text(turn);
+    if (angle != nullptr) body.placement += fmt::format(", rotated by `{}`", symbols_.text(turn));
     if (angle != nullptr && on != nullptr) body.placement += " against " + on->name;
     read_shape(body, fields);
     read_mass(body, fields);

@@ -1,6 +1,7 @@
 // The equations panel: content, mouse, and caching of the layout.
 #include "panels/equations.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -93,10 +94,39 @@ TEST(Equations, OfSeveralContacts) {
     for (const SheetCondition& condition : sheet.conditions) EXPECT_FALSE(condition.mode.is_held(condition.contact));
 }
 
+// The mechanism as `achilles check` prints it, row by row.
+std::string rows_of(const EquationSheet& sheet) {
+    std::string text;
+    for (const Block& block : sheet.blocks) {
+        if (block.kind == Block::Kind::heading) text += block.words.text + "\n";
+        for (const auto& row : block.rows)
+            text += name_of(sheet, row.front()) + " | " + name_of(sheet, row.back()) + "\n";
+    }
+    return text;
+}
+
+TEST(Equations, OfBodiesBeginWithThem) {
+    const Model model(test::system(test::mechanism("kneed_leg")));
+    achilles::Run run = model.default_run();
+    expect_lines(rows_of(mechanism_sheet(model, run)),
+                 {"Bodies", "hip | 20 kg, a point; at [0, z]",
+                  "thigh | 7 kg, 0.1029 kg m^2 about its center (uniform rod); at hip, rotated by \u03b8",
+                  "shank | 4 kg, 0.06163 kg m^2 about its center (uniform rod); at thigh.end, rotated by "
+                  "\u03b8 \u2212 \u03ba",
+                  "Springs and dampers", "damper | angle \u03ba: d = 0.3 N m s", "Contacts"});
+    run.parameters[1] = 14.0;
+    EXPECT_NE(rows_of(mechanism_sheet(model, run)).find("thigh | 14 kg, 0.2058 kg m^2"), std::string::npos);
+    const Model typed(test::system("double_pendulum"));
+    EXPECT_TRUE(mechanism_sheet(typed, typed.default_run()).blocks.empty());
+}
+
 // Lines do not overlap, stay on the page, and do not extend into the next column.
 TEST(Equations, AreSetInColumnsThatFit) {
-    for (const char* system : {"ball_on_sine", "double_pendulum", "ball_in_sloped_box", "driven_double_pendulum"}) {
-        const EquationSheet sheet = sheet_of(system);
+    for (const std::string system :
+         {"ball_on_sine", "double_pendulum", "ball_in_sloped_box", "driven_double_pendulum", "the bodies of a leg"}) {
+        const bool is_mechanism = system == "the bodies of a leg";
+        const Model leg(test::system(is_mechanism ? test::mechanism("kneed_leg") : "ball_on_sine"));
+        const EquationSheet sheet = is_mechanism ? mechanism_sheet(leg, leg.default_run()) : sheet_of(system);
         const bool has_forces = text_of(sheet).find("forces\n") != std::string::npos;
         for (const float width : {420.0F, 800.0F, 1600.0F}) {
             const TypesetSheet page = set_sheet(sheet, 15.0F, font(), width, 200.0F);
@@ -203,6 +233,25 @@ TEST(Equations, StopWhenTheyAreToldTo) {
     const auto begin = std::chrono::steady_clock::now();
     EXPECT_TRUE(equation_sheet(model, model.default_run(), stop.get_token()).conditions.empty());
     EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(1));
+}
+
+// The bodies are shown above the equations, also while those are being simplified, with the values of the sliders.
+TEST(Equations, StandBelowTheBodies) {
+    Hands hands(test::mechanism("kneed_leg"), test::surface(1600, 1200));
+    hands.state.in_window = true;
+    hands.session.apply(parse_command("show equations"));
+    hands.rest(2);
+    EXPECT_TRUE(derives_equations(hands.state));
+    EXPECT_TRUE(hands.says("The equations are being simplified"));
+    EXPECT_TRUE(hands.says("thigh7 kg, 0.1029 kg")) << hands.letters();
+    EXPECT_TRUE(hands.says("shank.end on floor: "));
+    hands.session.apply(parse_command("set mt 14"));
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("thigh14 kg, 0.2058 kg")) << hands.letters();
+    // The letters of the page tell their parameter, as those of the equations do.
+    hands.point("equation Ls");
+    hands.rest(1);
+    EXPECT_EQ(hands.state.lit, "Ls");
 }
 
 // A window does not wait for the equations.
