@@ -213,6 +213,20 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
         {"shape", "type kind"},
         {"radius", "r"},
         {"color", "colour rgba"},
+        {"mass", "m weight"},
+        {"inertia", "I J moment_of_inertia diaginertia"},
+        {"rod", "link bar capsule cylinder"},
+        {"disc", "circle disk sphere radius r"},
+        {"box", "size rectangle cuboid"},
+        {"polygon", "mesh hull corners"},
+        {"angle", "rotation orientation euler theta phi"},
+        {"on", "parent frame body"},
+        {"against", "reaction"},
+        {"stiffness", "k c spring_constant"},
+        {"rest", "length l0 rest_length natural_length springref s_unstretched"},
+        {"damping", "d c b damping_coefficient"},
+        {"gravity", "g"},
+        {"between", "bodies pair ends geom1 geom2"},
         {"width", "linewidth thickness lw"},
         {"from", "start p1 a"},
         {"to", "end p2 b"},
@@ -227,7 +241,11 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
         {"constraint", "contact collision impact guard unilateral"},
         {"view", "plot figure"},
         {"drawing", "graphics geometry visual"},
-        {"lagrangian", "energy dynamics lagrange"}};
+        {"lagrangian", "energy dynamics lagrange"},
+        {"body", "bodies link rigid_body"},
+        {"ground", "floor wall plane surface terrain"},
+        {"torque", "motor moment"},
+        {"world", "environment"}};
     for (const KeyAlias& other : others) {
         const bool is_here = std::find(keys.begin(), keys.end(), other.key) != keys.end();
         if (is_here && has_word(other.words, word)) return std::string(other.key);
