@@ -132,6 +132,29 @@ TEST(Editor, AProblemIsMarkedInTheText) {
     EXPECT_EQ(hands.marked(), 0);
 }
 
+// A mistake in a body, spring or contact between shapes stands in one line of a long table: it is marked there.
+TEST(Editor, AMistakeInABodyIsMarkedWhereItWasTyped) {
+    const std::string leg = test::system(test::mechanism("kneed_leg")).source_text;
+    for (const auto& [typed, mistaken, name] : {std::tuple{"[0, \"-Ls\"]", "[0, \"-Lz\"]", "Lz"},
+                                                {"\"world.below\", \"hip\"", "\"world.below\", \"hap\"", "hap"},
+                                                {"\"shank.end\", \"floor\"", "\"shank.end\", \"flor\"", "flor"},
+                                                {"rest = \"z0", "rest = \"zz", "zz"}}) {
+        const std::string text = replaced(leg, typed, mistaken);
+        Writer hands(test::mechanism("kneed_leg"));
+        hands.session.apply(command::SetText{text});
+        hands.rest(3);
+        ASSERT_EQ(hands.session.document().problems.size(), 1U) << name;
+        const InputError& problem = hands.session.document().problems[0];
+        const std::size_t place = text.find(name);
+        const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(place), '\n') + 1;
+        EXPECT_EQ(problem.at.line, line) << problem.what();
+        const auto column = static_cast<int>(place - text.rfind('\n', place));
+        EXPECT_TRUE(problem.at.column == column || problem.at.column == column - 1) << problem.what();
+        EXPECT_NE(std::string(problem.what()).find(std::string("'") + name + "'"), std::string::npos) << problem.what();
+        EXPECT_GT(hands.marked(), 300 * 10) << name;
+    }
+}
+
 TEST(Editor, AMessageDoesNotHideTheLineUnderTheHand) {
     Writer hands;
     hands.write(ball() + "y = [\"x\"]");  // duplicate key: an error in the last line

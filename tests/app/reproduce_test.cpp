@@ -44,6 +44,19 @@ class ReproducedPicture : public testing::TestWithParam<std::string> {
     }
 };
 
+// A mechanism typed as bodies: the picture carries the bodies, not the energies made of them.
+TEST_P(ReproducedPicture, OfBodies) {
+    const Folder folder;
+    const std::string leg = content(ACHILLES_SOURCE_DIR "/tests/reference/mechanisms/kneed_leg.toml");
+    folder.put("leg.toml", leg);
+    const std::string picture = "leg." + GetParam();
+    ASSERT_EQ(folder.run("figure ./leg.toml --set mt=9 --end 1 --size 400x300 --out " + picture).status, 0);
+    EXPECT_EQ(origin_of(content(folder.path() / picture)).sources.at(0).text, leg);
+    std::filesystem::remove(folder.path() / "leg.toml");
+    const Answer again = folder.run("reproduce " + picture);
+    EXPECT_EQ(again.err, "achilles: " + picture + ": reproduced with the same bytes\n");
+}
+
 TEST_P(ReproducedPicture, FromWhatItCarriesWhateverBecameOfTheFile) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
