@@ -77,14 +77,16 @@ class Setter {
         }
     }
 
-    // A table of names and sentences. A row without a name continues the one above.
+    // A table of names and sentences. A row without a name continues the one above. A short table stays together.
     void table(const std::vector<std::vector<std::string>>& rows) {
+        constexpr std::size_t most_together = 8;
+        std::size_t entries = 0;
         const float size = caption_size * size_;
         float left = 0.0F;
         for (const auto& row : rows) left = std::max(left, set(read_sentence(row.front(), names_), size, font_).width);
         left = std::min(left + size_, 0.4F * column_);
         for (const auto& row : rows) {
-            if (!row.front().empty()) begin(0.0F);
+            if (!row.front().empty() && entries++ % most_together == 0) begin(0.0F);
             FormulaBox line = set(read_sentence(row.front(), names_), size, font_);
             if (line.width > left - 0.5F * size_) put(std::exchange(line, {}), 0.0F, Ink::formula);
             Formula sentence = read_sentence(row.back(), names_);
@@ -513,7 +515,7 @@ void show_equations(const Session& session, PanelState& state, Commands& command
     std::erase_if(state.places, [](const auto& place) { return place.first.starts_with("equation "); });
     // The mechanism stands above the equations. It is there at once, while they may take seconds.
     const EquationSheet& mechanism = view.mechanism(session.model(), session.run());
-    const TypesetSheet& bodies = view.typeset_mechanism(size, formula_font(), width, height);
+    const TypesetSheet& bodies = view.typeset_mechanism(size, formula_font(), width, 0.5F * height);
     PageDrawing(session, state, mechanism, {room.x, room.y}).draw(bodies);
     const float top = room.y + std::ceil(bodies.height + (bodies.lines.empty() ? 0.0F : before_heading * size));
     ImGui::SetCursorScreenPos({room.x, top});
