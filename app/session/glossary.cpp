@@ -103,14 +103,15 @@ std::span<const GalleryGroup> gallery() {
         {"the paper", {"ball_on_sine", "double_pendulum"}},
         {"teaching",
          {"ball_on_floor", "ball_on_incline", "ball_in_bowl", "ball_on_hills", "ball_down_a_wave", "ball_on_cylinder",
-          "bead_in_ring", "ball_on_egg_crate", "cart_pendulum", "triple_pendulum", "falling_rod"}},
+          "bead_in_ring", "ball_on_string", "ball_on_egg_crate", "disc_on_waves", "cart_pendulum", "triple_pendulum",
+          "falling_rod"}},
         {"robots", {"swinging_leg", "kneed_leg", "arm_at_wall"}},
         {"driven",
          {"impact_oscillator", "ball_on_table", "ball_on_vibrating_table", "two_mass_oscillator",
-          "driven_double_pendulum", "ball_in_gusts"}},
+          "driven_double_pendulum", "ball_in_gusts", "bouncing_wheel", "slider_crank", "kapitza_pendulum"}},
         {"several contacts",
          {"double_pendulum_two_stops", "ball_in_sloped_box", "ball_round_post", "ball_in_v", "box_dropped_flat",
-          "cart_between_walls", "backlash", "newtons_cradle", "table_on_legs"}}};
+          "cart_between_walls", "backlash", "newtons_cradle", "seesaw", "table_on_legs"}}};
     return groups;
 }
 
