@@ -73,6 +73,7 @@ class ContactReader {
         if (symbols_.at_start(length) <= 0.0)
             throw Mistake{longest.at, fmt::format("'longest' must be positive, not {}", symbols_.at_start(length)), {}};
         result_.gap = length - distance_between(mechanism_, from, to, false, between_.at).value;
+        result_.longest = length;
         result_.has_slip = false;
         result_.name = fmt::format("string from {} to {}", from.name, to.name);
         result_.force = "lambda is the tension";

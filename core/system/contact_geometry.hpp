@@ -21,6 +21,7 @@ struct ShapeContact {
     const PlacedShape* touched = nullptr;  // null: a string, or a point of the world
     NamedPoint point;                      // what touches: a point, or the center of a disc
     std::optional<NamedPoint> other;       // string: its other end
+    ProductSum longest;                    // string: its length
 };
 
 // The geometry of a [[constraint]] with `between`. Throws Mistake.

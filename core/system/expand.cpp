@@ -214,7 +214,9 @@ class MechanismExpander {
             substitute_in(value, own);
             return;
         }
-        value = made_point(world_point(symbols_, mechanism_.read_point(value, fields, key, on, own).point), value.at);
+        MovingPoint point;  // stays the origin after a mistake, so that this is reported once
+        mistakes_.attempt([&] { point = mechanism_.read_point(value, fields, key, on, own).point; });
+        value = made_point(world_point(symbols_, point), value.at);
     }
 
     void turn_with(TomlValue& drawing, const PlacedShape* on) {
@@ -245,6 +247,13 @@ class MechanismExpander {
 
     void add_drawings(MechanismDrawings& drawings) {
         put_before(root_, drawings.free, root_.at);
+        // Before the constraints, whose drawings are drawn over them.
+        const auto place_of = [&](const char* key) {
+            return std::find_if(root_.entries.begin(), root_.entries.end(),
+                                [&](const TomlEntry& e) { return e.key == key; });
+        };
+        const auto drawing = place_of("drawing"), constraint = place_of("constraint");
+        if (drawing != root_.entries.end() && constraint < drawing) std::rotate(constraint, drawing, drawing + 1);
         const std::vector<TomlValue*> constraints = tables_of(root_, "constraint");
         for (std::size_t i = 0; i < constraints.size() && i < drawings.of_contacts.size(); ++i)
             put_before(*constraints[i], drawings.of_contacts[i], constraints[i]->at);

@@ -75,6 +75,7 @@ struct RigidBody : PlacedShape {
     ProductSum mass, inertia;  // about the center of mass
     LocalPoint center;
     const PlacedShape* on = nullptr;  // may be a ground
+    bool is_jointed = false;          // its origin is a point of another body or of the world, about which it turns
     ProductSum height, along;         // on a ground: the distance of its origin, and its velocity along the tangent
     std::string placement;            // for the summary: "at hip, rotated by `theta`"
     std::string how;                  // "uniform rod"; "" if mass or inertia are as typed
@@ -83,7 +84,8 @@ struct RigidBody : PlacedShape {
 struct GroundSurface : PlacedShape {
     Expression height;  // curve: f(x) of the abscissa and time
     std::array<Text, 2> over;
-    ProductSum speed;  // of its surface along the tangent
+    ProductSum speed;                 // of its surface along the tangent
+    const PlacedShape* on = nullptr;  // the body that carries it
 };
 
 // A point as typed, with the body that carries it.
@@ -166,6 +168,7 @@ class PlacedMechanism {
     Entry* entry_of(const std::string& name);
     void place(Entry& entry);
     void place_body(RigidBody& body, const Fields& fields);
+    bool is_joint(const RigidBody& body, const NamedPoint& origin) const;
     void place_ground(GroundSurface& ground, const Fields& fields);
     void place_on_ground(RigidBody& body, const Fields& fields, const GroundSurface& ground);
     void place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve);

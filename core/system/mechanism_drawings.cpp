@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "system/mechanism_terms.hpp"
+
 namespace achilles {
 
 TomlValue made_string(std::string text, const Location& at) {
@@ -21,6 +23,14 @@ TomlValue made_number(double number, const Location& at) {
     value.at = at;
     value.number = number;
     value.text = {fmt::format("{}", number), at, false};
+    return value;
+}
+
+TomlValue made_boolean(bool boolean, const Location& at) {
+    TomlValue value;
+    value.kind = TomlValue::Kind::boolean;
+    value.at = at;
+    value.boolean = boolean;
     return value;
 }
 
@@ -57,6 +67,12 @@ std::array<std::string, 2> world_point(const MechanismSymbols& symbols, const Mo
 
 namespace {
 
+// Drawings are drawn in the order of their locations. Those of grounds, springs and bodies stand before the first line
+// of the file, by layer; the marks of contacts, and surfaces of bodies, stand where they are typed.
+enum class Layer { ground, connection, body };
+
+constexpr const char *steel = "#7a8089", *pale = "#c3c8cf";
+
 class MechanismPainter {
  public:
     MechanismPainter(const PlacedMechanism& mechanism, const std::vector<std::optional<ShapeContact>>& contacts)
@@ -69,24 +85,27 @@ class MechanismPainter {
             std::vector<std::size_t> touching;
             for (std::size_t i = 0; i < contacts_.size(); ++i)
                 if (contacts_[i] && contacts_[i]->touched == ground) touching.push_back(i);
-            (touching.size() == 1 ? result.of_contacts[touching[0]] : result.free).push_back(ground_drawing(*ground));
+            std::vector<TomlValue>& drawings = touching.size() == 1 ? result.of_contacts[touching[0]] : result.free;
+            if (is_surface_of_body(*ground))
+                drawings.push_back(ground_drawing(*ground));
+            else
+                add(drawings, ground_drawing(*ground), Layer::ground);
         }
         for (std::size_t i = 0; i < mechanism_.springs.size(); ++i)
-            if (mechanism_.springs[i].between && !mechanism_.springs[i].is_hidden)
-                result.free.push_back(spring_drawing(i));
+            if (mechanism_.springs[i].between && !mechanism_.springs[i].is_hidden) draw_connection(i, result.free);
         for (const RigidBody* body : mechanism_.bodies()) {
             if (body->is_hidden) continue;
-            if (auto drawing = body_drawing(*body)) result.free.push_back(std::move(*drawing));
-            if (body->shape == TouchShape::disc && !body->frame.angle.is_zero() && !body->inertia.is_zero())
-                result.free.push_back(spoke(*body));
+            if (auto drawing = body_drawing(*body)) add(result.free, std::move(*drawing), Layer::body);
+            if (turns_visibly(*body)) add(result.free, spoke(*body), Layer::body);
+            if (body->is_jointed && body->shape != TouchShape::none) add(result.free, joint(*body), Layer::body);
         }
         for (std::size_t i = 0; i < contacts_.size(); ++i)
-            if (contacts_[i]) mark_contact(*contacts_[i], result.of_contacts[i]);
+            if (contacts_[i]) mark_contact(*contacts_[i], result.of_contacts[i], result.free);
         return result;
     }
 
  private:
-    // The size of the bodies and springs at the start.
+    // The size of the bodies, springs, strings and gaps at the start.
     double extent() const {
         double low[2] = {HUGE_VAL, HUGE_VAL}, high[2] = {-HUGE_VAL, -HUGE_VAL};
         const auto add = [&](const MovingPoint& point) {
@@ -109,7 +128,12 @@ class MechanismPainter {
         for (const SpringOrDamper& spring : mechanism_.springs)
             if (spring.between)
                 for (const NamedPoint& end : *spring.between) add(end.point);
-        const double size = std::max(high[0] - low[0], high[1] - low[1]);
+        double size = std::max(high[0] - low[0], high[1] - low[1]);
+        for (const auto& contact : contacts_) {
+            if (!contact) continue;
+            const double apart = symbols_.at_start(contact->other ? contact->longest : contact->gap);
+            if (std::isfinite(apart)) size = std::max(size, apart);
+        }
         return std::isfinite(size) && size > 0.0 ? size : 1.0;
     }
 
@@ -120,6 +144,10 @@ class MechanismPainter {
         TomlValue table = made_table(at);
         set_entry(table, "shape", made_string(name, at));
         return table;
+    }
+    static void add(std::vector<TomlValue>& drawings, TomlValue drawing, Layer layer) {
+        drawing.at = {0, static_cast<int>(layer)};
+        drawings.push_back(std::move(drawing));
     }
     void put(TomlValue& table, const char* key, const std::string& text) const {
         set_entry(table, key, made_string(text, table.at));
@@ -138,9 +166,14 @@ class MechanismPainter {
         put_point(table, "to", at(body, body.corners[1]));
     }
 
+    // The surface of a body that is drawn needs no hatching.
+    static bool is_surface_of_body(const GroundSurface& ground) {
+        return ground.on != nullptr && ground.on->shape != TouchShape::none && !ground.on->is_hidden;
+    }
+
     TomlValue ground_drawing(const GroundSurface& ground) const {
         if (ground.shape == TouchShape::line) {
-            TomlValue drawing = shape("ground", ground.at);
+            TomlValue drawing = shape(is_surface_of_body(ground) ? "segment" : "ground", ground.at);
             put_two(drawing, ground);
             return drawing;
         }
@@ -153,10 +186,17 @@ class MechanismPainter {
             set_entry(drawing, "over", std::move(over));
             return drawing;
         }
-        TomlValue drawing = shape(ground.shape == TouchShape::disc ? "disc" : "circle", ground.at);
+        const bool is_disc = ground.shape == TouchShape::disc;
+        TomlValue drawing = shape(is_disc ? "disc" : "circle", ground.at);
         put_point(drawing, "at", ground.frame.origin);
         put(drawing, "radius", symbols_.text(ground.radius));
+        if (is_disc) put(drawing, "color", pale);
         return drawing;
+    }
+
+    // A disc with a spoke.
+    static bool turns_visibly(const RigidBody& body) {
+        return body.shape == TouchShape::disc && !body.frame.angle.is_zero() && !body.inertia.is_zero();
     }
 
     std::optional<TomlValue> body_drawing(const RigidBody& body) const {
@@ -165,16 +205,18 @@ class MechanismPainter {
             case TouchShape::rod:
                 drawing = shape("segment", body.at);
                 put_two(drawing, body);
-                put(drawing, "width", 5.0);
+                put(drawing, "width", rod_width);
                 break;
             case TouchShape::disc:
             case TouchShape::ring:
                 drawing = shape(body.shape == TouchShape::disc ? "disc" : "circle", body.at);
                 put_point(drawing, "at", body.frame.origin);
                 put(drawing, "radius", symbols_.text(body.radius));
+                if (turns_visibly(body)) put(drawing, "color", pale);
                 break;
             case TouchShape::box:
                 drawing = shape("box", body.at);
+                put(drawing, "color", steel);
                 put_point(drawing, "at", body.frame.origin);
                 set_entry(drawing, "size",
                           made_point({symbols_.text(body.size.x), symbols_.text(body.size.y)}, body.at));
@@ -182,6 +224,8 @@ class MechanismPainter {
                 break;
             case TouchShape::polygon: {
                 drawing = shape("polyline", body.at);
+                put(drawing, "color", steel);
+                set_entry(drawing, "fill", made_boolean(true, body.at));
                 TomlValue points = made_point({}, body.at);
                 points.items.clear();
                 for (std::size_t i = 0; i <= body.corners.size(); ++i)
@@ -206,50 +250,117 @@ class MechanismPainter {
         TomlValue drawing = shape("segment", body.at);
         put_point(drawing, "from", body.frame.origin);
         put_point(drawing, "to", at(body, {body.radius, {}}));
-        put(drawing, "color", "#3a4048");
         return drawing;
     }
 
-    // A spring or damper; one beside another if both have the same ends on one vertical or horizontal line.
-    TomlValue spring_drawing(std::size_t index) const {
+    // The pin about which a body turns.
+    TomlValue joint(const RigidBody& body) const {
+        TomlValue drawing = shape("disc", body.at);
+        put_point(drawing, "at", body.frame.origin);
+        put(drawing, "radius", part_of_size(0.025));
+        return drawing;
+    }
+
+    // A spring or damper; side by side if several have the same ends.
+    void draw_connection(std::size_t index, std::vector<TomlValue>& drawings) const {
         const SpringOrDamper& spring = mechanism_.springs[index];
         TomlValue drawing = shape(spring.is_damper ? "damper" : "spring", spring.at);
-        std::array<MovingPoint, 2> ends{(*spring.between)[0].point, (*spring.between)[1].point};
-        long before = 0;
-        for (std::size_t i = 0; i < index; ++i) {
-            const auto& other = mechanism_.springs[i].between;
-            before +=
-                other && (*other)[0].name == (*spring.between)[0].name && (*other)[1].name == (*spring.between)[1].name;
+        const auto& [from, to] = *spring.between;
+        long before = 0, all = 0;
+        for (std::size_t i = 0; i < mechanism_.springs.size(); ++i) {
+            const SpringOrDamper& other = mechanism_.springs[i];
+            if (!other.between || other.is_hidden || (*other.between)[0].name != from.name ||
+                (*other.between)[1].name != to.name)
+                continue;
+            before += i < index;
+            ++all;
         }
-        const auto along = components(ends[1].position - ends[0].position, {}, symbols_.graph());
-        if (before > 0 && (along[0].is_zero() || along[1].is_zero())) {
-            const long hundredths = std::max(1L, std::lround(10.0 * size_ * static_cast<double>(before)));
-            const ProductSum aside = symbols_.number(hundredths, 100);
-            for (MovingPoint& end : ends)
-                end.position =
-                    end.position + (along[0].is_zero() ? PlanarVector({}, aside, {}) : PlanarVector({}, {}, aside));
+        const PlanarVector aside = to_the_left(spring, 0.045 * static_cast<double>(all - 1 - 2 * before));
+        for (const auto& [key, end] : {std::pair("from", &from), std::pair("to", &to)}) {
+            NamedPoint here = *end;
+            here.point.position = here.point.position + aside;
+            put_point(drawing, key, here.point);
+            draw_mount(here, spring.at, drawings);
         }
-        put_point(drawing, "from", ends[0]);
-        put_point(drawing, "to", ends[1]);
+        put(drawing, "width", 1.5);
+        add(drawings, std::move(drawing), Layer::connection);
+    }
+
+    // What holds an end that is on no body.
+    void draw_mount(const NamedPoint& end, const Location& at, std::vector<TomlValue>& drawings) const {
+        if (end.carrier != nullptr) return;
+        for (const ProductSum& place : components(end.point.position, {}, symbols_.graph()))
+            if (symbols_.depends_on_coordinates(place)) return;
+        TomlValue drawing = shape("disc", at);
+        put_point(drawing, "at", end.point);
+        put(drawing, "radius", part_of_size(0.012));
+        add(drawings, std::move(drawing), Layer::connection);
+    }
+
+    // The vector to the left of a spring whose length is this part of the size, with two digits.
+    PlanarVector to_the_left(const SpringOrDamper& spring, double part) const {
+        const long hundredths = std::lround(100.0 * part * size_);
+        if (part == 0.0) return {};
+        const ProductSum aside = hundredths != 0 ? symbols_.number(hundredths, 100)
+                                                 : symbols_.number(std::lround(1e6 * part * size_), 1'000'000);
+        const auto& [from, to] = *spring.between;
+        const PlanarVector along = to.point.position - from.point.position;
+        const PointDistance length = distance_between(mechanism_, from, to, true, spring.at);
+        const auto apart = components(along, {}, symbols_.graph());
+        if (apart[0].is_zero()) return {{}, symbols_.at_start(apart[1]) < 0.0 ? aside : -aside, {}};
+        if (apart[1].is_zero()) return {{}, {}, symbols_.at_start(apart[0]) < 0.0 ? -aside : aside};
+        PlanarVector left;
+        for (const auto& [angle, x, y] : along.terms)
+            left = left + PlanarVector(angle, -(aside * y.packed() / length.value), aside * x.packed() / length.value);
+        return left;
+    }
+
+    // A string: a slack one sags by c sqrt(L^2 - d^2), where c = 0.43 makes it as long as it is for small sags.
+    TomlValue string_drawing(const ShapeContact& contact) const {
+        const Location at = contact.point.at;
+        const MovingPoint &from = contact.point.point, &to = contact.other->point;
+        const bool sags = !mechanism_.gravity[0].is_zero() || !mechanism_.gravity[1].is_zero();
+        TomlValue drawing = shape(sags ? "curve" : "segment", at);
+        put(drawing, "width", 1.5);
+        if (!sags) {
+            put_point(drawing, "from", from);
+            put_point(drawing, "to", to);
+            return drawing;
+        }
+        Graph& graph = symbols_.graph();
+        const PlanarVector d = to.position - from.position;
+        const ProductSum s = ProductSum::from(graph.symbol(symbols_.abscissa()));
+        const ProductSum &L = contact.longest, slack = power(L, 2) - dot(d, d, graph);
+        // The tiny term keeps the root real where rounding makes the string a little too long.
+        const ProductSum depth =
+            square_root(square_root(power(slack, 2) + symbols_.number(1, 1'000'000'000'000) * power(L, 4)));
+        const ProductSum sag = symbols_.number(172, 100) * s * (symbols_.number(1) - s).packed() * depth;
+        PlanarVector place = from.position + PlanarVector({}, {}, -sag);
+        for (const auto& [angle, x, y] : d.terms) place = place + PlanarVector(angle, s * x.packed(), s * y.packed());
+        put_point(drawing, "at", {place, {}, {}});
+        TomlValue over = made_point({"0", "1"}, at);
+        over.items.insert(over.items.begin(), made_string(symbols_.text(s), at));
+        set_entry(drawing, "over", std::move(over));
         return drawing;
     }
 
     // What is touched, or the point that touches it.
-    void mark_contact(const ShapeContact& contact, std::vector<TomlValue>& drawings) const {
+    void mark_contact(const ShapeContact& contact, std::vector<TomlValue>& drawings,
+                      std::vector<TomlValue>& free) const {
         const Location at = contact.point.at;
         if (contact.other) {
-            TomlValue string = shape("segment", at);
-            put_point(string, "from", contact.point.point);
-            put_point(string, "to", contact.other->point);
-            put(string, "width", 1.5);
-            drawings.push_back(std::move(string));
+            for (const NamedPoint* end : {&contact.point, &*contact.other}) draw_mount(*end, at, free);
+            add(drawings, string_drawing(contact), Layer::connection);
             return;
         }
         const PlacedShape* touched = contact.touched;
         if (touched != nullptr && !touched->is_ground) {
-            TomlValue outline = shape(touched->shape == TouchShape::rod ? "segment" : "circle", at);
-            if (touched->shape == TouchShape::rod) {
+            const bool is_rod = touched->shape == TouchShape::rod;
+            TomlValue outline = shape(is_rod ? "segment" : "circle", at);
+            if (is_rod) {
                 put_two(outline, *touched);
+                put(outline, "width", rod_width);
+                if (touched->width.kind != TomlValue::Kind::table) set_entry(outline, "width", touched->width);
             } else {
                 put_point(outline, "at", touched->frame.origin);
                 put(outline, "radius", symbols_.text(touched->radius));
@@ -264,6 +375,7 @@ class MechanismPainter {
         drawings.push_back(std::move(mark));
     }
 
+    static constexpr double rod_width = 5.0;  // pixels
     const PlacedMechanism& mechanism_;
     const MechanismSymbols& symbols_;
     const std::vector<std::optional<ShapeContact>>& contacts_;

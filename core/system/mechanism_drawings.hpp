@@ -11,6 +11,7 @@ namespace achilles {
 // Tables that the reader makes, with the location of their origin.
 TomlValue made_string(std::string text, const Location& at);
 TomlValue made_number(double number, const Location& at);
+TomlValue made_boolean(bool boolean, const Location& at);
 TomlValue made_point(const std::array<std::string, 2>& point, const Location& at);
 TomlValue made_table(const Location& at);
 TomlValue& set_entry(TomlValue& table, const std::string& key, TomlValue value);  // adds or replaces

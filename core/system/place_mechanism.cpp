@@ -15,6 +15,7 @@ void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) 
                       "leave out 'on', or make a body that carries both"};
     const Kinematics& kinematics = symbols_.kinematics();
     ground.frame = on ? on->frame : world_.frame;
+    ground.on = on;
     read_shape(ground, fields);
     if (ground.shape == TouchShape::none)
         throw Mistake{ground.at, fmt::format("the ground '{}' has no shape", ground.name),

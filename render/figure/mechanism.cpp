@@ -279,12 +279,15 @@ AnchorPoint::Hold AnchorPoint::at(double t, const State& state) {
     return {{run_->output(first_), run_->output(first_ + 1)}, radius};
 }
 
-// The body, which the mouse drags first; null if only texts, curves and connecting parts move.
+// The body, which the mouse drags first; null if only texts, curves and connecting parts move. The drawing of a contact
+// comes last.
 const Mechanism::Item* Mechanism::body() const {
     const Item *body = nullptr, *line = nullptr;
     for (const Item& item : items_) {
         if (!item.moves) continue;
-        if (is_body(item.description.shape)) body = &item;
+        const bool is_of_contact = item.description.contact.has_value();
+        if (is_body(item.description.shape) && (body == nullptr || body->description.contact || !is_of_contact))
+            body = &item;
         if (item.description.shape == DrawingShape::segment || item.description.shape == DrawingShape::polyline)
             line = &item;
     }
