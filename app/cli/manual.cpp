@@ -187,5 +187,6 @@ std::string manual_page(std::string_view topic) {
 }
 
 std::string skeleton_system() { return read_text(assets() / "manual" / "skeleton.toml"); }
+std::string skeleton_of_bodies() { return read_text(assets() / "manual" / "skeleton_body.toml"); }
 
 }  // namespace achilles

@@ -17,7 +17,8 @@ std::vector<ManualTopic> manual_topics();
 // words, shortcuts. Throws InputError with the closest topic for an unknown one.
 std::string manual_page(std::string_view topic);
 
-// A template of a system file with every key. It runs as it is.
+// Templates of a system file, typed as energies and as bodies. Together they have every key. Both run as they are.
 std::string skeleton_system();
+std::string skeleton_of_bodies();
 
 }  // namespace achilles

@@ -9,6 +9,7 @@
 #include <regex>
 #include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "app/program.hpp"
@@ -144,7 +145,7 @@ TEST(Instants, AreNotOverwritten) {
 // ---- template of a system ----
 
 TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {
-    const std::string text = skeleton_system();
+    const std::string text = skeleton_system() + skeleton_of_bodies();
     // As `key = value`, in braces or alone, or as `run.key = value`.
     const auto is_there = [&](const std::string& key) {
         return std::regex_search(text, std::regex("(^|[^a-z_])" + key + "( *=|\\.)"));
@@ -161,6 +162,62 @@ TEST(Skeleton, HasEveryKeyAndRunsAsItIs) {
     EXPECT_EQ(run.status, 0) << run.err;
     EXPECT_EQ(run.err, "");
     EXPECT_NE(run.out.find("Zeno"), std::string::npos) << run.out;
+}
+
+// The body skeleton with every line that is commented out put into the list above it.
+std::string skeleton_with_every_line() {
+    std::istringstream lines(skeleton_of_bodies());
+    std::string result, closing;
+    const std::regex entry("# (\\{name = .*\\})(   ?.*)?"), list("# ([a-z]+ = \\[\\{.*\\}\\]).*");
+    for (std::string line; std::getline(lines, line);) {
+        std::smatch found;
+        if (std::regex_match(line, found, entry)) {
+            result += "    " + found[1].str() + ",\n";
+            continue;
+        }
+        result += std::exchange(closing, "");
+        if (line == "]")
+            closing = "]\n";
+        else
+            result += (std::regex_match(line, found, list) ? found[1].str() : line) + "\n";
+        if (line == "coordinate = [") result += "    {name = \"phi\"}, {name = \"psi\"},\n";
+    }
+    result += closing;
+    // Several constraints need a name each, and so does lambda.
+    for (const auto& [alone, named] :
+         {std::pair("{between = [\"ball\", \"floor\"]", "{name = \"floor\", between = [\"ball\", \"floor\"]"),
+          std::pair("[\"lambda\"]", "[\"lambda_floor\"]")})
+        result.replace(result.find(alone), std::string(alone).size(), named);
+    return result;
+}
+
+TEST(Skeleton, CanHaveBodies) {
+    const Folder folder;
+    const Answer written = folder.run("new mine --body");
+    EXPECT_EQ(written.status, 0) << written.err;
+    EXPECT_EQ(content(folder.path() / "mine.toml"), skeleton_of_bodies());
+    const Answer run = folder.run("simulate ./mine.toml");
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_EQ(run.err, "");
+    EXPECT_NE(run.out.find("Zeno"), std::string::npos) << run.out;
+    const Answer check = folder.run("check ./mine.toml");
+    EXPECT_NE(check.out.find("ball on floor"), std::string::npos) << check.out;
+    EXPECT_EQ(folder.run("new other --body --from ball_on_sine").status, 2);
+    EXPECT_EQ(folder.files(), std::vector<std::string>{"mine.toml"});
+}
+
+TEST(Skeleton, OfBodiesHasOnlyLinesThatCanBeTyped) {
+    const std::string text = skeleton_with_every_line();
+    for (const char* name :
+         {"arm", "hand", "wedge", "hoop", "rotor", "table", "hills", "post", "belt", "string", "tip"})
+        EXPECT_NE(text.find("\n    {name = \"" + std::string(name) + "\""), std::string::npos) << name;
+    for (const char* list : {"spring", "damper", "force", "torque", "drawing"})
+        EXPECT_NE(text.find("\n" + std::string(list) + " = [{"), std::string::npos) << list;
+    const Folder folder;
+    folder.put("all.toml", text);
+    const Answer check = folder.run("check ./all.toml");
+    EXPECT_EQ(check.status, 0) << check.err << text;
+    EXPECT_EQ(check.err, "");
 }
 
 TEST(Skeleton, HasAName) {

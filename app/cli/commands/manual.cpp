@@ -75,10 +75,17 @@ void add_manual(CLI::App& program, int& status) {
     CLI::App* create = program.add_subcommand("new", "Writes NAME.toml, a system file to start from");
     const auto name = std::make_shared<std::string>(), from = std::make_shared<std::string>();
     create->add_option("NAME", *name, "file to write, with or without .toml")->required()->type_name("");
-    create->add_option("--from", *from, "system to copy (default: a ball on a floor, with every key explained)")
-        ->type_name("SYSTEM");
-    create->callback([name, from, &status] {
-        write_new(*name, from->empty() ? skeleton_system() : read_text(find_system(*from)));
+    CLI::Option* copied =
+        create->add_option("--from", *from, "system to copy (default: a ball on a floor, with every key explained)")
+            ->type_name("SYSTEM");
+    const auto of_bodies = std::make_shared<bool>(false);
+    create->add_flag("--body", *of_bodies, "the ball as a body, with what can be typed in place of energies")
+        ->excludes(copied);
+    create->callback([name, from, of_bodies, &status] {
+        const std::string text = *of_bodies      ? skeleton_of_bodies()
+                                 : from->empty() ? skeleton_system()
+                                                 : read_text(find_system(*from));
+        write_new(*name, text);
         status = reached_end;
     });
 }
