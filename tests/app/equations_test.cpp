@@ -105,7 +105,7 @@ std::string rows_of(const EquationSheet& sheet) {
     return text;
 }
 
-TEST(Equations, OfBodiesBeginWithThem) {
+TEST(Equations, BeginWithTheBodies) {
     const Model model(test::system(test::mechanism("kneed_leg")));
     achilles::Run run = model.default_run();
     expect_lines(rows_of(mechanism_sheet(model, run)),

@@ -45,7 +45,7 @@ class ReproducedPicture : public testing::TestWithParam<std::string> {
 };
 
 // A mechanism typed as bodies: the picture carries the bodies, not the energies made of them.
-TEST_P(ReproducedPicture, OfBodies) {
+TEST_P(ReproducedPicture, KeepsBodiesAsTyped) {
     const Folder folder;
     const std::string leg = content(ACHILLES_SOURCE_DIR "/tests/reference/mechanisms/kneed_leg.toml");
     folder.put("leg.toml", leg);

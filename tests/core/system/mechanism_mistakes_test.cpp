@@ -36,6 +36,21 @@ TEST_P(MechanismMistakes, AreToldWithTheirPlace) {
     EXPECT_EQ(test::told(test::changed(ball_over_floor, {{one.from, one.to}})), one.message);
 }
 
+// Words of MJCF, URDF, Modelica and of formulas, in place of the keys.
+TEST(WordsOfOtherPrograms, LeadToTheKeysOfBodies) {
+    for (const auto& [from, to, question] :
+         {std::tuple{"mass = \"m\"", "m = \"m\"", "unknown key 'm' in [[body]]; did you mean 'mass'?"},
+          {"disc = \"r\"", "radius = \"r\"", "unknown key 'radius' in [[body]]; did you mean 'disc'?"},
+          {"angle = \"phi\"", "rotation = \"phi\"", "unknown key 'rotation' in [[body]]; did you mean 'angle'?"},
+          {"stiffness = 3", "k = 3", "unknown key 'k' in [[spring]]; did you mean 'stiffness'?"},
+          {"rest = 1", "s_unstretched = 1", "unknown key 's_unstretched' in [[spring]]; did you mean 'rest'?"},
+          {"gravity = [", "g = [", "unknown key 'g' in [world]; did you mean 'gravity'?"},
+          {"spring = [{", "gravity = -9.81\nspring = [{", "write world = {gravity = [0, -9.81]} with bodies"}}) {
+        const std::string message = test::told(test::changed(ball_over_floor, {{from, to}}));
+        EXPECT_NE(message.find(question), std::string::npos) << message;
+    }
+}
+
 const MechanismMistake mechanism_mistakes[] = {
     {"Acceleration", R"m(0]]}]
 )m",
