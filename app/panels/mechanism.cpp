@@ -1,6 +1,6 @@
 // The mechanism view: the mechanism at the current time with trail, velocity and contact force. The wheel zooms,
-// dragging the background pans, a double click fits. Dragging any point of a body changes the initial position, dragging
-// the tip of the velocity arrow the initial velocity.
+// dragging the background pans, a double click fits. Dragging any point of a body changes the initial position,
+// dragging the tip of the velocity arrow the initial velocity.
 #include <fmt/format.h>
 
 #include <algorithm>

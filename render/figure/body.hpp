@@ -46,8 +46,8 @@ class Body {
 };
 
 // Coordinates that move the body to `place` at time t, starting from those of `state` (Gauss-Newton, each step nearer
-// than the one before). A body that moves on a line, or that cannot reach the place, gets as close as it can. nullopt if
-// a position or a step is not finite.
+// than the one before). A body that moves on a line, or that cannot reach the place, gets as close as it can. nullopt
+// if a position or a step is not finite.
 std::optional<Vector> held_at(AnchorPoint& grip, double t, const State& state, const Point& place,
                               const KeptFunctionsAt& kept = {});
 

@@ -9,8 +9,9 @@ namespace achilles {
 Vector start_towards(const Model& model, const Run& run, const Vector& q);
 
 // The coordinates of a start, from those of the run, with which the point is as near to `place` as the coordinates and
-// the gaps let it come. A contact that would be penetrated is kept at gap 0, so that the point slides along the surface.
-// Every result is one from which the run can start; the start of the run itself if there is no nearer one.
+// the gaps let it come. A contact that would be penetrated is kept at gap 0 (1e-9 above it), so that the point slides
+// along the surface. Every result is one from which the run can start; the start of the run itself if there is no
+// nearer one.
 Vector dragged_start(const Model& model, const Run& run, AnchorPoint& point, const Point& place);
 
 }  // namespace achilles
