@@ -62,13 +62,13 @@ TEST(MechanismDrawings, AreThoseOfTheExpandedFile) {
     }
 }
 
-constexpr const char* head = R"toml(coordinate = [{name = "x"}, {name = "y", start = 2}, {name = "phi"}]
+constexpr const char* plane_head = R"toml(coordinate = [{name = "x"}, {name = "y", start = 2}, {name = "phi"}]
 world = {gravity = [0, -9.81], points = {hook = [0, 5]}}
 )toml";
 
 // In the expanded file, too.
 TEST(MechanismDrawings, PutGroundsBehindSpringsBehindBodies) {
-    const std::string text = std::string(head) + R"toml(
+    const std::string text = std::string(plane_head) + R"toml(
 body = [{name = "block", mass = 1, inertia = 1, box = [1, 1], at = ["x", "y"], angle = "phi"}]
 ground = [{name = "floor", line = [[-1, 0], [1, 0]]}, {name = "wall", line = [[5, 0], [5, 1]]}]
 spring = [{between = ["block", "world.hook"], stiffness = 1, rest = 1}]
@@ -80,8 +80,9 @@ constraint = [
     for (const std::string& file : {text, expand_system(text, "f.toml")}) {
         std::vector<Shape> shapes;
         for (const DrawingDescription& drawing : drawings_in(file)) shapes.push_back(drawing.shape);
-        EXPECT_EQ(shapes,
-                  (std::vector{Shape::ground, Shape::ground, Shape::spring, Shape::box, Shape::disc, Shape::disc}))
+        // The first disc is the mount of the spring, the others are the corners that touch.
+        EXPECT_EQ(shapes, (std::vector{Shape::ground, Shape::ground, Shape::disc, Shape::spring, Shape::box,
+                                       Shape::disc, Shape::disc}))
             << file;
     }
 }
@@ -89,29 +90,35 @@ constraint = [
 // A pin for each joint; none for a body that moves freely, slides, or is fixed to another one.
 TEST(MechanismDrawings, ShowJoints) {
     const auto pins = [](const std::string& bodies) {
-        return of_shape(drawings_in(std::string(head) + "body = [" + bodies +
+        return of_shape(drawings_in(std::string(plane_head) + "body = [" + bodies +
                                     "]\nconstraint = [{gap = \"y\", restitution = 0}]\n"),
                         Shape::disc)
             .size();
     };
-    const std::string cart = R"({name = "cart", mass = 1, box = [1, 1], at = ["x", "y"]}, )";
-    EXPECT_EQ(pins(cart + R"({name = "a", mass = 1, rod = [[0, 0], [1, 0]], on = "cart", angle = "phi"})"), 1U);
-    EXPECT_EQ(pins(cart + R"({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = "cart.upper_left", angle = "phi"})"),
-              1U);
-    EXPECT_EQ(pins(cart + R"({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = ["sin(t)", 0], angle = "phi"
-})"), 1U);
-    EXPECT_EQ(pins(cart + R"({name = "a", mass = 1, inertia = 1, rod = [[0, 0], [1, 0]], on = "cart", angle = "phi", hidden = true})"), 0U);
-EXPECT_EQ(pins(R"({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = ["x", "y"], angle = "phi"})"), 0U);
-const std::string arm =
-    cart + R"({name = "a", mass = 1, rod = [[0, 0], [1, 0]], on = "cart", angle = "phi", hidden = true}, )";
-EXPECT_EQ(pins(arm + R"({name = "b", mass = 1, rod = [[0, 0], [1, 0]], at = "a.end", angle = "phi + pi/2"})"), 0U);
-EXPECT_EQ(pins(arm + R"({name = "b", mass = 1, rod = [[0, 0], [1, 0]], on = "a", at = ["y", 0], angle = "x"})"), 0U);
+    const std::string cart = R"toml({name = "cart", mass = 1, box = [1, 1], at = ["x", "y"]}, )toml";
+    EXPECT_EQ(pins(cart + R"toml({name = "a", mass = 1, rod = [[0, 0], [1, 0]], on = "cart", angle = "phi"})toml"), 1U);
+    EXPECT_EQ(
+        pins(cart + R"toml({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = "cart.upper_left", angle = "phi"})toml"),
+        1U);
+    EXPECT_EQ(
+        pins(cart + R"toml({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = ["sin(t)", 0], angle = "phi"})toml"),
+        1U);
+    EXPECT_EQ(pins(R"toml({name = "a", mass = 1, rod = [[0, 0], [1, 0]], at = ["x", "y"], angle = "phi"})toml"), 0U);
+    const std::string with_arm =
+        cart + R"toml({name = "a", mass = 1, rod = [[0, 0], [1, 0]], on = "cart", angle = "phi", hidden = true})toml";
+    EXPECT_EQ(pins(with_arm), 0U);
+    EXPECT_EQ(pins(with_arm +
+                   R"toml(, {name = "b", mass = 1, rod = [[0, 0], [1, 0]], at = "a.end", angle = "phi + pi/2"})toml"),
+              0U);
+    EXPECT_EQ(pins(with_arm +
+                   R"toml(, {name = "b", mass = 1, rod = [[0, 0], [1, 0]], on = "a", at = ["y", 0], angle = "x"})toml"),
+              0U);
 }
 
 // The surface of a body that is drawn is a line, that of a frame is hatched.
 TEST(MechanismDrawings, HatchGroundsThatNobodyCarries) {
     const auto drawn = [](const std::string& table) {
-        return drawings_in(std::string(head) +
+        return drawings_in(std::string(plane_head) +
                            "body = [{name = \"ball\", mass = 1, inertia = 1, at = [\"x\", \"y\"], angle = \"phi\"}, "
                            "{name = \"table\"" +
                            table + ", at = [0, \"-1 + 0.1*sin(t)\"]}]\n" + R"toml(
@@ -129,7 +136,7 @@ constraint = [{between = ["ball", "top"], restitution = 0.5}]
 TEST(MechanismDrawings, PutSpringsWithTheSameEndsSideBySide) {
     for (const char* place : {R"(["x", "y"])", R"([0, "x + 2*y + phi"])", R"(["x + 2*y + phi", 5])"}) {
         const auto all =
-            drawings_in(std::string(head) + "body = [{name = \"ball\", mass = 1, at = " + place + "}, " + R"toml(
+            drawings_in(std::string(plane_head) + "body = [{name = \"ball\", mass = 1, at = " + place + "}, " + R"toml(
   {name = "rest", mass = 1, inertia = 1, at = ["x", "y"], angle = "phi"}]
 spring = [{between = ["ball", "world.hook"], stiffness = 1, rest = 1}]
 damper = [{between = ["ball", "world.hook"], damping = 1}]
