@@ -14,7 +14,7 @@ namespace {
 
 using Kind = FormulaPiece::Kind;
 
-bool is_digit(char c) { return c >= '0' && c <= '9'; }
+bool is_formula_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); }
 
 constexpr std::array<std::string_view, 14> function_words{"sin",  "cos",  "tan", "arcsin", "arccos", "arctan", "sinh",
@@ -164,9 +164,9 @@ class FormulaReader {
     void next(Formula& row) {
         if (name(row)) return;
         const char c = text_[at_];
-        if (is_digit(c) || c == '.') {
+        if (is_formula_digit(c) || c == '.') {
             std::size_t end = at_;
-            while (end < text_.size() && (is_digit(text_[end]) || text_[end] == '.')) ++end;
+            while (end < text_.size() && (is_formula_digit(text_[end]) || text_[end] == '.')) ++end;
             row.pieces.push_back(plain(Kind::letters, std::string(text_.substr(at_, end - at_))));
             at_ = end;
             return;
