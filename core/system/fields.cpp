@@ -204,10 +204,11 @@ std::vector<Fields> tables(const TomlValue& root, const std::string& key, ErrorC
                           fmt::format("write one {} for each", where)});
             continue;
         }
-        constexpr std::size_t most = 1000;
+        constexpr std::size_t max_tables = 1000;
         const std::vector<TomlValue>& items = entry.value.items;
-        if (items.size() > most) mistakes.add({items[most].at, fmt::format("more than {} {}", most, where), {}});
-        for (std::size_t i = 0; i < std::min(items.size(), most); ++i)
+        if (items.size() > max_tables)
+            mistakes.add({items[max_tables].at, fmt::format("more than {} {}", max_tables, where), {}});
+        for (std::size_t i = 0; i < std::min(items.size(), max_tables); ++i)
             mistakes.attempt([&] { list.emplace_back(items[i], where); });
     }
     return list;

@@ -172,11 +172,11 @@ std::size_t byte_of_column(std::string_view line, int column) {
 }
 
 std::string shown(std::string_view text) {
-    constexpr std::size_t most = 60;
-    const std::vector<std::string> list = characters(text.substr(0, 4 * most));
+    constexpr std::size_t max_characters = 60;
+    const std::vector<std::string> list = characters(text.substr(0, 4 * max_characters));
     std::string result;
-    for (std::size_t i = 0; i < std::min(list.size(), most); ++i) result += list[i];
-    return list.size() > most || text.size() > 4 * most ? result + "..." : result;
+    for (std::size_t i = 0; i < std::min(list.size(), max_characters); ++i) result += list[i];
+    return list.size() > max_characters || text.size() > 4 * max_characters ? result + "..." : result;
 }
 
 std::string subnormal_parameter(std::string_view name, double value) {

@@ -28,9 +28,9 @@ InputError no_file(const std::filesystem::path& file) {
     if (!folder.empty() && !std::filesystem::is_directory(folder, problem))
         return {file.string(), {}, "there is no folder " + shown(folder.string())};
     std::vector<std::string> names;
-    constexpr std::size_t most = 10000;
+    constexpr std::size_t max_names = 10000;
     for (const auto& entry : std::filesystem::directory_iterator(folder.empty() ? "." : folder, problem)) {
-        if (names.size() == most) break;
+        if (names.size() == max_names) break;
         if (entry.is_regular_file(problem)) names.push_back(entry.path().filename().string());
     }
     const std::string best = nearest(file.filename().string(), names);

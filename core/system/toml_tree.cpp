@@ -44,7 +44,7 @@ std::size_t skip(const std::string& text, std::size_t i) {
 
 // Rejects keys with very many dotted parts: toml++ would nest tables so deeply that freeing them overflows the stack.
 void refuse_deep_keys(const std::string& text, const std::string& name) {
-    constexpr int most = 16;
+    constexpr int max_parts = 16;
     int dots = 0, line = 1;
     std::size_t line_start = 0;
     for (std::size_t i = 0; i < text.size(); ++i) {
@@ -57,9 +57,10 @@ void refuse_deep_keys(const std::string& text, const std::string& name) {
                 line_start = i + 1;
             }
         } else if (c == '.') {
-            if (++dots > most) {
+            if (++dots > max_parts) {
                 const Location at{line, static_cast<int>(i - line_start) + 1};
-                throw InputError(name, at, fmt::format("a key with more than {} parts", most), {}, line_of(text, line));
+                throw InputError(name, at, fmt::format("a key with more than {} parts", max_parts), {},
+                                 line_of(text, line));
             }
         } else if (c == '\n' || c == '=' || c == ',' || c == '[' || c == ']' || c == '{' || c == '}') {
             dots = 0;
