@@ -22,7 +22,7 @@ const std::string falling_ball =
     "[lagrangian]\nkinetic = \"y'^2/2\"\npotential = \"g*y\"\n[[constraint]]\ngap = \"y\"\nrestitution = 0.5\n"
     "[run]\nend_time = 5.0\n";
 
-const std::string arguments = "figure ./drop.toml --set g=3 --set \"y'=0.5\" --size 400x300 --out ";
+const std::string figure_arguments = "figure ./drop.toml --set g=3 --set \"y'=0.5\" --size 400x300 --out ";
 
 TEST(Origin, ACommandLineKeepsItsWords) {
     const std::vector<std::string> words{"figure", "a b'c.toml", "--out",   "x.png", "--set",     "x'=1.5",
@@ -61,7 +61,7 @@ TEST_P(ReproducedPicture, FromWhatItCarriesWhateverBecameOfTheFile) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     const std::string picture = "picture." + GetParam();
-    ASSERT_EQ(folder.run(arguments + picture).status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
 
     const Origin origin = origin_of(bytes);
@@ -87,7 +87,7 @@ TEST_P(ReproducedPicture, FromWhatItCarriesWhateverBecameOfTheFile) {
 TEST_P(ReproducedPicture, TellsAReaderParametersOptionsAndCertificates) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
-    ASSERT_EQ(folder.run(arguments + "a." + GetParam()).status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + "a." + GetParam()).status, 0);
     const std::string bytes = content(folder.path() / ("a." + GetParam()));
     std::string all;
     for (const Note& note : notes_of(bytes)) all += note.keyword + ": " + note.text + "\n";
@@ -106,7 +106,7 @@ TEST_P(ReproducedPicture, TellsAReaderOfALimitOfSteps) {
     folder.put("drop.toml", falling_ball);
     for (const bool limited : {false, true}) {
         const std::string picture = "a." + GetParam();
-        ASSERT_EQ(folder.run(arguments + picture + (limited ? " --max-steps 100000" : "")).status, 0);
+        ASSERT_EQ(folder.run(figure_arguments + picture + (limited ? " --max-steps 100000" : "")).status, 0);
         const std::string bytes = content(folder.path() / picture);
         std::string told;
         for (const Note& note : notes_of(bytes))
@@ -120,7 +120,7 @@ TEST_P(ReproducedPicture, ADifferenceIsTold) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
     const std::string picture = "a." + GetParam();
-    ASSERT_EQ(folder.run(arguments + picture).status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + picture).status, 0);
     const std::string bytes = content(folder.path() / picture);
     if (picture_format(bytes) == "png") {
         // Another version, with valid checksums.
@@ -194,8 +194,8 @@ TEST(Reproduce, ARunThatStoppedEarlyIsThatAgain) {
 TEST(Reproduce, RefusesWhatItCannotTrust) {
     const Folder folder;
     folder.put("drop.toml", falling_ball);
-    ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
-    ASSERT_EQ(folder.run(arguments + "a.svg").status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + "a.png").status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + "a.svg").status, 0);
     const std::string png = content(folder.path() / "a.png"), svg = content(folder.path() / "a.svg");
     const std::string bare = png.substr(0, 33) + png.substr(png.find("IDAT") - 4);
     std::string flipped = png;
@@ -254,7 +254,7 @@ TEST(Reproduce, ForeignNotesChangeNothing) {
     using std::string_literals::operator""s;
     const Folder folder;
     folder.put("drop.toml", falling_ball);
-    ASSERT_EQ(folder.run(arguments + "a.png").status, 0);
+    ASSERT_EQ(folder.run(figure_arguments + "a.png").status, 0);
     const std::string png = content(folder.path() / "a.png");
     const std::size_t end = png.size() - 12;
     const std::string broken = "\x00\x00\x00\x0DiTXtComment\x00\x00\x00\x00\x00\xFFvo\x85R"s,
