@@ -34,8 +34,7 @@ class MechanismPage {
         put_contacts();
         if (mechanism.is_prescribed)
             say("Time moves a mass: M, impacts and lambda are those at frozen t, and 'energy' is T2 - T0 + V, where T2 "
-                "is "
-                "quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that balance.");
+                "is quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that balance.");
     }
 
  private:
@@ -61,9 +60,10 @@ class MechanismPage {
     void say(const std::string& sentence) { page_.sentence({sentence, Page::escaped(sentence)}); }
 
     // "0.1029 kg m^2": the value at the start, with its unit if that is known.
-    std::string value(const std::string& expression) {
+    std::string value(const std::string& expression, std::string unit) {
         const double number = value_of(parse(expression, scope_, graph_), start_);
-        std::string unit = is_name(expression) ? unit_of(system_, expression) : unit_of_expression(system_, expression);
+        if (unit.empty())
+            unit = is_name(expression) ? unit_of(system_, expression) : unit_of_expression(system_, expression);
         for (char& c : unit)
             if (c == '*') c = ' ';
         return fmt::format("{:.4g}{}{}", number, unit.empty() ? "" : " ", unit);
@@ -75,7 +75,8 @@ class MechanismPage {
         std::vector<std::vector<std::string>> rows;
         for (const SummaryLine& line : lines) {
             fmt::dynamic_format_arg_store<fmt::format_context> values;
-            for (const std::string& expression : line.values) values.push_back(value(expression));
+            for (std::size_t i = 0; i < line.values.size(); ++i)
+                values.push_back(value(line.values[i], i < line.units.size() ? line.units[i] : ""));
             rows.push_back({words(line.name), words(fmt::vformat(line.pattern, values))});
         }
         page_.lines(rows);

@@ -96,10 +96,12 @@ struct OrbitDescription {
 
 // What the reader understood of a mechanism's bodies (system/expand.hpp), for `check`; empty for typed energies.
 
-// A line such as "thigh  {0}, {1} about its center; at hip", with expressions for the numbers in braces.
+// A line such as "thigh  {0}, {1} about its center; at hip", with expressions for the numbers in braces. Backquotes in it
+// enclose expressions.
 struct SummaryLine {
     std::string name, pattern;
     std::vector<std::string> values;
+    std::vector<std::string> units = {};  // of the values; missing or "": that of the expression
 };
 // A contact between shapes, or an empty name for a typed gap.
 struct SummaryContact {

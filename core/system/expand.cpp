@@ -9,6 +9,7 @@
 #include "system/mechanism.hpp"
 #include "system/mechanism_drawings.hpp"
 #include "system/mechanism_terms.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 
@@ -286,6 +287,8 @@ class MechanismExpander {
         if (!body.inertia.is_zero()) {
             line.pattern += fmt::format(", {{{}}} about its center", line.values.size());
             line.values.push_back(symbols_.text(body.inertia));
+            // Lengths that are plain numbers have no unit of their own.
+            if (!body.mass.is_zero() && unit_of_expression(system_, line.values[0]) == "kg") line.units = {"", "kg*m^2"};
             if (!body.how.empty()) line.pattern += fmt::format(" ({})", body.how);
         } else if (!body.mass.is_zero()) {
             line.pattern += ", a point";

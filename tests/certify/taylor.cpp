@@ -63,6 +63,14 @@ void Evaluator<Series<Number>>::lower(const Instruction& in, std::size_t result)
             steps_.push_back({Kind::sin_cos, in.a, result, sine});
             return;
         }
+        case Operation::asin: {  // asin(a)' sqrt(1 - a^2) = a'
+            const std::size_t square = fresh(), rest = fresh(), root = fresh();
+            steps_.push_back({Kind::multiply, in.a, in.a, square});
+            steps_.push_back({Kind::subtract, constant(1), square, rest});
+            steps_.push_back({Kind::sqrt, rest, 0, root});
+            steps_.push_back({Kind::asin, in.a, root, result});
+            return;
+        }
         case Operation::power:
             return lower_power(in, result);
         case Operation::pi:
@@ -134,6 +142,8 @@ Number Evaluator<Series<Number>>::start(const Step& step) {
             return exp(a);
         case Kind::log:
             return log(a);
+        case Kind::asin:
+            return asin(a);
     }
     return 0;
 }
@@ -177,6 +187,9 @@ Number Evaluator<Series<Number>>::next(const Step& step, std::size_t k) {
         case Kind::log:
             for (std::size_t j = 1; j < k; ++j) sum += j * at(c, j) * at(a, k - j);
             return (at(a, k) - sum / k) / at(a, 0);
+        case Kind::asin:
+            for (std::size_t j = 1; j < k; ++j) sum += j * at(c, j) * at(b, k - j);
+            return (at(a, k) - sum / k) / at(b, 0);
     }
     return 0;
 }

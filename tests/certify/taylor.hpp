@@ -38,7 +38,7 @@ class Evaluator<test::Series<Number>> {
     }
 
  private:
-    enum class Kind { add, subtract, multiply, divide, negate, sqrt, sin_cos, exp, log };
+    enum class Kind { add, subtract, multiply, divide, negate, sqrt, sin_cos, exp, log, asin };
     struct Step {
         Kind kind;
         std::size_t a, b, result;  // sin_cos: sin into result, cos into b

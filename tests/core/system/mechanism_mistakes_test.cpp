@@ -45,7 +45,7 @@ TEST(WordsOfOtherPrograms, LeadToTheKeysOfBodies) {
           {"stiffness = 3", "k = 3", "unknown key 'k' in [[spring]]; did you mean 'stiffness'?"},
           {"rest = 1", "s_unstretched = 1", "unknown key 's_unstretched' in [[spring]]; did you mean 'rest'?"},
           {"gravity = [", "g = [", "unknown key 'g' in [world]; did you mean 'gravity'?"},
-          {"spring = [{", "gravity = -9.81\nspring = [{", "write world = {gravity = [0, -9.81]} with bodies"}}) {
+          {"spring = [{", "gravity = -9.81\nspring = [{", "with bodies write world = {gravity = [0, -9.81]}"}}) {
         const std::string message = test::told(test::changed(ball_over_floor, {{from, to}}));
         EXPECT_NE(message.find(question), std::string::npos) << message;
     }
