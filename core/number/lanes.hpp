@@ -3,12 +3,14 @@
 // Processors differ in vector size. A function compiled for one size does not use the vectors of another size if it is
 // inlined into code for that size. The arithmetic here is therefore always inlined, and the templates built on it (such
 // as TaylorStep) are compiled once for each vector size: see series/lane_kinds.hpp.
+//
+// Numbers are loaded and stored part by part. A copy by std::memcpy is compiled to pieces of 16 bytes, and a wider vector
+// that is loaded from there has to wait until all pieces have left the store buffer.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <numbers>
 
 #include "number/double8.hpp"
@@ -57,16 +59,19 @@ struct alignas(Double8) Mask {
 template <std::size_t Bytes>
 struct alignas(Double8) Lanes {
     using Vector [[gnu::vector_size(Bytes)]] = double;
+    using VectorInMemory [[gnu::vector_size(Bytes), gnu::may_alias]] = double;
     using Mask = achilles::Mask<Bytes>;
     static constexpr std::size_t per_part = Mask::per_part;
     Vector part[sizeof(Double8) / Bytes];
 
     Lanes() = default;
     IN_LANES Lanes(double x) { EACH_PART part[p] = Vector{} + x; }
-    IN_LANES Lanes(const Double8& x) { std::memcpy(part, x.lane, sizeof part); }
+    IN_LANES Lanes(const Double8& x) {
+        EACH_PART part[p] = *reinterpret_cast<const VectorInMemory*>(x.lane + p * per_part);
+    }
     IN_LANES operator Double8() const {
         Double8 x;
-        std::memcpy(x.lane, part, sizeof part);
+        EACH_PART* reinterpret_cast<VectorInMemory*>(x.lane + p * per_part) = part[p];
         return x;
     }
     IN_LANES double operator[](std::size_t i) const { return part[i / per_part][i % per_part]; }
@@ -101,12 +106,12 @@ struct alignas(Double8) Lanes {
     // The bits of the doubles as integers, and back.
     IN_LANES friend Mask bits(const Lanes& a) {
         Mask result;
-        std::memcpy(result.part, a.part, sizeof a);
+        EACH_PART result.part[p] = reinterpret_cast<typename Mask::Vector>(a.part[p]);
         return result;
     }
     IN_LANES static Lanes doubles(const Mask& a) {
         Lanes result;
-        std::memcpy(result.part, a.part, sizeof a);
+        EACH_PART result.part[p] = reinterpret_cast<Vector>(a.part[p]);
         return result;
     }
     IN_LANES friend Lanes abs(const Lanes& a) {

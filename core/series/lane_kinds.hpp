@@ -1,7 +1,9 @@
 // Vector sizes for eight runs. Each size has a source file that compiles lane_steps.hpp, and all templates over the
-// number type that it uses, for Lanes<Bytes>: with the 128 bits of every processor, and with AVX-512. (256 bits are
-// used by machine code only, which takes most of the time; compiled code of 256 bits beside it is no faster than that
-// of 128.)
+// number type that it uses, for Lanes<Bytes>: with the 128 bits of every processor, the 256 of AVX2 and the 512 of
+// AVX-512.
+//
+// No other file may include lane_steps.hpp: it would compile the functions of all sizes that it uses without their
+// vectors, and the linker may keep those.
 //
 // Never pass lanes by value between source files: each size has its own calling convention. A source file of one size
 // must not define a function that another file also defines, because the linker keeps only one of them. All of its
@@ -17,7 +19,7 @@
 #include "series/lane_stepper.hpp"
 
 #if defined(__x86_64__) && defined(__linux__) && !defined(__clang__)
-#define ACHILLES_HAS_AVX512
+#define ACHILLES_HAS_WIDE_LANES
 #endif
 
 namespace achilles {
@@ -29,6 +31,7 @@ struct LaneKind {
     static void sine_and_cosine(const Double8* angle, Double8* sine, Double8* cosine);
 };
 using PortableLanes = LaneKind<16>;
+using Avx2Lanes = LaneKind<32>;
 using Avx512Lanes = LaneKind<64>;
 
 }  // namespace achilles

@@ -60,9 +60,16 @@ class LaneStepper {
     virtual void stay(LaneStep& step, long most) = 0;
 };
 
-// The vectors used: those of every processor, with or without machine code for AVX2, or those of AVX-512, with or
-// without its own machine code. The results are the same to the last bit.
-enum class Vectors { portable, portable_with_machine_code, avx512, avx512_with_machine_code };
+// The vectors used: those of every processor, of AVX2 or of AVX-512, with or without machine code. That of portable
+// vectors needs AVX2. The results are the same to the last bit.
+enum class Vectors {
+    portable,
+    portable_with_machine_code,
+    avx2,
+    avx2_with_machine_code,
+    avx512,
+    avx512_with_machine_code
+};
 // What this processor and this build support, the fastest first.
 std::vector<Vectors> possible_vectors();
 std::unique_ptr<LaneStepper> make_lane_stepper(const LanePrograms& programs, double tolerance,

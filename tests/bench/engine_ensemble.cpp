@@ -42,6 +42,10 @@ std::string name_of(Vectors vectors) {
             return ", by portable eight";
         case Vectors::portable_with_machine_code:
             return ", and AVX2 machine code";
+        case Vectors::avx2:
+            return ", by AVX2";
+        case Vectors::avx2_with_machine_code:
+            return ", by AVX2 and machine code";
         case Vectors::avx512:
             return ", by AVX-512";
         case Vectors::avx512_with_machine_code:

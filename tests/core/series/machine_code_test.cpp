@@ -107,13 +107,22 @@ TEST_F(MachineCodes, AreMadeForRunsSideBySide) {
     }
 }
 
+// The widest vectors that the processor has come first. Their code is compiled by GCC only.
+#if defined(__GNUC__) && !defined(__clang__)
+TEST_F(MachineCodes, TakeTheWidestVectorsOfTheProcessor) {
+    const auto possible = possible_vectors();
+    EXPECT_EQ(possible.front(), widest_of_processor() == Width::eight ? Vectors::avx512_with_machine_code
+                                                                      : Vectors::avx2_with_machine_code);
+    EXPECT_EQ(std::count(possible.begin(), possible.end(), Vectors::avx2), 1);
+}
+
 // Skipped on processors without AVX-512. Then no test runs its code paths.
 TEST_F(MachineCodes, TakeAvx512WhereTheProcessorHasIt) {
     if (widest_of_processor() != Width::eight) GTEST_SKIP() << "this processor has no AVX-512: its paths were not run";
-#if defined(__GNUC__) && !defined(__clang__)
-    EXPECT_EQ(possible_vectors().front(), Vectors::avx512_with_machine_code);
-#endif
+    const auto possible = possible_vectors();
+    EXPECT_EQ(std::count(possible.begin(), possible.end(), Vectors::avx512), 1);
 }
+#endif
 
 TEST_F(MachineCodes, AreNotMadeWhereTheyAreSwitchedOff) {
     const auto model = test::load("ball_on_sine");
@@ -133,6 +142,7 @@ TEST_F(MachineCodes, AreNotMadeWhereTheyAreSwitchedOff) {
     }
     for (const Vectors vectors : possible_vectors()) {
         EXPECT_NE(vectors, Vectors::avx512_with_machine_code);
+        EXPECT_NE(vectors, Vectors::avx2_with_machine_code);
         EXPECT_NE(vectors, Vectors::portable_with_machine_code);
     }
 }
