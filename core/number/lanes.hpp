@@ -4,8 +4,9 @@
 // inlined into code for that size. The arithmetic here is therefore always inlined, and the templates built on it (such
 // as TaylorStep) are compiled once for each vector size: see series/lane_kinds.hpp.
 //
-// Numbers are loaded and stored part by part. A copy by std::memcpy is compiled to pieces of 16 bytes, and a wider vector
-// that is loaded from there has to wait until all pieces have left the store buffer.
+// Numbers are loaded, stored and copied part by part. The compiler copies other structures, and memory, in pieces of 16
+// bytes. A wider vector that is loaded from there has to wait until all pieces have left the store buffer. (A copy need
+// not be inlined: containers of the standard library are not compiled for wide vectors.)
 #pragma once
 
 #include <cmath>
@@ -37,6 +38,11 @@ struct alignas(Double8) Mask {
     Vector part[sizeof(Double8) / Bytes];
 
     Mask() = default;
+    Mask(const Mask& x) { *this = x; }
+    Mask& operator=(const Mask& x) {
+        EACH_PART part[p] = x.part[p];
+        return *this;
+    }
     IN_LANES explicit Mask(bool all) { EACH_PART part[p] = Vector{} - static_cast<std::int64_t>(all); }
     IN_LANES bool operator[](std::size_t i) const { return part[i / per_part][i % per_part] != 0; }
     IN_LANES void set(std::size_t i) { part[i / per_part][i % per_part] = -1; }
@@ -65,6 +71,11 @@ struct alignas(Double8) Lanes {
     Vector part[sizeof(Double8) / Bytes];
 
     Lanes() = default;
+    Lanes(const Lanes& x) { *this = x; }
+    Lanes& operator=(const Lanes& x) {
+        EACH_PART part[p] = x.part[p];
+        return *this;
+    }
     IN_LANES Lanes(double x) { EACH_PART part[p] = Vector{} + x; }
     IN_LANES Lanes(const Double8& x) {
         EACH_PART part[p] = *reinterpret_cast<const VectorInMemory*>(x.lane + p * per_part);

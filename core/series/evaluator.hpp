@@ -107,13 +107,14 @@ class SeriesEvaluator {
     // Evaluates order 0 at these values of the moving inputs and this time. `rate` is the derivative of the time with
     // respect to the variable of the series: 1, or the duration of its unit.
     void begin(const Number* inputs, const Number& time = 0.0, const Number& rate = 1.0) {
-        std::copy_n(inputs, inputs_, zero_.numbers().data());
+        for (std::size_t i = 0; i < inputs_; ++i) zero_.numbers()[i] = inputs[i];
         if (program_->plan_.clock != 0) {
             zero_.clock() = time;
             tables_.now[program_->plan_.clock] = rate;
         }
         zero_.run();
-        std::fill_n(tables_.now + program_->plan_.series, sums_.count(), Number(0.0));  // inner sums of order 1
+        Number* const sums = tables_.now + program_->plan_.series;
+        for (std::size_t i = 0; i < sums_.count(); ++i) sums[i] = 0.0;  // inner sums of order 1
         program_->start(zero_.numbers().data(), coefficients_.data(), factors_.data());
     }
     // Order 0 of an output. Requires begin().
@@ -142,7 +143,7 @@ class SeriesEvaluator {
         const SeriesPlan& plan = program_->plan_;
         if constexpr (is_lanes<Number>)
             if (code_) {
-                std::copy_n(row, inputs_, tables_.now + 1);
+                for (std::size_t i = 0; i < inputs_; ++i) tables_.now[1 + i] = row[i];
                 const auto doubles = [](auto* numbers) { return reinterpret_cast<double*>(numbers); };
                 return code_->make_orders(doubles(factors_.data()), doubles(tables_.now), doubles(row - plan.states()),
                                           last);
