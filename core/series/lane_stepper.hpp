@@ -37,8 +37,9 @@ struct LaneStep {
     Double8 brief;     // in flight: the length of a brief step from here, s
     // The contact quantities at the end of the step, and the effect on h of rounding q.
     Double8 end_h, end_hdot, end_W, end_gap_t, rounding;
-    // In contact: the minimum gap at the ends of steps, and the number of steps, of which only the last may not be
-    // plain.
+    // In contact: how much state_error grows in each step; the minimum gap at the ends of steps, including that given;
+    // and the number of steps, of which only the last may not be plain.
+    double error_per_step = 0.0;
     Double8 least_gap;
     long steps = 0;
     std::vector<Double8> q_and_v, impulse_direction, g;  // the state; M^-1 g'/W and dh at the end of the step
@@ -46,6 +47,9 @@ struct LaneStep {
     // those before it. All other members are then undefined.
     enum class LaneOutcome : char { needs_scalar_step, no_event, impact };
     std::array<LaneOutcome, Double8::count> end{};
+    // In contact: lanes without a run are idle; their data are valid, but their outcome does not matter. A lane goes on
+    // if its run can make another step from here as it is.
+    std::array<bool, Double8::count> idle{}, goes_on{};
 };
 
 class LaneStepper {
@@ -56,7 +60,7 @@ class LaneStepper {
     // One step in flight. A brief step has the lower order; the flight should end within LaneStep::brief, or needs more
     // steps.
     virtual void fly(LaneStep& step, bool brief = false) = 0;
-    // Steps in contact until one of the runs ends or has a step that is not plain; at most `most` steps.
+    // Steps in contact until one of the runs does not go on; at most `most` steps.
     virtual void stay(LaneStep& step, long most) = 0;
 };
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <vector>
 
@@ -53,8 +52,9 @@ class LaneStepperOver final : public LaneStepper {
     }
 
     void stay(LaneStep& step, long most) override {
-        step.least_gap = Number(std::numeric_limits<double>::infinity());
-        Mask plain, go_on;
+        Mask plain, go_on, idle{false};
+        for (std::size_t i = 0; i < Double8::count; ++i)
+            if (step.idle[i]) idle.set(i);
         step.steps = 0;
         do {
             for (std::size_t i = 0; i < 2 * dof_; ++i) before_[i] = step.q_and_v[i];
@@ -66,8 +66,10 @@ class LaneStepperOver final : public LaneStepper {
             step.t = select(plain, min(Number(step.t) + span, step.until), step.t);
             step.duration = select(plain, span, step.duration);
             go_on &= Number(step.until) - step.t > end_of_time * abs(Number(step.t));
-        } while (++step.steps < most && !any(~go_on));
-        say(step, plain, Mask{});
+            step.state_error = Number(step.state_error) + step.error_per_step;
+        } while (++step.steps < most && !any(~(go_on | idle)));
+        say(step, plain, Mask{false});
+        for (std::size_t i = 0; i < Double8::count; ++i) step.goes_on[i] = go_on[i];
     }
 
     // A flight step is plain if partial sums prove that the gap stays open, or that it is monotone (first_descent()).

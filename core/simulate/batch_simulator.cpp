@@ -38,12 +38,12 @@ BatchSimulator::BatchRun::BatchRun(std::size_t number, const std::shared_ptr<con
       stepper(*model, run, surfaces) {}
 
 BatchSimulator::BatchSimulator(const std::shared_ptr<const Model>& model, Vectors vectors)
-    : step_(static_cast<std::size_t>(model->dof())),
-      end_{Vector(model->dof()), Vector(model->dof()), 0.0},
+    : end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
       has_lanes_(model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
                  !model->motion(Mode::holding(ContactSet::of(0))).series.is_partial()),
-      vectors_(vectors) {
+      vectors_(vectors),
+      groups_{RunGroup(end_.q.size()), RunGroup(end_.q.size()), RunGroup(end_.q.size())} {
     result_.starts.resize(1);
     if (has_lanes_) moving_ = moving_parameters(*model);
 }
@@ -56,15 +56,15 @@ void BatchSimulator::work(const BatchSlice& share) {
     const FloatEnvironmentGuard ground;
     share_ = &share;
     while (true) {
-        while (lines_[0].size() + lines_[1].size() + lines_[2].size() < most_under_way) {
+        while (groups_[0].size() + groups_[1].size() + groups_[2].size() < most_under_way) {
             const std::size_t index = share.next.fetch_add(1);
             if (index >= share.count) break;
             begin(index);
         }
-        const auto longest = std::max_element(lines_.begin(), lines_.end(),
+        const auto largest = std::max_element(groups_.begin(), groups_.end(),
                                               [](const RunGroup& a, const RunGroup& b) { return a.size() < b.size(); });
-        if (longest->empty()) return;
-        step(static_cast<Kind>(longest - lines_.begin()));
+        if (largest->size() == 0) return;
+        step(static_cast<Kind>(largest - groups_.begin()));
     }
 }
 
@@ -134,7 +134,7 @@ void BatchSimulator::go_on(BatchRun& member, bool refused) {
         if (member.request->begins || (member.leaves && member.request->plain)) member.alone = member.leaves = false;
         if (member.request->plain && !member.alone && !refused) {
             const Kind kind = !flying ? Kind::contact : member.is_brief() ? Kind::brief_flight : Kind::flight;
-            return lines_[static_cast<std::size_t>(kind)].push_back(&member);
+            return groups_[static_cast<std::size_t>(kind)].queue.push_back(&member);
         }
         member.before = {};
         StepRequest& own = member.own;
@@ -157,41 +157,69 @@ void BatchSimulator::finish(BatchRun& member) {
     spare_.push_back(&member);
 }
 
-// Takes runs with the tolerance of the first one in the queue, because a vector step has one order.
-void BatchSimulator::choose(RunGroup& line) {
-    members_.clear();
-    const double tolerance = line.front()->execution.run().options.tolerance;
-    std::erase_if(line, [&](BatchRun* member) {
-        if (members_.size() == Double8::count || member->execution.run().options.tolerance != tolerance) return false;
-        members_.push_back(member);
-        return true;
-    });
+// Loads runs from the queue into idle lanes. All have the same tolerance, because a vector step has one order. The lanes
+// that stay idle get the request of another run.
+void BatchSimulator::fill_lanes(RunGroup& group, bool flying) {
+    if (group.taken < lanes && !group.queue.empty()) {
+        const BatchRun& first = group.taken > 0 ? group.first() : *group.queue.front();
+        const double tolerance = first.execution.run().options.tolerance;
+        group.step.error_per_step = integration_error(first.execution.run().options, 1.0);
+        std::size_t lane = 0;
+        std::erase_if(group.queue, [&](BatchRun* run) {
+            if (group.taken == lanes || run->execution.run().options.tolerance != tolerance) return false;
+            while (group.runs[lane] != nullptr) ++lane;
+            group.runs[lane] = run;
+            group.steps[lane] = 0;
+            ++group.taken;
+            load(group, lane, *run->request, flying);
+            return true;
+        });
+    }
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        group.step.idle[lane] = group.runs[lane] == nullptr;
+        if (group.step.idle[lane]) load(group, lane, *group.first().request, flying);
+    }
 }
 
 void BatchSimulator::step(Kind kind) {
-    choose(lines_[static_cast<std::size_t>(kind)]);
-    LaneStepper& stepper = prepare();
+    RunGroup& group = groups_[static_cast<std::size_t>(kind)];
     const bool flying = kind != Kind::contact;
-    gather(flying);
+    fill_lanes(group, flying);
+    LaneStepper& stepper = prepare(group);
     if (flying) {
-        stepper.fly(step_, kind == Kind::brief_flight);
+        stepper.fly(group.step, kind == Kind::brief_flight);
     } else {
-        stepper.stay(step_, most_steps());
+        stepper.stay(group.step, most_steps(group));
     }
-    for (std::size_t lane = 0; lane < members_.size(); ++lane) {
-        BatchRun& member = *members_[lane];
-        const EventStart start = member.request->starts.front();
-        member.before = {};
-        if (step_.end[lane] == LaneStep::LaneOutcome::impact && start.multiplicity == 1)
-            member.before = {step_.duration[lane], start.gap.hdot, step_.brief[lane]};
-        if (read(lane, flying)) member.execution.accept(result_);
-        go_on(member, step_.end[lane] == LaneStep::LaneOutcome::needs_scalar_step);
+    for (std::size_t lane = 0; lane < lanes; ++lane) {
+        if (group.runs[lane] == nullptr) continue;
+        group.steps[lane] += flying ? 1 : group.step.steps;
+        if (flying || !group.step.goes_on[lane] || group.steps[lane] >= group.runs[lane]->request->most)
+            leave(group, lane, flying);
     }
 }
 
-// The stepper for these runs, with their parameters in its lanes. Unused lanes repeat the first.
-LaneStepper& BatchSimulator::prepare() {
-    const double tolerance = members_.front()->execution.run().options.tolerance;
+// The run in this lane gets the result of its steps, and waits for others.
+void BatchSimulator::leave(RunGroup& group, std::size_t lane, bool flying) {
+    BatchRun& run = *group.runs[lane];
+    const LaneStep& step = group.step;
+    const EventStart& start = run.request->starts.front();
+    run.before = {};
+    if (step.end[lane] == LaneStep::LaneOutcome::impact && start.multiplicity == 1)
+        run.before = {step.duration[lane], start.gap.hdot, step.brief[lane]};
+    if (read(group, lane, flying)) run.execution.accept(result_);
+    group.runs[lane] = nullptr;
+    --group.taken;
+    go_on(run, step.end[lane] == LaneStep::LaneOutcome::needs_scalar_step);
+}
+
+// The stepper for these runs, with their parameters in its lanes. Idle lanes repeat the first run.
+LaneStepper& BatchSimulator::prepare(const RunGroup& group) {
+    BatchRun& first = group.first();
+    const auto run_in = [&](std::size_t lane) -> const BatchRun& {
+        return group.runs[lane] != nullptr ? *group.runs[lane] : first;
+    };
+    const double tolerance = first.execution.run().options.tolerance;
     auto found = steppers_.find(tolerance);
     if (found == steppers_.end())
         found =
@@ -199,97 +227,98 @@ LaneStepper& BatchSimulator::prepare() {
                 .emplace(tolerance, StepperSlot{make_lane_stepper(model_->lane_programs(), tolerance, vectors_), {}})
                 .first;
     StepperSlot& prepared = found->second;
-    std::array<std::size_t, Double8::count> sets{};
-    for (std::size_t lane = 0; lane < Double8::count; ++lane) sets[lane] = member_in(lane).set;
+    std::array<std::size_t, lanes> sets{};
+    for (std::size_t lane = 0; lane < lanes; ++lane) sets[lane] = run_in(lane).set;
     if (prepared.sets == sets) return *prepared.stepper;
     prepared.sets = sets;
-    std::vector<Double8> parameters(members_.front()->execution.run().parameters.size());
-    for (std::size_t lane = 0; lane < Double8::count; ++lane)
+    std::vector<Double8> parameters(first.execution.run().parameters.size());
+    for (std::size_t lane = 0; lane < lanes; ++lane)
         for (std::size_t i = 0; i < parameters.size(); ++i)
-            parameters[i][lane] = member_in(lane).execution.run().parameters[i];
+            parameters[i][lane] = run_in(lane).execution.run().parameters[i];
     prepared.stepper->fix(parameters);
     return *prepared.stepper;
 }
 
-void BatchSimulator::gather(bool flying) {
-    for (std::size_t lane = 0; lane < Double8::count; ++lane) {
-        const StepRequest& request = *member_in(lane).request;
-        const auto n = request.state.q.size();
-        for (Eigen::Index i = 0; i < n; ++i) {
-            step_.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
-            step_.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
-        }
-        const auto& [gap, multiplicity, is_shortened] = request.starts.front();
-        step_.t[lane] = request.state.t;
-        step_.until[lane] = request.until;
-        step_.state_error[lane] = gap.state_error;
-        if (!flying) continue;
-        step_.h[lane] = gap.h;
-        step_.hdot[lane] = gap.hdot;
-        step_.error[lane] = gap.error;
-        step_.rate_error[lane] = gap.rate_error;
-        step_.known[lane] = multiplicity;
+void BatchSimulator::load(RunGroup& group, std::size_t lane, const StepRequest& request, bool flying) {
+    LaneStep& step = group.step;
+    const auto n = request.state.q.size();
+    for (Eigen::Index i = 0; i < n; ++i) {
+        step.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
+        step.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
     }
+    const auto& [gap, multiplicity, is_shortened] = request.starts.front();
+    step.t[lane] = request.state.t;
+    step.until[lane] = request.until;
+    step.state_error[lane] = gap.state_error;
+    step.least_gap[lane] = std::numeric_limits<double>::infinity();
+    if (!flying) return;
+    step.h[lane] = gap.h;
+    step.hdot[lane] = gap.hdot;
+    step.error[lane] = gap.error;
+    step.rate_error[lane] = gap.rate_error;
+    step.known[lane] = multiplicity;
 }
 
 // The smallest number of steps that one of these runs may still make.
-long BatchSimulator::most_steps() const {
+long BatchSimulator::most_steps(const RunGroup& group) {
     long most = std::numeric_limits<long>::max();
-    for (const BatchRun* member : members_) most = std::min(most, member->request->most);
+    for (std::size_t lane = 0; lane < lanes; ++lane)
+        if (group.runs[lane] != nullptr) most = std::min(most, group.runs[lane]->request->most - group.steps[lane]);
     return most;
 }
 
 // Reads the result of the plain steps in a lane; false if there was none.
-bool BatchSimulator::read(std::size_t lane, bool flying) {
-    const bool plain = step_.end[lane] != LaneStep::LaneOutcome::needs_scalar_step;
-    result_.steps = flying ? (plain ? 1 : 0) : (plain ? step_.steps : step_.steps - 1);
+bool BatchSimulator::read(const RunGroup& group, std::size_t lane, bool flying) {
+    const LaneStep& step = group.step;
+    const bool plain = step.end[lane] != LaneStep::LaneOutcome::needs_scalar_step;
+    result_.steps = plain ? group.steps[lane] : group.steps[lane] - 1;
     if (result_.steps == 0) return false;
     const auto n = end_.q.size();
     for (Eigen::Index i = 0; i < n; ++i) {
-        end_.q[i] = step_.q_and_v[static_cast<std::size_t>(i)][lane];
-        end_.v[i] = step_.q_and_v[static_cast<std::size_t>(n + i)][lane];
+        end_.q[i] = step.q_and_v[static_cast<std::size_t>(i)][lane];
+        end_.v[i] = step.q_and_v[static_cast<std::size_t>(n + i)][lane];
     }
-    end_.t = step_.t[lane];
+    end_.t = step.t[lane];
     result_.state = &end_;
-    result_.duration = step_.duration[lane];
-    result_.gap = flying ? step_.end_h[lane] : step_.least_gap[lane];
+    result_.duration = step.duration[lane];
+    result_.gap = flying ? step.end_h[lane] : step.least_gap[lane];
     result_.evaluations = result_.steps;
     result_.end = StepResult::StepOutcome::no_event;
-    if (step_.end[lane] == LaneStep::LaneOutcome::impact) {
+    if (step.end[lane] == LaneStep::LaneOutcome::impact) {
         result_.end = StepResult::StepOutcome::impact;
-        read_contact(lane);
+        read_contact(step, lane);
     } else {
         result_.starts.front() = {};
-        if (flying) read_gap(lane);
+        if (flying) read_gap(step, lane, *group.runs[lane]);
     }
     return true;
 }
 
-void BatchSimulator::read_contact(std::size_t lane) {
+void BatchSimulator::read_contact(const LaneStep& step, std::size_t lane) {
     Contact& contact = result_.contact;
-    contact.h = step_.end_h[lane];
-    contact.hdot = step_.end_hdot[lane];
-    contact.W = step_.end_W[lane];
-    contact.gap_t = step_.end_gap_t[lane];
-    const auto n = static_cast<Eigen::Index>(step_.impulse_direction.size());
+    contact.h = step.end_h[lane];
+    contact.hdot = step.end_hdot[lane];
+    contact.W = step.end_W[lane];
+    contact.gap_t = step.end_gap_t[lane];
+    const auto n = static_cast<Eigen::Index>(step.impulse_direction.size());
     contact.impulse_direction.resize(n);
     contact.g.resize(n);
-    for (std::size_t i = 0; i < step_.impulse_direction.size(); ++i) {
-        contact.impulse_direction.data()[i] = step_.impulse_direction[i][lane];
-        contact.g.data()[i] = step_.g[i][lane];
+    for (std::size_t i = 0; i < step.impulse_direction.size(); ++i) {
+        contact.impulse_direction.data()[i] = step.impulse_direction[i][lane];
+        contact.g.data()[i] = step.g[i][lane];
     }
 }
 
 // The gap at the end of a step without event: from its series, or evaluated there if that is more accurate.
-void BatchSimulator::read_gap(std::size_t lane) {
+void BatchSimulator::read_gap(const LaneStep& step, std::size_t lane, BatchRun& run) {
     Gap& gap = result_.starts.front().gap;
-    gap = {step_.h[lane], step_.hdot[lane], step_.error[lane], step_.rate_error[lane], step_.state_error[lane]};
-    const double off = step_.end_h[lane] - gap.h;
-    if (!(std::abs(off) > 2.0 * step_.rounding[lane])) return;
-    read_contact(lane);
-    if (members_[lane]->surfaces.of(0).within_gap_error(off, 4.0, result_.contact, end_)) return;
-    gap.h = step_.end_h[lane];
-    gap.hdot = step_.end_hdot[lane];
+    gap = {step.h[lane], step.hdot[lane], step.error[lane], step.rate_error[lane], step.state_error[lane]};
+    const double off = step.end_h[lane] - gap.h;
+    if (!(std::abs(off) > 2.0 * step.rounding[lane])) return;
+    read_contact(step, lane);
+    if (run.surfaces.of(0).within_gap_error(off, 4.0, result_.contact, end_)) return;
+    gap.h = step.end_h[lane];
+    gap.hdot = step.end_hdot[lane];
 }
 
 }  // namespace achilles

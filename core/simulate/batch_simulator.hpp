@@ -1,6 +1,7 @@
 // Batch simulation: eight runs at a time in the lanes of a vector, for final states.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <map>
@@ -12,9 +13,10 @@
 
 namespace achilles {
 
-// The runs of one thread. A few dozen runs are in progress. Their requests wait in three queues: free flight, brief
-// flight and contact. The longest queue supplies eight requests to one vector step. A request that is not plain is
-// served by the stepper of its own run.
+// The runs of one thread. A few dozen runs are in progress, in three groups: free flight, brief flight and contact. The
+// largest group makes one vector step. A flight leaves its lane after one step. A run in contact keeps its lane until its
+// segment ends, so that no step depends on the neighbors; free lanes are refilled from the queue of the group. A request
+// that is not plain is served by the stepper of its own run.
 class BatchSimulator {
  public:
     // The results do not depend on `vectors`.
@@ -52,7 +54,21 @@ class BatchSimulator {
         bool is_brief() const;
     };
     enum class Kind { flight, brief_flight, contact };
-    using RunGroup = std::vector<BatchRun*>;
+    static constexpr std::size_t lanes = Double8::count;
+    // The runs of one kind: in the lanes of its vector step, and waiting for one.
+    struct RunGroup {
+        explicit RunGroup(Eigen::Index coordinates) : step(static_cast<std::size_t>(coordinates)) {}
+        std::size_t size() const { return taken + queue.size(); }
+        BatchRun& first() const {
+            return **std::find_if(runs.begin(), runs.end(), [](auto* run) { return run; });
+        }
+
+        LaneStep step;
+        std::array<BatchRun*, lanes> runs{};  // null for an idle lane
+        std::array<long, lanes> steps{};      // made in the lane
+        std::size_t taken = 0;                // number of lanes that are not idle
+        std::vector<BatchRun*> queue;
+    };
 
     void begin(std::size_t index);
     BatchRun& member_for(std::size_t index, const Run& run);
@@ -61,34 +77,31 @@ class BatchSimulator {
     void go_on(BatchRun& member, bool refused);
     void finish(BatchRun& member);
     void step(Kind kind);
-    void choose(RunGroup& line);
-    // The run in a lane; unused lanes repeat the first.
-    BatchRun& member_in(std::size_t lane) const { return *members_[lane < members_.size() ? lane : 0]; }
-    LaneStepper& prepare();
-    void gather(bool flying);
-    long most_steps() const;
-    bool read(std::size_t lane, bool flying);
-    void read_contact(std::size_t lane);
-    void read_gap(std::size_t lane);
+    void fill_lanes(RunGroup& group, bool flying);
+    static void load(RunGroup& group, std::size_t lane, const StepRequest& request, bool flying);
+    LaneStepper& prepare(const RunGroup& group);
+    static long most_steps(const RunGroup& group);
+    void leave(RunGroup& group, std::size_t lane, bool flying);
+    bool read(const RunGroup& group, std::size_t lane, bool flying);
+    void read_contact(const LaneStep& step, std::size_t lane);
+    void read_gap(const LaneStep& step, std::size_t lane, BatchRun& run);
 
-    LaneStep step_;
     // The result for one lane.
     State end_;
     StepResult result_;
-    RunGroup members_;  // the runs in the lanes of the current step
     std::shared_ptr<const Model> model_;
     bool has_lanes_;                     // the model can be stepped in lanes
     Vectors vectors_;                    // of the lanes
     const BatchSlice* share_ = nullptr;  // set during work()
     std::vector<std::unique_ptr<BatchRun>> all_;
-    std::array<RunGroup, 3> lines_;  // queues, by Kind
-    RunGroup spare_;
+    std::array<RunGroup, 3> groups_;  // by Kind
+    std::vector<BatchRun*> spare_;
     std::vector<std::size_t> moving_;  // indices of the parameters that the motion depends on
     std::size_t sets_ = 0;
     std::vector<double> last_parameters_;  // of the last parameter set
     struct StepperSlot {
         std::unique_ptr<LaneStepper> stepper;
-        std::array<std::size_t, Double8::count> sets{};  // parameter sets in its lanes
+        std::array<std::size_t, lanes> sets{};  // parameter sets in its lanes
     };
     std::map<double, StepperSlot> steppers_;  // by tolerance
 };
