@@ -165,7 +165,6 @@ IN_LANES Lanes<Bytes> each_lane(const Function& function, const Lanes<Bytes>& a)
     IN_LANES Lanes<Bytes> name(const Lanes<Bytes>& a) {             \
         return each_lane([](double x) { return std::name(x); }, a); \
     }
-LANE_BY_LANE(sqrt)
 LANE_BY_LANE(tan)
 LANE_BY_LANE(asin)
 LANE_BY_LANE(acos)
@@ -175,6 +174,17 @@ LANE_BY_LANE(cosh)
 LANE_BY_LANE(tanh)
 LANE_BY_LANE(exp)
 LANE_BY_LANE(log)
+template <std::size_t Bytes>
+IN_LANES Lanes<Bytes> sqrt(const Lanes<Bytes>& a) {
+#if defined(__x86_64__) && !defined(__clang__)
+    if constexpr (Bytes == 32) {
+        Lanes<Bytes> result;
+        EACH_PART result.part[p] = __builtin_ia32_sqrtpd256(a.part[p]);
+        return result;
+    }
+#endif
+    return each_lane([](double x) { return std::sqrt(x); }, a);
+}
 template <std::size_t Bytes>
 IN_LANES Lanes<Bytes> pow(const Lanes<Bytes>& a, const Lanes<Bytes>& b) {
     Lanes<Bytes> result;

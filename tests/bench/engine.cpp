@@ -65,14 +65,27 @@
 //   one program for the estimate of a cut instead of three; sines by pairs      -5 percent
 //   without AVX-512: machine code for AVX2, each half of an order by itself, and
 //   halves of programs between two calls of functions                           -46 percent of the 128-bit loops'
+//   the other functions for AVX2 as well, numbers loaded and copied as whole
+//   vectors: a wider load from a copy in pieces of 16 bytes waits for them      -27 percent (AVX2)
+//   runs in contact keep their lanes, which are refilled one by one             -3 percent (AVX2)
+//   square roots of four at once                                                -1 percent (AVX2)
 // The pendulum's map (bench_explorer sweep), whose flights take many steps:
 //   flights with 1.2 times the order of a single step; half of that for short
 //   ones, predicted by the flight before                                        -12 percent
 //   a flight after a release returns to the lanes once its gap is open          -12 percent
 //   right factors of inner sums in the registers that results leave idle         -6 percent
 //   roots of eight at once                                                       -2 percent
-// Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48),
-// 256-bit vectors instead of 128 without machine code, or for the compiled code beside machine code.
+// Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48). With
+// AVX2: rules of both halves alternately, results that no rule reads again not stored, factors of the newest row loaded
+// once for all sums, -O3.
+// The remaining time of an ensemble of balls with AVX2 (99 percent of the lanes are in use, 60 steps and 18 impacts a run):
+//   machine code for the orders                30 percent (3.6 instructions a cycle; two loads and four sums or products
+//                                              at most)
+//   compiled functions of eight runs, sines    19 percent
+//   certificates (3.4 us each, one per Zeno point)  22 percent, with sines and memory
+//   impacts, requests and results of runs      16 percent
+//   first roots that partial sums do not show, steps of single runs  5 percent
+//   start and end of runs, memory, the rest    8 percent
 #include "bench/engine.hpp"
 
 #include <fmt/format.h>

@@ -211,6 +211,51 @@ TEST(LaneSteps, KnowThatAForceStaysOnlyAboveItsRemainder) {
     }
 }
 
+// The ball slides along the valley of the sine. A call ends with the first run that reaches its end time; the others can
+// go on from there. A lane without a run ends no call.
+TEST(LaneSteps, GoOnInContactUntilARunEnds) {
+    const auto model = test::load("ball_on_sine");
+    std::vector<Double8> parameters;
+    for (const double value : model->default_run().parameters) parameters.push_back(eight(value));
+    const auto slide = [&](Vectors vectors, bool has_idle_lane) {
+        const auto stepper = make_lane_stepper(model->lane_programs(), 1e-10, vectors);
+        stepper->fix(parameters);
+        LaneStep step(model->lane_programs().coordinates);
+        for (std::size_t lane = 0; lane < Double8::count; ++lane) {
+            const double x = -1.5 - 0.05 * static_cast<double>(lane), speed = 0.3;
+            step.q_and_v[0][lane] = x;
+            step.q_and_v[1][lane] = std::sin(x);
+            step.q_and_v[2][lane] = speed;
+            step.q_and_v[3][lane] = speed * std::cos(x);
+        }
+        step.until = eight(10.0);
+        step.until[0] = 0.01;
+        step.until[1] = 2.0;
+        step.idle[0] = has_idle_lane;
+        step.least_gap = eight(1.0);
+        step.error_per_step = 1e-11;
+        stepper->stay(step, 1000);
+        return step;
+    };
+    for (const Vectors vectors : possible_vectors()) {
+        const LaneStep all = slide(vectors, false), seven = slide(vectors, true);
+        EXPECT_EQ(all.steps, 1);
+        EXPECT_FALSE(all.goes_on[0]);
+        EXPECT_TRUE(all.goes_on[1]);
+        EXPECT_EQ(all.t[0], 0.01);
+        EXPECT_GT(seven.steps, 2);
+        EXPECT_FALSE(seven.goes_on[1]);
+        EXPECT_EQ(seven.t[1], 2.0);
+        for (std::size_t lane = 2; lane < Double8::count; ++lane) {
+            EXPECT_TRUE(seven.goes_on[lane]) << lane;
+            EXPECT_EQ(static_cast<int>(seven.end[lane]), static_cast<int>(LaneStep::LaneOutcome::no_event)) << lane;
+            EXPECT_GT(seven.t[lane], all.t[lane]) << lane;
+            EXPECT_NEAR(seven.state_error[lane], 1e-11 * static_cast<double>(seven.steps), 1e-24) << lane;
+            EXPECT_LT(std::abs(seven.least_gap[lane]), 1e-14) << lane;
+        }
+    }
+}
+
 // A ball thrown from or landing on a floor: h = 1e-3 + t - t^2/2 has its minimum at the end. If the gap is within the
 // remainder, or within the error of earlier steps, the lane defers to the scalar stepper.
 TEST(LaneSteps, TellAnImpactOnlyBeyondTheRemainder) {
