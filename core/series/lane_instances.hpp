@@ -1,5 +1,5 @@
-// The functions of one vector size, ACHILLES_LANE_BYTES. Included only by the source file of that size, after the pragma
-// that selects these vectors. Functions of lane_headers.hpp that take or return lanes are instantiated by name.
+// The functions of one vector size, ACHILLES_LANE_BYTES. Included only by the source file of that size, after the
+// pragma that selects these vectors. Functions of lane_headers.hpp that take or return lanes are instantiated by name.
 #include "series/lane_steps.hpp"
 
 namespace achilles {

@@ -157,8 +157,8 @@ void BatchSimulator::finish(BatchRun& member) {
     spare_.push_back(&member);
 }
 
-// Loads runs from the queue into idle lanes. All have the same tolerance, because a vector step has one order. The lanes
-// that stay idle get the request of another run.
+// Loads runs from the queue into idle lanes. All have the same tolerance, because a vector step has one order. The
+// lanes that stay idle get the request of another run.
 void BatchSimulator::fill_lanes(RunGroup& group, bool flying) {
     if (group.taken < lanes && !group.queue.empty()) {
         const BatchRun& first = group.taken > 0 ? group.first() : *group.queue.front();

@@ -14,9 +14,9 @@
 namespace achilles {
 
 // The runs of one thread. A few dozen runs are in progress, in three groups: free flight, brief flight and contact. The
-// largest group makes one vector step. A flight leaves its lane after one step. A run in contact keeps its lane until its
-// segment ends, so that no step depends on the neighbors; free lanes are refilled from the queue of the group. A request
-// that is not plain is served by the stepper of its own run.
+// largest group makes one vector step. A flight leaves its lane after one step. A run in contact keeps its lane until
+// its segment ends, so that no step depends on the neighbors; free lanes are refilled from the queue of the group. A
+// request that is not plain is served by the stepper of its own run.
 class BatchSimulator {
  public:
     // The results do not depend on `vectors`.

@@ -75,12 +75,12 @@
 //   a flight after a release returns to the lanes once its gap is open          -12 percent
 //   right factors of inner sums in the registers that results leave idle         -6 percent
 //   roots of eight at once                                                       -2 percent
-// Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48). With
-// AVX2: rules of both halves emitted alternately, results that no rule reads again not stored, factors of the newest row
-// loaded once for all sums, -O3, prefetching of the next run, batch_simulator.cpp in one unit with the automaton; both
-// ends of an interval in one vector (+8 percent, because it is loaded before its ends are stored).
-// The remaining time of an ensemble of balls with AVX2: 18.6 us a run, for 60 steps, 18 impacts and 1.1 certificates. All
-// lanes are in use (99.6 percent), and 0.4 percent of the steps are made alone.
+// Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48).
+// With AVX2: rules of both halves emitted alternately, results that no rule reads again not stored, factors of the
+// newest row loaded once for all sums, -O3, prefetching of the next run, batch_simulator.cpp in one unit with the
+// automaton. With a loss: both ends of an interval in one vector (+8 percent).
+// The remaining time of an ensemble of balls with AVX2: 18.6 us a run, for 60 steps, 18 impacts and 1.1 certificates.
+// All lanes are in use (99.6 percent), and 0.4 percent of the steps are made alone.
 //   machine code of the series (3.6 instructions a cycle)              26 percent
 //   certificates, with their sines and memory (3.4 us each)            21
 //   compiled functions of eight runs, with their sines                 18
