@@ -211,8 +211,8 @@ TEST(LaneSteps, KnowThatAForceStaysOnlyAboveItsRemainder) {
     }
 }
 
-// The ball slides along the valley of the sine. A call ends with the first run that reaches its end time; the others can
-// go on from there. A lane without a run ends no call.
+// The ball slides along the valley of the sine. A call ends with the first run that reaches its end time; the others
+// can go on from there. A lane without a run ends no call.
 TEST(LaneSteps, GoOnInContactUntilARunEnds) {
     const auto model = test::load("ball_on_sine");
     std::vector<Double8> parameters;
