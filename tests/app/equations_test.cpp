@@ -116,6 +116,10 @@ TEST(Equations, BeginWithTheBodies) {
                   "Springs and dampers", "damper | angle \u03ba: d = 0.3 N m s", "Contacts"});
     run.parameters[1] = 14.0;
     EXPECT_NE(rows_of(mechanism_sheet(model, run)).find("thigh | 14 kg, 0.2058 kg m^2"), std::string::npos);
+    // The sides of this box are plain numbers.
+    const Model wheel(test::system("bouncing_wheel"));
+    expect_lines(rows_of(mechanism_sheet(wheel, wheel.default_run())),
+                 {"body | 2 kg, 0.024 kg m^2 about its center (uniform box); at [0, z]"});
     const Model typed(test::system("double_pendulum"));
     EXPECT_TRUE(mechanism_sheet(typed, typed.default_run()).blocks.empty());
 }
