@@ -43,7 +43,7 @@ class OutputFiles {
     struct File {
         std::string path, content;                // as given
         std::filesystem::path target, temporary;  // temporary is empty unless it exists now
-        std::optional<Identity> identity;         // of the file at the path; empty if no file exists
+        std::optional<Identity> identity;         // the file that stood at the path; empty if there was no file
         bool in_place = false;                    // a device or standard output
         bool swapped = false;  // target and temporary have been exchanged: the temporary is the old file
         bool made = false;     // the target is new and complete

@@ -178,7 +178,7 @@ namespace {
 // Whether the value of a node follows without those of its operands.
 bool has_own_value(Operation operation) { return is_leaf(operation) || operation == Op::midpoint; }
 
-// By node: whether the value of the expression follows from it. Nothing below a midpoint is needed.
+// Marks the nodes that the expression is computed from. A midpoint is known, so its operands are not marked.
 std::vector<bool> nodes_for(Expression expression) {
     std::vector<bool> needed(expression.id() + 1, false);
     needed.back() = true;

@@ -1,7 +1,7 @@
 // Polynomials in several atoms with exact integer coefficients, the basis of simplification. For the files of this
 // library only, because it needs Boost.Multiprecision.
 //
-// An atom is an index below max_atoms. The class Algebra stores the symbol or the function that it stands for.
+// An atom is the number of a symbol or function, below max_atoms. The class Algebra stores the symbol or function.
 #pragma once
 
 #include <array>

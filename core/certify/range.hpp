@@ -35,9 +35,9 @@ class Range {
 
     Evaluator<Interval> value_, gradient_;
     std::vector<std::uint32_t> slots_;
-    std::vector<Interval> slopes_;         // over the current box
-    std::vector<Interval> face_, middle_;  // of bound(): the face of the box, and its middle
-    std::vector<Interval> center_;         // of the current box
+    std::vector<Interval> slopes_;         // the slopes over the box that is bounded
+    std::vector<Interval> face_, middle_;  // bound() stores a face of the box and its middle here
+    std::vector<Interval> center_;         // the center of the box that is bounded
     Interval at_center_;                   // the value there
 };
 

@@ -83,8 +83,8 @@ class Differences {
           forces_(model, run, given_forces(model, graph_)),
           gaps_(model, run, model.equations().gaps) {}
 
-    // M, bias, Q, which contains the forces of a prescribed motion. For each contact dh, hdot, hddot, lambda; then hddot
-    // of each contact while one other is held.
+    // Returns M, bias and Q (with the forces of a prescribed motion), then dh, hdot, hddot and lambda of each contact.
+    // Last comes hddot of each contact while one of the others is held, for each of the others in turn.
     Reals operator()(const PreciseState& at) {
         const auto L = [&](const PreciseState& x) { return lagrangian_(x)[0]; };
         const auto R = [&](const PreciseState& x) { return forces_(x)[dof_]; };
