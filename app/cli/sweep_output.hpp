@@ -65,8 +65,8 @@ struct RowStorage {
 std::string serialize_rows(const SweepTable& table, RowStorage storage, const Rows& rows);
 
 // Output files of a sweep. They are written when the sweep is finished. Until then, its rows are stored in a log. The
-// name of the log is that of the first output file with .part added. --resume continues from the log. A table that
-// goes only to standard output or to a device is written at once, without a log.
+// name of the log is that of the first output file with .part added. --resume continues from the log. If the sweep
+// writes only to standard output or to a device, there is no log, and rows are written while the sweep runs.
 class SweepOutput {
  public:
     // Checks that the files can be written, before the sweep starts. Throws InputError. Keeps a reference to the

@@ -47,7 +47,8 @@ xdotool type --delay 20 "export $folder/papers/b.mp4 fps 1 pixels 320"
 xdotool sleep 0.2 key Return
 recorded "^export $folder/papers/b.mp4" "the palette exports no film"
 await test -s "$folder/papers/b.mp4" || fail "no film is made"
-# The explorer looks for the end of the film's process four times a second, more slowly than settle() looks at the screen.
+# The explorer checks every 0.25 s whether the film's process has ended. settle() waits only 0.2 s, which may be too
+# short, so this waits for the process first.
 has_no_child() { ! grep -qs "^PPid:[[:space:]]*$explorer\$" /proc/[0-9]*/status; }
 await has_no_child || fail "the film does not end"
 expect_drawn "the end of a film is not drawn before the next key"
