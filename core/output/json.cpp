@@ -116,6 +116,7 @@ Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) 
 Json options_of(const Options& options) {
     Json result = Json::object();
     for (const Option* option : options_in_report_order({"method", "tolerance"})) {
+        if (is_left_out(*option, options)) continue;
         const OptionValue value = option->get(options);
         const auto* x = std::get_if<double>(&value);
         result[std::string(option->key)] =

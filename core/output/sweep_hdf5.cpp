@@ -286,7 +286,8 @@ TableExtent extent_of(const SweepTable& table, const RowReader& each_rows) {
 std::string options_text(const Options& options) {
     std::string text;
     for (const Option& option : all_options())
-        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", option.key, to_text(option.get(options)));
+        if (!is_left_out(option, options))
+            text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", option.key, to_text(option.get(options)));
     return text;
 }
 

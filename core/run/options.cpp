@@ -24,6 +24,8 @@ template <>
 constexpr std::array<std::string_view, 2> words_of<Reinitialization>{"euclidean", "kinetic"};
 template <>
 constexpr std::array<std::string_view, 2> words_of<Simultaneous>{"moreau", "stop"};
+template <>
+constexpr std::array<std::string_view, 2> words_of<EnergyGain>{"cap", "stop"};
 
 template <class Choice>
 std::string_view word_of(Choice choice) {
@@ -43,6 +45,7 @@ std::string_view to_text(Method method) { return word_of(method); }
 std::string_view to_text(Conditions conditions) { return word_of(conditions); }
 std::string_view to_text(Reinitialization kind) { return word_of(kind); }
 std::string_view to_text(Simultaneous kind) { return word_of(kind); }
+std::string_view to_text(EnergyGain kind) { return word_of(kind); }
 std::optional<Method> method_from(std::string_view text) { return choice_from<Method>(text); }
 std::optional<Conditions> conditions_from(std::string_view text) { return choice_from<Conditions>(text); }
 std::optional<Reinitialization> reinitialization_from(std::string_view text) {
@@ -163,6 +166,26 @@ constexpr std::array rows{
                                 .help = "how simultaneous impacts with an order-dependent outcome are resolved",
                                 .summary_text = "simultaneous impacts: {}",
                                 .omit_if_default = true}),
+    at<&Options::energy_gain>({.key = "energy_gain",
+                               .table = "run",
+                               .flag = "--energy-gain",
+                               .command = "energy-gain",
+                               .usage = "write: energy-gain cap, or: energy-gain stop",
+                               .error_text = "unknown value '{}' for energy-gain: use cap or stop",
+                               .help = "with friction: what happens at an impact that would gain energy",
+                               .summary_text = "energy gain at impacts: {}",
+                               .omit_if_default = true,
+                               .is_of_friction = true}),
+    at<&Options::max_events>({.key = "max_events",
+                              .table = "run",
+                              .flag = "--max-events",
+                              .command = "max-events",
+                              .usage = "write: max-events NUMBER",
+                              .error_text = "at least one event must be allowed",
+                              .help = "with friction: maximum number of sticks, slips and reversals in the run",
+                              .summary_text = "at most {} sticks, slips and reversals",
+                              .omit_if_default = true,
+                              .is_of_friction = true}),
     at<cut, &Truncation::eps_q>({.key = "eps_q",
                                  .table = "truncation",
                                  .flag = "--eps-q",
@@ -252,6 +275,10 @@ std::vector<const Option*> options_in_report_order(std::initializer_list<std::st
     std::stable_sort(ordered.begin(), ordered.end(),
                      [&](const Option* a, const Option* b) { return rank(a) < rank(b); });
     return ordered;
+}
+
+bool is_left_out(const Option& option, const Options& options) {
+    return option.is_of_friction && option.get(options) == option.get({});
 }
 
 bool is_valid_value(const Option& option, const OptionValue& value) {

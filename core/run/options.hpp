@@ -21,10 +21,15 @@ enum class Reinitialization { euclidean, kinetic };  // R* of Def. 7, and the pl
 // Impacts at the same time whose order matters: resolve them together by Moreau's law, or stop the run.
 enum class Simultaneous { moreau, stop };  // theory-gaps.md 2.4
 
+// What happens at an impact with friction that would gain energy: the restitution is reduced until it does not, or the
+// run stops.
+enum class EnergyGain { cap, stop };  // theory-friction.md 3
+
 std::string_view to_text(Method);
 std::string_view to_text(Conditions);
 std::string_view to_text(Reinitialization);
 std::string_view to_text(Simultaneous);
+std::string_view to_text(EnergyGain);
 std::optional<Method> method_from(std::string_view);
 std::optional<Conditions> conditions_from(std::string_view);
 std::optional<Reinitialization> reinitialization_from(std::string_view);
@@ -49,6 +54,8 @@ struct Options {
     int max_steps = 2000000;         // of the integration, all stored; beyond it, Outcome "too many steps"
     double memory = 1e9;             // bytes for the stored trajectory; beyond it, Outcome "out of memory"
     Simultaneous simultaneous = Simultaneous::moreau;
+    EnergyGain energy_gain = EnergyGain::cap;
+    int max_events = 200000;  // with friction: sticks, slips and reversals; beyond it, Outcome "too many events"
     Truncation truncation;
 
     friend bool operator==(const Options&, const Options&) = default;
@@ -70,6 +77,7 @@ struct Option {
     std::string_view help = {};                    // help text
     std::string_view summary_text = {};            // in a line about a run, with {} for the value
     bool omit_if_default = false;                  // such lines omit it if it has the default value
+    bool is_of_friction = false;                   // data files omit it if it has the default value
     bool is_tolerance = false;                     // values below min_tolerance cause a warning and are raised to it
     bool any_sign = false;                         // numbers only: negative values and 0 are allowed
     std::span<const std::string_view> words = {};  // allowed words; empty for numbers
@@ -91,6 +99,8 @@ std::vector<std::span<const Option>> options_by_command(const Options& from, con
 // tolerances.
 std::vector<const Option*> options_in_report_order(std::initializer_list<std::string_view> first = {});
 
+// True if data files omit the option: it is of friction, and has its default value.
+bool is_left_out(const Option& option, const Options& options);
 // True if the option may have this value: a number must be finite and, unless it takes any sign, positive; an integer
 // at least 1; a word one of the option's words.
 bool is_valid_value(const Option& option, const OptionValue& value);

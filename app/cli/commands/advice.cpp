@@ -90,6 +90,8 @@ constexpr OtherWords other_options[] = {
     {"verbose", "v timing"},
     {"conditions", "sharp paper"},
     {"simultaneous", "moreau"},
+    {"energy-gain", "cap"},
+    {"max-events", "max-sticks max-slips"},
 };
 
 // Options of other programs that achilles does not need, with an explanation.
@@ -261,8 +263,8 @@ class CommandLine {
             if (meant == nullptr) continue;
             if (const std::string both = option.name.ends_with("span") ? span_of(value) : ""; !both.empty())
                 return both;
-            const bool is_word =
-                other.known == "method" || other.known == "conditions" || other.known == "simultaneous";
+            const bool is_word = other.known == "method" || other.known == "conditions" ||
+                                 other.known == "simultaneous" || other.known == "energy-gain";
             const bool is_setting = other.known == "set" && value.find('=') == value.npos;
             return "write " + with_value(*meant, is_word && value.empty() ? option.name : is_setting ? "" : value);
         }

@@ -113,8 +113,8 @@ void add_prove(CLI::App& program, int& status) {
     command->get_option("--set")->description(
         "value of a parameter, a start x=0.3 or a rate x'=1.5, or an interval x=0.1..0.2; repeatable");
     // Hide integration options, which do not affect a proof.
-    for (const char* idle : {"--tolerance", "--method", "--memory", "--simultaneous", "--conditions",
-                             "--reinitialization", "--eps", "--eps-q", "--eps-v"})
+    for (const char* idle : {"--tolerance", "--method", "--memory", "--simultaneous", "--energy-gain", "--max-events",
+                             "--conditions", "--reinitialization", "--eps", "--eps-q", "--eps-v"})
         command->get_option(idle)->group("");
     command->callback([arguments, &status] { status = run(*arguments); });
 }

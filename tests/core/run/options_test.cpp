@@ -46,6 +46,8 @@ TEST(Options, TheTableHasThemAll) {
     EXPECT_NE(all.max_steps, Options{}.max_steps);
     EXPECT_NE(all.memory, Options{}.memory);
     EXPECT_NE(all.simultaneous, Options{}.simultaneous);
+    EXPECT_NE(all.energy_gain, Options{}.energy_gain);
+    EXPECT_NE(all.max_events, Options{}.max_events);
     EXPECT_NE(all.truncation.eps_q, Options{}.truncation.eps_q);
     EXPECT_NE(all.truncation.eps_v, Options{}.truncation.eps_v);
     EXPECT_NE(all.truncation.eps_t, Options{}.truncation.eps_t);
@@ -104,7 +106,8 @@ TEST(Options, AreToldInOneOrderButForTheFirst) {
     std::string keys;
     for (const Option* one : options_in_report_order({"tolerance", "method"})) keys += std::string(one->key) + " ";
     EXPECT_EQ(keys,
-              "tolerance method start_time end_time max_impacts max_steps memory simultaneous conditions "
+              "tolerance method start_time end_time max_impacts max_steps memory simultaneous energy_gain max_events "
+              "conditions "
               "reinitialization eps_q eps_v eps_t ");
 }
 
