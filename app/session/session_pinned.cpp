@@ -39,8 +39,15 @@ bool same_system(const SystemDescription& a, const SystemDescription& b) {
                  [](const DerivedDescription& x, const DerivedDescription& y) {
                      return x.name == y.name && same_texts(x.definition, y.definition);
                  }) &&
-           alike(a.constraints, b.constraints, [](const ConstraintDescription& x, const ConstraintDescription& y) {
-               return x.name == y.name && same_texts(x.gap, y.gap) && same_texts(x.restitution, y.restitution);
+           alike(a.constraints, b.constraints,
+                 [](const ConstraintDescription& x, const ConstraintDescription& y) {
+                     return x.name == y.name && same_texts(x.gap, y.gap) && same_texts(x.restitution, y.restitution);
+                 }) &&
+           alike(sliding_places(a), sliding_places(b), [](const SlidingPlace& x, const SlidingPlace& y) {
+               const Text none;
+               return x.name == y.name && x.contact == y.contact && same_texts(*x.slip, *y.slip) &&
+                      same_texts(*x.level, *y.level) &&
+                      same_texts(x.static_level ? *x.static_level : none, y.static_level ? *y.static_level : none);
            });
 }
 

@@ -180,6 +180,9 @@ Interval restitution_over(const Model& model, const EnclosureProblem& claim, std
 void check(const Model& model, const EnclosureProblem& claim) {
     const FloatEnvironmentGuard ground;
     const SystemDescription& description = model.description();
+    if (description.has_friction())
+        throw description.error(sliding_places(description).front().level->at, "a proof does not cover friction",
+                                "achilles simulate runs this system, with an estimate of its error");
     std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];

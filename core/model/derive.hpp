@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "program/program.hpp"
@@ -12,10 +13,11 @@
 namespace achilles {
 
 // Slot of each input of a program: q (n), v (n), the parameters (p), then t, contact, sigma, the parameter of a drawn
-// curve, work, loss.
+// curve, work, loss; with friction also the sliding speed, the friction forces and the heat.
 struct Layout {
     std::uint32_t dof = 0, p = 0;  // number of coordinates and of parameters
     std::uint32_t contacts = 1;
+    std::uint32_t slips = 0;  // number of contacts with friction and of frictions without a gap
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
     std::uint32_t v(std::size_t i) const { return dof + static_cast<std::uint32_t>(i); }
     std::uint32_t parameter(std::size_t i) const { return 2 * dof + static_cast<std::uint32_t>(i); }
@@ -29,7 +31,10 @@ struct Layout {
     // Acceleration of the gap and force of contact i, if there are several contacts.
     std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 7 + static_cast<std::uint32_t>(i); }
     std::uint32_t force(std::size_t i) const { return acceleration(contacts) + static_cast<std::uint32_t>(i); }
-    std::uint32_t count() const { return force(contacts); }
+    std::uint32_t sliding_speed() const { return force(contacts); }  // stands for |u| in a level of friction
+    std::uint32_t friction_force(std::size_t i) const { return sliding_speed() + 1 + static_cast<std::uint32_t>(i); }
+    std::uint32_t heat() const { return friction_force(slips); }
+    std::uint32_t count() const { return slips == 0 ? force(contacts) : heat() + 1; }
     Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }
 };
 
@@ -57,6 +62,17 @@ struct ModeEquations {
     std::vector<ContactEquations> contacts;
 };
 
+// The friction of a contact, or friction without a gap, at a slip u = w v + drift (theory-friction.md 1). A level is the
+// coefficient of a contact, or the friction force itself. It is a function of q, t, parameters and
+// Layout::sliding_speed(), which stands for |u|.
+struct FrictionLaw {
+    std::optional<std::size_t> contact;  // null: no gap
+    Expression slip, drift;
+    std::vector<Expression> w;       // du/dv, a function of q and t
+    Expression level, static_level;  // while sliding, and the limit of sticking; the latter without |u|
+    bool never_slides = false;       // the levels are then 0 and have no meaning
+};
+
 // T, V and the forces (including -dR/dv) as given.
 struct GivenTerms {
     Expression kinetic, potential;
@@ -71,6 +87,7 @@ struct Equations {
     std::vector<Expression> M, bias, Q;
     Expression kinetic, potential, energy;
     std::vector<Expression> gaps, restitutions;  // of every contact
+    std::vector<FrictionLaw> frictions;          // in the order of sliding_places()
     ModeEquations free;                          // the mode in which all contacts are open
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "contacts/contact_law.hpp"
+#include "model/friction_law.hpp"
 #include "model/read_expressions.hpp"
 #include "model/scopes.hpp"
 #include "model/size_limit.hpp"
@@ -15,9 +16,9 @@
 namespace achilles {
 
 Model::Model(SystemDescription description) : description_(std::move(description)), graph_(std::make_unique<Graph>()) {
-    if (description_.coordinates.empty() || description_.constraints.empty())
+    if (description_.coordinates.empty())
         throw InputError(description_.file.empty() ? "the system" : description_.file, {},
-                         "a system needs at least one coordinate and one constraint");
+                         "a system needs at least one coordinate");
     layout_ = layout_of(description_);
     slot_names_ = achilles::slot_names(description_, layout_);
     const FloatEnvironmentGuard ground;  // constants are evaluated as intervals, too
@@ -87,8 +88,8 @@ void Model::compile() {
     for (std::size_t i = 0; i < contacts(); ++i)
         free_.push_back(&programs_.emplace(ContactInMode({}, i), compile_contact(e.free, i)).first->second);
     energy_ = TypedProgram<EnergyTerms>::of(slots, e.energy, e.kinetic, e.potential);
-    start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, e.free.contacts[0].hddot, e.given.kinetic,
-                                          e.given.potential);
+    const Expression hddot = contacts() > 0 ? e.free.contacts[0].hddot : graph_->number(0);
+    start_ = TypedProgram<StartTerms>::of(slots, e.free.f, e.pivots, hddot, e.given.kinetic, e.given.potential);
     std::vector<Text> derived;
     for (const DerivedDescription& one : description_.derived) derived.push_back({one.name, one.definition.at});
     if (!derived.empty()) derived_parameters_ = compile_drawing(derived);
@@ -111,6 +112,7 @@ Model::ContactPrograms Model::compile_contact(const ModeEquations& motion, std::
 }
 
 ContactModes& Model::contact_modes() const {
+    refuse_friction_until_runs_have_it(description_);
     if (!modes_) modes_ = std::make_unique<ContactModes>(equations_, layout_);
     return *modes_;
 }

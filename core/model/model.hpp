@@ -131,8 +131,9 @@ class Model {
     // The run that the description specifies.
     Run default_run() const { return achilles::default_run(description_); }
     // Throws InputErrors if the run cannot start: start not finite; T, V, h or the acceleration undefined there;
-    // restitution outside [0, 1]; M not positive definite; gap clearly negative; dh = 0 in contact; a parameter
-    // subnormal; eps or tolerance not positive; end not after the start.
+    // restitution outside [0, 1]; M not positive definite; gap clearly negative; dh = 0 in contact; friction negative,
+    // or above its static limit at slip 0; a contact that never slides starts with a slip; a parameter subnormal; eps
+    // or tolerance not positive; end not after the start.
     void check(const Run& run) const;
 
     // Programs for the expressions of a view or a drawing. Those of a view may contain t, coordinates, rates,
@@ -162,6 +163,7 @@ class Model {
     // These throw Mistake.
     void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
     void check_gap(const Run& run, std::size_t contact) const;
+    void check_friction(const Run& run, std::size_t law) const;
     void check_mass(const StartTerms<Evaluator<double>>& start) const;
     void check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const;
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "expression/parse.hpp"
+#include "model/friction_law.hpp"
 #include "model/kinetic_energy.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"
@@ -119,6 +120,30 @@ void read_forces(const SystemDescription& system, const Layout& layout, Expressi
     });
 }
 
+// The friction of every contact that has it, and friction without a gap. What has a mistake is the time.
+void read_frictions(const SystemDescription& system, const Layout& layout, const Names& names, ExpressionReader& reader,
+                    Equations& equations, ErrorCollector& mistakes, Graph& graph) {
+    const Expression any_value = graph.symbol(layout.t());
+    Scope in_slip = force_scope(system, layout, graph), in_level = friction_scope(system, layout, graph),
+          in_static = static_friction_scope(system, layout, graph);
+    for (const SlidingPlace& place : sliding_places(system)) {
+        FrictionLaw& law = equations.frictions.emplace_back();
+        law.contact = place.contact;
+        law.never_slides = place.never_slides;
+        TextParts parts;
+        const auto slip = reader.read(*place.slip, in_slip, &parts);
+        law.slip = slip.value_or(any_value);
+        law.level = law.static_level =
+            law.never_slides ? any_value : reader.read(*place.level, in_level).value_or(any_value);
+        if (place.static_level != nullptr)
+            law.static_level = reader.read(*place.static_level, in_static).value_or(any_value);
+        attempt_within_limits(mistakes, system, equations, [&] {
+            if (slip && names.complete) split_slip(system, layout, *place.slip, parts, law);
+            if (place.static_level == nullptr) law.static_level = at_slip_zero(law.level, layout, *place.level);
+        });
+    }
+}
+
 }  // namespace
 
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
@@ -136,6 +161,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         gaps.push_back(read(constraint.gap, gap_scope(system, layout, graph)));
         restitutions.push_back(read(constraint.restitution, restitution_scope(system, layout, graph)));
     }
+    if (layout.slips > 0) read_frictions(system, layout, names, reader, equations, mistakes, graph);
     const Expression nothing = graph.number(0);
     equations.kinetic = equations.given.kinetic = kinetic.value_or(nothing);
     equations.potential = equations.given.potential = potential.value_or(nothing);
@@ -163,11 +189,12 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
 
 namespace {
 
-// What no equation uses: slips, drawings, views, the closing of an orbit.
+// What no equation uses: slips without friction, drawings, views, the closing of an orbit.
 void read_rest(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                ExpressionReader& reader) {
     Scope in_slips = force_scope(system, layout, graph);
-    for (const ConstraintDescription& constraint : system.constraints) reader.read(constraint.slip, in_slips);
+    for (const ConstraintDescription& constraint : system.constraints)
+        if (!constraint.has_friction()) reader.read(constraint.slip, in_slips);
     Scope in_drawings = drawing_scope(system, layout, graph);
     for (const DrawingDescription& drawing : drawings_of(system)) {
         if (drawing.shape == DrawingDescription::Shape::curve && drawing.over.empty()) continue;  // its name is missing
@@ -188,13 +215,15 @@ void read_rest(const SystemDescription& system, const Layout& layout, Graph& gra
 
 }  // namespace
 
-bool check_expressions(const SystemDescription& system, Names names, ErrorCollector& mistakes) {
-    const Layout layout = layout_of(system);
+bool check_expressions(SystemDescription& system, Names names, ErrorCollector& mistakes) {
+    Layout layout = layout_of(system);
     Graph graph;
     Equations equations;
     const std::size_t before = mistakes.count();
     read_equations(system, layout, graph, names, equations, mistakes);
     const bool has_equations = mistakes.count() == before;
+    drop_zero_friction(system, equations);
+    layout = layout_of(system);
     const Expression any_value = graph.symbol(layout.t());
     equations.energy = equations.power = any_value;
     equations.free.contacts.resize(system.constraints.size());

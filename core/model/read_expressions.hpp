@@ -10,7 +10,7 @@
 
 namespace achilles {
 
-// Sets the given terms, kinetic, potential, Q, gaps, restitutions and M of the equations, in whose graph it works. Adds
+// Sets the given terms, kinetic, potential, Q, gaps, restitutions, frictions and M of the equations, in whose graph it works. Adds
 // the mistakes in these expressions and in the definitions of parameters, including those in T (kinetic_energy.hpp).
 // Missing texts are skipped. An unknown name is reported once per file, at its first place;
 // expressions that depend on it are not checked.
@@ -18,7 +18,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
                     Equations& equations, ErrorCollector& mistakes);
 
 // Adds the mistakes in all expressions of the file: those above, drawings and views. Returns whether those above have
-// none.
-bool check_expressions(const SystemDescription& system, Names names, ErrorCollector& mistakes);
+// none. Drops friction that is the number 0 from the description.
+bool check_expressions(SystemDescription& system, Names names, ErrorCollector& mistakes);
 
 }  // namespace achilles

@@ -1,6 +1,7 @@
 #include "model/scopes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -58,12 +59,22 @@ void forbid_primes(Scope& scope, const SystemDescription& system) {
 }
 
 constexpr std::array<const char*, 4> contact_outputs{"gap", "gap'", "gap''", "lambda"};
+constexpr std::array<const char*, 2> slip_outputs{"slip", "friction_force"};
 
-// Forbids words that have a meaning only in views.
+// Forbids words that have a meaning only in views, or as a value of friction.
 void forbid_outputs(Scope& scope, const SystemDescription& system) {
     const auto forbid = [&](const std::string& word) {
         scope.forbidden.emplace(word, fmt::format("'{}' is allowed only in a [[view]]", word));
     };
+    if (system.has_friction()) {
+        scope.forbidden.emplace("slip", "'slip' is allowed only in friction, in a level and in a [[view]]");
+        scope.forbidden.emplace("inf", "'inf' stands alone: friction = \"inf\"");
+        for (const char* word : slip_outputs) {
+            for (const std::string& name : sliding_names(system, word)) forbid(name);
+            forbid(word);
+        }
+        forbid("heat");
+    }
     for (const char* word : contact_outputs) {
         for (const std::string& name : output_names(system, word)) forbid(name);
         forbid(word);
@@ -125,6 +136,33 @@ Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& gr
     return position_scope(system, layout, graph, "gap", "it may depend only on coordinates, parameters and time");
 }
 
+namespace {
+
+// Of friction: `why` gives the reason why rates are not allowed.
+Scope level_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* why) {
+    Scope scope = position_scope(system, layout, graph, "friction", why);
+    std::vector<std::string> forces = output_names(system, "lambda");
+    forces.emplace_back("lambda");
+    for (const std::string& force : forces)
+        scope.forbidden.insert_or_assign(
+            force, fmt::format("'{}' is not allowed here: friction that depends on forces is not covered", force));
+    return scope;
+}
+
+}  // namespace
+
+Scope static_friction_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    Scope scope = level_scope(system, layout, graph, "it may depend only on coordinates, parameters and time");
+    scope.forbidden.insert_or_assign("slip", "'slip' is not allowed here: this is the limit at slip 0");
+    return scope;
+}
+
+Scope friction_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    Scope scope = level_scope(system, layout, graph, "use slip, the sliding speed");
+    scope.allowed.emplace("slip", graph.symbol(layout.sliding_speed()));
+    return scope;
+}
+
 Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     return constant_scope(system, layout, graph, "the restitution");
 }
@@ -139,7 +177,8 @@ Scope definition_scope(const SystemDescription& system, const Layout& layout, Gr
 
 Layout layout_of(const SystemDescription& system) {
     const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
-    return {count(system.coordinates), count(system.parameters), count(system.constraints)};
+    return {count(system.coordinates), count(system.parameters), count(system.constraints),
+            count(sliding_places(system))};
 }
 
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {
@@ -160,6 +199,11 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
         names[layout.acceleration(i)] = "gap_" + system.constraints[i].name + "''";
         names[layout.force(i)] = "lambda_" + system.constraints[i].name;
     }
+    if (layout.slips == 0) return names;
+    names[layout.sliding_speed()] = "slip";
+    names[layout.heat()] = "heat";
+    const std::vector<std::string> forces = sliding_names(system, "friction_force");
+    for (std::size_t i = 0; i < layout.slips; ++i) names[layout.friction_force(i)] = forces[i];
     return names;
 }
 
@@ -170,8 +214,6 @@ namespace {
 std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Graph& graph, const Equations& equations) {
     const Expression held = graph.symbol(layout.contact());
     std::vector<std::array<Expression, 4>> values;
-    const Expression any_value = graph.symbol(layout.t());
-    if (layout.contacts == 0) return {{any_value, any_value, any_value, any_value}};  // the file lacks constraints
     for (std::size_t i = 0; i < layout.contacts; ++i) {
         const ContactEquations& c = equations.free.contacts[i];
         const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
@@ -185,6 +227,25 @@ std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Grap
     return values;
 }
 
+// slip, friction_force and heat of a view. The words are forbidden if there is no friction.
+void allow_slips(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph,
+                 const Equations& equations) {
+    if (layout.slips == 0) {
+        for (const char* word : {"slip", "friction_force", "heat"})
+            scope.forbidden.emplace(word, fmt::format("'{}' is of friction, and this system has none", word));
+        return;
+    }
+    scope.allowed.emplace("heat", graph.symbol(layout.heat()));
+    const std::vector<std::string> slips = sliding_names(system, "slip"),
+                                   forces = sliding_names(system, "friction_force");
+    for (std::size_t i = 0; i < layout.slips; ++i) {
+        scope.allowed.emplace(slips[i], graph.adopt(equations.frictions[i].slip));
+        scope.allowed.emplace(forces[i], graph.symbol(layout.friction_force(i)));
+    }
+    for (const auto& [word, names] : {std::pair("slip", &slips), std::pair("friction_force", &forces)})
+        scope.forbidden.emplace(word, fmt::format("'{}' needs a name here: {}", word, fmt::join(*names, ", ")));
+}
+
 }  // namespace
 
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations) {
@@ -194,12 +255,17 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
     allow_parameters(scope, system, layout, graph);
     forbid_primes(scope, system);
     scope.allowed.emplace("t", graph.symbol(layout.t()));
+    allow_slips(scope, system, layout, graph, equations);
     const std::vector<std::array<Expression, 4>> values = contact_values(layout, graph, equations);
     const bool have_names = std::none_of(system.constraints.begin(), system.constraints.end(),
                                          [](const ConstraintDescription& c) { return c.name.empty(); });
     for (std::size_t i = 0; i < contact_outputs.size(); ++i) {
         const std::vector<std::string> names = output_names(system, contact_outputs[i]);
         for (std::size_t k = 0; k < names.size(); ++k) scope.allowed.emplace(names[k], values[k][i]);
+        if (names.empty())
+            scope.forbidden.emplace(
+                contact_outputs[i],
+                fmt::format("{} is of a [[constraint]], and this system has none", in_quotes(contact_outputs[i])));
         if (names.size() > 1)
             scope.forbidden.emplace(
                 contact_outputs[i],

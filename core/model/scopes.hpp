@@ -19,11 +19,14 @@ Layout layout_of(const SystemDescription& system);
 // The names of the inputs, by slot: what to_text() prints.
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout);
 
-// Coordinates, rates, t, parameters: for the kinetic energy, a force or the dissipation.
+// Coordinates, rates, t, parameters: for the kinetic energy, a force, the dissipation or a slip.
 Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters.
 Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+// Coordinates, t, parameters: for the limit of sticking. With `slip`, the sliding speed: for friction while sliding.
+Scope static_friction_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+Scope friction_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Parameters.
 Scope restitution_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Parameters: for the period and the shift of [orbit].
@@ -42,7 +45,8 @@ struct RunQuantity {
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
 
-// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy; their values are taken from the equations.
+// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy, with friction slip, friction_force and heat; their
+// values are taken from the equations.
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
 
 // The names of view_scope() and quantities of the run: input layout.count() + i is quantities[i]. Parsing appends to

@@ -28,6 +28,12 @@ void Model::check(const Run& run) const {
         mistakes.add({at, message, hint});
     };
     for (const std::string& fault : validation_errors(run.options)) refuse({}, fault);
+    const auto is_euclidean = [](const Options& options) {
+        return options.truncation.reinitialization == Reinitialization::euclidean;
+    };
+    if (description_.has_friction() && is_euclidean(run.options))
+        refuse(is_euclidean(description_.options) ? description_.reinitialization_at : Location{},
+               "the euclidean reinitialization does not go with friction", "use the default, kinetic");
     const std::size_t before = mistakes.count();
     for (std::size_t i = 0; i < run.parameters.size(); ++i) {
         const auto& parameter = description_.parameters[i];
@@ -60,6 +66,7 @@ void Model::check(const Run& run) const {
         const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
         bool has_gap = true;
         for (std::size_t i = 0; i < contacts(); ++i) has_gap = mistakes.attempt([&] { check_gap(run, i); }) && has_gap;
+        for (std::size_t i = 0; i < equations_.frictions.size(); ++i) mistakes.attempt([&] { check_friction(run, i); });
         const bool has_mass = has_energies && mistakes.attempt([&] { check_mass(start); });
         if (has_mass && has_gap) mistakes.attempt([&] { check_acceleration(run, start); });
     }
@@ -97,19 +104,6 @@ Location place_of_undefined(const Model& model, const Run& run, const Text& text
         }
     }
     return text.at;
-}
-
-// Message "WHAT is not defined at the start: log(x - 2), with x - 2 = -1" if the undefined part is found. If there is
-// no such part, a value is too large.
-Mistake no_value(const Model& model, const Run& run, Location at, const char* what,
-                 std::span<const Expression> expressions) {
-    const State state = run.start();
-    const auto part = first_undefined(model, run.parameters, expressions, state, box_of(state));
-    if (!part) return {at, fmt::format("{} is not finite at the start", what), {}};
-    return {at,
-            fmt::format("{} is not defined at the start: {}, with {} = {:.3g}", what, part->part, part->operand,
-                        part->value),
-            {}};
 }
 
 }  // namespace

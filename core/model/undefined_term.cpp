@@ -1,6 +1,9 @@
 #include "model/undefined_term.hpp"
 
+#include <fmt/format.h>
+
 #include "expression/graph.hpp"
+#include "system/input_error.hpp"
 
 namespace achilles {
 
@@ -58,6 +61,17 @@ std::optional<UndefinedTerm> first_undefined(const Model& model, std::span<const
                              value_at(model, parameters, operand, state)};
     }
     return std::nullopt;
+}
+
+Mistake no_value(const Model& model, const Run& run, Location at, const std::string& what,
+                 std::span<const Expression> expressions) {
+    const State state = run.start();
+    const auto part = first_undefined(model, run.parameters, expressions, state, box_of(state));
+    if (!part) return {at, fmt::format("{} is not finite at the start", what), {}};
+    return {at,
+            fmt::format("{} is not defined at the start: {}, with {} = {:.3g}", what, part->part, part->operand,
+                        part->value),
+            {}};
 }
 
 }  // namespace achilles

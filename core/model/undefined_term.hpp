@@ -22,6 +22,11 @@ std::optional<UndefinedTerm> first_undefined(const Model& model, std::span<const
                                              std::span<const Expression> expressions, const State& state,
                                              const std::vector<Interval>& box);
 
+// The mistake that expressions have no value at the start of a run: "WHAT is not defined at the start: log(x - 2), with
+// x - 2 = -1" if the undefined part is found. If there is no such part, a value is too large.
+Mistake no_value(const Model& model, const Run& run, Location at, const std::string& what,
+                 std::span<const Expression> expressions);
+
 // An expression for a message: at most 60 characters and "...".
 std::string shortened(const Model& model, Expression expression);
 // The value of an expression at a state.

@@ -223,6 +223,7 @@ class ContactReader {
             result_.slip = result_.slip.packed() / stretch;
             result_.force = "scaled to a distance at contact: lambda is the force";
         } else {
+            result_.scale = stretch;
             result_.force = fmt::format("a height: the force is {}*lambda", symbols_.text(stretch));
         }
     }

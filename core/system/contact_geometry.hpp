@@ -13,6 +13,7 @@ namespace achilles {
 
 struct ShapeContact {
     ProductSum gap, slip;
+    ProductSum scale;                      // of both: the gap is this times a distance; 0 stands for 1
     bool has_slip = true;                  // false: a string
     std::string name;                      // "shank.end on floor"
     std::string force;                     // what lambda is: "a distance: lambda is the force"

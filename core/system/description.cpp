@@ -30,6 +30,11 @@ InputError SystemDescription::error(Location at, const std::string& message, con
     return {file, at, message, hint, line_of(source_text, at.line)};
 }
 
+bool SystemDescription::has_friction() const {
+    return !frictions.empty() || std::any_of(constraints.begin(), constraints.end(),
+                                             [](const ConstraintDescription& c) { return c.has_friction(); });
+}
+
 Run default_run(const SystemDescription& description) {
     Run run;
     run.options = description.options;
@@ -227,11 +232,34 @@ std::vector<DrawingDescription> drawings_of(const SystemDescription& system) {
 }
 
 std::vector<std::string> output_names(const SystemDescription& system, std::string_view quantity) {
-    if (system.constraints.size() < 2) return {std::string(quantity)};
+    if (system.constraints.size() == 1) return {std::string(quantity)};
     const std::size_t primes = std::min(quantity.find('\''), quantity.size());
     std::vector<std::string> names;
     for (const ConstraintDescription& constraint : system.constraints)
         names.push_back(fmt::format("{}_{}{}", quantity.substr(0, primes), constraint.name, quantity.substr(primes)));
+    return names;
+}
+
+std::vector<SlidingPlace> sliding_places(const SystemDescription& system) {
+    std::vector<SlidingPlace> places;
+    const auto add = [&](const auto& table, const Text& level, const std::optional<Text>& static_level,
+                         std::optional<std::size_t> contact, bool never_slides) {
+        places.push_back(
+            {table.name, &table.slip, &level, static_level ? &*static_level : nullptr, contact, never_slides});
+    };
+    for (std::size_t i = 0; i < system.constraints.size(); ++i) {
+        const ConstraintDescription& c = system.constraints[i];
+        if (c.has_friction()) add(c, c.friction, c.static_friction, i, c.never_slides);
+    }
+    for (const FrictionDescription& f : system.frictions) add(f, f.level, f.static_level, {}, false);
+    return places;
+}
+
+std::vector<std::string> sliding_names(const SystemDescription& system, std::string_view quantity) {
+    const bool is_one = system.constraints.size() == 1 && system.frictions.empty();
+    std::vector<std::string> names;
+    for (const SlidingPlace& place : sliding_places(system))
+        names.push_back(is_one ? std::string(quantity) : fmt::format("{}_{}", quantity, place.name));
     return names;
 }
 

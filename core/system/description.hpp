@@ -75,8 +75,22 @@ struct ConstraintDescription {
     std::string begins{}, ends{};  // sentences for the start and the end of contact: "knee locks"; may be empty
     std::vector<DrawingDescription> drawings;  // of the touched bodies, as written
     Location at;
-    Text slip{};  // sliding velocity, scaled like the gap; may be empty. Reserved for friction: no equation uses it
+    Text slip{};      // sliding velocity, scaled like the gap; may be empty. Only friction uses it
+    Text friction{};  // Coulomb coefficient while sliding; `slip` in it is the sliding speed. Empty: no friction
+    std::optional<Text> static_friction{};  // default: friction at slip 0
+    bool never_slides = false;              // friction = "inf"
+
+    bool has_friction() const { return !friction.text.empty(); }
 };
+
+// Dry friction without a gap: a bearing, a guide, a belt.
+struct FrictionDescription {
+    std::string name;
+    Text slip, level;                  // level: the friction force while sliding; `slip` in it is the sliding speed
+    std::optional<Text> static_level;  // default: level at slip 0
+    Location at;
+};
+inline constexpr std::size_t max_frictions = 8;
 
 struct ViewDescription {
     std::string name;
@@ -125,13 +139,16 @@ struct SystemDescription {
     std::vector<DerivedDescription> derived;       // each after those that its definition uses
     Text kinetic, potential;
     Text dissipation;                                // R: -dR/dv is added to the forces; may be empty
-    std::vector<ConstraintDescription> constraints;  // at least one
+    std::vector<ConstraintDescription> constraints;  // may be empty: a smooth system
+    std::vector<FrictionDescription> frictions;      // without a gap
     Options options;                                 // defaults overridden by [run] and [truncation]
+    Location reinitialization_at;                    // of this option; line 0 if the file does not have it
     std::vector<DrawingDescription> drawings;        // as written; may be empty
     std::vector<ViewDescription> views;              // as written, or default_views()
     std::optional<OrbitDescription> orbit;
     MechanismSummary mechanism;
 
+    bool has_friction() const;
     // An error at a location in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };
@@ -147,8 +164,21 @@ std::string read_text(const std::filesystem::path& file, std::size_t largest = l
 std::vector<DrawingDescription> drawings_of(const SystemDescription& system);
 
 // The names that views use for a quantity of the constraints, such as gap'': the quantity itself, or for several
-// constraints gap_knee'', gap_post'', in their order.
+// constraints gap_knee'', gap_post'', in their order. Empty if there are no constraints.
 std::vector<std::string> output_names(const SystemDescription& system, std::string_view quantity);
+
+// One contact with friction or one [[friction]]: what they have in common.
+struct SlidingPlace {
+    std::string name;
+    const Text *slip, *level;            // level: the coefficient of a contact
+    const Text* static_level;            // null: level at slip 0
+    std::optional<std::size_t> contact;  // null: no gap
+    bool never_slides;
+};
+// All of them: the contacts with friction in the order of the constraints, then [[friction]]. They point into `system`.
+std::vector<SlidingPlace> sliding_places(const SystemDescription& system);
+// The names that views use for a quantity of these: slip or friction_force, with several contacts or places slip_foot.
+std::vector<std::string> sliding_names(const SystemDescription& system, std::string_view quantity);
 
 // A description is never edited: values are changed in a run.
 

@@ -59,6 +59,10 @@ class MechanismExpander {
     void expand() {
         expand_energies();
         expand_constraints();
+        for (TomlValue* friction : tables_of(root_, "friction")) {
+            substitute_in_slip(*friction);
+            for (const char* key : {"level", "static_level"}) substitute_in(*friction, key, "slip");
+        }
         MechanismDrawings drawings = draw_mechanism(mechanism_, contacts_);
         expand_written_drawings();
         add_drawings(drawings);
@@ -80,17 +84,29 @@ class MechanismExpander {
         return list;
     }
 
-    // Replaces values such as thigh.end.x in a string, or in all strings of an array.
-    bool substitute_in(TomlValue& value, const std::string& own = "") {
+    // Replaces values such as thigh.end.x, and the name `own` if it has a value, in a string or in all strings of an
+    // array. Returns false after a mistake.
+    bool substitute_in(TomlValue& value, const std::string& own = "", const std::string& own_value = "") {
         bool is_done = value.kind != TomlValue::Kind::string ||
-                       mistakes_.attempt([&] { value.text = mechanism_.substituted(value.text, own); });
+                       mistakes_.attempt([&] { value.text = mechanism_.substituted(value.text, own, own_value); });
         if (!is_done) value.text = {"0", value.text.at, false, {}};  // so that the name is reported once
         if (value.kind == TomlValue::Kind::array)
-            for (TomlValue& item : value.items) is_done = substitute_in(item, own) && is_done;
+            for (TomlValue& item : value.items) is_done = substitute_in(item, own, own_value) && is_done;
         return is_done;
     }
-    void substitute_in(TomlValue& table, const char* key, const std::string& own = "") {
-        if (TomlValue* value = find_entry(table, key)) substitute_in(*value, own);
+    void substitute_in(TomlValue& table, const char* key, const std::string& own = "",
+                       const std::string& own_value = "") {
+        if (TomlValue* value = find_entry(table, key)) substitute_in(*value, own, own_value);
+    }
+
+    // The slip of a contact or a [[friction]]. One with a mistake becomes a rate, which is a slip.
+    void substitute_in_slip(TomlValue& table) {
+        TomlValue* slip = find_entry(table, "slip");
+        if (slip == nullptr) return;
+        const std::size_t before = mistakes_.count();
+        substitute_in(*slip);
+        if (mistakes_.count() > before && !system_.coordinates.empty())
+            slip->text.text = system_.coordinates.front().name + "'";
     }
 
     Text written_in(TomlValue* table, const char* key) {
@@ -152,7 +168,8 @@ class MechanismExpander {
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
-            for (const char* key : {"slip", "restitution"}) substitute_in(*table, key);
+            substitute_in(*table, "restitution");
+            substitute_in_slip(*table);
             TomlValue* typed = find_entry(*table, "gap");
             if (typed != nullptr && !substitute_in(*typed)) remove_entry(*table, "gap");  // 0 would be a second mistake
             const Fields fields(*table, "[[constraint]]");
@@ -171,6 +188,9 @@ class MechanismExpander {
                 contact = read_contact(mechanism_, fields);
             });
             const Location at = fields.find("between") ? fields.find("between")->at : table->at;
+            const bool is_scaled = contact && !contact->scale.is_zero();
+            const std::string speed = is_scaled ? fmt::format("slip/({})", symbols_.text(contact->scale)) : "";
+            for (const char* key : {"friction", "static_friction"}) substitute_in(*table, key, "slip", speed);
             for (const char* key : {"between", "longest", "normal"}) remove_entry(*table, key);
             if (!contact) continue;
             set_entry(*table, "gap", made_string(symbols_.text(contact->gap), at));

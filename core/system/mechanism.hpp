@@ -128,8 +128,9 @@ class PlacedMechanism {
     std::vector<AppliedLoad> loads;
     Location gravity_at;
 
-    // An expression with values such as thigh.end.x replaced by their text; `own` is a name of its own. Throws Mistake.
-    Text substituted(const Text& text, const std::string& own = "");
+    // An expression with values such as thigh.end.x replaced by their text. The name `own` is kept, or replaced by
+    // own_value. Throws Mistake.
+    Text substituted(const Text& text, const std::string& own = "", const std::string& own_value = "");
     // `own` is a name that stands for the abscissa.
     ProductSum read(const Text& text, MechanismSymbols::Allowed allowed, const std::string& own = "");
     // A point [x, y] or a name, in the axes of a body or ground (null: the world). Throw Mistake.

@@ -208,21 +208,25 @@ ProductSum PlacedMechanism::value_of(const std::string& token, const Location& a
     return components(vector, {}, kinematics.graph())[last == "x" ? 0 : 1];
 }
 
-Text PlacedMechanism::substituted(const Text& text, const std::string& own) {
+Text PlacedMechanism::substituted(const Text& text, const std::string& own, const std::string& own_value) {
     Text result = text;
     result.text.clear();
+    const auto has_meaning = [&](const std::string& name) {
+        return names_.places.contains(name) || !names_.why_reserved(name).empty() || name == own;
+    };
     std::size_t done = 0;  // of the original
     for (const std::string_view token : dotted_names_in(text.text)) {
         const auto begin = static_cast<std::size_t>(token.data() - text.text.data()), end = begin + token.size();
         const std::string bare(token.substr(0, token.find('\''))), first = bare.substr(0, bare.find('.'));
         const bool is_known = entry_of(first) != nullptr || is_world(first);
         const std::size_t next = std::min(text.text.find_first_not_of(' ', end), text.text.size());
-        if (first == bare ? !is_known || names_.places.contains(bare) || is_reserved(bare) || bare == own
-                          : !is_known && text.text.compare(next, 1, "(") == 0)  // np.sin(x)
+        const bool is_own = token == own && !own_value.empty();
+        if (!is_own && (first == bare ? !is_known || has_meaning(bare)
+                                      : !is_known && text.text.compare(next, 1, "(") == 0))  // np.sin(x)
             continue;
-        std::string value;
+        std::string value = own_value;
         try {
-            value = symbols_.text(value_of(std::string(token), place_in(text, begin)));
+            if (!is_own) value = symbols_.text(value_of(std::string(token), place_in(text, begin)));
         } catch (const ExpressionTooLarge& problem) {
             throw Mistake{place_in(text, begin), fmt::format("{} is too large: {}", token, problem.what()), {}};
         }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cfloat>
 #include <climits>
 #include <utility>
 
@@ -49,7 +50,8 @@ struct FileReader {
     ErrorCollector& mistakes;
     Names& names;  // of coordinates and parameters, including invalid ones
     MechanismExpansion expansion = {};
-    std::vector<Fields> constraints = {};  // the tables of system.constraints
+    std::vector<Fields> constraints = {};                // the tables of system.constraints
+    std::map<std::string, Location> contact_names = {};  // and of [[friction]]
 };
 
 Mistake no_name(const Text& name) {
@@ -69,16 +71,11 @@ Text read_name(Names& names, const Fields& fields) {
     const bool was_complete = std::exchange(names.complete, false);  // until this name is read
     const Text name = fields.string("name");
     if (!is_name(name.text)) throw no_name(name);
-    const bool is_of_a_gap =
-        names.has_several_gaps && (name.text.starts_with("gap_") || name.text.starts_with("lambda_"));
-    if (is_reserved(name.text) || is_of_a_gap) {
+    if (const std::string_view why = names.why_reserved(name.text); !why.empty()) {
         names.complete = was_complete;
         names.reported.insert(name.text);
-        throw Mistake{
-            name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
-            is_of_a_gap
-                ? "with several constraints gap_NAME and lambda_NAME are reserved: choose another name"
-                : "functions, t, pi, gap, lambda, energy, work, loss, power and deg are reserved: choose another name"};
+        throw Mistake{name.at, fmt::format("the name '{}' is reserved", shown(name.text)),
+                      fmt::format("{} are reserved: choose another name", why)};
     }
     const auto [other, is_new] = names.places.try_emplace(name.text, name.at);
     if (!is_new) throw used_twice(name, other->second);
@@ -206,43 +203,112 @@ void read_lagrangian(FileReader& reading, const Fields& root) {
     reading.mistakes.attempt([&] { reading.system.dissipation = fields.expression_or_none("dissipation"); });
 }
 
-// The name of a constraint in outputs, as in gap_knee; required if there are several. Throws Mistake.
-void read_constraint_name(const Fields& fields, bool is_only, std::map<std::string, Location>& places,
-                          std::string& name) {
-    if (is_only && !fields.find("name")) {
-        name = "contact";
-        return;
-    }
-    fields.need("name", {fields.table().at, "missing key 'name' in [[constraint]]",
-                         "with several constraints each needs its own name"});
+// The name of a constraint or a [[friction]] in outputs, as in gap_knee. Throws Mistake.
+std::string read_contact_name(const Fields& fields, const char* why_needed, std::map<std::string, Location>& places) {
+    fields.need("name", {fields.table().at, fmt::format("missing key 'name' in {}", fields.where()), why_needed});
     const Text text = fields.string("name");
     if (!is_name(text.text)) throw no_name(text);
     const auto [other, is_new] = places.try_emplace(text.text, text.at);
     if (!is_new) throw used_twice(text, other->second);
-    name = text.text;
+    return text.text;
 }
 
-void read_constraints(FileReader& reading, const Fields& root) {
-    ErrorCollector& mistakes = reading.mistakes;
-    root.need("constraint", missing_part("[[constraint]]"));
-    const std::size_t before = mistakes.count();
-    std::vector<Fields>& list = reading.constraints = tables(reading.root, "constraint", mistakes);
-    if (list.empty() && mistakes.count() == before) throw missing_part("[[constraint]]");  // constraint = []
-    if (list.size() > max_contacts) {
-        mistakes.add({list[max_contacts].table().at, fmt::format("more than {} [[constraint]]", max_contacts), {}});
-        while (list.size() > max_contacts) list.pop_back();
+// The tables of this key, at most `most`.
+std::vector<Fields> limited_tables(const FileReader& reading, const std::string& key, std::size_t most) {
+    std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
+    if (list.size() > most) {
+        reading.mistakes.add({list[most].table().at, fmt::format("more than {} [[{}]]", most, key), {}});
+        while (list.size() > most) list.pop_back();
     }
-    std::map<std::string, Location> places;
+    return list;
+}
+
+// ---- friction ----
+
+// The sliding velocity. Throws Mistake.
+Text read_slip(const Fields& fields) {
+    const TomlValue& slip = fields.need("slip");
+    if (slip.kind == TomlValue::Kind::array)
+        throw Mistake{slip.at, fmt::format("two slips in one {}: friction is planar", fields.where()),
+                      "write one expression, the sliding velocity along the tangent; friction in space is not covered"};
+    return fields.expression("slip");
+}
+
+// True for the word inf, or the number inf of TOML.
+bool is_infinite(const TomlValue& value) {
+    const std::string& text = value.text.text;
+    const std::size_t first = std::min(text.find_first_not_of(' '), text.size());
+    return value.kind == TomlValue::Kind::number ? value.number > DBL_MAX
+                                                 : text.substr(first, text.find_last_not_of(' ') + 1 - first) == "inf";
+}
+
+// The friction of a contact, whose slip is given unless the file's bodies have mistakes. Throws Mistake.
+void read_friction(const Fields& fields, ConstraintDescription& constraint) {
+    const TomlValue *friction = fields.find("friction"), *static_friction = fields.find("static_friction");
+    if (friction == nullptr) {
+        if (static_friction != nullptr)
+            fields.need("friction", {static_friction->at, "'static_friction' in [[constraint]] goes with 'friction'",
+                                     "add friction, the coefficient while sliding"});
+        return;
+    }
+    fields.need("slip", {friction->at, "friction needs the sliding velocity: 'slip' is missing",
+                         "add slip, scaled like the gap: for gap = \"y - r\" it is \"x' + r*phi'\", or \"x'\" for a "
+                         "point; with 'between' in place of 'gap' it is derived"});
+    constraint.never_slides = is_infinite(*friction);
+    if (constraint.never_slides && static_friction != nullptr)
+        throw Mistake{static_friction->at, "'static_friction' besides friction = \"inf\"",
+                      "leave it out: a contact that never slides has no limit"};
+    if (static_friction != nullptr) constraint.static_friction = fields.expression("static_friction");
+    constraint.friction = constraint.never_slides ? friction->text : fields.expression("friction");
+}
+
+void read_frictions(FileReader& reading) {
+    ErrorCollector& mistakes = reading.mistakes;
+    for (Fields& fields : limited_tables(reading, "friction", max_frictions)) {
+        fields.allow(keys_of("[[friction]]"), mistakes);
+        FrictionDescription& friction = reading.system.frictions.emplace_back();
+        friction.at = fields.table().at;
+        const bool is_named = mistakes.attempt([&] {
+            friction.name =
+                read_contact_name(fields, "it is the name in outputs, as in slip_NAME", reading.contact_names);
+        });
+        if (!is_named) reading.names.complete = false;  // nor are the names of its slip and force
+        mistakes.attempt([&] { friction.slip = read_slip(fields); });
+        mistakes.attempt([&] {
+            if (const TomlValue& level = fields.need("level"); is_infinite(level))
+                throw Mistake{level.at, "'level' in [[friction]] must be finite",
+                              "what never slides needs no coordinate: leave that coordinate out"};
+            friction.level = fields.expression("level");
+        });
+        mistakes.attempt([&] {
+            if (fields.find("static_level")) friction.static_level = fields.expression("static_level");
+        });
+    }
+}
+
+void read_constraints(FileReader& reading) {
+    ErrorCollector& mistakes = reading.mistakes;
+    std::vector<Fields>& list = reading.constraints = limited_tables(reading, "constraint", max_contacts);
     for (Fields& fields : list) {
         fields.allow(keys_of("[[constraint]]"), mistakes);
         ConstraintDescription& constraint = reading.system.constraints.emplace_back();
         constraint.at = fields.table().at;
-        const bool is_named =
-            mistakes.attempt([&] { read_constraint_name(fields, list.size() == 1, places, constraint.name); });
+        const bool is_named = mistakes.attempt([&] {
+            if (list.size() == 1 && !fields.find("name")) {
+                constraint.name = "contact";
+                reading.contact_names.emplace(constraint.name, constraint.at);
+            } else {
+                constraint.name = read_contact_name(fields, "with several constraints each needs its own name",
+                                                    reading.contact_names);
+            }
+        });
         if (!is_named) reading.names.complete = false;  // nor are the names of its gap and force
-        if (!reading.expansion.has_failed || fields.find("gap"))
-            mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
-        mistakes.attempt([&] { constraint.slip = fields.expression_or_none("slip"); });
+        const bool has_gap = !reading.expansion.has_failed || fields.find("gap");
+        if (has_gap) mistakes.attempt([&] { constraint.gap = fields.expression("gap"); });
+        mistakes.attempt([&] {
+            if (fields.find("slip")) constraint.slip = read_slip(fields);
+        });
+        if (has_gap) mistakes.attempt([&] { read_friction(fields, constraint); });
         mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
         mistakes.attempt([&] { constraint.begins = fields.string_or("begins", ""); });
         mistakes.attempt([&] { constraint.ends = fields.string_or("ends", ""); });
@@ -360,6 +426,18 @@ void read_pictures(FileReader& reading) {
 }
 
 bool is_title(const TomlEntry& entry) { return entry.key == "title"; }
+// Notes which names are reserved in this file, before any name is read.
+void note_reserved_names(const Fields& root, Names& names) {
+    const TomlValue *constraints = root.find("constraint"), *frictions = root.find("friction");
+    const std::size_t gaps = constraints ? constraints->items.size() : 0,
+                      bearings = frictions ? frictions->items.size() : 0;
+    names.has_several_gaps = gaps > 1;
+    names.has_friction = bearings > 0;
+    for (std::size_t i = 0; i < gaps; ++i)
+        for (const TomlEntry& entry : constraints->items[i].entries)
+            names.has_friction = names.has_friction || entry.key == "friction";
+    names.has_several_slips = names.has_friction && gaps + bearings > 1;
+}
 
 // The title comes first, and a file without one is named after itself.
 TomlValue with_title(TomlValue root, const std::string& title) {
@@ -379,6 +457,19 @@ std::string titled_text(const SystemDescription& system) {
     const std::string_view mark = "\xef\xbb\xbf",
                            text = system.source_text;  // a byte order mark stands first or not at all
     return to_toml(with_title({}, system.title)).append(text.starts_with(mark) ? text.substr(mark.size()) : text);
+}
+
+std::string_view Names::why_reserved(std::string_view name) const {
+    const auto begins = [&](std::string_view first, std::string_view second) {
+        return name.starts_with(first) || name.starts_with(second);
+    };
+    if (is_reserved(name)) return "functions, t, pi, gap, lambda, energy, work, loss, power and deg";
+    if (has_several_gaps && begins("gap_", "lambda_")) return "with several constraints gap_NAME and lambda_NAME";
+    if (has_friction && has_word("slip friction_force heat inf", name))
+        return "with friction slip, friction_force, heat and inf";
+    if (has_several_slips && begins("slip_", "friction_force_"))
+        return "with friction slip_NAME and friction_force_NAME";
+    return {};
 }
 
 ParsedFile read_tables(std::string text, std::string name, std::string* expanded) {
@@ -401,18 +492,22 @@ ParsedFile read_tables(std::string text, std::string name, std::string* expanded
             reading.names.complete = reading.names.complete && contains(keys, entry.key);
     mistakes.attempt([&] { system.title = fields.string_or("title", name_without_folder(system.file)); });
     mistakes.attempt([&] { system.source = fields.string_or("source", ""); });
-    const TomlValue* constraints = fields.find("constraint");
-    read.names.has_several_gaps = constraints != nullptr && constraints->items.size() > 1;
+    note_reserved_names(fields, read.names);
     mistakes.attempt([&] { read_coordinates(reading, fields); });
     read_parameters(reading);
     for (const char* key : {"run", "truncation"})
         if (const TomlValue* table = fields.find(key))
-            mistakes.attempt([&] { read_options(*table, key, system.options, mistakes); });
+            mistakes.attempt([&] {
+                read_options(*table, key, system.options, mistakes);
+                if (const TomlValue* word = Fields(*table, key).find("reinitialization"))
+                    system.reinitialization_at = word->at;
+            });
     rewrite(read);
     reading.expansion = expand_mechanism(root, read);
     if (expanded != nullptr) *expanded = to_toml(with_title(root, system.title));
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
-    mistakes.attempt([&] { read_constraints(reading, fields); });
+    read_constraints(reading);
+    read_frictions(reading);
     if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);

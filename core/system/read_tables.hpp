@@ -17,7 +17,12 @@ struct Names {
     std::map<std::string, Location> places;
     bool complete = true;            // false: some names could not be read, so no name is reported as unknown
     bool has_several_gaps = false;   // names that start with gap_ or lambda_ are then reserved
+    bool has_friction = false;       // slip, friction_force, heat and inf are then reserved,
+    bool has_several_slips = false;  // and if true, names that start with slip_ or friction_force_
     std::set<std::string> reported;  // rejected or unknown names, reported once; they may stand for anything
+
+    // Why a name is reserved in this file, for a message; "" if it is not.
+    std::string_view why_reserved(std::string_view name) const;
 };
 
 // The contents of a file and its mistakes so far.

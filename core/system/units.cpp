@@ -123,7 +123,7 @@ class SymbolUnits {
         add("t", has_units ? second : std::nullopt);
         for (const DerivedDescription& d : description.derived)
             add(d.name, d.unit.empty() ? of(d.definition.text) : read(d.unit));
-        constexpr const char* energies[] = {"energy", "work", "loss", "power", "lambda"};
+        constexpr const char* energies[] = {"energy", "work", "loss", "power", "lambda", "heat", "friction_force"};
         const bool has_energy = std::any_of(std::begin(energies), std::end(energies), names);
         const bool has_gap = has_energy || names("gap");
         MaybeUnit energy = has_energy ? of(description.kinetic.text) : std::nullopt;
@@ -136,6 +136,16 @@ class SymbolUnits {
             add(output_names(description, "gap'")[i], product(gap, second, -1.0));
             add(output_names(description, "gap''")[i], product(gap, second, -2.0));
             add(output_names(description, "lambda")[i], product(energy, gap, -1.0));
+        }
+        if (!description.has_friction()) return;
+        add("heat", energy);
+        const std::vector<SlidingPlace> places = sliding_places(description);
+        const bool has_slip = names("slip") || names("friction_force");
+        for (std::size_t i = 0; i < places.size(); ++i) {  // the friction force times the slip is a power
+            const MaybeUnit slip = has_slip ? of(places[i].slip->text) : std::nullopt;
+            const MaybeUnit force = product(product(energy, second, -1.0), slip, -1.0);
+            add(sliding_names(description, "friction_force")[i], force);
+            add(sliding_names(description, "slip")[i], slip);
         }
     }
 
@@ -205,7 +215,8 @@ std::string unit_of_expression(const SystemDescription& description, std::string
     const std::string text = written(*unit);
     const std::size_t begin = std::min(expression.find_first_not_of(' '), expression.size());
     const std::string_view word = expression.substr(begin, expression.find_last_not_of(' ') + 1 - begin);
-    const std::vector<std::string> forces = output_names(description, "lambda");
+    std::vector<std::string> forces = output_names(description, "lambda");
+    for (const std::string& force : sliding_names(description, "friction_force")) forces.push_back(force);
     const bool is_force = std::find(forces.begin(), forces.end(), word) != forces.end();
     return is_force && text == "J" ? "N*m" : text;
 }

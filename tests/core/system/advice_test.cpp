@@ -56,7 +56,8 @@ const FileEdit with_advice[] = {
      "^\nwrite one [[constraint]] for each"},
     {"gap = \"x", "h = \"x",
      "f.toml:18:1: unknown key 'h' in [[constraint]]; did you mean 'gap'?\n    h = \"x - sin(theta)/9\"\n    ^\nknown "
-     "keys: name, gap, between, longest, normal, slip, restitution, begins, ends, drawing"},
+     "keys: name, gap, between, longest, normal, slip, friction, static_friction, restitution, begins, ends, "
+     "drawing"},
     {"rate = 0.5", "velocity = 0.5",
      "f.toml:5:1: unknown key 'velocity' in [[coordinate]]; did you mean 'rate'?\n    velocity = 0.5\n    ^\nknown "
      "keys: name, start, rate, force, unit, range, rate_range"},
@@ -82,9 +83,9 @@ const FileEdit with_advice[] = {
      "its "
      "keys below"},
     {"gap = \"x", "friction = 0.3\ngap = \"x",
-     "f.toml:18:1: unknown key 'friction' in [[constraint]]\n    friction = 0.3\n    ^\ncontacts have no friction "
-     "here: "
-     "leave it out"},
+     "f.toml:18:12: friction needs the sliding velocity: 'slip' is missing\n    friction = 0.3\n               ^\nadd "
+     "slip, scaled like the gap: for gap = \"y - r\" it is \"x' + r*phi'\", or \"x'\" for a point; with 'between' in "
+     "place of 'gap' it is derived"},
     {"\"m*x\"", "\"0.5x\u00b2\"",
      "f.toml:16:17: an operator is missing here; write '*' for a product\n    potential = \"0.5x\u00b2\"\n             "
      "   "

@@ -38,16 +38,17 @@ const FileEdit in_keys[] = {
      "name, start, rate, force, unit, range, rate_range"},
     {"[lagrangian]", "[langrangian]",
      "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
-     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, "
-     "damper, force, torque, run, view, drawing, truncation, orbit, extra"},
+     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, friction, world, body, ground, "
+     "spring, damper, force, torque, run, view, drawing, truncation, orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
      "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown keys: "
-     "title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, damper, force, "
+     "title, source, coordinate, parameter, lagrangian, constraint, friction, world, body, ground, spring, damper, "
+     "force, "
      "torque, "
      "run, view, drawing, truncation, orbit, extra"},
     {"end_time = 5", "zeno = 5",
      "f.toml:21:1: unknown key 'zeno' in [run]\n    zeno = 5\n    ^\nknown keys: start_time, end_time, tolerance, "
-     "method, max_impacts, max_steps, memory, simultaneous"},
+     "method, max_impacts, max_steps, memory, simultaneous, energy_gain, max_events"},
     {"eps_q", "epsq",
      "f.toml:23:1: unknown key 'epsq' in [truncation]; did you mean 'eps_q'?\n    epsq = 1e-6\n    ^\nknown keys: "
      "eps_q, eps_v, eps_t, conditions, reinitialization"},
@@ -62,7 +63,7 @@ const FileEdit in_keys[] = {
      "f.toml:24:1: missing key 'over' in [[drawing]] of shape curve\n    [[drawing]]\n    ^"},
     {"x = \"x\"\n", "", "f.toml:28:1: missing key 'x' in [[view]]\n    [[view]]\n    ^"},
     {"[[constraint]]\ngap = \"x - sin(theta)/9\"\nrestitution = \"e\"\n", "",
-     "f.toml:1:1: missing [[constraint]]\nassets/systems has complete examples"},
+     "f.toml:28:6: 'gap'' is of a [[constraint]], and this system has none\n    y = [\"gap'\"]\n         ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Keys, Mistakes, testing::ValuesIn(in_keys));
 

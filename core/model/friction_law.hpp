@@ -1,0 +1,25 @@
+// Friction as read from a system file (theory-friction.md 1).
+#pragma once
+
+#include "expression/parse.hpp"
+#include "model/derive.hpp"
+#include "system/description.hpp"
+
+namespace achilles {
+
+// Sets the slip row w and the drift of law.slip = w v + drift. `text` is the slip as written, `parts` locates its terms.
+// Throws Mistake if the slip is not affine in the rates, or contains no rate.
+void split_slip(const SystemDescription& system, const Layout& layout, const Text& text, const TextParts& parts,
+                FrictionLaw& law);
+
+// A level of friction at slip 0. Throws Mistake, at its text, if it divides by 0 there.
+Expression at_slip_zero(Expression level, const Layout& layout, const Text& text);
+
+// Removes friction whose levels are the number 0 from the description and the equations: it is no friction.
+void drop_zero_friction(SystemDescription& system, Equations& equations);
+
+// Runs do not have friction yet: throws InputError for a system with friction. Remove this function and its one call
+// once they do.
+void refuse_friction_until_runs_have_it(const SystemDescription& system);
+
+}  // namespace achilles
