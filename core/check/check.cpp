@@ -34,8 +34,9 @@ class Report : EquationsOnPage {
         parameters();
         put_mechanism(page_, model_, run_);
         const bool forces = has_forces(model_.equations());
-        page_.heading(fmt::format("Energies, {}{}, restitution{}", forces ? "forces, " : "", is_one() ? "gap" : "gaps",
-                                  is_one() ? "" : "s"));
+        const char* const plural = is_one() ? "" : "s";
+        page_.heading(fmt::format("Energies{}", forces ? ", forces" : "") +
+                      (model_.contacts() == 0 ? "" : fmt::format(", gap{0}, restitution{0}", plural)));
         write_given_quantities();
         page_.heading(fmt::format("Free motion: M q'' + bias = {}", forces ? "Q" : "0"));
         matrix({"M", "M"}, simplified_.M, model_.equations().M, model_.layout().dof);

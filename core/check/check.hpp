@@ -57,7 +57,8 @@ struct EquationSheet {
 // parameters and the values of the run. After a stop request it returns soon, with an incomplete result.
 EquationSheet equation_sheet(const Model& model, const Run& run, std::stop_token stop = {});
 
-// What the reader understood of a mechanism, as put_mechanism() prints it; no blocks for a system typed as energies.
+// What the reader understood of a mechanism, as put_mechanism() prints it; no blocks for a system typed as energies without
+// friction.
 // Takes milliseconds.
 EquationSheet mechanism_sheet(const Model& model, const Run& run);
 

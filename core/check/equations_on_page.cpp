@@ -158,7 +158,7 @@ void EquationsOnPage::flat(std::size_t index) {
 }
 
 void EquationsOnPage::unwritten_conditions() {
-    if (is_one() || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
+    if (model_.contacts() < 2 || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
     const std::string left_out =
         fmt::format("Zeno conditions with {} other contacts held are not printed; a run derives those that it needs.",
                     simplified_.while_held.empty() ? "any" : "two or more");

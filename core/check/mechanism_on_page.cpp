@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "expression/notation.hpp"
 #include "expression/parse.hpp"
@@ -19,11 +20,15 @@ class MechanismPage {
     MechanismPage(Page& page, const Model& model, const Run& run)
         : page_(page),
           system_(model.description()),
+          layout_(model.layout()),
+          frictions_(model.equations().frictions),
           names_(model.slot_names()),
-          scope_(force_scope(system_, model.layout(), graph_)) {
+          scope_(force_scope(system_, layout_, graph_)) {
+        scope_.allowed.insert_or_assign("slip", graph_.symbol(layout_.sliding_speed()));
         for (const Vector* part : {&run.q, &run.v}) start_.insert(start_.end(), part->begin(), part->end());
         start_.insert(start_.end(), run.parameters.begin(), run.parameters.end());
         start_.push_back(run.options.start_time);
+        start_.resize(layout_.count());
     }
 
     void put() {
@@ -34,7 +39,9 @@ class MechanismPage {
         put_contacts();
         if (mechanism.is_prescribed)
             say("Time moves a mass: M, impacts and lambda are those at frozen t, and 'energy' is T2 - T0 + V, where T2 "
-                "is quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that balance.");
+                "is quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that "
+                "balance.");
+        put_frictions();
     }
 
  private:
@@ -64,8 +71,10 @@ class MechanismPage {
         const double number = value_of(parse(expression, scope_, graph_), start_);
         if (unit.empty())
             unit = is_name(expression) ? unit_of(system_, expression) : unit_of_expression(system_, expression);
-        for (char& c : unit)
-            if (c == '*') c = ' ';
+        return with_unit(number, unit);
+    }
+    static std::string with_unit(double number, std::string unit) {
+        std::replace(unit.begin(), unit.end(), '*', ' ');
         return fmt::format("{:.4g}{}{}", number, unit.empty() ? "" : " ", unit);
     }
 
@@ -97,8 +106,44 @@ class MechanismPage {
         page_.lines(rows);
     }
 
+    // "mu = 0.3", "0.2 + 0.1*exp(-slip) = 0.25 at the start", "12 N": a level as written, and its value if it has names.
+    std::string level(const Text& text, Expression level, const std::string& unit) const {
+        const std::string number = with_unit(value_of(level, start_), unit);
+        if (!has_names(text.text)) return number;
+        std::vector<std::uint32_t> varying{layout_.t(), layout_.sliding_speed()};
+        for (std::uint32_t slot = 0; slot < 2 * layout_.dof; ++slot) varying.push_back(slot);
+        return fmt::format("`{}` = {}{}", text.text, number, depends_on(level, varying) ? " at the start" : "");
+    }
+
+    void put_frictions() {
+        std::vector<std::vector<std::string>> rows;
+        const std::vector<SlidingPlace> places = sliding_places(system_);
+        const std::vector<std::string> forces = sliding_names(system_, "friction_force");
+        for (std::size_t i = 0; i < places.size(); ++i) {
+            const FrictionLaw& law = frictions_[i];
+            const std::string unit = law.contact ? "" : unit_of_expression(system_, forces[i]);
+            start_[layout_.sliding_speed()] = std::abs(value_of(law.slip, start_));
+            std::string line = fmt::format("slip = `{}`, ", places[i].slip->text);
+            if (law.never_slides)
+                line += "never slides";
+            else
+                line += (law.contact ? "coefficient " : "level ") + level(*places[i].level, law.level, unit);
+            if (places[i].static_level != nullptr)
+                line += ", static " + level(*places[i].static_level, law.static_level, unit);
+            rows.push_back({words(places[i].name), words(line)});
+        }
+        if (rows.empty()) return;
+        page_.heading("Friction");
+        page_.lines(rows);
+        if (std::any_of(places.begin(), places.end(),
+                        [](const SlidingPlace& place) { return place.contact.has_value(); }))
+            say("A contact slides with coefficient*lambda against its slip, and sticks up to static*lambda.");
+    }
+
     Page& page_;
     const SystemDescription& system_;
+    const Layout& layout_;
+    const std::vector<FrictionLaw>& frictions_;
     const std::span<const std::string> names_;
     Graph graph_;
     Scope scope_;

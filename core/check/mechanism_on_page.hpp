@@ -1,4 +1,4 @@
-// What the reader understood of a mechanism: masses, inertias, lengths and the meaning of contact forces.
+// What the reader understood of a mechanism: masses, inertias, lengths, the meaning of contact forces, and friction.
 #pragma once
 
 #include "model/model.hpp"
@@ -6,8 +6,9 @@
 
 namespace achilles {
 
-// Headings Bodies, Springs and Contacts, with values at the start of the run; nothing for a system typed as energies.
-// The last cell of a row of text is a sentence (Block::Kind::lines).
+// Headings Bodies, Springs, Contacts and Friction, with values at the start of the run. For a system typed as energies
+// only the last, for a system without friction all but the last. The last cell of a row of text is a sentence
+// (Block::Kind::lines).
 void put_mechanism(Page& page, const Model& model, const Run& run);
 
 }  // namespace achilles
