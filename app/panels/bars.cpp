@@ -409,12 +409,14 @@ void show_status(const Session& session, const PanelState& state) {
         return;
     }
     const std::string seconds = state.in_window ? fmt::format("{:.1f} ms   \u00b7   ", s.seconds * 1e3) : "";
-    const std::string text =
-        fmt::format("{}{}   \u00b7   {} steps   \u00b7   minimum gap {}   \u00b7   energy drift {}   \u00b7   {}",
-                    seconds, session.sentences().impacts(), s.steps,
-                    with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff())),
-                    s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
-                    to_text(trajectory.run.options.method));
+    const std::string gap = session.model()->contacts() == 0
+                                ? ""
+                                : "   \u00b7   minimum gap " +
+                                      with_minus(least_gap_text(session.least_gap(), session.scale().q.maxCoeff()));
+    const std::string text = fmt::format(
+        "{}{}   \u00b7   {} steps{}   \u00b7   energy drift {}   \u00b7   {}", seconds, session.sentences().impacts(),
+        s.steps, gap, s.energy_drift < noise ? number(noise, "below {}") : number(s.energy_drift, "{:.2g}"),
+        to_text(trajectory.run.options.method));
     const float room = std::max(1.0F, content_right() - units(edge) - ImGui::GetCursorPosX());
     const bool is_cut = width_of(text) > room;
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));

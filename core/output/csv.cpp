@@ -73,7 +73,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
             add("rate_" + constraint.name, "gap_" + constraint.name + "'");
             add("lambda_" + constraint.name, "lambda_" + constraint.name);
         }
-    } else {
+    } else if (model.contacts() == 1) {
         for (const auto& [column, of] : {std::pair{"gap", "gap"}, {"gap rate", "gap'"}, {"lambda", "lambda"}})
             add(column, of);
     }
@@ -199,7 +199,7 @@ std::string to_text(const Vector& x) {
 // " {what} knee+post" for a system with several contacts; else empty.
 std::string contacts(const Trajectory& trajectory, const char* what, ContactSet contacts) {
     const Model& model = *trajectory.model;
-    if (model.contacts() == 1 || contacts.empty()) return "";
+    if (model.contacts() < 2 || contacts.empty()) return "";
     return fmt::format(" {} {}", what, joined_names(model, contacts, "+"));
 }
 

@@ -286,10 +286,11 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
-    text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}, least gap {}\n",
-                        EventDescriptions(trajectory).impacts(), s.steps, s.evaluations,
-                        has_power ? " (work subtracted)" : "", drift_text(s.energy_drift),
-                        least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff()));
+    text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}", EventDescriptions(trajectory).impacts(),
+                        s.steps, s.evaluations, has_power ? " (work subtracted)" : "", drift_text(s.energy_drift));
+    if (model.contacts() > 0)
+        text += ", least gap " + least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff());
+    text += "\n";
     if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
     if (trajectory.ambiguous_impacts > 0) text += conventions(trajectory.ambiguous_impacts);
     if (s.impacts > 0) text += "Gap speed is |hdot|, the rate at which the gap closes, not the speed of a body.\n";

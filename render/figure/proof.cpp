@@ -19,6 +19,12 @@ namespace {
 constexpr double least_seen = 1.0 / 150.0;  // fraction of the panel's height, perpendicular to the curve: a narrower
                                             // tube is hidden by its curve
 
+// The name of a quantity of the first contact in views; "" if there is none.
+std::string name_of_first_contact(const SystemDescription& system, std::string_view quantity) {
+    const std::vector<std::string> names = output_names(system, quantity);
+    return names.empty() ? "" : names.front();
+}
+
 // Whether the members of the enclosure are in contact at an instant.
 enum class ContactCertainty { no, yes, either };
 
@@ -31,8 +37,8 @@ class EnclosedValues {
             evaluator_.input(layout_.parameter(i)) = proof.claim.parameters[i];
         evaluator_.fix();
         starts_in_contact_ = !run.phases.empty() && run.phases.front().kind == Phase::Kind::constrained;
-        gap_ = output_names(run.model->description(), "gap")[0];
-        force_ = output_names(run.model->description(), "lambda")[0];
+        gap_ = name_of_first_contact(run.model->description(), "gap");
+        force_ = name_of_first_contact(run.model->description(), "lambda");
     }
 
     std::vector<Interval> at(const EnclosedState& state) {
@@ -170,7 +176,7 @@ double least_of(const PreparedView& view, const Trajectory& run, std::size_t qua
     const std::string& text = view.quantities()[quantity].text;
     const SystemDescription& description = run.model->description();
     const bool is_positive =
-        text == output_names(description, "gap")[0] || text == output_names(description, "lambda")[0];
+        text == name_of_first_contact(description, "gap") || text == name_of_first_contact(description, "lambda");
     return is_positive ? 0.0 : -HUGE_VAL;
 }
 
