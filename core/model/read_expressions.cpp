@@ -191,7 +191,7 @@ namespace {
 
 // What no equation uses: slips without friction, drawings, views, the closing of an orbit.
 void read_rest(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
-               ExpressionReader& reader) {
+               const Names& names, ExpressionReader& reader) {
     Scope in_slips = force_scope(system, layout, graph);
     for (const ConstraintDescription& constraint : system.constraints)
         if (!constraint.has_friction()) reader.read(constraint.slip, in_slips);
@@ -203,7 +203,9 @@ void read_rest(const SystemDescription& system, const Layout& layout, Graph& gra
         in_drawings.allowed.erase(drawing.over);
     }
     Scope in_views = view_scope(system, layout, graph, equations);
+    const bool lacks_contacts = system.constraints.empty() || (names.has_friction && !system.has_friction());
     for (const ViewDescription& view : system.views) {
+        if (lacks_contacts && !names.complete) break;  // their table may be misspelled
         reader.read(view.x, in_views);
         for (const Text& text : view.y) reader.read(text, in_views);
     }
@@ -229,7 +231,8 @@ bool check_expressions(SystemDescription& system, Names names, ErrorCollector& m
     equations.free.contacts.resize(system.constraints.size());
     for (ContactEquations& c : equations.free.contacts) c.hdot = c.hddot = c.lambda = c.gap_t = any_value;
     ExpressionReader reader(graph, names, mistakes);
-    attempt_within_limits(mistakes, system, equations, [&] { read_rest(system, layout, graph, equations, reader); });
+    attempt_within_limits(mistakes, system, equations,
+                          [&] { read_rest(system, layout, graph, equations, names, reader); });
     return has_equations;
 }
 

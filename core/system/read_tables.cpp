@@ -213,9 +213,9 @@ std::string read_contact_name(const Fields& fields, const char* why_needed, std:
     return text.text;
 }
 
-// The tables of this key, at most `most`.
-std::vector<Fields> limited_tables(const FileReader& reading, const std::string& key, std::size_t most) {
-    std::vector<Fields> list = tables(reading.root, key, reading.mistakes);
+// The tables of this key, at most `most`. If they have a mistake, the names of their outputs are incomplete.
+std::vector<Fields> limited_tables(FileReader& reading, const std::string& key, std::size_t most) {
+    std::vector<Fields> list = named_tables(reading, key);
     if (list.size() > most) {
         reading.mistakes.add({list[most].table().at, fmt::format("more than {} [[{}]]", most, key), {}});
         while (list.size() > most) list.pop_back();
@@ -429,8 +429,9 @@ bool is_title(const TomlEntry& entry) { return entry.key == "title"; }
 // Notes which names are reserved in this file, before any name is read.
 void note_reserved_names(const Fields& root, Names& names) {
     const TomlValue *constraints = root.find("constraint"), *frictions = root.find("friction");
-    const std::size_t gaps = constraints ? constraints->items.size() : 0,
-                      bearings = frictions ? frictions->items.size() : 0;
+    const std::size_t gaps = constraints ? constraints->items.size() : 0;
+    const bool is_list = frictions != nullptr && frictions->kind == TomlValue::Kind::array;
+    const std::size_t bearings = is_list ? frictions->items.size() : frictions != nullptr ? 1 : 0;
     names.has_several_gaps = gaps > 1;
     names.has_friction = bearings > 0;
     for (std::size_t i = 0; i < gaps; ++i)

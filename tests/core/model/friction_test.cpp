@@ -14,8 +14,8 @@ namespace {
 // A ball on waves, whose surface moves, with a Stribeck curve; and a rough axle.
 const std::string on_waves = R"toml(title = "w"
 coordinate = [{name = "x", start = 0.3, rate = 0.7, unit = "m"}, {name = "y", start = 2, rate = -0.2, unit = "m"}, {name = "phi", rate = 3, unit = "rad"}]
-parameter = [{name = "mu", value = 0.3}, {name = "V", value = 0.25, unit = "m/s"}, {name = "tau", value = 0.01, unit = "N*m"}, {name = "m", value = 1, unit = "kg"}]
-lagrangian.kinetic = "m/2*(x'^2 + y'^2) + m/8*phi'^2"
+parameter = [{name = "mu", value = 0.3}, {name = "V", value = 0.25, unit = "m/s"}, {name = "tau", value = 0.01, unit = "N*m"}, {name = "m", value = 1, unit = "kg"}, {name = "L", value = 1, unit = "m"}]
+lagrangian.kinetic = "m/2*(x'^2 + y'^2) + m/8*(L*phi')^2"
 lagrangian.potential = "y"
 [[constraint]]
 name = "waves"
@@ -153,7 +153,14 @@ TEST(Friction, IsPrintedByCheck) {
     double disagreement = 1.0;
     const std::string answer = check_answer(*model, model->default_run(), disagreement);
     EXPECT_LT(disagreement, max_disagreement);
-    EXPECT_NE(answer.find("?"), answer.npos) << answer;
+    EXPECT_NE(
+        answer.find("\nFriction\n"
+                    "  waves  slip = x' + cos(x)*y' - V*cos(t), coefficient mu + exp(-slip)/10 = 0.3772 at the start, "
+                    "static mu + 0.2 = 0.5\n"
+                    "  foot   slip = y', never slides\n"
+                    "  axle   slip = 2*phi', level tau*(1 + slip^2) = 0.37 N m at the start\n"),
+        answer.npos)
+        << answer;
 }
 
 // Until runs have it. A proof refuses friction for good.
@@ -167,8 +174,16 @@ TEST(Friction, IsRefusedByWhatDoesNotHaveItYet) {
         }
         return std::string();
     };
-    EXPECT_EQ(refusal([&] { simulate(model, model->default_run()); }), "?");
-    EXPECT_EQ(refusal([&] { check(*model, problem_from_decimals(model->default_run())); }), "?");
+    EXPECT_EQ(refusal([&] { simulate(model, model->default_run()); }),
+              "typed.toml:10:13: friction is read and checked, but no run has it yet\n"
+              "    friction = \"mu + exp(-slip)/10\"\n"
+              "                ^\n"
+              "achilles check prints the equations; leave the friction out to run the system without it");
+    EXPECT_EQ(refusal([&] { check(*model, problem_from_decimals(model->default_run())); }),
+              "typed.toml:10:13: a proof does not cover friction\n"
+              "    friction = \"mu + exp(-slip)/10\"\n"
+              "                ^\n"
+              "achilles simulate runs this system, with an estimate of its error");
 }
 
 }  // namespace

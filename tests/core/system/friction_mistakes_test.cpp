@@ -166,6 +166,9 @@ const FrictionMistake friction_mistakes[] = {
     {"OneTable", "[[friction]]", "[friction]",
      "f.toml:11:2: 'friction' must be an array of tables, not a table\n    [friction]\n     ^\nwrite one [[friction]] "
      "for each"},
+    {"OneTableThatAViewNeeds", "[[friction]]", "[[view]]\nname = \"v\"\nx = \"t\"\ny = [\"slip_axle\"]\n[friction]",
+     "f.toml:15:2: 'friction' must be an array of tables, not a table\n    [friction]\n     ^\nwrite one [[friction]] "
+     "for each"},
     {"ReservedSlip", "parameter = [", "parameter = [{name = \"slip\", value = 1}, ",
      "f.toml:2:23: the name 'slip' is reserved\n    parameter = [{name = \"slip\", value = 1}, {name = \"mu\", value = "
      "0.3}, {name = \"...\n                          ^\nwith friction slip, friction_force, heat and inf are reserved: "
