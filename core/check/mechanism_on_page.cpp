@@ -106,7 +106,8 @@ class MechanismPage {
         page_.lines(rows);
     }
 
-    // "mu = 0.3", "0.2 + 0.1*exp(-slip) = 0.25 at the start", "12 N": a level as written, and its value if it has names.
+    // "mu = 0.3", "0.2 + 0.1*exp(-slip) = 0.25 at the start", "12 N": a level as written, with its value if it has
+    // names.
     std::string level(const Text& text, Expression level, const std::string& unit) const {
         const std::string number = with_unit(value_of(level, start_), unit);
         if (!has_names(text.text)) return number;

@@ -62,8 +62,8 @@ struct ModeEquations {
     std::vector<ContactEquations> contacts;
 };
 
-// The friction of a contact, or friction without a gap, at a slip u = w v + drift (theory-friction.md 1). A level is the
-// coefficient of a contact, or the friction force itself. It is a function of q, t, parameters and
+// The friction of a contact, or friction without a gap, at a slip u = w v + drift (theory-friction.md 1). A level is
+// the coefficient of a contact, or the friction force itself. It is a function of q, t, parameters and
 // Layout::sliding_speed(), which stands for |u|.
 struct FrictionLaw {
     std::optional<std::size_t> contact;  // null: no gap

@@ -7,8 +7,8 @@
 
 namespace achilles {
 
-// Sets the slip row w and the drift of law.slip = w v + drift. `text` is the slip as written, `parts` locates its terms.
-// Throws Mistake if the slip is not affine in the rates, or contains no rate.
+// Sets the slip row w and the drift of law.slip = w v + drift. `text` is the slip as written, and `parts` locates its
+// terms. Throws Mistake if the slip is not affine in the rates, or contains no rate.
 void split_slip(const SystemDescription& system, const Layout& layout, const Text& text, const TextParts& parts,
                 FrictionLaw& law);
 

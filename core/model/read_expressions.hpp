@@ -10,8 +10,8 @@
 
 namespace achilles {
 
-// Sets the given terms, kinetic, potential, Q, gaps, restitutions, frictions and M of the equations, in whose graph it works. Adds
-// the mistakes in these expressions and in the definitions of parameters, including those in T (kinetic_energy.hpp).
+// Sets the given terms, kinetic, potential, Q, gaps, restitutions, frictions and M of the equations, in whose graph it
+// works. Adds the mistakes in these expressions and in the definitions of parameters, including those in T (kinetic_energy.hpp).
 // Missing texts are skipped. An unknown name is reported once per file, at its first place;
 // expressions that depend on it are not checked.
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,

@@ -45,8 +45,8 @@ struct RunQuantity {
     friend bool operator==(const RunQuantity&, const RunQuantity&) = default;
 };
 
-// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy, with friction slip, friction_force and heat; their
-// values are taken from the equations.
+// t, coordinates, rates, parameters, gap, gap', gap'', lambda, energy, with friction slip, friction_force and heat;
+// their values are taken from the equations.
 Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations);
 
 // The names of view_scope() and quantities of the run: input layout.count() + i is quantities[i]. Parsing appends to

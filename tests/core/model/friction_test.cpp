@@ -13,8 +13,10 @@ namespace {
 
 // A ball on waves, whose surface moves, with a Stribeck curve; and a rough axle.
 const std::string on_waves = R"toml(title = "w"
-coordinate = [{name = "x", start = 0.3, rate = 0.7, unit = "m"}, {name = "y", start = 2, rate = -0.2, unit = "m"}, {name = "phi", rate = 3, unit = "rad"}]
-parameter = [{name = "mu", value = 0.3}, {name = "V", value = 0.25, unit = "m/s"}, {name = "tau", value = 0.01, unit = "N*m"}, {name = "m", value = 1, unit = "kg"}, {name = "L", value = 1, unit = "m"}]
+coordinate = [{name = "x", start = 0.3, rate = 0.7, unit = "m"}, {name = "y", start = 2, rate = -0.2, unit = "m"},
+    {name = "phi", rate = 3, unit = "rad"}]
+parameter = [{name = "mu", value = 0.3}, {name = "V", value = 0.25, unit = "m/s"},
+    {name = "tau", value = 0.01, unit = "N*m"}, {name = "m", value = 1, unit = "kg"}, {name = "L", value = 1, unit = "m"}]
 lagrangian.kinetic = "m/2*(x'^2 + y'^2) + m/8*(L*phi')^2"
 lagrangian.potential = "y"
 [[constraint]]
@@ -128,7 +130,9 @@ TEST(Friction, OfBodiesTakesTheSlidingSpeed) {
 parameter = [{{name = "v0", value = 0.5}}]
 body = [{{name = "ball", mass = 1, at = ["x", "y"]}}]
 ground = [{{name = "waves", curve = "{}", over = [-5, 5]}}]
-constraint = [{{between = ["ball", "waves"]{}, friction = "0.1 + slip*exp(-slip/v0)", static_friction = "ball.y/10", restitution = 0.5}}]
+constraint = [
+    {{between = ["ball", "waves"]{}, friction = "0.1 + slip*exp(-slip/v0)", static_friction = "ball.y/10", restitution = 0.5}}
+]
 )toml",
             curve, more);
     };
@@ -175,12 +179,12 @@ TEST(Friction, IsRefusedByWhatDoesNotHaveItYet) {
         return std::string();
     };
     EXPECT_EQ(refusal([&] { simulate(model, model->default_run()); }),
-              "typed.toml:10:13: friction is read and checked, but no run has it yet\n"
+              "typed.toml:12:13: friction is read and checked, but no run has it yet\n"
               "    friction = \"mu + exp(-slip)/10\"\n"
               "                ^\n"
               "achilles check prints the equations; leave the friction out to run the system without it");
     EXPECT_EQ(refusal([&] { check(*model, problem_from_decimals(model->default_run())); }),
-              "typed.toml:10:13: a proof does not cover friction\n"
+              "typed.toml:12:13: a proof does not cover friction\n"
               "    friction = \"mu + exp(-slip)/10\"\n"
               "                ^\n"
               "achilles simulate runs this system, with an estimate of its error");
