@@ -129,9 +129,9 @@ const StepRequest* ExecutionAutomaton::next() {
     const bool in_contact = !next_.mode.is_free();
     for (const std::size_t i : next_.held()) next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
-    const EventStart& start = next_.starts.front();  // of the only contact; used only if there is one
-    next_.plain =
-        stalled_ == 0 && !start.is_shortened && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
+    // Used only if there is one contact.
+    next_.plain = stalled_ == 0 && next_.unpressed.empty() && !next_.starts.empty() &&
+                  !next_.starts.front().is_shortened && (in_contact || next_.starts.front().multiplicity <= 1);
     if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
