@@ -233,7 +233,8 @@ constexpr Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained}
 
 std::vector<Markers> legend_markers(const Session& session) {
     std::vector<Markers> events;
-    for (const EventNames& names : event_names) events.push_back(event_markers(session.theme(), names.kind));
+    for (const EventNames& names : possible_events(session.model()->has_friction()))
+        events.push_back(event_markers(session.theme(), names.kind));
     if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
     return events;
 }

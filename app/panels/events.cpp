@@ -41,6 +41,10 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
             return show_zeno(session, event, state, commands);
         case Event::Kind::release:
             return show_release(session, event, state, commands);
+        case Event::Kind::stick:
+        case Event::Kind::slip:
+        case Event::Kind::reversal:
+            return;  // the list says all of it
     }
 }
 

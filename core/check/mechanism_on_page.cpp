@@ -21,7 +21,7 @@ class MechanismPage {
         : page_(page),
           system_(model.description()),
           layout_(model.layout()),
-          frictions_(model.equations().frictions),
+          laws_(model.equations().friction),
           names_(model.slot_names()),
           scope_(force_scope(system_, layout_, graph_)) {
         scope_.allowed.insert_or_assign("slip", graph_.symbol(layout_.sliding_speed()));
@@ -121,14 +121,15 @@ class MechanismPage {
         const std::vector<SlidingPlace> places = sliding_places(system_);
         const std::vector<std::string> forces = sliding_names(system_, "friction_force");
         for (std::size_t i = 0; i < places.size(); ++i) {
-            const FrictionLaw& law = frictions_[i];
-            const std::string unit = law.contact ? "" : unit_of_expression(system_, forces[i]);
+            const FrictionLaw& law = laws_.at(places[i].number);
+            const std::string unit = !is_joint(places[i].number) ? "" : unit_of_expression(system_, forces[i]);
             start_[layout_.sliding_speed()] = std::abs(value_of(law.slip, start_));
             std::string line = fmt::format("slip = `{}`, ", places[i].slip->text);
             if (law.never_slides)
                 line += "never slides";
             else
-                line += (law.contact ? "coefficient " : "level ") + level(*places[i].level, law.level, unit);
+                line +=
+                    (is_joint(places[i].number) ? "level " : "coefficient ") + level(*places[i].level, law.level, unit);
             if (places[i].static_level != nullptr)
                 line += ", static " + level(*places[i].static_level, law.static_level, unit);
             rows.push_back({words(places[i].name), words(line)});
@@ -137,14 +138,14 @@ class MechanismPage {
         page_.heading("Friction");
         page_.lines(rows);
         if (std::any_of(places.begin(), places.end(),
-                        [](const SlidingPlace& place) { return place.contact.has_value(); }))
+                        [](const SlidingPlace& place) { return !is_joint(place.number); }))
             say("A contact slides with coefficient*lambda against its slip, and sticks up to static*lambda.");
     }
 
     Page& page_;
     const SystemDescription& system_;
     const Layout& layout_;
-    const std::vector<FrictionLaw>& frictions_;
+    const FrictionLaws& laws_;
     const std::span<const std::string> names_;
     Graph graph_;
     Scope scope_;

@@ -9,12 +9,11 @@
 
 #include "contacts/contact_law.hpp"
 #include "model/rate_polynomial.hpp"
+#include "model/rows.hpp"
 
 namespace achilles {
 
 namespace {
-
-using Row = std::vector<Expression>;
 
 // M = L D L' with unit lower triangular L. It needs no square roots and keeps zeros. L D is stored beside L, because it
 // is computed before the division.
@@ -167,26 +166,11 @@ bool is_quadratic(Expression expression, const std::vector<std::uint32_t>& slots
     return std::all_of(expanded->begin(), expanded->end(), [](const auto& term) { return degree(term.first) <= 2; });
 }
 
-// Cancels a factor common to dividend and divisor of a quotient. The divisor must never be zero.
-Expression cancelled(Expression quotient, Graph& graph) {
-    const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
-    const Graph::Node node = graph.node(quotient.id());  // a copy, because nodes are created below
-    if (node.operation == Operation::multiply && at(node.a).is_number())
-        return at(node.a) * cancelled(at(node.b), graph);
-    if (node.operation == Operation::multiply && at(node.b).is_number())
-        return at(node.b) * cancelled(at(node.a), graph);
-    if (node.operation != Operation::divide) return quotient;
-    const Graph::Node dividend = graph.node(node.a);
-    if (dividend.operation != Operation::multiply) return quotient;
-    if (dividend.a == node.b) return at(dividend.b);
-    return dividend.b == node.b ? at(dividend.a) : quotient;
-}
-
 // Sets the terms of a contact that follow from its impulse, Delassus matrix and hddot, in a mode with acceleration f.
-void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row& v, Graph& graph) {
+void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row& v) {
     c.W = c.delassus[contact];
     c.direction.clear();
-    for (const Expression u : c.impulse) c.direction.push_back(u.is_zero() ? u : cancelled(u / c.W, graph));
+    for (const Expression u : c.impulse) c.direction.push_back(u.is_zero() ? u : cancelled(u / c.W));
     c.lambda = -(c.hddot / c.W);
     c.f_c.clear();
     c.f_by_force.clear();
@@ -198,23 +182,25 @@ void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row&
     }
 }
 
-std::vector<std::uint32_t> slots_from(std::uint32_t first, std::size_t count) {
-    std::vector<std::uint32_t> slots;
-    for (std::size_t i = 0; i < count; ++i) slots.push_back(first + static_cast<std::uint32_t>(i));
-    return slots;
-}
-
-Row symbols(const std::vector<std::uint32_t>& slots, Graph& graph) {
-    Row all;
-    for (const std::uint32_t slot : slots) all.push_back(graph.symbol(slot));
-    return all;
-}
-
 }  // namespace
 
+Expression cancelled(Expression quotient) {
+    Graph& graph = quotient.graph();
+    const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
+    const Graph::Node node = graph.node(quotient.id());  // a copy, because nodes are created below
+    if (node.operation == Operation::multiply && at(node.a).is_number()) return at(node.a) * cancelled(at(node.b));
+    if (node.operation == Operation::multiply && at(node.b).is_number()) return at(node.b) * cancelled(at(node.a));
+    if (node.operation != Operation::divide) return quotient;
+    const Graph::Node dividend = graph.node(node.a);
+    if (dividend.operation != Operation::multiply) return quotient;
+    if (dividend.a == node.b) return at(dividend.b);
+    return dividend.b == node.b ? at(dividend.a) : quotient;
+}
+
 bool Equations::has_power() const {
-    return !power.is_zero() || std::any_of(free.contacts.begin(), free.contacts.end(),
-                                           [](const ContactEquations& c) { return !c.gap_t.is_zero(); });
+    return !power.is_zero() || std::any_of(free.contacts.begin(), free.contacts.end(), [](const ContactEquations& c) {
+        return !c.gap_t.is_zero();
+    }) || std::any_of(free.slips.begin(), free.slips.end(), [](const auto& slip) { return !slip.second.c.is_zero(); });
 }
 
 void derive(Equations& e, const Layout& layout, Graph& graph) {
@@ -251,21 +237,32 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
         ContactEquations& c = e.free.contacts[i];
         for (const ContactEquations& other : e.free.contacts) c.delassus.push_back(dot(other.g, c.impulse, graph));
         if (c.delassus[i].is_zero()) throw std::domain_error("dh M^-1 dh' is 0");
-        complete(c, f, i, v, graph);
+        complete(c, f, i, v);
     }
+    if (!e.friction.empty())
+        derive_slips(
+            e.friction, layout, [&](const Row& row) { return mass.solve(row); }, e.free);
     e.energy = e.kinetic + e.potential;
     e.power = dot(v, e.Q, graph) + derivative(e.potential, t);
     const auto is_steady = [&](Expression x) { return !depends_on(x, {&t, 1}); };
     e.autonomous = is_steady(e.potential) && std::all_of(e.gaps.begin(), e.gaps.end(), is_steady) &&
-                   std::all_of(e.Q.begin(), e.Q.end(), is_steady);
+                   std::all_of(e.Q.begin(), e.Q.end(), is_steady) &&
+                   std::all_of(e.friction.begin(), e.friction.end(), [&](const auto& each) {
+                       const FrictionLaw& law = each.second;
+                       return is_steady(law.slip) && is_steady(law.level) && is_steady(law.static_level);
+                   });
     for (const Expression force : e.Q) e.quadratic_in_rates = e.quadratic_in_rates && is_quadratic(force, v_slots);
 }
 
 Expression jerk_of(const ContactEquations& contact, const Layout& layout) {
-    Graph& graph = contact.hddot.graph();
+    return rate_of(contact.hddot, contact.f_c, layout);
+}
+
+Expression rate_of(Expression x, const Expressions& acceleration, const Layout& layout) {
+    Graph& graph = x.graph();
     const std::vector<std::uint32_t> q = slots_from(layout.q(0), layout.dof), v = slots_from(layout.v(0), layout.dof);
-    return dot(gradient(contact.hddot, q), symbols(v, graph), graph) +
-           dot(gradient(contact.hddot, v), contact.f_c, graph) + derivative(contact.hddot, layout.t());
+    return dot(gradient(x, q), symbols(v, graph), graph) + dot(gradient(x, v), acceleration, graph) +
+           derivative(x, layout.t());
 }
 
 ContactModes::ContactModes(const Equations& equations, const Layout& layout)
@@ -278,6 +275,17 @@ ContactModes::ContactModes(const Equations& equations, const Layout& layout)
         for (Expression* x : {&c.gap, &c.gap_t, &c.hdot, &c.W, &c.hddot, &c.lambda}) adopt(*x);
         for (Row* row : {&c.g, &c.H, &c.impulse, &c.delassus, &c.direction, &c.s, &c.f_c, &c.f_by_force})
             adopt_all(*row);
+        for (auto& [slip, entry] : c.on_slips) adopt(entry);
+    }
+    for (auto& [which, slip] : free.slips) {
+        for (Expression* x : {&slip.u, &slip.c, &slip.udot}) adopt(*x);
+        for (Row* row : {&slip.d, &slip.impulse, &slip.on_gaps}) adopt_all(*row);
+        for (auto& [other, entry] : slip.on_slips) adopt(entry);
+    }
+    friction_ = equations.friction;
+    for (auto& [which, law] : friction_) {
+        for (Expression* x : {&law.slip, &law.c, &law.level, &law.static_level}) adopt(*x);
+        adopt_all(law.d);
     }
 }
 
@@ -288,6 +296,7 @@ const ModeEquations& ContactModes::of(Mode mode) {
 
 // Adds the last contact k that keeps its gap to the mode without it, which is derived first if necessary.
 ModeEquations ContactModes::derive(Mode mode) {
+    if (!friction_.empty()) return derive_with_friction(mode);
     const ContactSet kept = contacts_keeping(mode, Constraint::gap);
     std::size_t k = 0;
     for (const std::size_t i : kept) k = i;
@@ -295,7 +304,7 @@ ModeEquations ContactModes::derive(Mode mode) {
     const ContactEquations& last = before.contacts.at(k);
     if (last.delassus[k].is_zero())
         throw std::domain_error("contacts with linearly dependent gradients cannot all be held");
-    ModeEquations result{mode, last.f_c, before.contacts};
+    ModeEquations result{mode, last.f_c, before.contacts, {}};
     const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
         ContactEquations& c = result.contacts[i];
@@ -309,9 +318,49 @@ ModeEquations ContactModes::derive(Mode mode) {
         for (std::size_t j = 0; j < c.impulse.size(); ++j) c.impulse[j] = c.impulse[j] - last.impulse[j] * part;
         for (std::size_t j = 0; j < c.delassus.size(); ++j) c.delassus[j] = c.delassus[j] - last.delassus[j] * part;
         c.hddot = c.hddot - part * last.hddot;
-        if (!c.delassus[i].is_zero()) complete(c, result.f, i, v, graph_);
+        if (!c.delassus[i].is_zero()) complete(c, result.f, i, v);
     }
     return result;
+}
+
+// Adds the last joint or contact that is not open to the mode without it.
+ModeEquations ContactModes::derive_with_friction(Mode mode) {
+    const ContactSet all = mode.held().with(mode.joints());
+    std::size_t k = 0;
+    for (const std::size_t i : all) k = i;
+    ModeEquations result = of(mode.without(k));
+    result.mode = mode;
+    add_to_mode(result, k, mode, friction_, layout_);
+    const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
+    for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+        if (mode.is_held(i)) {
+            result.contacts[i] = of(mode.without(i)).contacts[i];
+        } else if (!result.contacts[i].delassus[i].is_zero()) {
+            complete(result.contacts[i], result.f, i, v);
+        }
+    }
+    for (auto& [which, slip] : result.slips)
+        if (mode.is_held(which)) slip = of(mode.without(which)).slips.at(which);
+    return result;
+}
+
+WatchedFriction ContactModes::watched_friction(const ModeEquations& motion) {
+    return achilles::watched_friction(
+        motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(motion.mode.without(i)); });
+}
+
+FrictionPower ContactModes::friction_power(const ModeEquations& motion) {
+    return achilles::friction_power(motion, friction_, layout_,
+                                    [&](std::size_t i) -> const ModeEquations& { return of(motion.mode.without(i)); });
+}
+
+FrictionForce ContactModes::force_of(std::size_t which, Mode mode) {
+    return friction_force(of(mode.without(which)), which, mode, friction_, layout_);
+}
+
+Expression ContactModes::watched_force(std::size_t contact, Mode mode) {
+    if (friction_.empty()) return of(mode).contacts[contact].hddot;
+    return negative_force(of(mode.without(contact)), contact, mode, friction_);
 }
 
 namespace {
@@ -319,20 +368,9 @@ namespace {
 // Two expressions of the acceleration in a mode: first as derived, second as f + impulse lambda. The second is empty
 // unless exactly one contact is held.
 std::pair<Expressions, Expressions> accelerations(const ModeEquations& motion) {
-    for (std::size_t i = 0; i < motion.contacts.size(); ++i)
+    for (std::size_t i = 0; i < motion.contacts.size() && motion.slips.empty(); ++i)
         if (motion.mode.held() == ContactSet::of(i)) return {motion.f, motion.contacts[i].f_by_force};
     return {motion.f, {}};
-}
-
-// The expression of the function that the law of a contact watches.
-Expression event_function(const ContactEquations& contact, WatchedFunction watched) {
-    switch (watched) {
-        case WatchedFunction::gap:
-            return contact.gap;
-        case WatchedFunction::normal_force:
-            return contact.hddot;
-    }
-    return {};
 }
 
 // The pivots of M, adopted into the mode's graph.
@@ -367,21 +405,35 @@ SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& eq
     return series_of(motion, hddot, pivots_of(equations, motion.f.front().graph()), layout);
 }
 
-ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const Layout& layout) {
+ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const Layout& layout, ContactModes& modes) {
     const Slots slots = layout.slots();
     Graph& graph = motion.f.front().graph();
     const Expressions pivots = pivots_of(e, graph);
-    Expressions hddot, jerks, event_functions;
+    Expressions values, rates, event_functions;
     for (std::size_t i = 0; i < motion.contacts.size(); ++i) {
         const ContactEquations& c = motion.contacts[i];
-        hddot.push_back(c.hddot);
-        const WatchedFunction watched = law_of(motion.mode.state(i)).watched;
-        event_functions.push_back(event_function(c, watched));
-        if (watched == WatchedFunction::normal_force) jerks.push_back(jerk_of(c, layout));
+        switch (law_of(motion.mode.state(i)).watched) {
+            case WatchedFunction::gap:
+                values.push_back(c.hddot);
+                event_functions.push_back(c.gap);
+                break;
+            case WatchedFunction::normal_force:
+                values.push_back(modes.watched_force(i, motion.mode));
+                event_functions.push_back(values.back());
+                rates.push_back(motion.slips.empty() ? jerk_of(c, layout) : rate_of(values.back(), motion.f, layout));
+                break;
+        }
+    }
+    WatchedFriction friction;
+    if (!motion.slips.empty()) friction = modes.watched_friction(motion);
+    for (const Expression function : friction.functions) {
+        values.push_back(function);
+        event_functions.push_back(function);
+        rates.push_back(rate_of(function, motion.f, layout));
     }
     SeriesProgram series = series_of(motion, event_functions, pivots, layout);
-    return {motion.mode, TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({hddot, jerks})),
-            std::move(series)};
+    return {motion.mode, TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
+            std::move(series), std::move(friction.events)};
 }
 
 }  // namespace achilles

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <map>
-#include <optional>
 #include <vector>
 
+#include "model/friction.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
 #include "run/mode.hpp"
@@ -17,7 +17,7 @@ namespace achilles {
 struct Layout {
     std::uint32_t dof = 0, p = 0;  // number of coordinates and of parameters
     std::uint32_t contacts = 1;
-    std::uint32_t slips = 0;  // number of contacts with friction and of frictions without a gap
+    std::uint32_t frictions = 0;  // contacts and joints with friction
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
     std::uint32_t v(std::size_t i) const { return dof + static_cast<std::uint32_t>(i); }
     std::uint32_t parameter(std::size_t i) const { return 2 * dof + static_cast<std::uint32_t>(i); }
@@ -31,10 +31,11 @@ struct Layout {
     // Acceleration of the gap and force of contact i, if there are several contacts.
     std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 7 + static_cast<std::uint32_t>(i); }
     std::uint32_t force(std::size_t i) const { return acceleration(contacts) + static_cast<std::uint32_t>(i); }
-    std::uint32_t sliding_speed() const { return force(contacts); }  // stands for |u| in a level of friction
-    std::uint32_t friction_force(std::size_t i) const { return sliding_speed() + 1 + static_cast<std::uint32_t>(i); }
-    std::uint32_t heat() const { return friction_force(slips); }
-    std::uint32_t count() const { return slips == 0 ? force(contacts) : heat() + 1; }
+    // Of friction: |u| in a level; the heat so far; the force of friction k, in the order of the laws.
+    std::uint32_t sliding_speed() const { return force(contacts); }
+    std::uint32_t heat() const { return force(contacts) + 1; }
+    std::uint32_t friction_force(std::size_t k) const { return force(contacts) + 2 + static_cast<std::uint32_t>(k); }
+    std::uint32_t count() const { return frictions == 0 ? force(contacts) : friction_force(frictions); }
     Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }
 };
 
@@ -52,25 +53,16 @@ struct ContactEquations {
     std::vector<Expression> s;           // v - n hdot
     std::vector<Expression> f_c;         // the acceleration while this contact is also held
     std::vector<Expression> f_by_force;  // the same acceleration, written as f + impulse lambda
+    std::map<std::size_t, Expression> on_slips;  // with friction: the accelerations of all slips by a unit force
 };
 
-// The equations of motion in one mode: f is the acceleration, including the forces of the held contacts. The entry of a
-// held contact refers to the mode in which that contact is open and all others are unchanged.
+// The equations of motion in one mode: f is the acceleration, including the forces of the held contacts and of
+// friction. The entries of a held contact or joint refer to the mode in which it is open and all others are unchanged.
 struct ModeEquations {
     Mode mode;
     std::vector<Expression> f;
     std::vector<ContactEquations> contacts;
-};
-
-// The friction of a contact, or friction without a gap, at a slip u = w v + drift (theory-friction.md 1). A level is
-// the coefficient of a contact, or the friction force itself. It is a function of q, t, parameters and
-// Layout::sliding_speed(), which stands for |u|.
-struct FrictionLaw {
-    std::optional<std::size_t> contact;  // null: no gap
-    Expression slip, drift;
-    std::vector<Expression> w;       // du/dv, a function of q and t
-    Expression level, static_level;  // while sliding, and the limit of sticking; the latter without |u|
-    bool never_slides = false;       // the levels are then 0 and have no meaning
+    std::map<std::size_t, SlipEquations> slips;  // of contacts and joints with friction
 };
 
 // T, V and the forces (including -dR/dv) as given.
@@ -87,8 +79,8 @@ struct Equations {
     std::vector<Expression> M, bias, Q;
     Expression kinetic, potential, energy;
     std::vector<Expression> gaps, restitutions;  // of every contact
-    std::vector<FrictionLaw> frictions;          // in the order of sliding_places()
-    ModeEquations free;                          // the mode in which all contacts are open
+    FrictionLaws friction;
+    ModeEquations free;              // the mode in which all contacts are open
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive
     bool autonomous = true;          // nothing depends on time
@@ -117,29 +109,43 @@ class ContactModes {
     const ModeEquations& of(Mode mode);
     Graph& graph() { return graph_; }
 
+    // Of a mode with friction (model/friction.hpp).
+    WatchedFriction watched_friction(const ModeEquations& motion);
+    FrictionPower friction_power(const ModeEquations& motion);
+    FrictionForce force_of(std::size_t which, Mode mode);
+    // hddot of a held contact, or with friction its negative force up to a positive factor.
+    Expression watched_force(std::size_t contact, Mode mode);
+
  private:
     ModeEquations derive(Mode mode);
+    ModeEquations derive_with_friction(Mode mode);
     Graph graph_;
     Layout layout_;
+    FrictionLaws friction_;  // in this graph
     std::map<Mode, ModeEquations> known_;
 };
 
+// The rate of an expression in q, v and t along a motion: x_q v + x_v a + x_t.
+Expression rate_of(Expression x, const std::vector<Expression>& acceleration, const Layout& layout);
 // h''' of a contact in the mode that holds it and others: hddot_q v + hddot_v f_c + hddot_t.
 Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 // ---- the equations of motion in one mode, as programs ----
 
 // In a mode, every contact has an event function, the function that its law watches (contacts/contact_law.hpp). It is
-// the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W).
+// the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W). The event
+// functions of friction follow.
 struct ModeDynamics {
     Mode mode;
     TypedProgram<MotionTerms> program;
-    SeriesProgram series;  // MotionSeries
+    SeriesProgram series;                 // MotionSeries
+    std::vector<FrictionEvent> friction;  // event function contacts + k is friction[k]
 };
 
 // Compiles a mode. `equations` belongs to the graph of `motion`, or to the graph that it was copied from. Throws
 // ExpressionTooLarge.
-ModeDynamics make_motion(const ModeEquations& motion, const Equations& equations, const Layout& layout);
+ModeDynamics make_motion(const ModeEquations& motion, const Equations& equations, const Layout& layout,
+                         ContactModes& modes);
 // The series of a mode with hddot of every contact, open or held, as event functions. Proofs use it, because the gap is
 // a coordinate of its own there (theory-enclosure.md 1).
 SeriesProgram make_hddot_series(const ModeEquations& motion, const Equations& equations, const Layout& layout);

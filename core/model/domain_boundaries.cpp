@@ -124,6 +124,11 @@ std::vector<DomainBoundary> edges_of(const Equations& equations, const Layout& l
                                                             {equations.given.potential, "the potential"}};
     for (const Expression gap : equations.gaps) written.emplace_back(gap, "the gap");
     for (const Expression force : equations.given.Q) written.emplace_back(force, "the forces");
+    for (const auto& [which, law] : equations.friction) {
+        written.emplace_back(law.slip, "the slip");
+        written.emplace_back(law.level, "the friction");
+        written.emplace_back(law.static_level, "the static friction");
+    }
     std::vector<DomainBoundary> edges;
     for (const auto& [whole, place] : written) {
         const std::vector<bool> needed = reachable(std::span(&whole, 1));

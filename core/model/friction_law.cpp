@@ -44,19 +44,18 @@ void split_slip(const SystemDescription& system, const Layout& layout, const Tex
     if (!is_affine(law.slip, rates)) throw not_affine(text, parts, rates);
     Expression offender;
     const Expression nothing = law.slip.graph().number(0);
-    law.w.assign(layout.dof, nothing);
-    law.drift = nothing;
+    law.d.assign(layout.dof, nothing);
+    law.c = nothing;
     const auto polynomial = expand_in_rates(law.slip, rates, offender);
     for (const auto& [exponents, coefficient] : *polynomial) {
         const auto rate = std::find(exponents.begin(), exponents.end(), 1);
         if (rate == exponents.end())
-            law.drift = coefficient;
+            law.c = coefficient;
         else
-            law.w[static_cast<std::size_t>(rate - exponents.begin())] = coefficient;
+            law.d[static_cast<std::size_t>(rate - exponents.begin())] = coefficient;
     }
-    if (std::any_of(law.w.begin(), law.w.end(), [](Expression e) { return !e.is_zero(); })) return;
-    throw Mistake{text.at,
-                  law.drift.is_zero() ? "the slip is 0 everywhere" : "the slip depends on no rate: nothing slides",
+    if (std::any_of(law.d.begin(), law.d.end(), [](Expression e) { return !e.is_zero(); })) return;
+    throw Mistake{text.at, law.c.is_zero() ? "the slip is 0 everywhere" : "the slip depends on no rate: nothing slides",
                   text.is_written ? fmt::format("a slip is the sliding velocity, as in {}'", system.coordinates[0].name)
                                   : "what touches moves along the normal only: leave the friction out"};
 }
@@ -73,30 +72,23 @@ Expression at_slip_zero(Expression level, const Layout& layout, const Text& text
 }
 
 void drop_zero_friction(SystemDescription& system, Equations& equations) {
-    const auto is_none = [](const FrictionLaw& law) {
-        return !law.never_slides && law.level.is_zero() && law.static_level.is_zero();
-    };
-    std::size_t joint = 0;
-    for (const FrictionLaw& law : equations.frictions) {
-        const bool is_kept = !is_none(law);
-        if (!law.contact) {
-            if (is_kept)
-                ++joint;
-            else
-                system.frictions.erase(system.frictions.begin() + static_cast<std::ptrdiff_t>(joint));
-        } else if (!is_kept) {
-            system.constraints[*law.contact].friction = {};
-            system.constraints[*law.contact].static_friction.reset();
+    FrictionLaws laws;
+    std::vector<FrictionDescription> joints;
+    for (const SlidingPlace& place : sliding_places(system)) {
+        FrictionLaw& law = equations.friction.at(place.number);
+        const bool is_kept = law.never_slides || !law.level.is_zero() || !law.static_level.is_zero();
+        if (is_kept && is_joint(place.number)) {
+            laws.emplace(joint_number(joints.size()), std::move(law));
+            joints.push_back(system.frictions[place.number - joint_number(0)]);
+        } else if (is_kept) {
+            laws.emplace(place.number, std::move(law));
+        } else if (!is_joint(place.number)) {
+            system.constraints[place.number].friction = {};
+            system.constraints[place.number].static_friction.reset();
         }
     }
-    std::erase_if(equations.frictions, is_none);
-}
-
-void refuse_friction_until_runs_have_it(const SystemDescription& system) {
-    const auto places = sliding_places(system);
-    if (places.empty()) return;
-    throw system.error(places.front().level->at, "friction is read and checked, but no run has it yet",
-                       "achilles check prints the equations; leave the friction out to run the system without it");
+    system.frictions = std::move(joints);
+    equations.friction = std::move(laws);
 }
 
 }  // namespace achilles

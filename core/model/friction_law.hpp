@@ -7,7 +7,7 @@
 
 namespace achilles {
 
-// Sets the slip row w and the drift of law.slip = w v + drift. `text` is the slip as written, and `parts` locates its
+// Sets the slip row d and the speed c of law.slip = d v + c. `text` is the slip as written, and `parts` locates its
 // terms. Throws Mistake if the slip is not affine in the rates, or contains no rate.
 void split_slip(const SystemDescription& system, const Layout& layout, const Text& text, const TextParts& parts,
                 FrictionLaw& law);
@@ -17,9 +17,5 @@ Expression at_slip_zero(Expression level, const Layout& layout, const Text& text
 
 // Removes friction whose levels are the number 0 from the description and the equations: it is no friction.
 void drop_zero_friction(SystemDescription& system, Equations& equations);
-
-// Runs do not have friction yet: throws InputError for a system with friction. Remove this function and its one call
-// once they do.
-void refuse_friction_until_runs_have_it(const SystemDescription& system);
 
 }  // namespace achilles

@@ -15,21 +15,21 @@ namespace {
 // The values that friction has at the start of a run.
 class FrictionAtStart {
  public:
-    FrictionAtStart(const Model& model, const Run& run, std::size_t index)
+    FrictionAtStart(const Model& model, const Run& run, const SlidingPlace& place)
         : model_(model),
           run_(run),
           graph_(model.equations().energy.graph()),
-          law_(model.equations().frictions[index]),
-          place_(sliding_places(model.description())[index]) {
+          law_(model.equations().friction.at(place.number)),
+          place_(place) {
         const Expression none = graph_.number(0), sliding = graph_.adopt(law_.level);
         Expression h = none, hdot = none;
-        if (law_.contact) {
-            h = graph_.adopt(model.equations().gaps[*law_.contact]);
-            hdot = graph_.adopt(model.equations().free.contacts[*law_.contact].hdot);
+        if (!is_joint(place_.number)) {
+            h = graph_.adopt(model.equations().gaps[place_.number]);
+            hdot = graph_.adopt(model.equations().free.contacts[place_.number].hdot);
         }
         outputs_ = {graph_.adopt(law_.slip),         sliding, at_slip_zero(sliding, model.layout(), *place_.level),
                     graph_.adopt(law_.static_level), h,       hdot};
-        for (const Expression w : law_.w) outputs_.push_back(graph_.adopt(w));
+        for (const Expression w : law_.d) outputs_.push_back(graph_.adopt(w));
         program_ = Program(outputs_, model.layout().slots());
         values_ = model.evaluator<Interval>(program_, run.parameters);
         set_state(values_, run.start());
@@ -44,7 +44,7 @@ class FrictionAtStart {
     void check() const {
         if (!is_defined(slip)) throw undefined(slip, *place_.slip, "the slip" + of());
         if (!law_.never_slides) check_levels();
-        const bool stays_closed = !law_.contact || (is_zero(gap) && is_zero(gap_rate));
+        const bool stays_closed = is_joint(place_.number) || (is_zero(gap) && is_zero(gap_rate));
         if (!stays_closed) return;
         std::size_t i = row;
         while (i < outputs_.size() && is_zero(i)) ++i;
@@ -85,7 +85,7 @@ class FrictionAtStart {
     }
 
     void check_levels() const {
-        const char* const word = law_.contact ? "friction" : "level";
+        const char* const word = is_joint(place_.number) ? "level" : "friction";
         check_value(level, *place_.level, fmt::format("the {}{}", word, of()));
         check_value(level_at_zero, *place_.level, fmt::format("the {}{} at slip 0", word, of()));
         if (place_.static_level == nullptr) return;
@@ -102,7 +102,7 @@ class FrictionAtStart {
     const Run& run_;
     Graph graph_;  // a copy, because threads share the model
     const FrictionLaw& law_;
-    const SlidingPlace place_;
+    const SlidingPlace& place_;
     std::vector<Expression> outputs_;
     Program program_;
     Evaluator<Interval> values_;
@@ -110,6 +110,8 @@ class FrictionAtStart {
 
 }  // namespace
 
-void Model::check_friction(const Run& run, std::size_t law) const { FrictionAtStart(*this, run, law).check(); }
+void Model::check_friction(const Run& run, const SlidingPlace& place) const {
+    FrictionAtStart(*this, run, place).check();
+}
 
 }  // namespace achilles

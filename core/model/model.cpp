@@ -112,7 +112,6 @@ Model::ContactPrograms Model::compile_contact(const ModeEquations& motion, std::
 }
 
 ContactModes& Model::contact_modes() const {
-    refuse_friction_until_runs_have_it(description_);
     if (!modes_) modes_ = std::make_unique<ContactModes>(equations_, layout_);
     return *modes_;
 }
@@ -132,7 +131,8 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
 }
 
 const ModeDynamics& Model::motion(Mode mode) const {
-    return derived(motions_, mode, [&] { return make_motion(contact_modes().of(mode), equations_, layout_); });
+    return derived(motions_, mode,
+                   [&] { return make_motion(contact_modes().of(mode), equations_, layout_, contact_modes()); });
 }
 
 const SeriesProgram& Model::hddot_series(Mode mode) const {
@@ -141,7 +141,7 @@ const SeriesProgram& Model::hddot_series(Mode mode) const {
 }
 
 const Model::ContactPrograms& Model::programs_of(std::size_t contact, Mode mode) const {
-    if (mode.is_free()) return *free_[contact];
+    if (mode == Mode()) return *free_[contact];
     return derived(programs_, {mode, contact}, [&] { return compile_contact(contact_modes().of(mode), contact); });
 }
 
@@ -149,15 +149,42 @@ const Program& Model::power(Mode mode) const {
     return derived(powers_, mode, [&] {
         const ModeEquations& motion = contact_modes().of(mode);
         Expression power = contact_modes().graph().adopt(equations_.power);
-        for (const std::size_t i : contacts_keeping(mode, Constraint::gap))
-            power = power - motion.contacts[i].lambda * motion.contacts[i].gap_t;
-        return Program(std::span(&power, 1), layout_.slots());
+        for (const std::size_t i : contacts_keeping(mode, Constraint::gap)) {
+            const Expression gap_t = motion.contacts[i].gap_t;
+            if (!has_friction()) {
+                power = power - motion.contacts[i].lambda * gap_t;
+            } else if (!gap_t.is_zero()) {
+                const FrictionForce force = contact_modes().force_of(i, mode);
+                power = power - force.lambda / force.scale * gap_t;
+            }
+        }
+        if (!has_friction()) return Program(std::span(&power, 1), layout_.slots());
+        const FrictionPower friction = contact_modes().friction_power(motion);
+        const Expressions both{power + friction.work, friction.heat};
+        return Program(both, layout_.slots());
     });
 }
 
 const SeriesProgram& Model::power_series(Mode mode) const {
     const Program& program = power(mode);
-    return derived(power_series_, mode, [&] { return SeriesProgram(program, 0, 1); });
+    return derived(power_series_, mode, [&] { return SeriesProgram(program, 0, program.output_count()); });
+}
+
+const TypedProgram<SlipTerms>& Model::slip_terms(std::size_t which, Mode mode) const {
+    return derived(slip_terms_, {mode, which}, [&] {
+        const SlipEquations& slip = contact_modes().of(mode).slips.at(which);
+        const FrictionLaw& law = equations_.friction.at(which);
+        Graph& graph = contact_modes().graph();
+        return TypedProgram<SlipTerms>::of(layout_.slots(), slip.u, slip.c, slip.udot, graph.adopt(law.level),
+                                           graph.adopt(law.static_level), slip.d, slip.impulse);
+    });
+}
+
+const Program& Model::friction_force(std::size_t which, Mode mode) const {
+    return derived(friction_forces_, {mode, which}, [&] {
+        const FrictionForce force = contact_modes().force_of(which, mode);
+        return Program(Expressions{force.lambda, force.tau, force.scale}, layout_.slots());
+    });
 }
 
 bool Model::stays_closed_without_force(std::size_t contact, Mode mode) const {

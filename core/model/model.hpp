@@ -41,6 +41,7 @@ class Model {
     int dof() const { return static_cast<int>(layout_.dof); }
     std::size_t contacts() const { return equations_.gaps.size(); }
     const Equations& equations() const { return equations_; }
+    bool has_friction() const { return !equations_.friction.empty(); }
     std::span<const std::string> slot_names() const { return slot_names_; }
 
     // The equations of motion in a mode, compiled at first use. The reference stays valid as long as the model.
@@ -59,6 +60,11 @@ class Model {
         TypedProgram<Definition7Terms> definition7_terms;
     };
     const ContactPrograms& programs_of(std::size_t contact, Mode mode = {}) const;
+    // The slip of a contact or joint with friction in a mode in which it is open. Its input Layout::sliding_speed() is
+    // the speed at which the coefficient is evaluated.
+    const TypedProgram<SlipTerms>& slip_terms(std::size_t which, Mode mode = {}) const;
+    // lambda, tau and their common factor, of a contact or joint that is not open in this mode (friction_force).
+    const Program& friction_force(std::size_t which, Mode mode) const;
     // Whether hddot of a contact in a mode is proved to be 0 wherever h = hdot = 0 for this contact and the held ones,
     // for all parameters. Its gap then stays 0 while theirs do, and its force is 0 (theory-gaps.md 2.7).
     bool stays_closed_without_force(std::size_t contact, Mode mode) const;
@@ -80,7 +86,8 @@ class Model {
     const TypedProgram<ReleaseTerms>& release_terms() const { return programs_of(0).release_terms; }
     const TypedProgram<Definition7Terms>& definition7_terms() const { return programs_of(0).definition7_terms; }
     const TypedProgram<EnergyTerms>& energy() const { return energy_; }
-    // dE/dt in a mode: v'Q + dV/dt - sum lambda dh/dt over the held contacts (W).
+    // dE/dt in a mode: v'Q + dV/dt - sum lambda dh/dt over the held contacts (W). With friction it also subtracts tau
+    // c, and the second output is the heat per time (theory-friction.md 5), which is not part of dE/dt.
     const Program& power(Mode mode) const;
     const SeriesProgram& power_series(Mode mode) const;
 
@@ -124,8 +131,11 @@ class Model {
                                            std::span<const double> parameters) const {
         const auto known = evaluators.find(mode);
         if (known != evaluators.end()) return known->second;
-        const Program& program = motion(mode).program;
-        return evaluators.try_emplace(mode, evaluator(program, parameters), layout_.dof, contacts()).first->second;
+        const ModeDynamics& dynamics = motion(mode);
+        return evaluators
+            .try_emplace(mode, evaluator(static_cast<const Program&>(dynamics.program), parameters), layout_.dof,
+                         contacts() + dynamics.friction.size())
+            .first->second;
     }
 
     // The run that the description specifies.
@@ -163,7 +173,7 @@ class Model {
     // These throw Mistake.
     void check_energies(const Run& run, const StartTerms<Evaluator<double>>& start) const;
     void check_gap(const Run& run, std::size_t contact) const;
-    void check_friction(const Run& run, std::size_t law) const;
+    void check_friction(const Run& run, const SlidingPlace& place) const;
     void check_mass(const StartTerms<Evaluator<double>>& start) const;
     void check_acceleration(const Run& run, const StartTerms<Evaluator<double>>& start) const;
 
@@ -183,6 +193,8 @@ class Model {
     mutable std::map<ContactInMode, OtherContactTerms> other_contact_terms_;
     mutable std::map<ContactInMode, bool> closed_without_force_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
+    mutable std::map<ContactInMode, TypedProgram<SlipTerms>> slip_terms_;
+    mutable std::map<ContactInMode, Program> friction_forces_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;
     Program derived_parameters_;

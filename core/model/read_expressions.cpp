@@ -120,26 +120,27 @@ void read_forces(const SystemDescription& system, const Layout& layout, Expressi
     });
 }
 
-// The friction of every contact that has it, and friction without a gap. What has a mistake is the time.
+// The friction of every contact that has it, and of every joint. What has a mistake is the time.
 void read_frictions(const SystemDescription& system, const Layout& layout, const Names& names, ExpressionReader& reader,
                     Equations& equations, ErrorCollector& mistakes, Graph& graph) {
-    const Expression any_value = graph.symbol(layout.t());
+    const Expression any_value = graph.symbol(layout.t()), nothing = graph.number(0);
     Scope in_slip = force_scope(system, layout, graph), in_level = friction_scope(system, layout, graph),
           in_static = static_friction_scope(system, layout, graph);
     for (const SlidingPlace& place : sliding_places(system)) {
-        FrictionLaw& law = equations.frictions.emplace_back();
-        law.contact = place.contact;
+        FrictionLaw& law = equations.friction[place.number];
         law.never_slides = place.never_slides;
         TextParts parts;
         const auto slip = reader.read(*place.slip, in_slip, &parts);
         law.slip = slip.value_or(any_value);
         law.level = law.static_level =
-            law.never_slides ? any_value : reader.read(*place.level, in_level).value_or(any_value);
+            law.never_slides ? nothing : reader.read(*place.level, in_level).value_or(any_value);
         if (place.static_level != nullptr)
             law.static_level = reader.read(*place.static_level, in_static).value_or(any_value);
         attempt_within_limits(mistakes, system, equations, [&] {
             if (slip && names.complete) split_slip(system, layout, *place.slip, parts, law);
-            if (place.static_level == nullptr) law.static_level = at_slip_zero(law.level, layout, *place.level);
+            const Expression at_zero = at_slip_zero(law.level, layout, *place.level);
+            if (place.static_level == nullptr) law.static_level = at_zero;
+            law.has_jump = !(law.static_level == at_zero);
         });
     }
 }
@@ -161,7 +162,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         gaps.push_back(read(constraint.gap, gap_scope(system, layout, graph)));
         restitutions.push_back(read(constraint.restitution, restitution_scope(system, layout, graph)));
     }
-    if (layout.slips > 0) read_frictions(system, layout, names, reader, equations, mistakes, graph);
+    if (layout.frictions > 0) read_frictions(system, layout, names, reader, equations, mistakes, graph);
     const Expression nothing = graph.number(0);
     equations.kinetic = equations.given.kinetic = kinetic.value_or(nothing);
     equations.potential = equations.given.potential = potential.value_or(nothing);
@@ -183,6 +184,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
                 mistakes.add(std::move(*mistake));
     }
     read_forces(system, layout, reader, equations, mistakes);
+    read_frictions(system, layout, reader, equations, mistakes);
     equations.given.Q = equations.Q;
     attempt_within_limits(mistakes, system, equations, [&] { add_prescribed_motion(motion, layout, equations); });
 }

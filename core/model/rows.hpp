@@ -7,6 +7,21 @@ namespace achilles {
 
 using Row = Expressions;
 
+inline std::vector<std::uint32_t> slots_from(std::uint32_t first, std::size_t count) {
+    std::vector<std::uint32_t> slots;
+    for (std::size_t i = 0; i < count; ++i) slots.push_back(first + static_cast<std::uint32_t>(i));
+    return slots;
+}
+
+inline Row symbols(const std::vector<std::uint32_t>& slots, Graph& graph) {
+    Row all;
+    for (const std::uint32_t slot : slots) all.push_back(graph.symbol(slot));
+    return all;
+}
+
+// Cancels a factor common to dividend and divisor of a quotient. The divisor must never be zero.
+Expression cancelled(Expression quotient);
+
 // The same expressions in another graph.
 inline Row adopt(Graph& graph, const Row& row) {
     Row result;

@@ -199,25 +199,25 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
         names[layout.acceleration(i)] = "gap_" + system.constraints[i].name + "''";
         names[layout.force(i)] = "lambda_" + system.constraints[i].name;
     }
-    if (layout.slips == 0) return names;
+    if (layout.frictions == 0) return names;
     names[layout.sliding_speed()] = "slip";
     names[layout.heat()] = "heat";
     const std::vector<std::string> forces = sliding_names(system, "friction_force");
-    for (std::size_t i = 0; i < layout.slips; ++i) names[layout.friction_force(i)] = forces[i];
+    for (std::size_t i = 0; i < layout.frictions; ++i) names[layout.friction_force(i)] = forces[i];
     return names;
 }
 
 namespace {
 
-// h, hdot, the acceleration of the gap and the force of each contact. With several contacts, the last two depend on
-// which are held and are inputs.
+// h, hdot, the acceleration of the gap and the force of each contact. With several contacts or friction, the last two
+// depend on the mode and are inputs.
 std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Graph& graph, const Equations& equations) {
     const Expression held = graph.symbol(layout.contact());
     std::vector<std::array<Expression, 4>> values;
     for (std::size_t i = 0; i < layout.contacts; ++i) {
         const ContactEquations& c = equations.free.contacts[i];
         const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
-        if (layout.contacts == 1) {
+        if (layout.contacts == 1 && layout.frictions == 0) {
             values.push_back(
                 {gap, hdot, (graph.number(1) - held) * graph.adopt(c.hddot), held * graph.adopt(c.lambda)});
         } else {
@@ -230,7 +230,7 @@ std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Grap
 // slip, friction_force and heat of a view. The words are forbidden if there is no friction.
 void allow_slips(Scope& scope, const SystemDescription& system, const Layout& layout, Graph& graph,
                  const Equations& equations) {
-    if (layout.slips == 0) {
+    if (equations.friction.empty()) {
         for (const char* word : {"slip", "friction_force", "heat"})
             scope.forbidden.emplace(word, fmt::format("'{}' is of friction, and this system has none", word));
         return;
@@ -238,9 +238,10 @@ void allow_slips(Scope& scope, const SystemDescription& system, const Layout& la
     scope.allowed.emplace("heat", graph.symbol(layout.heat()));
     const std::vector<std::string> slips = sliding_names(system, "slip"),
                                    forces = sliding_names(system, "friction_force");
-    for (std::size_t i = 0; i < layout.slips; ++i) {
-        scope.allowed.emplace(slips[i], graph.adopt(equations.frictions[i].slip));
-        scope.allowed.emplace(forces[i], graph.symbol(layout.friction_force(i)));
+    for (std::size_t k = 0; const auto& [which, law] : equations.friction) {
+        scope.allowed.emplace(slips[k], graph.adopt(law.slip));
+        scope.allowed.emplace(forces[k], graph.symbol(layout.friction_force(k)));
+        ++k;
     }
     for (const auto& [word, names] : {std::pair("slip", &slips), std::pair("friction_force", &forces)})
         scope.forbidden.emplace(word, fmt::format("'{}' needs a name here: {}", word, fmt::join(*names, ", ")));

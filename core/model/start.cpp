@@ -66,7 +66,8 @@ void Model::check(const Run& run) const {
         const bool has_energies = mistakes.attempt([&] { check_energies(run, start); });
         bool has_gap = true;
         for (std::size_t i = 0; i < contacts(); ++i) has_gap = mistakes.attempt([&] { check_gap(run, i); }) && has_gap;
-        for (std::size_t i = 0; i < equations_.frictions.size(); ++i) mistakes.attempt([&] { check_friction(run, i); });
+        for (const SlidingPlace& place : sliding_places(description_))
+            mistakes.attempt([&] { check_friction(run, place); });
         const bool has_mass = has_energies && mistakes.attempt([&] { check_mass(start); });
         if (has_mass && has_gap) mistakes.attempt([&] { check_acceleration(run, start); });
     }

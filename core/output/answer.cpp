@@ -214,6 +214,9 @@ std::string advice(const Outcome& outcome) {
             return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:
             return "Remove a redundant contact.";
+        case Outcome::Kind::painleve:
+        case Outcome::Kind::impact_not_unique:
+            return "Try a smaller friction coefficient, or choose an earlier --end.";
     }
     return "";
 }

@@ -10,10 +10,23 @@
 namespace achilles {
 
 std::vector<std::string> contact_names(const Model& model, ContactSet contacts) {
+    const SystemDescription& system = model.description();
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < model.contacts(); ++i)
-        if (contacts.contains(i)) names.push_back(model.description().constraints[i].name);
+    for (const std::size_t i : contacts)
+        names.push_back(is_joint(i) ? system.frictions[i - max_contacts].name : system.constraints[i].name);
     return names;
+}
+
+std::string_view state_word(ContactState state) {
+    constexpr std::string_view words[] = {"open", "stick", "slip+", "slip-"};
+    return words[static_cast<std::size_t>(state)];
+}
+
+ContactSet rough_in(const Model& model, Mode mode) {
+    ContactSet rough;
+    for (const auto& [which, law] : model.equations().friction)
+        if (mode.is_held(which)) rough = rough.with(which);
+    return rough;
 }
 
 std::string joined_names(const Model& model, ContactSet contacts, std::string_view between) {
@@ -75,7 +88,9 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     for (const Phase& phase : trajectory.phases) {
         const bool is_last = &phase == &trajectory.phases.back();
         for (bool open = true; open && next < events.size(); ++next)
-            open = is_last || (events[next].is_impact() && events[next].mode == phase.mode);
+            // Friction may have several events at one instant, of which the first ends the phase.
+            open = is_last ||
+                   (events[next].mode == phase.mode && (events[next].is_impact() || trajectory.model->has_friction()));
         ends.push_back(next);
     }
     return ends;
@@ -107,7 +122,7 @@ EnergyBalance::EnergyBalance(const Model& model, const Run& run)
 Energies EnergyBalance::at(const Sample& sample) {
     set_state(energy_, State{sample.state.q, sample.state.v, sample.t});
     energy_.run();
-    return {energy_.kinetic(), energy_.potential(), sample.work, sample.loss};
+    return {energy_.kinetic(), energy_.potential(), sample.work, sample.loss, sample.heat};
 }
 
 double energy_lost(const Trajectory& trajectory, std::size_t event) {

@@ -13,10 +13,14 @@
 
 namespace achilles {
 
-// The names of these contacts, in ascending order.
+// The names of these contacts and joints, in ascending order.
 std::vector<std::string> contact_names(const Model& model, ContactSet contacts);
 // The same joined: "bowl, post" or "bowl+post".
 std::string joined_names(const Model& model, ContactSet contacts, std::string_view between = ", ");
+// "stick", "slip+" or "slip-"; "open" for an open contact.
+std::string_view state_word(ContactState state);
+// The contacts and joints with friction that are not open in this mode.
+ContactSet rough_in(const Model& model, Mode mode);
 // The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event);
 
@@ -52,10 +56,10 @@ struct ChatterPhases {
 std::vector<ChatterPhases> chatters_of(const Trajectory& trajectory);
 
 // The energies at an instant, in the unit of the system's energy: kinetic, potential, work of forces since the start,
-// and dissipation at impacts since the start, with E(t) - E(start) = work - loss (theory-gaps.md 1). The work may be
-// NaN for a run stored with Recording::final_state.
+// dissipation at impacts and heat of friction since the start, with E(t) - E(start) = work - loss - heat
+// (theory-gaps.md 1). The work may be NaN for a run stored with Recording::final_state.
 struct Energies {
-    double kinetic = 0.0, potential = 0.0, work = 0.0, loss = 0.0;
+    double kinetic = 0.0, potential = 0.0, work = 0.0, loss = 0.0, heat = 0.0;
     double total() const { return kinetic + potential; }
 };
 

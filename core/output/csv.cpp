@@ -54,7 +54,20 @@ std::string row_of(const std::vector<std::string>& cells) {
 }
 
 bool is_of_several(const Model& model) { return model.contacts() > 1; }
-bool has_work(const Model& model) { return is_of_several(model) || model.equations().has_power(); }
+bool has_work(const Model& model) {
+    return is_of_several(model) || model.equations().has_power() || model.has_friction();
+}
+// With one gap and no joints, the columns of contacts and friction have no names of contacts.
+bool has_named_columns(const Model& model) { return is_of_several(model) || !model.description().frictions.empty(); }
+
+// "foot:stick+bearing:slip-"
+std::string modes_text(const Model& model, Mode mode) {
+    std::string text;
+    for (const std::size_t i : rough_in(model, mode))
+        text += fmt::format("{}{}:{}", text.empty() ? "" : "+", contact_names(model, ContactSet::of(i)).front(),
+                            state_word(mode.state(i)));
+    return text;
+}
 
 // The names of the columns and, if requested, their units.
 std::string heading(const Model& model, const CsvStyle& style) {
@@ -67,23 +80,35 @@ std::string heading(const Model& model, const CsvStyle& style) {
         columns.push_back(column);
         units.push_back(of.empty() ? "" : unit_of_expression(model.description(), of));
     };
-    if (is_of_several(model)) {
-        for (const ConstraintDescription& constraint : model.description().constraints) {
-            add("gap_" + constraint.name, "gap_" + constraint.name);
-            add("rate_" + constraint.name, "gap_" + constraint.name + "'");
-            add("lambda_" + constraint.name, "lambda_" + constraint.name);
+    const auto add_friction = [&](std::size_t which, const std::string& name) {
+        if (!model.equations().friction.contains(which)) return;
+        add(has_named_columns(model) ? "slip_" + name : "slip");
+        add(has_named_columns(model) ? "friction_force_" + name : "friction_force");
+    };
+    const auto& constraints = model.description().constraints;
+    for (std::size_t i = 0; i < constraints.size(); ++i) {
+        const std::string& name = constraints[i].name;
+        if (is_of_several(model)) {
+            add("gap_" + name, "gap_" + name);
+            add("rate_" + name, "gap_" + name + "'");
+            add("lambda_" + name, "lambda_" + name);
+        } else {
+            for (const auto& [column, of] : {std::pair{"gap", "gap"}, {"gap rate", "gap'"}, {"lambda", "lambda"}})
+                add(column, of);
         }
-    } else if (model.contacts() == 1) {
-        for (const auto& [column, of] : {std::pair{"gap", "gap"}, {"gap rate", "gap'"}, {"lambda", "lambda"}})
-            add(column, of);
+        add_friction(i, name);
     }
+    const auto& frictions = model.description().frictions;
+    for (std::size_t k = 0; k < frictions.size(); ++k) add_friction(joint_number(k), frictions[k].name);
     add("energy", "energy");
     add("j");
     if (is_of_several(model)) add("held");
+    if (model.has_friction()) add("modes");
     if (has_work(model)) {
         add("work", "work");
         add("loss", "loss");
     }
+    if (model.has_friction()) add("heat", "energy");
     if (style.instants) add("event");
     return row_of(style.plain_names ? plain(columns) : columns) + (style.units ? row_of(units) : "");
 }
@@ -109,6 +134,12 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         contacts.push_back(model.evaluator(model.programs_of(i).contact_terms, trajectory.run.parameters));
     ContactForces forces(model, trajectory.run.parameters);
     auto energy = model.evaluator(model.energy(), trajectory.run.parameters);
+    ContactCache slips(model, trajectory.run);
+    const auto append_friction = [&](std::string& row, const Sample& sample, std::size_t which) {
+        if (!model.equations().friction.contains(which)) return;
+        append(row, slips.slip(which, sample.state).u);
+        append(row, forces.friction_force(which));
+    };
     int happened = 0;  // number of events up to the previous row
     for (const Sample& sample :
          style.instants ? samples_at(trajectory, *style.instants) : samples_of_curve(trajectory)) {
@@ -124,14 +155,19 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
             append(text, contacts[i].h());
             append(text, contacts[i].hdot());
             append(text, forces.force(i));
+            append_friction(text, sample, i);
         }
+        for (std::size_t k = 0; k < model.description().frictions.size(); ++k)
+            append_friction(text, sample, joint_number(k));
         append(text, energy.total());
         text += fmt::format(",{}", sample.j);
         if (is_of_several(model)) text += "," + joined_names(model, sample.mode.held(), "+");
+        if (model.has_friction()) text += "," + modes_text(model, sample.mode);
         if (has_work(model)) {
             append(text, sample.work);
             append(text, sample.loss);
         }
+        if (model.has_friction()) append(text, sample.heat);
         if (style.instants) text += ',' + kinds_of(trajectory, std::exchange(happened, sample.j), sample.j);
         text += '\n';
     }

@@ -86,10 +86,30 @@ std::string EventDescriptions::of(std::size_t event) const {
             return zeno(event);
         case Event::Kind::release:
             return release(trajectory_.events[event]);
+        case Event::Kind::stick:
+        case Event::Kind::slip:
+        case Event::Kind::reversal:
+            return friction(trajectory_.events[event]);
         case Event::Kind::impact:
             break;
     }
     return impact(event);
+}
+
+// "foot sticks", "foot starts to slide (slip+)", "foot slides the other way (slip-)".
+std::string EventDescriptions::friction(const Event& event) const {
+    std::string text;
+    for (const std::size_t i : event.contacts) {
+        const std::string name = contact_names(*trajectory_.model, ContactSet::of(i)).front();
+        text += (text.empty() ? "" : ", ") + name;
+        if (event.kind == Event::Kind::stick)
+            text += " sticks";
+        else
+            text +=
+                fmt::format(" {} ({})", event.kind == Event::Kind::slip ? "starts to slide" : "slides the other way",
+                            state_word(event.mode.state(i)));
+    }
+    return text;
 }
 
 std::string EventDescriptions::impact(std::size_t index) const {
@@ -131,6 +151,7 @@ std::string EventDescriptions::change(std::size_t index) const {
     if (event.is_impact())
         return fmt::format("impact of {} opens {}", joined_names(*trajectory_.model, event.contacts, " and "),
                            joined_names(*trajectory_.model, event.opened, " and "));
+    if (event.is_friction()) return friction(event);
     if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
         const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";

@@ -48,6 +48,7 @@ class EventDescriptions {
     std::string impact(std::size_t index) const;
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
+    std::string friction(const Event& event) const;
     std::string state(Mode mode) const;
     std::string holding(Mode mode, const char* flight) const;
     std::string beginning(const Event& event) const;

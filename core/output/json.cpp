@@ -201,6 +201,22 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
     return result;
 }
 
+// The states of contacts and joints with friction; only for systems with friction.
+void add_modes(Json& result, const Trajectory& trajectory, Mode mode) {
+    if (!trajectory.model->has_friction()) return;
+    Json& modes = result["modes"] = Json::object();
+    for (const std::size_t i : rough_in(*trajectory.model, mode))
+        modes[contact_names(*trajectory.model, ContactSet::of(i)).front()] = state_word(mode.state(i));
+}
+
+// What friction does at an impact.
+void add_friction(Json& result, const Trajectory& trajectory, const Event::FrictionImpulses& friction) {
+    result["tangential_impulses"] = by_contact(trajectory, friction.tangential);
+    if (friction.energy_cap)
+        result["energy_capped"] = {{"factor", number_json(*friction.energy_cap)},
+                                   {"contacts", names(trajectory, friction.capped)}};
+}
+
 // The contacts that take part in an event. For an impact this includes touching contacts that receive an impulse.
 ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
     const Event& event = trajectory.events[index];
@@ -243,9 +259,14 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
         result["impact_speed"] = number_json(event.impact_speed);
         result["impulses"] = by_contact(trajectory, impulses.of(index));
         if (event.joint) add_joint(result, trajectory, *event.joint);
+        if (event.friction) add_friction(result, trajectory, *event.friction);
     } else {
         result["v"] = list(event.v_after);
     }
+    if (!event.is_friction())
+        add_modes(result, trajectory, event.mode);
+    else if (event.kind != Event::Kind::stick && event.contacts.has_one())
+        result["direction"] = slip_sign(event.mode.state(event.contacts.only()));
     if (event.is_zeno()) result["impacts"] = event.impacts;
     if (event.truncation)
         result["truncation"] = {{"t", number_json(event.truncation->t)},
@@ -302,6 +323,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                           {"start", number_json(phase.start)},
                           {"end", number_json(phase.end)},
                           {"impacts", phase.impacts}});
+        add_modes(phases.back(), trajectory, phase.mode);
         if (phase.is_nonunique()) phases.back()["not_unique"] = true;
     }
     Json warnings = Json::array();
@@ -340,6 +362,10 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"ulps", rounding::libm},
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
+    if (trajectory.model->has_friction()) {
+        result["end"]["heat"] = number_json(trajectory.heat);
+        add_modes(result["end"], trajectory, trajectory.end_mode);
+    }
     add_error_estimate(result, trajectory, estimate);
     if (instants) result["samples"] = samples_of(trajectory, *instants);
     if (dependence != nullptr) {

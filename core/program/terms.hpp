@@ -69,7 +69,8 @@ class ContactTerms : public Terms<Base> {
 };
 
 // Outputs of a mode's motion: acceleration, pivots of M, hddot of every contact, and jerk, the rate of hddot for each
-// held contact. For a held contact, hddot is along the motion that holds the other held contacts.
+// held contact. For a held contact, hddot is along the motion that holds the other held contacts. The event functions
+// of friction follow after hddot, and their rates after the jerks; `contacts` then counts them, too.
 template <class Base>
 class MotionTerms : public Terms<Base> {
  public:
@@ -87,6 +88,25 @@ class MotionTerms : public Terms<Base> {
 
  private:
     std::size_t contacts_ = 1;
+};
+
+// The slip of a contact or joint in a mode in which it is open (model/friction.hpp): u, c, du/dv, its acceleration, the
+// acceleration of the coordinates by tau = 1, and both friction coefficients, that of sliding at the given speed.
+template <class Base>
+class SlipTerms : public Terms<Base> {
+ public:
+    using Terms<Base>::Terms;
+    static Expressions list(Expression u, Expression c, Expression udot, Expression coefficient,
+                            Expression static_coefficient, const Expressions& d, const Expressions& impulse) {
+        return joined({{u, c, udot, coefficient, static_coefficient}, d, impulse});
+    }
+    decltype(auto) u() const { return this->output(0); }
+    decltype(auto) c() const { return this->output(1); }
+    decltype(auto) udot() const { return this->output(2); }
+    decltype(auto) coefficient() const { return this->output(3); }
+    decltype(auto) static_coefficient() const { return this->output(4); }
+    decltype(auto) d(std::size_t i) const { return this->output(5 + i); }
+    decltype(auto) impulse(std::size_t i) const { return this->output(5 + this->dof_ + i); }
 };
 
 // What must be defined at the start of a run: free acceleration, pivots, hddot, kinetic and potential energy.

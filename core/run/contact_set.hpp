@@ -1,5 +1,5 @@
-// A set of contacts, such as those that impact, release or are examined. The contacts that a motion holds are in its
-// Mode.
+// A set of contacts, such as those that impact, release or are examined; also of joints with dry friction. The contacts
+// that a motion holds are in its Mode.
 #pragma once
 
 #include <bit>
@@ -10,6 +10,10 @@ namespace achilles {
 
 // Maximum number of contacts in a system.
 inline constexpr std::size_t max_contacts = 16;
+// Dry friction without a gap acts at joints. In modes and sets joint k has the number max_contacts + k.
+inline constexpr std::size_t max_joints = 8;
+constexpr std::size_t joint_number(std::size_t joint) { return max_contacts + joint; }
+constexpr bool is_joint(std::size_t contact_or_joint) { return contact_or_joint >= max_contacts; }
 
 class ContactSet {
  public:
@@ -27,6 +31,7 @@ class ContactSet {
 
     constexpr ContactSet with(ContactSet others) const { return ContactSet(bits_ | others.bits_); }
     constexpr ContactSet without(ContactSet others) const { return ContactSet(bits_ & ~others.bits_); }
+    constexpr ContactSet within(ContactSet others) const { return ContactSet(bits_ & others.bits_); }
 
     friend constexpr bool operator==(const ContactSet&, const ContactSet&) = default;
     friend constexpr bool operator<(const ContactSet& a, const ContactSet& b) { return a.bits_ < b.bits_; }

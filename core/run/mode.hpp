@@ -1,5 +1,5 @@
-// The mode of a motion: the state of every contact. Equations, compiled programs and caches of a motion have its mode
-// as the key.
+// The mode of a motion: the state of every contact, and of every joint with dry friction. Equations, compiled programs
+// and caches of a motion have its mode as the key.
 #pragma once
 
 #include <utility>
@@ -9,10 +9,19 @@
 namespace achilles {
 
 // The state of a contact along a motion. The table in contacts/contact_law.hpp gives the consequences of each state. A
-// mode has room for four states.
-enum class ContactState : std::uint8_t { open, held };
+// held contact with friction sticks; its slip may be implied by those of others, as of the second foot of a table, and
+// then it has no friction force of its own. A joint is held (it sticks) or slips; an open joint has no friction force,
+// which only derivations use.
+enum class ContactState : std::uint8_t { open, held, slip_plus, slip_minus };
 
-// The default is free flight: every contact is open, including those that the system does not have.
+// The sign of the slip: 1, -1, or 0 for a state without slip.
+constexpr int slip_sign(ContactState state) {
+    return state == ContactState::slip_plus ? 1 : state == ContactState::slip_minus ? -1 : 0;
+}
+constexpr ContactState slip_state(int sign) { return sign > 0 ? ContactState::slip_plus : ContactState::slip_minus; }
+
+// The default is free flight: every contact is open, including those that the system does not have, and no joint has
+// friction.
 class Mode {
  public:
     constexpr Mode() = default;
@@ -22,40 +31,69 @@ class Mode {
     constexpr ContactState state(std::size_t contact) const {
         return static_cast<ContactState>((bits_ >> contact & 1u) | (bits_ >> (high + contact) & 1u) << 1);
     }
+    // True for a contact that is closed and kept closed, whether it sticks or slips; for a joint with friction.
     constexpr bool is_held(std::size_t contact) const { return state(contact) != ContactState::open; }
-    constexpr bool is_free() const { return bits_ == 0; }
+    // Whether every contact is open. Joints do not count.
+    constexpr bool is_free() const { return held().empty(); }
+    // Held contacts whose slip stays 0 because that of others does.
+    constexpr ContactSet implied() const {
+        const auto flags = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> first_flag & 0xFFu); };
+        return ContactSet(flags(bits_) | flags(bits_ >> high) << 8u);
+    }
+    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact)); }
     // The contacts that are not open, and those in a given state.
-    constexpr ContactSet held() const { return ContactSet((bits_ | bits_ >> high) & all); }
+    constexpr ContactSet held() const {
+        return ContactSet(static_cast<std::uint32_t>(bits_ | bits_ >> high) & of_contacts);
+    }
     constexpr ContactSet contacts_in(ContactState state) const {
-        return ContactSet(~(bits_ ^ low_bits(all, state)) & ~(bits_ >> high ^ high_bits(all, state) >> high) & all);
+        return elements_in(state).within(ContactSet(of_contacts));
+    }
+    // The contacts and joints that slip; the joints with friction.
+    constexpr ContactSet slipping() const { return ContactSet(static_cast<std::uint32_t>(bits_ >> high) & all); }
+    constexpr ContactSet joints() const {
+        return ContactSet(static_cast<std::uint32_t>(bits_ | bits_ >> high) & all & ~of_contacts);
+    }
+    // Contacts and joints in a given state.
+    constexpr ContactSet elements_in(ContactState state) const {
+        return ContactSet(
+            static_cast<std::uint32_t>(~(bits_ ^ low_bits(all, state)) & ~((bits_ ^ high_bits(all, state)) >> high)) &
+            all);
     }
 
     constexpr Mode with(ContactSet contacts, ContactState state) const {
-        const std::uint32_t set = contacts.bits_;
-        return Mode((bits_ & ~(set | set << high)) | low_bits(set, state) | high_bits(set, state));
+        const std::uint64_t set = contacts.bits_;
+        std::uint64_t kept = bits_ & ~(set | set << high);
+        for (const std::size_t i : contacts.within(implied())) kept &= ~flag(i);
+        return Mode(kept | low_bits(set, state) | high_bits(set, state));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
     // This mode with these contacts open.
     constexpr Mode without(ContactSet contacts) const { return with(contacts, ContactState::open); }
     constexpr Mode without(std::size_t contact) const { return with(contact, ContactState::open); }
-    // This mode for these contacts, with all others open.
+    // This mode for these contacts, with all others open. Joints keep their state.
     constexpr Mode only(ContactSet contacts) const { return without(held().without(contacts)); }
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
     friend constexpr bool operator<(const Mode& a, const Mode& b) { return a.bits_ < b.bits_; }
 
  private:
-    // A state has two bits. The low bits of all contacts are in one half of the word, the high bits in the other.
-    static constexpr std::uint32_t high = max_contacts, all = (1u << max_contacts) - 1u;
-    static constexpr std::uint32_t low_bits(std::uint32_t set, ContactState state) {
+    // A state has two bits. The low bits of all contacts and joints are in one half of the word, the high bits in the
+    // other.
+    static constexpr std::uint32_t high = 32, of_contacts = (1u << max_contacts) - 1u,
+                                   all = (1u << (max_contacts + max_joints)) - 1u;
+    static constexpr std::uint32_t first_flag = 24;  // eight flags in each half
+    static constexpr std::uint64_t flag(std::size_t contact) {
+        return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8));
+    }
+    static constexpr std::uint64_t low_bits(std::uint64_t set, ContactState state) {
         return (static_cast<std::uint32_t>(state) & 1u) != 0 ? set : 0u;
     }
-    static constexpr std::uint32_t high_bits(std::uint32_t set, ContactState state) {
+    static constexpr std::uint64_t high_bits(std::uint64_t set, ContactState state) {
         return (static_cast<std::uint32_t>(state) & 2u) != 0 ? set << high : 0u;
     }
 
-    constexpr explicit Mode(std::uint32_t bits) : bits_(bits) {}
-    std::uint32_t bits_ = 0;
+    constexpr explicit Mode(std::uint64_t bits) : bits_(bits) {}
+    std::uint64_t bits_ = 0;
 };
 
 // Key of the data of one contact in a mode.

@@ -117,6 +117,10 @@ std::string_view to_text(Outcome::Kind kind) {
             return "simultaneous impacts";
         case Outcome::Kind::redundant_contacts:
             return "redundant contacts";
+        case Outcome::Kind::painleve:
+            return "painleve";
+        case Outcome::Kind::impact_not_unique:
+            return "impact not unique";
         case Outcome::Kind::cancelled:
             return "cancelled";
         default:

@@ -34,7 +34,7 @@ struct DenseSegment {
     Mode mode;                // mode of its phase; between a cut and its Zeno point, of the next phase
     ContactSet load_bearing;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
     Mode motion() const { return mode.only(load_bearing); }
-    double work = 0.0, loss = 0.0;  // from the start of the run to the start of this piece
+    double work = 0.0, loss = 0.0, heat = 0.0;  // from the start of the run to the start of this piece
 };
 
 // The state by the polynomials of a piece at time t (s), clamped to the piece.
@@ -123,23 +123,25 @@ struct MultiContactInfo {
 
 // Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
 struct EventBase {
-    enum class Kind { impact, zeno, release, last = release };
+    // stick: the slip of a contact or joint ends; slip: it begins; reversal: it changes its sign.
+    enum class Kind { impact, zeno, release, stick, slip, reversal, last = reversal };
     Kind kind = Kind::impact;
     bool is_impact() const { return kind == Kind::impact; }
     bool is_zeno() const { return kind == Kind::zeno; }
     bool is_release() const { return kind == Kind::release; }
+    bool is_friction() const { return kind == Kind::stick || kind == Kind::slip || kind == Kind::reversal; }
     friend bool operator==(const EventBase&, const EventBase&) = default;
 };
 
 struct Event : EventBase {
     double t = 0.0;
-    Vector q, v_before, v_after;                    // velocities are equal unless they jump (at impacts)
-    double impact_speed = 0.0;                      // impact: |hdot| before the impact
-    ContactSet contacts;                            // those that impact, become held at a Zeno point, or release
-    Mode mode;                                      // after the event
-    ContactSet opened;                              // impact: contacts held before and opened by it
+    Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts)
+    double impact_speed = 0.0;    // impact: |hdot| before the impact
+    ContactSet contacts;  // those that impact, become held at a Zeno point, or release; contacts or joints of friction
+    Mode mode;            // after the event
+    ContactSet opened;    // impact: contacts held before and opened by it
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
-    double work = 0.0, loss = 0.0;                  // from the start of the run, including this event
+    double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
     struct TruncationRecord {                       // zeno: the impact at the cut, and the restart
         double t = 0.0;
@@ -149,7 +151,14 @@ struct Event : EventBase {
     std::optional<TruncationRecord> truncation;
     std::optional<Certificate> certificate;  // zeno
 
-    // True if the set of held contacts changes: any event but an impact that opens no held contact.
+    struct FrictionImpulses {                                    // impact
+        std::vector<std::pair<std::size_t, double>> tangential;  // by contact
+        std::optional<double> energy_cap;  // fraction of the restitutions at which the impact gains no energy
+        ContactSet capped;                 // the contacts with these restitutions
+    };
+    std::shared_ptr<const FrictionImpulses> friction;  // may be null
+
+    // True if the mode may change: any event but an impact that opens no held contact.
     bool changes_held() const { return !is_impact() || !opened.empty(); }
 
     Event() {}  // leaves the storage of the two optional members uninitialized, because most events have neither
@@ -169,11 +178,18 @@ struct EventNames {
     std::string_view name;   // in sentences and legends: "Zeno point"
     std::string_view label;  // before a number or names of contacts: "Zeno 2", "Zeno knee"
 };
-inline constexpr std::array<EventNames, 3> event_names{{
+inline constexpr std::array<EventNames, 6> event_names{{
     {Event::Kind::impact, "impact", "impact", "impact"},
     {Event::Kind::zeno, "zeno", "Zeno point", "Zeno"},
     {Event::Kind::release, "release", "release", "release"},
+    {Event::Kind::stick, "stick", "stick", "stick"},
+    {Event::Kind::slip, "slip", "start of slip", "slip"},
+    {Event::Kind::reversal, "reversal", "reversal of slip", "reversal"},
 }};
+// The kinds of events that a system may have; those of friction are the last ones.
+constexpr std::span<const EventNames> possible_events(bool has_friction) {
+    return std::span(event_names).first(has_friction ? event_names.size() : 3);
+}
 // A plastic landing is a Zeno event, but has its own names.
 inline constexpr EventNames landing_names{Event::Kind::zeno, "landing", "landing", "landing"};
 
@@ -210,6 +226,8 @@ struct Outcome {
         undecided,
         simultaneous_impacts,  // their order matters but is unknown, and the options ask to stop
         redundant_contacts,    // they leave no motion, or are too many to decide
+        painleve,              // rigid bodies with this friction have no motion, or several
+        impact_not_unique,     // no impulses with friction obey the impact law, or several
         cancelled              // by another thread
     };
     Kind kind = Kind::end_time;
@@ -239,10 +257,11 @@ struct Trajectory {
     Phase::Kind end_phase = Phase::Kind::hybrid;
     Mode end_mode;
     int ambiguous_impacts = 0;  // number of impacts whose order matters but is unknown
-    // E(end) - E(start) = work - loss. The work is that of forces, of a time-dependent potential and of moving
+    // E(end) - E(start) = work - loss - heat. The work is that of forces, of a time-dependent potential and of moving
     // surfaces; the loss is the energy dissipated at impacts. For a run stored with Recording::final_state the work is
     // NaN, unless none can be done.
     double work = 0.0, loss = 0.0;
+    double heat = 0.0;  // of dry friction, in contact and at impacts
     Outcome outcome;
     Statistics statistics;
     // The tighter options of a second run, if a run with the options of `run` was undecided.

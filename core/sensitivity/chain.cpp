@@ -46,6 +46,9 @@ Chain::Chain(const Trajectory& trajectory, ChainOptions options)
       h_(model_->contacts()),
       u_(model_->contacts()) {
     check(trajectory.run);
+    if (model_->has_friction())
+        throw InputError("derivatives", {}, "runs with dry friction have no derivatives yet",
+                         "leave out --derivatives, or the friction");
     state_ = trajectory.run.start();
     mode_ = trajectory.phases.front().mode;
     for (std::size_t i = 0; i < model_->contacts(); ++i) {

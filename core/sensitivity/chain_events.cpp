@@ -50,6 +50,10 @@ void Chain::handle_event(std::size_t event) {
             return reach_zeno_point(event);
         case Event::Kind::release:
             return release(event);
+        case Event::Kind::stick:
+        case Event::Kind::slip:
+        case Event::Kind::reversal:
+            return;  // refused by the constructor
     }
 }
 

@@ -2,7 +2,7 @@
 //
 // With q_{k+1} = v_k/(k+1) and v_{k+1} = f_k/(k+1), order k of the program gives order k + 1 of the motion. Event
 // functions are outputs of the same program, so their series are computed along with it. Every contact has one, chosen
-// by its law: its gap, or hddot for the sign of its force.
+// by its law: its gap, or hddot for the sign of its force. Those of friction follow; their number depends on the mode.
 //
 // Order and step size: term k of the motion in units of the tolerance is m_k t^k. A step of order p ends where its last
 // terms reach 1. The order policy (below) chooses p, and how many of the last terms are considered.
@@ -44,10 +44,11 @@ class TaylorStep {
     using Series = SeriesEvaluator<Number>;
     static constexpr int highest_order = Series::highest_order;
 
-    // `contacts`: number of event functions.
+    // `contacts`: number of event functions, one for each contact.
     TaylorStep(std::size_t dof, std::size_t contacts, double tolerance)
         : dof_(dof),
           contacts_(contacts),
+          gaps_end_(contacts),
           width_(2 * dof + contacts),
           tolerance_(tolerance),
           rows_((highest_order + 1) * width_, Number(0.0)),
@@ -56,7 +57,18 @@ class TaylorStep {
           gap_units_(contacts, 1.0) {}
 
     std::size_t dof() const { return dof_; }
+    // Number of event functions.
     std::size_t contacts() const { return contacts_; }
+    // Changes it for a mode that watches this many more functions than it has contacts.
+    void set_further_events(std::size_t further) {
+        if (contacts_ == gaps_end_ + further) return;
+        contacts_ = gaps_end_ + further;
+        width_ = 2 * dof_ + contacts_;
+        rows_.assign((highest_order + 1) * width_, Number(0.0));
+        units_.assign(width_, Number(0.0));
+        gaps_.resize(contacts_, GapOver<Number>{0.0, 0.0, 0.0, 0.0, 0.0});
+        gap_units_.resize(contacts_, 1.0);
+    }
     // Numbers per row. Row k is order k of q, v and the event functions.
     std::size_t width() const { return width_; }
     Number* row(int k) { return rows_.data() + static_cast<std::size_t>(k) * width(); }
@@ -68,9 +80,9 @@ class TaylorStep {
     double& gap_unit(std::size_t contact) { return gap_units_[contact]; }
     int order() const { return order_; }
     // True if the event function of the contact is its gap.
-    bool watches_gap(std::size_t contact) const { return gaps_watched_.contains(contact); }
+    bool watches_gap(std::size_t contact) const { return contact < gaps_end_ && gaps_watched_.contains(contact); }
     bool watches_any_gap() const {
-        for (std::size_t i = 0; i < contacts(); ++i)
+        for (std::size_t i = 0; i < gaps_end_; ++i)
             if (watches_gap(i)) return true;
         return false;
     }
@@ -96,7 +108,7 @@ class TaylorStep {
     }
     // For a policy, after order 1: sets the rates of open gaps to the known values.
     void give_rates() {
-        for (std::size_t i = 0; i < contacts(); ++i)
+        for (std::size_t i = 0; i < gaps_end_; ++i)
             if (watches_gap(i)) row(1)[2 * dof_ + i] = gaps_[i].hdot;
     }
     // For a policy, after order 2: 1.05 times the shortest time in which the parabola of an open gap closes, at most
@@ -140,7 +152,7 @@ class TaylorStep {
     void set_unit(std::size_t i, const Number& size) { units_[i] = 1.0 / (tolerance_ * size); }
     const Number& unit(std::size_t contact) const { return units_[2 * dof_ + contact]; }
 
-    std::size_t dof_, contacts_, width_;
+    std::size_t dof_, contacts_, gaps_end_, width_;  // gaps_end_: number of contacts
     double tolerance_;
     std::vector<Number> rows_, units_;
     std::vector<GapOver<Number>> gaps_;  // at the start of the step
@@ -181,7 +193,7 @@ template <class Number>
 Number TaylorStep<Number>::aim(const Number& longest) {
     using std::abs, std::sqrt;
     Number target = longest;
-    for (std::size_t i = 0; i < contacts(); ++i) {
+    for (std::size_t i = 0; i < gaps_end_; ++i) {
         if (!watches_gap(i)) continue;
         const Number h0 = max(gaps_[i].h, 0.0), h1 = gaps_[i].hdot, h2 = event(i, 2);
         const Number root = sqrt(h1 * h1 - 4.0 * h0 * h2);
@@ -190,7 +202,7 @@ Number TaylorStep<Number>::aim(const Number& longest) {
         const Number fall = select((h2 < 0.0) & ((h0 > 0.0) | rises), min(time, longest), longest);
         target = min(1.05 * fall, target);
     }
-    for (std::size_t i = 0; i < contacts(); ++i) {
+    for (std::size_t i = 0; i < gaps_end_; ++i) {
         if (!watches_gap(i)) continue;
         const Number height = abs(gaps_[i].h) + abs(gaps_[i].hdot) * target;
         Number& unit = units_[2 * dof_ + i];

@@ -33,6 +33,7 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
                  elastic ? ": with restitution 1 the bouncing does not converge" : "; try a larger --max-impacts"));
         return;
     }
+    if (surfaces_->has_friction()) return collide_with_friction(ContactSet::of(which));
     if (surfaces_->count() > 1) {
         // Contacts that impact in turn may leave no time between impacts, even if each alone would bounce high.
         constexpr double resolved = 16.0;
@@ -233,6 +234,7 @@ void ExecutionAutomaton::release(std::size_t which) {
     if (completing())
         return stop(Outcome::Kind::undecided,
                     "the contact force vanishes before the Zeno time at " + where(next_.state));
+    if (surfaces_->has_friction()) return release_with_friction(which);
     const Mode mode = next_.mode;
     const ContactSet vanishing = surfaces_->count() > 1 ? vanishing_with(which) : ContactSet::of(which);
     const bool leaves = certainly_positive(surfaces_->of(which, mode.without(which)).normal(next_.state).jerk);

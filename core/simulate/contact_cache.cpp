@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "number/dense.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 
@@ -55,10 +57,11 @@ ContactCache::ContactCache(const Model& model, const Run& run)
     : model_(&model), run_(run), restitutions_(model.restitutions(run.parameters)) {
     free_.reserve(model.contacts());
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
+    for (const auto& [which, law] : model.equations().friction) rough_ = rough_.with(which);
 }
 
 ContactKinematics& ContactCache::of(std::size_t contact, Mode mode) {
-    if (mode.is_free()) return free_[contact];
+    if (mode == Mode()) return free_[contact];
     const ContactInMode key(mode, contact);
     const auto known = in_modes_.find(key);
     if (known != in_modes_.end()) return known->second;
@@ -81,6 +84,109 @@ ClosedContacts ContactCache::at(const State& state, ContactSet contacts) {
             closed.W(i, j) = closed.W(j, i) = i == j ? a.W : a.g.dot(b.impulse_direction) * b.W;
         }
     return closed;
+}
+
+// ---- friction ----
+
+Vector ContactRows::after(const Vector& v, const Eigen::VectorXd& impulses) const {
+    Vector result = v;
+    for (Eigen::Index i = 0; i < size(); ++i) result += impulses[i] * rows[static_cast<std::size_t>(i)].impulse;
+    return result;
+}
+
+Eigen::Index ContactRows::find(std::size_t which, bool is_slip) const {
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        if (rows[i].which == which && rows[i].is_slip == is_slip) return static_cast<Eigen::Index>(i);
+    return -1;
+}
+
+ModeKinematics& ContactCache::motion(Mode mode) {
+    const auto known = motions_.find(mode);
+    if (known != motions_.end()) return known->second;
+    return motions_.try_emplace(mode, *model_, run_.parameters, mode).first->second;
+}
+
+Slip ContactCache::slip(std::size_t which, const State& state, Mode mode, std::optional<double> speed) {
+    const ContactInMode key(mode, which);
+    auto known = slips_.find(key);
+    if (known == slips_.end())
+        known = slips_.emplace(key, model_->evaluator(model_->slip_terms(which, mode), run_.parameters)).first;
+    auto& terms = known->second;
+    set_state(terms, state);
+    terms.input(model_->layout().sliding_speed()) = speed.value_or(0.0);
+    terms.run();
+    if (!speed && terms.u() != 0.0) {
+        terms.input(model_->layout().sliding_speed()) = std::abs(terms.u());
+        terms.run();
+    }
+    Slip slip{terms.u(),
+              terms.c(),
+              terms.udot(),
+              terms.coefficient(),
+              terms.static_coefficient(),
+              Vector(state.q.size()),
+              Vector(state.q.size())};
+    for (std::size_t i = 0; i < static_cast<std::size_t>(state.q.size()); ++i) {
+        slip.d[static_cast<Eigen::Index>(i)] = terms.d(i);
+        slip.impulse[static_cast<Eigen::Index>(i)] = terms.impulse(i);
+    }
+    return slip;
+}
+
+double ContactCache::slip_error(std::size_t which, const State& state) {
+    const FloatEnvironmentGuard ground;
+    auto known = slip_enclosures_.find(which);
+    if (known == slip_enclosures_.end())
+        known = slip_enclosures_.emplace(which, model_->evaluator<Interval>(model_->slip_terms(which), run_.parameters))
+                    .first;
+    set_rounding_box(known->second, state);
+    known->second.input(model_->layout().sliding_speed()) = Interval(0.0);
+    known->second.run();
+    return rad(known->second.u());
+}
+
+ContactRows ContactCache::rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode) {
+    ContactRows result;
+    for (const std::size_t i : gaps) {
+        const Contact c = free_[i].at(state);
+        result.rows.push_back(
+            {i, false, c.hdot, c.gap_t, of(i, mode).normal_acceleration(state), c.g, c.W * c.impulse_direction});
+    }
+    for (const std::size_t i : sliding) {
+        const Slip s = slip(i, state, mode);
+        result.rows.push_back({i, true, s.u, s.c, s.udot, s.d, s.impulse});
+        result.slips.emplace(i, s);
+    }
+    result.W.resize(result.size(), result.size());
+    for (Eigen::Index i = 0; i < result.size(); ++i)
+        for (Eigen::Index j = 0; j < result.size(); ++j)
+            result.W(i, j) =
+                result.rows[static_cast<std::size_t>(i)].gradient.dot(result.rows[static_cast<std::size_t>(j)].impulse);
+    return result;
+}
+
+std::optional<double> ContactCache::settle_with_friction(State& state, Mode mode) {
+    double least = std::numeric_limits<double>::infinity();
+    const ContactSet held = mode.held(), stuck = mode.elements_in(ContactState::held).within(rough_);
+    if (!held.empty()) {
+        const auto gap = project(state, held, stuck.empty() ? held : ContactSet());
+        if (!gap) return std::nullopt;
+        least = *gap;
+    }
+    if (stuck.empty()) return least;
+    const ContactRows closed = rows(state, held, stuck, {});
+    Eigen::VectorXd rates(closed.size());
+    for (Eigen::Index i = 0; i < closed.size(); ++i) rates[i] = closed.rows[static_cast<std::size_t>(i)].rate;
+    if (rates.isZero(0.0)) return least;
+    // With few rows the elimination is exact where nothing couples them.
+    ContactSet all;
+    for (Eigen::Index i = 0; i < closed.size() && closed.size() <= max_closed_contacts; ++i) all = with(all, i);
+    const auto block = all.empty() ? std::nullopt : HeldBlock<double>::of(closed.W, all);
+    const Eigen::VectorXd p =
+        block ? Eigen::VectorXd(block->solve(-rates)) : least_solution(closed.W, Eigen::VectorXd(-rates));
+    if (!p.allFinite()) return std::nullopt;
+    state.v = closed.after(state.v, p);
+    return least;
 }
 
 bool ContactCache::is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale) {

@@ -10,6 +10,7 @@
 #include "contacts/delassus.hpp"
 #include "model/unpressed.hpp"
 #include "simulate/impact.hpp"
+#include "simulate/mode_kinematics.hpp"
 
 namespace achilles {
 
@@ -28,6 +29,36 @@ struct ClosedContacts {
     Vector after(const Vector& v, const ContactVector<double>& impulses) const;
 };
 
+// The slip of a contact or joint at one state (SlipTerms).
+struct Slip {
+    double u = 0.0, c = 0.0, udot = 0.0;
+    double coefficient = 0.0, static_coefficient = 0.0;  // the first at the given speed
+    Vector d, impulse;
+};
+
+// Gaps and slips at one state: the rows of G and D, the accelerations of the coordinates by unit forces along them, and
+// the matrix W of all rows (theory-friction.md 2). The gaps come first, each in ascending order of the contacts.
+struct ContactRows {
+    struct Row {
+        std::size_t which;  // contact or joint
+        bool is_slip;
+        double rate, drift, acceleration;  // hdot or u; dh/dt or c; hddot or udot in the mode
+        Vector gradient, impulse;
+    };
+    std::vector<Row> rows;
+    Eigen::MatrixXd W;
+    std::map<std::size_t, Slip> slips;  // those in `rows`, with coefficients at the speeds of the state
+
+    Eigen::Index size() const { return static_cast<Eigen::Index>(rows.size()); }
+    Eigen::Index gap_of(std::size_t contact) const { return find(contact, false); }
+    Eigen::Index slip_of(std::size_t which) const { return find(which, true); }  // -1 if there is none
+    // v + M^-1 (G' p + D' p_T)
+    Vector after(const Vector& v, const Eigen::VectorXd& impulses) const;
+
+ private:
+    Eigen::Index find(std::size_t which, bool is_slip) const;
+};
+
 class ContactCache {
  public:
     ContactCache(const Model& model, const Run& run);
@@ -39,6 +70,24 @@ class ContactCache {
     // A contact while all are open, and in a mode in which it is open.
     ContactKinematics& of(std::size_t contact) { return free_[contact]; }
     ContactKinematics& of(std::size_t contact, Mode mode);
+
+    // The event functions of a mode.
+    ModeKinematics& motion(Mode mode);
+    // The slip in a mode in which the contact or joint is open; coefficients at this speed, or at |u|.
+    Slip slip(std::size_t which, const State& state, Mode mode = {}, std::optional<double> speed = {});
+    // Error bound of u over the rounding box of a state.
+    double slip_error(std::size_t which, const State& state);
+    // The gaps of these contacts and the slips of those among `sliding`, contacts and joints. Accelerations are those
+    // of the mode, in which they are all open.
+    ContactRows rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode);
+    // Whether a contact or joint has friction, and all of them.
+    ContactSet rough() const { return rough_; }
+    bool never_slides(std::size_t which) const { return model_->equations().friction.at(which).never_slides; }
+    bool has_friction() const { return !rough_.empty(); }
+    // Projects q onto the surfaces of the held contacts, and v so that hdot = 0 for them and u = 0 for all that stick.
+    std::optional<double> settle(State& state, Mode mode) {
+        return rough_.empty() ? project(state, mode.held(), mode.held()) : settle_with_friction(state, mode);
+    }
 
     // `contacts` must contain at most max_closed_contacts.
     ClosedContacts at(const State& state, ContactSet contacts);
@@ -66,6 +115,7 @@ class ContactCache {
 
  private:
     std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
+    std::optional<double> settle_with_friction(State& state, Mode mode);
     UnpressedContacts& unpressed();
     bool land_while_held(State& state, std::size_t contact, Mode mode, Contact& landed);
 
@@ -74,6 +124,10 @@ class ContactCache {
     std::vector<Restitution> restitutions_;
     std::vector<ContactKinematics> free_;
     std::map<ContactInMode, ContactKinematics> in_modes_;
+    ContactSet rough_;
+    std::map<Mode, ModeKinematics> motions_;
+    std::map<ContactInMode, SlipTerms<Evaluator<double>>> slips_;
+    std::map<std::size_t, SlipTerms<Evaluator<Interval>>> slip_enclosures_;
     std::unique_ptr<UnpressedContacts> unpressed_;  // created at first use
 };
 

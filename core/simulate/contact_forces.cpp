@@ -18,6 +18,7 @@ void ContactForces::set(const State& state, Mode mode, ContactSet load_bearing) 
 
 double ContactForces::force(std::size_t contact) {
     if (!mode_.is_held(contact)) return 0.0;
+    if (model_->has_friction()) return with_friction(contact).lambda;
     if (load_bearing_ != mode_.held()) {
         if (shared_.empty()) share();
         return shared_[contact];
@@ -30,6 +31,21 @@ double ContactForces::force(std::size_t contact) {
     set_state(known->second, state_);
     known->second.run();
     return known->second.output(0);
+}
+
+double ContactForces::friction_force(std::size_t which) {
+    return mode_.is_held(which) ? with_friction(which).tau : 0.0;
+}
+
+ContactForces::NormalAndFriction ContactForces::with_friction(std::size_t which) {
+    const ContactInMode key(mode_, which);
+    auto known = forces_.find(key);
+    if (known == forces_.end())
+        known = forces_.emplace(key, model_->evaluator(model_->friction_force(which, mode_), parameters_)).first;
+    Evaluator<double>& force = known->second;
+    set_state(force, state_);
+    force.run();
+    return {force.output(0) / force.output(2), force.output(1) / force.output(2)};
 }
 
 // Solves W lambda = -hddot over all held contacts for the lambda >= 0 of least norm. First, the part of hddot that no
@@ -89,13 +105,19 @@ void ContactForces::run_view(Evaluator<double>& view, const Sample& sample, cons
     set_state(view, sample.state);
     view.input(layout.work()) = sample.work;
     view.input(layout.loss()) = sample.loss;
-    if (layout.contacts == 1) {
+    if (layout.contacts == 1 && layout.frictions == 0) {
         view.input(layout.contact()) = sample.contact ? 1.0 : 0.0;
     } else {
         set(sample);
         for (std::size_t i = 0; i < layout.contacts; ++i) {
             if (is_read(layout.acceleration(i))) view.input(layout.acceleration(i)) = acceleration(i);
             if (is_read(layout.force(i))) view.input(layout.force(i)) = force(i);
+        }
+        if (layout.frictions > 0) view.input(layout.heat()) = sample.heat;
+        std::size_t k = 0;
+        for (const auto& [which, law] : model_->equations().friction) {
+            if (is_read(layout.friction_force(k))) view.input(layout.friction_force(k)) = friction_force(which);
+            ++k;
         }
     }
     view.run();

@@ -27,6 +27,8 @@ class ContactForces {
     // lambda_i of a held contact; 0 if it is open. If some held contacts are not load-bearing, the forces are
     // not unique: these are the nonnegative ones of least norm (solve_complementarity).
     double force(std::size_t contact);
+    // tau of a contact or joint with friction; 0 if it is open.
+    double friction_force(std::size_t which);
     // hddot_i of an open contact; 0 if it is held.
     double acceleration(std::size_t contact);
     // sum lambda_i g_i', the generalized contact force.
@@ -48,6 +50,10 @@ class ContactForces {
     std::vector<double> shared_;  // forces of all contacts, if they are not unique; empty until needed
     Model::MotionEvaluators motions_;
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // at the state; null until needed
+    struct NormalAndFriction {
+        double lambda, tau;
+    };
+    NormalAndFriction with_friction(std::size_t which);
     std::map<ContactInMode, Evaluator<double>> forces_;
     std::vector<std::optional<ContactTerms<Evaluator<double>>>> surfaces_;
     std::optional<ContactCache> all_;  // used if forces are not unique

@@ -40,7 +40,8 @@ class Dopri5 : public Stepper {
           dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
           model_(&model),
           parameters_(run.parameters),
-          gaps_(model.contacts()),
+          contacts_(model.contacts()),
+          gaps_(contacts_),
           units_(model, run) {}
 
     void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
@@ -50,7 +51,7 @@ class Dopri5 : public Stepper {
     const State& current_state() override { return to_; }
     void event_function(std::size_t contact, Polynomial& p) const override {
         p = component(event(contact));
-        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] *= units_[contact];
+        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] *= unit(contact);
     }
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
@@ -71,7 +72,10 @@ class Dopri5 : public Stepper {
     double own_remainder(std::size_t contact, const Polynomial& p) const;
     double hddot_error(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
-    bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
+    bool watches_gap(std::size_t contact) const {
+        return contact < contacts_ && law_of(mode_.state(contact)).watched == WatchedFunction::gap;
+    }
+    double unit(std::size_t contact) const { return contact < contacts_ ? units_[contact] : 1.0; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
     Values values_of(const State& state) const;
@@ -88,11 +92,12 @@ class Dopri5 : public Stepper {
     Model::MotionEvaluators motions_;                   // by mode, created at first use
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
     double span_ = 0.0;
-    double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
-    State from_, to_;        // the ends of the last step
-    double time_ = 0.0;      // s, start of the step
-    double begun_ = 0.0;     // the same on Odeint's clock
-    std::vector<Gap> gaps_;  // at from_
+    double natural_ = 0.0;  // length of the next step by the error control; 0: unknown
+    State from_, to_;       // the ends of the last step
+    double time_ = 0.0;     // s, start of the step
+    double begun_ = 0.0;    // the same on Odeint's clock
+    std::size_t contacts_;
+    std::vector<Gap> gaps_;  // at from_, for each event function
     GapUnits units_;
     bool continuing_ = false;  // Odeint's stepper is at to_, ready for a step of natural_
     std::array<Values, 5> nodes_;
@@ -115,8 +120,8 @@ void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
     }
     for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        dydt[i] = watches_gap(contact) ? y[i + 1] : motion.jerk(forces++) / units_[contact];
-        dydt[i + 1] = watches_gap(contact) ? motion.hddot(contact) / units_[contact] : 0.0;
+        dydt[i] = watches_gap(contact) ? y[i + 1] : motion.jerk(forces++) / unit(contact);
+        dydt[i + 1] = watches_gap(contact) ? motion.hddot(contact) / unit(contact) : 0.0;
     }
 }
 
@@ -136,6 +141,9 @@ void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps
     units_.at(state);
     time_ = state.t;
     begun_ = 0.0;
+    // Odeint's buffers have the size of the first state that they see.
+    if (gaps.size() != gaps_.size())
+        dense_ = odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>());
     gaps_.assign(gaps.begin(), gaps.end());
     continuing_ = false;
     if (natural_ == 0.0) guess_first_step();
@@ -156,15 +164,15 @@ void Dopri5::guess_first_step() {
 
 void Dopri5::set(double dt) {
     Values y = values_of(from_);
-    if (!mode_.is_free()) {  // hddot at the state itself
+    if (!(mode_ == Mode())) {  // hddot and the functions of friction at the state itself
         for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
         motion_->clock() = time_;
         motion_->run();
     }
     for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
         const std::size_t i = event(contact);
-        y[i] = (watches_gap(contact) ? gaps_[contact].h : motion_->hddot(contact)) / units_[contact];
-        if (watches_gap(contact)) y[i + 1] = gaps_[contact].hdot / units_[contact];
+        y[i] = (watches_gap(contact) ? gaps_[contact].h : motion_->hddot(contact)) / unit(contact);
+        if (watches_gap(contact)) y[i + 1] = gaps_[contact].hdot / unit(contact);
     }
     dense_.initialize(y, 0.0, dt);
     begun_ = 0.0;
@@ -218,8 +226,8 @@ StepFailure Dopri5::do_step(double time, double longest, double first, double le
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
     const bool by_order = wanted < natural_ || wanted > longest;
     for (std::size_t contact = 0; continuing_ && contact < gaps_.size(); ++contact) {
-        gaps_[contact].h = units_[contact] * nodes_[4][event(contact)];
-        gaps_[contact].hdot = units_[contact] * nodes_[4][event(contact) + 1];
+        gaps_[contact].h = unit(contact) * nodes_[4][event(contact)];
+        gaps_[contact].hdot = unit(contact) * nodes_[4][event(contact) + 1];
     }
     from_ = to_;
     StepFailure failure = StepFailure::not_a_number;
@@ -261,7 +269,7 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
-    const double allowed = 4.0 * tolerance_ * (units_[contact] + size);
+    const double allowed = 4.0 * tolerance_ * (unit(contact) + size);
     return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
@@ -270,7 +278,7 @@ double Dopri5::hddot_error(std::size_t contact, const Polynomial& p) const {
     return gaps_[contact].hddot_error(watches_gap(contact)
                                           ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                           : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
-                                      units_[contact]);
+                                      unit(contact));
 }
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
@@ -289,7 +297,7 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     end.error = earlier_error(contact, p) + own;
     end.state_error = gap.state_error;
     end.rate_error = gap.rate_error + hddot_error(contact, p) * span_ +
-                     std::min(4.0 * tolerance_ * (units_[contact] + std::abs(end.hdot)), own / span_);
+                     std::min(4.0 * tolerance_ * (unit(contact) + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace

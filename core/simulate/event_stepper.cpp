@@ -14,6 +14,12 @@ EventStepper::EventStepper(const Model& model, const Run& run, ContactCache& sur
     result_.starts.resize(surfaces.count());
 }
 
+namespace {
+
+constexpr std::uint64_t bit(std::size_t event) { return std::uint64_t{1} << event; }
+
+}  // namespace
+
 const StepResult& EventStepper::step(const StepRequest& request) {
     request_ = &request;
     if (request.exactly && !exact_) {
@@ -23,13 +29,16 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     }
     flow_ = request.exactly ? exact_.get() : &usual_;
     if (request.begins) {
+        gaps_.resize(events());
+        result_.starts.resize(events());
         for (std::size_t i = 0; i < gaps_.size(); ++i) gaps_[i] = request.starts[i].gap;
         flow_->start(request.mode, request.state, gaps_, request.first_step);
     }
     result_.flow = flow_;
     result_.steps = 0;
     result_.state = &request.state;
-    shortened_ = known_ = {};
+    shortened_ = 0;
+    known_ = {};
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
@@ -42,18 +51,18 @@ const StepResult& EventStepper::step(const StepRequest& request) {
 // Finds the first event in the last step. A candidate that proves to be no event may have shortened the step, which is
 // then checked again for the other contacts.
 StepResult::StepOutcome EventStepper::find_event() {
-    ContactSet met;
+    std::uint64_t met = 0;
     while (const auto incident = first_incident(met)) {
         if (const auto end = meet(*incident)) return *end;
-        met = met.with(incident->contact);
+        met |= bit(incident->contact);
     }
     return end_without_event();
 }
 
-std::optional<EventStepper::EventCandidate> EventStepper::first_incident(ContactSet but) {
+std::optional<EventStepper::EventCandidate> EventStepper::first_incident(std::uint64_t but) {
     std::optional<EventCandidate> first;
-    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (but.contains(i) || !is_watched(i)) continue;
+    for (std::size_t i = 0; i < events(); ++i) {
+        if ((but & bit(i)) != 0 || (!is_of_friction(i) && !is_watched(i))) continue;
         contact_ = i;
         const FirstCrossing descent = this->descent();
         if (descent.kind == FirstCrossing::Kind::none) continue;
@@ -64,6 +73,7 @@ std::optional<EventStepper::EventCandidate> EventStepper::first_incident(Contact
 
 // First zero crossing of the contact's event function in the last step.
 FirstCrossing EventStepper::descent() {
+    if (is_of_friction(contact_)) return friction_descent();
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
             return gap_descent();
@@ -75,6 +85,7 @@ FirstCrossing EventStepper::descent() {
 
 std::optional<StepResult::StepOutcome> EventStepper::meet(const EventCandidate& incident) {
     contact_ = incident.contact;
+    if (is_of_friction(contact_)) return meet_force(incident.descent);
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
             return meet_gap(incident.descent);
@@ -86,7 +97,7 @@ std::optional<StepResult::StepOutcome> EventStepper::meet(const EventCandidate& 
 
 StepResult::StepOutcome EventStepper::end_without_event() {
     double least = std::numeric_limits<double>::infinity();
-    if (!request_->mode.is_free()) {
+    if (!(request_->mode == Mode())) {
         if (!end_on_surface()) return StepOutcome::off_surface;
         least = result_.gap;
     }

@@ -17,9 +17,10 @@ namespace achilles {
 // The smallest tolerance that a step can meet; below it, rounding dominates.
 inline constexpr double exact_tolerance = 1e-14;
 
-// Initial data of a contact's event function in a step: of its gap if it is open, of its force if it is held.
+// Initial data of an event function in a step: of a contact's gap if it is open, of its force if it is held; of
+// friction.
 struct EventStart {
-    Gap gap;                    // for a held contact, only state_error is used
+    Gap gap;                    // for all but open contacts, only state_error is used
     int multiplicity = 0;       // order of its zero at the start: of h if open; 1 for a force that starts at 0
     bool is_shortened = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
 };
@@ -36,7 +37,7 @@ struct StepRequest {
     ContactSet unwatched;  // held contacts not checked for events: the load may be shared otherwise
     ContactSet unpressed;  // held, not checked for events: nothing presses them (theory-gaps.md 2.7)
     State state;
-    std::vector<EventStart> starts;  // at that state, for each contact
+    std::vector<EventStart> starts;  // at that state, for each event function: contacts, then friction (ModeDynamics)
     double until = 0.0;              // s, > state.t
     double first_step = 0.0;         // s; a known reasonable length for the first step of a flight; 0: none
     long most = 1;                   // largest number of steps to take at once if none has an event
@@ -54,6 +55,7 @@ struct StepResult {
         no_event,        // continue from `state` with `starts`
         impact,          // the gap of `which` closes; `state` is on the contact surface, before the impact
         force_vanishes,  // of the held contact `which`
+        friction_event,  // of the event function `which`
         ambiguous,       // no event so far, but cannot decide whether one follows just after
         off_surface,     // `state` cannot be projected onto the contact surfaces where it belongs
         step_failed      // no step was possible, see `failure`; `state` is that of the request
@@ -65,8 +67,8 @@ struct StepResult {
     double duration = 0.0;           // s, of the last step
     const State* state = nullptr;    // valid until the next step
     double gap = 0.0;                // smallest gap at the end of the step, or at the ends of several steps
-    std::vector<EventStart> starts;  // for each contact; meaningless for `which` at an event
-    std::size_t which = 0;           // the contact of the event
+    std::vector<EventStart> starts;  // for each event function; meaningless for `which` at an event
+    std::size_t which = 0;           // the contact of the event, or the event function of friction
     Contact contact;                 // at an impact: its contact quantities, in the mode of the request
     double remainder = 0.0;          // ambiguous gap: the bound on its error
     StepFailure failure = StepFailure::none;
@@ -93,7 +95,7 @@ class EventStepper {
         FirstCrossing descent;
     };
     StepOutcome find_event();
-    std::optional<EventCandidate> first_incident(ContactSet but);
+    std::optional<EventCandidate> first_incident(std::uint64_t but);
     FirstCrossing descent();
     std::optional<StepOutcome> meet(const EventCandidate& incident);
     StepOutcome end_without_event();
@@ -115,6 +117,10 @@ class EventStepper {
     std::optional<StepOutcome> meet_force(FirstCrossing descent);
     StepOutcome doubt_force(double theta);
     std::optional<StepOutcome> locate_release(double theta);
+    double negative_force_at(const State& state);
+    double rate_of_force_at(const State& state);
+    // Functions of friction (flight.cpp).
+    FirstCrossing friction_descent();
     bool end_on_surface();
     // Events of either kind.
     bool end_step_at(double theta);
@@ -125,6 +131,8 @@ class EventStepper {
     bool is_last() const;
     ContactSet held() const { return request_->held(); }
     WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
+    bool is_of_friction(std::size_t event) const { return event >= surfaces_->count(); }
+    std::size_t events() const { return request_->starts.size(); }
     bool is_watched(std::size_t contact) const {
         return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);
     }
@@ -137,9 +145,9 @@ class EventStepper {
     std::unique_ptr<Flow> exact_;  // at exact_tolerance; created at first use
     // The last step.
     const StepRequest* request_ = nullptr;
-    Flow* flow_ = nullptr;     // the integrator in use
-    std::size_t contact_ = 0;  // whose event function is examined
-    ContactSet shortened_;     // contacts at whose remainder the step was shortened
+    Flow* flow_ = nullptr;         // the integrator in use
+    std::size_t contact_ = 0;      // whose event function is examined, or the number of a function of friction
+    std::uint64_t shortened_ = 0;  // event functions at whose remainder the step was shortened, by bits
     StepResult result_;
     State landed_;                   // state of an impact without a step
     std::vector<Gap> gaps_;          // at the start of a segment

@@ -81,6 +81,7 @@ void ExecutionAutomaton::begin() {
             resting = resting.with(i);
         }
     }
+    if (surfaces_->has_friction()) return begin_with_friction(landing, resting);
     if (landing.empty()) start_at_rest(resting);
     record_.open(next_.resting(), next_.held(), next_.state.t);
     if (landing.empty() || outcome_) return;
@@ -128,10 +129,14 @@ const StepRequest* ExecutionAutomaton::next() {
     if (outcome_) return nullptr;
     const bool in_contact = !next_.mode.is_free();
     for (const std::size_t i : next_.held()) next_.starts[i].gap.state_error = state_error();
+    for (std::size_t i = surfaces_->count(); i < next_.starts.size(); ++i)
+        next_.starts[i].gap.state_error = state_error();
     next_.most = run_.options.max_steps - record_.steps();
-    // Used only if there is one contact.
-    next_.plain = stalled_ == 0 && next_.unpressed.empty() && !next_.starts.empty() &&
-                  !next_.starts.front().is_shortened && (in_contact || next_.starts.front().multiplicity <= 1);
+    if (!surfaces_->has_friction() && !next_.starts.empty()) {
+        const EventStart& start = next_.starts.front();  // of the only contact; used only if there is one
+        next_.plain =
+            stalled_ == 0 && !start.is_shortened && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
+    }
     if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
@@ -170,7 +175,8 @@ double ExecutionAutomaton::state_error() const {
 void ExecutionAutomaton::accept(const StepResult& result) {
     using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
-    const bool shared = result.end == StepOutcome::ambiguous && continue_without(result.which, *result.state);
+    const bool shared = result.end == StepOutcome::ambiguous && !surfaces_->has_friction() &&
+                        continue_without(result.which, *result.state);
     if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
@@ -183,7 +189,10 @@ void ExecutionAutomaton::accept(const StepResult& result) {
             return land(result.which, result.contact);
         case StepOutcome::force_vanishes:
             return release(result.which);
+        case StepOutcome::friction_event:
+            return accept_friction_event(result.which);
         case StepOutcome::ambiguous:
+            if (is_pivot(result.which)) return accept_friction_event(result.which);  // also where it only touches 0
             return shared ? continue_phase() : stop(Outcome::Kind::undecided, ambiguity_text(result));
         case StepOutcome::off_surface:
             return fail_projection();
@@ -218,6 +227,7 @@ void ExecutionAutomaton::begin_stretch(Mode mode, double until) {
     next_.until = until;
     next_.begins = true;
     next_.exactly = false;
+    if (surfaces_->has_friction()) start_friction_functions();
 }
 
 // Updates the gap rates of open contacts after a velocity jump, except those in `but`.
@@ -246,6 +256,11 @@ void ExecutionAutomaton::retry_tight() {
 
 std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
     const std::string place = where(next_.state);
+    if (result.which >= surfaces_->count())
+        return fmt::format(
+            "cannot decide whether {} starts to slide, stops or turns: its slip or its friction force is "
+            "within integration error of the limit just after {}",
+            name_of(model_->motion(next_.mode).friction[result.which - surfaces_->count()].contact), place);
     if (next_.mode.is_held(result.which))
         return "cannot decide whether the contact is released: the contact force is within integration error of zero "
                "just after " +

@@ -74,6 +74,7 @@ class ExecutionAutomaton {
     };
 
     void begin();
+    void begin_with_friction(ContactSet landing, ContactSet resting);
     void start_at_rest(ContactSet resting);
     bool is_time_left() const;
     bool is_cancelled();
@@ -156,6 +157,28 @@ class ExecutionAutomaton {
     bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
+    // ---- friction (friction.cpp, friction_impact.cpp) ----
+    // A contact or joint that leaves its cone, and the sign of its slip.
+    struct SlipStart {
+        std::size_t which;
+        int sign;
+    };
+    void start_friction_functions();
+    void accept_friction_event(std::size_t event);
+    bool is_pivot(std::size_t event) const;
+    void end_slip(std::size_t which);
+    void start_slip(const SlipStart& start, std::size_t event);
+    void release_with_friction(std::size_t which);
+    bool decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start = {});
+    bool is_proved(Mode mode, ContactSet closed, Mode sliding);
+    ContactSet at_zero_slip(ContactSet contacts_and_joints);
+    Mode sliding_mode(ContactSet contacts_and_joints);
+    void enter_friction_mode(Mode before, ContactSet released = {});
+    void record_friction(Event::Kind kind, ContactSet contacts);
+    void collide_with_friction(ContactSet landing);
+    void record_plastic_landing(std::size_t contact, const State& before, double speed);
+    std::string name_of(std::size_t contact_or_joint) const;
+    ContactSet all_joints() const;
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {
@@ -213,6 +236,7 @@ class ExecutionAutomaton {
     TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique
+    std::map<std::size_t, int> slip_roots_;  // order of the zero of u at the start of a segment, by contact or joint
     // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
     double load_sharing_since_ = 0.0;
     int load_sharing_changes_ = 0;

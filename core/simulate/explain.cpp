@@ -49,7 +49,7 @@ ImpactReason explain_impact(const Trajectory& trajectory, std::size_t event) {
     reason.energy_after = energy_at(impact.v_after);
 
     reason.mode = mode_before(trajectory, event);
-    if (impact.contacts.count() != 1 || !impact.opened.empty()) return reason;
+    if (impact.contacts.count() != 1 || !impact.opened.empty() || model.has_friction()) return reason;
     const std::size_t which = first_of(impact.contacts, model);
     reason.contact = which;
     const Mode motion = reason.mode.only(load_bearing_contacts(trajectory, reason.mode, impact.t));

@@ -1,11 +1,18 @@
-// EventStepper: impacts of open contacts, and zeros of the forces of held ones.
+// EventStepper: impacts of open contacts, zeros of the forces of held ones, and zeros of the functions of friction.
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "simulate/event_stepper.hpp"
 
 namespace achilles {
+
+namespace {
+
+constexpr std::uint64_t bit_of(std::size_t event) { return std::uint64_t{1} << event; }
+
+}  // namespace
 
 // The gap polynomial of a contact, computed once for the current step.
 const Polynomial& EventStepper::gap_along(std::size_t contact) {
@@ -59,7 +66,7 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_gap(FirstCrossing desc
             // Try again from where the gap enters its remainder: an event near the end of this step is then inside the
             // next one.
             if (!was_shortened && end_step_at(descent.theta)) {
-                shortened_ = shortened_.with(contact_);
+                shortened_ |= bit_of(contact_);
             } else if (surely_closes_at_start()) {
                 return land_here();
             } else if (!(has_exact_start() && is_last() && gap_along(contact_)(1.0) >= 0.0)) {
@@ -78,7 +85,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (but.contains(i)) continue;
         if (watched_of(i) != WatchedFunction::gap) {
-            result_.starts[i] = {{}, 0, shortened_.contains(i)};
+            result_.starts[i] = {{}, 0, (shortened_ & bit_of(i)) != 0};
             continue;
         }
         if (!is_watched(i)) {
@@ -99,9 +106,11 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         }
         flow_->add_error(i, h, gap);
         flow_->move_gap(i, gap);
-        result_.starts[i] = {gap, 0, shortened_.contains(i)};
+        result_.starts[i] = {gap, 0, (shortened_ & bit_of(i)) != 0};
         least = std::min(least, end.h);
     }
+    for (std::size_t i = surfaces_->count(); i < events(); ++i)
+        result_.starts[i] = {{}, 0, (shortened_ & bit_of(i)) != 0};
     return true;
 }
 
@@ -189,17 +198,19 @@ StepResult::StepOutcome EventStepper::end_flight() {
     return landed ? StepOutcome::impact : StepOutcome::off_surface;
 }
 
-// ---- forces of held contacts ----
+// ---- forces of held contacts, and functions of friction ----
 
-// Returns nullopt if the force stays positive along the step, which may have been shortened.
+// Returns nullopt if the force, or the function of friction, stays positive along the step, which may have been
+// shortened.
 std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing descent) {
     const bool was_shortened = start_of(contact_).is_shortened;
-    if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta)) descent = force_descent();
+    if (descent.kind == FirstCrossing::Kind::increasing && end_step_at(descent.theta)) descent = this->descent();
     switch (descent.kind) {
         case FirstCrossing::Kind::none:
             break;
         case FirstCrossing::Kind::root:
-            if (descent.theta == 0.0) return StepOutcome::force_vanishes;
+            if (descent.theta == 0.0)
+                return is_of_friction(contact_) ? StepOutcome::friction_event : StepOutcome::force_vanishes;
             return locate_release(descent.theta);  // nullopt: the step was shortened
         case FirstCrossing::Kind::increasing:
             if (!has_exact_start() || was_shortened) return doubt_force(0.0);
@@ -207,7 +218,7 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
         case FirstCrossing::Kind::open:
             // As for gaps: an event near the end of this step is then inside the next one.
             if (!was_shortened && end_step_at(descent.theta)) {
-                shortened_ = shortened_.with(contact_);
+                shortened_ |= bit_of(contact_);
             } else if (!(has_exact_start() && is_last())) {
                 return doubt_force(descent.theta);
             }
@@ -220,9 +231,33 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
 
 // Projects the end of the last step onto the surfaces of the held contacts. Returns false if that fails.
 bool EventStepper::end_on_surface() {
-    const auto gap = surfaces_->project(flow_->edit_end(), held(), held());
-    end_step(gap ? *gap : surfaces_->of(contact_).at(flow_->end()).h);
+    const auto gap = surfaces_->settle(flow_->edit_end(), request_->mode);
+    end_step(gap ? *gap : is_of_friction(contact_) ? 0.0 : surfaces_->of(contact_).at(flow_->end()).h);
     return gap.has_value();
+}
+
+double EventStepper::negative_force_at(const State& state) {
+    if (surfaces_->has_friction()) return surfaces_->motion(request_->mode).at(state, contact_).value;
+    return surfaces_->of(contact_, request_->mode.without(contact_)).normal_acceleration(state);
+}
+double EventStepper::rate_of_force_at(const State& state) {
+    if (surfaces_->has_friction()) return surfaces_->motion(request_->mode).at(state, contact_).rate;
+    return surfaces_->of(contact_, request_->mode.without(contact_)).jerk(state);
+}
+
+// First zero of a function of friction in the last step. At a start at 0 that is not a known root, theta is 0.
+FirstCrossing EventStepper::friction_descent() {
+    const int multiplicity = start_of(contact_).multiplicity;
+    Polynomial function;
+    flow_->event_function(contact_, function);
+    if (!flow_->is_expansion()) {
+        State end = flow_->end();
+        surfaces_->settle(end, request_->mode);
+        function.c[static_cast<std::size_t>(std::max(2, multiplicity))] += negative_force_at(end) - function(1.0);
+    }
+    for (int k = 0; k < multiplicity; ++k) function.c[static_cast<std::size_t>(k)] = 0.0;
+    if (multiplicity == 0 && !(function.c[0] > 0.0)) return {FirstCrossing::Kind::root, 0.0};
+    return first_descent(function, multiplicity, flow_->remainder(contact_, function));
 }
 
 // It is ambiguous from theta on whether the force vanishes: ends the step there.
@@ -245,8 +280,8 @@ FirstCrossing EventStepper::force_descent() {
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow_->is_expansion()) {
         State end = flow_->end();
-        surfaces_->project(end, held(), held());
-        force.c[2] += -surfaces_->of(contact_, request_->mode.without(contact_)).normal_acceleration(end) - force(1.0);
+        surfaces_->settle(end, request_->mode);
+        force.c[2] += -negative_force_at(end) - force(1.0);
     }
     if (multiplicity > 0) {
         force.c[0] = 0.0;
@@ -256,34 +291,34 @@ FirstCrossing EventStepper::force_descent() {
     return first_descent(force, multiplicity, flow_->remainder(contact_, force));
 }
 
-// Like locate_impact, for hddot = 0 along the constrained motion.
+// Like locate_impact, for hddot = 0 along the constrained motion, or for a function of friction.
 std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta) {
-    ContactKinematics& leaving = surfaces_->of(contact_, request_->mode.without(contact_));
     const double longest = flow_->duration();  // limits Newton's method, which diverges if the force only touches zero
     double duration = theta * longest;
     for (int round = 0; round < 8; ++round) {
         known_ = {};
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
-        const bool projected = surfaces_->project(flow_->edit_end(), held(), held()).has_value();
+        const bool projected = surfaces_->settle(flow_->edit_end(), request_->mode).has_value();
         if (!projected || flow_->duration() < duration * (1.0 - 1e-12)) return std::nullopt;
         const State& end = flow_->end();
-        const double correction = -leaving.normal_acceleration(end) / leaving.jerk(end);
+        const double correction = -negative_force_at(end) / rate_of_force_at(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             known_ = {};
             flow_->shift_end(correction);
-            surfaces_->project(flow_->edit_end(), held(), held());
+            surfaces_->settle(flow_->edit_end(), request_->mode);
             break;
         }
         if (!std::isfinite(correction)) break;  // the force only touches zero; release() decides
         duration = std::clamp(duration + correction, 0.5 * duration, longest);
     }
     const std::size_t contact = contact_;
-    double least = surfaces_->of(contact).at(flow_->end()).h;
+    double least = std::numeric_limits<double>::infinity();
+    if (!is_of_friction(contact)) least = surfaces_->of(contact).at(flow_->end()).h;
     settle_gaps({}, least);
     contact_ = contact;
     end_step(least);
-    return StepOutcome::force_vanishes;
+    return is_of_friction(contact) ? StepOutcome::friction_event : StepOutcome::force_vanishes;
 }
 
 }  // namespace achilles

@@ -106,44 +106,64 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
 }
 
 WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
-    : any_(model.equations().has_power()), dof_(model.dof()), model_(&model), parameters_(run.parameters) {}
+    : any_(model.equations().has_power() || model.has_friction()),
+      dof_(model.dof()),
+      model_(&model),
+      parameters_(run.parameters) {}
 
-double WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double to) {
-    if (!any_ || !(to > piece.start)) return 0.0;
+EnergyFlow WorkIntegrator::along(const DenseSegment& piece, std::span<const double> coefficients, double to) {
+    if (!any_ || !(to > piece.start)) return {};
     Power* const power = power_in(piece.motion());
-    if (power == nullptr) return 0.0;
-    if (const auto work = by_series(power->series, piece, coefficients, to)) return *work;
-    const auto power_at = [&](double t) {
-        set_state(power->value, state_in(piece, coefficients, dof_, t));
-        power->value.run();
-        return power->value.output(0);
+    if (power == nullptr) return {};
+    if (const auto flow = by_series(power->series, piece, coefficients, to)) return *flow;
+    const auto integral = [&](std::size_t output) {
+        const auto power_at = [&](double t) {
+            set_state(power->value, state_in(piece, coefficients, dof_, t));
+            power->value.run();
+            return power->value.output(output);
+        };
+        return boost::math::quadrature::gauss<double, 30>::integrate(power_at, piece.start, to);
     };
-    return boost::math::quadrature::gauss<double, 30>::integrate(power_at, piece.start, to);
+    return {integral(0), model_->has_friction() ? integral(1) : 0.0};
 }
 
-std::optional<double> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
-                                                std::span<const double> coefficients, double to) const {
+std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
+                                                    std::span<const double> coefficients, double to) const {
     // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
     constexpr double rounding = 0x1p-53, accurate = 0x1p-42;
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
     constexpr std::array<double, 2 * max_coordinates> zeros{};
-    const std::size_t width = 2 * static_cast<std::size_t>(dof_);
+    const std::size_t width = 2 * static_cast<std::size_t>(dof_), outputs = model_->has_friction() ? 2 : 1;
     const double* order = coefficients.data() + piece.first;
     power.begin(order, piece.start, span);
-    double factor = theta, sum = power.start(0) * theta, size = std::abs(sum);
-    std::array<double, 4> last{};  // terms; symmetry may make three in a row 0
-    const auto are_below = [&](double part) { return last[0] + last[1] + last[2] + last[3] <= part * size; };
-    const auto fewest = std::max(static_cast<int>(last.size()), static_cast<int>(piece.degree));
+    struct Sum {
+        double sum = 0.0, size = 0.0;
+        std::array<double, 4> last{};  // terms; symmetry may make three in a row 0
+        bool is_below(double part) const { return last[0] + last[1] + last[2] + last[3] <= part * size; }
+    };
+    std::array<Sum, 2> sums{};
+    double factor = theta;
+    for (std::size_t i = 0; i < outputs; ++i) {
+        sums[i].sum = power.start(i) * theta;
+        sums[i].size = std::abs(sums[i].sum);
+    }
+    const auto are_below = [&](double part) {
+        return sums[0].is_below(part) && (outputs == 1 || sums[1].is_below(part));
+    };
+    const auto fewest = std::max(static_cast<int>(sums[0].last.size()), static_cast<int>(piece.degree));
     for (int k = 1; k <= SeriesEvaluator<double>::highest_order; ++k) {
         power.extend(k, k <= static_cast<int>(piece.degree) ? order += width : zeros.data());
         factor *= theta;
-        const double term = power.output(0) * factor / (k + 1);
-        sum += term;
-        size += last[static_cast<std::size_t>(k) % last.size()] = std::abs(term);
+        for (std::size_t i = 0; i < outputs; ++i) {
+            Sum& each = sums[i];
+            const double term = power.output(i) * factor / (k + 1);
+            each.sum += term;
+            each.size += each.last[static_cast<std::size_t>(k) % each.last.size()] = std::abs(term);
+        }
         if (k >= fewest && are_below(rounding)) break;
     }
     if (!are_below(accurate)) return std::nullopt;
-    return sum * span;
+    return EnergyFlow{sums[0].sum * span, sums[1].sum * span};
 }
 
 // The power in a mode; null if it is always 0.
@@ -152,9 +172,9 @@ WorkIntegrator::Power* WorkIntegrator::power_in(Mode mode) {
     if (known == powers_.end()) {
         const Program& program = model_->power(mode);
         Evaluator<double> value = model_->evaluator(program, parameters_);
-        const std::vector<bool> inputs = program.inputs_of(1);
-        const bool is_zero =
-            std::none_of(inputs.begin(), inputs.end(), [](bool used) { return used; }) && value.output(0) == 0.0;
+        const std::vector<bool> inputs = program.inputs_of(program.output_count());
+        bool is_zero = std::none_of(inputs.begin(), inputs.end(), [](bool used) { return used; });
+        for (std::size_t i = 0; i < program.output_count(); ++i) is_zero = is_zero && value.output(i) == 0.0;
         known = powers_.emplace(mode, std::nullopt).first;
         if (!is_zero) known->second.emplace(Power{std::move(value), {model_->power_series(mode), parameters_}});
     }

@@ -77,17 +77,23 @@ class Flow {
     bool moved_ = false;           // the end was changed, so the stepper must be reinitialized
 };
 
-// ---- the work along a run: E(t) - E(0) = work - loss (theory-gaps.md 1) ----
+// ---- the work along a run: E(t) - E(0) = work - loss - heat (theory-gaps.md 1, theory-friction.md 5) ----
 
-// Integrates the power along steps: v'Q + dV/dt - lambda dh/dt of held contacts.
+// The energy that a motion takes up from forces and moving surfaces, and what friction turns into heat.
+struct EnergyFlow {
+    double work = 0.0, heat = 0.0;
+};
+
+// Integrates the power along steps: v'Q + dV/dt - lambda dh/dt of held contacts; and the heat of friction.
 class WorkIntegrator {
  public:
     WorkIntegrator(const Model& model, const Run& run);
 
-    // Whether there is any work. False if all forces have a potential and neither it nor the gaps depend on time.
+    // Whether there is any work or heat. False if there is no friction, all forces have a potential, and neither it nor
+    // the gaps depend on time.
     bool any() const { return any_; }
-    // The work from the start of a step to the time `to` (s) in it, in units of energy, accurate to rounding.
-    double along(const DenseSegment& piece, std::span<const double> coefficients, double to);
+    // The work and heat from the start of a step to the time `to` (s) in it, in units of energy, accurate to rounding.
+    EnergyFlow along(const DenseSegment& piece, std::span<const double> coefficients, double to);
 
  private:
     struct Power {
@@ -97,8 +103,8 @@ class WorkIntegrator {
     Power* power_in(Mode mode);
     // The integral of the series of the power along the polynomials of the step. nullopt if its last terms are not
     // small: a power that depends on time may vary much faster than the motion. Gauss quadrature then evaluates it.
-    std::optional<double> by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
-                                    std::span<const double> coefficients, double to) const;
+    std::optional<EnergyFlow> by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
+                                        std::span<const double> coefficients, double to) const;
 
     bool any_;
     Eigen::Index dof_;

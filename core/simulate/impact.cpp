@@ -26,8 +26,9 @@ void move_along(Vector& x, double a, const Vector& n) {
 // The interval of all numbers within this relative distance of a computed number.
 Interval rounded(double x, double relative) { return {x - relative * std::abs(x), x + relative * std::abs(x)}; }
 
-// Sets the inputs of a program to the rounding box of a state.
-void set_rounded(Evaluator<Interval>& program, const State& state) {
+}  // namespace
+
+void set_rounding_box(Evaluator<Interval>& program, const State& state) {
     constexpr double few_ulps = 0x1p-50;
     const auto n = static_cast<std::size_t>(state.q.size());
     for (std::size_t i = 0; i < n; ++i) {
@@ -36,8 +37,6 @@ void set_rounded(Evaluator<Interval>& program, const State& state) {
     }
     program.clock() = rounded(state.t, few_ulps);
 }
-
-}  // namespace
 
 Vector impact(const Contact& contact, const Vector& v_before, double e) {
     Vector v = v_before;
@@ -132,7 +131,7 @@ bool ContactKinematics::project(State& state, bool keep_velocity, Contact& conta
 ContactKinematics::Normal ContactKinematics::normal(const State& state) {
     const FloatEnvironmentGuard ground;
     auto& enclosure = model_->lazily(release_enclosure_, programs_->release_terms, parameters_);
-    set_rounded(enclosure, state);
+    set_rounding_box(enclosure, state);
     enclosure.run();
     return {enclosure.hddot(), enclosure.jerk()};
 }
@@ -140,7 +139,7 @@ ContactKinematics::Normal ContactKinematics::normal(const State& state) {
 Interval ContactKinematics::hddot(const State& state) {
     const FloatEnvironmentGuard ground;
     Evaluator<Interval>& enclosure = normal_enclosure();
-    set_rounded(enclosure, state);
+    set_rounding_box(enclosure, state);
     enclosure.run();
     return enclosure.output(0);
 }

@@ -21,9 +21,9 @@ struct Contact {
 // v+ by Newton's impact law (contacts/impact_law.hpp).
 Vector impact(const Contact& contact, const Vector& v_before, double e);
 
-// The energy balance of an impact, dE = work - loss, with the work of the moving contact surface.
+// The energy balance of an impact, dE = work - loss - heat, with the work of the moving contact surface.
 struct Exchange {
-    double work = 0.0, loss = 0.0;
+    double work = 0.0, loss = 0.0, heat = 0.0;
 };
 inline Exchange exchange(const Contact& contact, double e) {
     const double impulse = newton::impulse(e, contact.hdot, contact.W);
@@ -32,6 +32,9 @@ inline Exchange exchange(const Contact& contact, double e) {
 
 // Restart velocity of the constrained motion. kinetic: s = v - n hdot; euclidean: v* = v - (g v/|g|^2) g' (Def. 7).
 Vector reinitialize(const Contact& contact, const Vector& v_before, Reinitialization kind);
+
+// Sets the inputs of a program to the rounding box of a state.
+void set_rounding_box(Evaluator<Interval>& program, const State& state);
 
 // Evaluates contact quantities for one run.
 class ContactKinematics {

@@ -61,6 +61,7 @@ void Recorder::go_back(const Checkpoint& mark) {
     scale_ = mark.scale;
     largest_change_ = mark.largest_change;
     trajectory_.work = mark.work;
+    trajectory_.heat = mark.heat;
     any_gap_ = mark.any_gap;
 }
 
@@ -88,7 +89,7 @@ void Recorder::stretch(const State& state) {
     if (keep_ == Recording::final_state) return;
     set_state(energy_, state);
     energy_.run();
-    reference_ = energy_.total() - trajectory_.work;
+    reference_ = energy_.total() - trajectory_.work + trajectory_.heat;
     scale_ = std::abs(energy_.kinetic()) + std::abs(energy_.potential());
 }
 
@@ -112,14 +113,19 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     piece.mode = mode;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
-    if (work_.any()) trajectory_.work += work_.along(piece, trajectory_.coefficients, piece.end);
+    piece.heat = trajectory_.heat;
+    if (work_.any()) {
+        const EnergyFlow done = work_.along(piece, trajectory_.coefficients, piece.end);
+        trajectory_.work += done.work;
+        trajectory_.heat += done.heat;
+    }
     set_state(energy_, flow.end());
     energy_.run();
     // The drift is relative to the largest |T| + |V| so far, because at an instant the sum and each part may be 0.
     scale_ = std::max(scale_, std::abs(energy_.kinetic()) + std::abs(energy_.potential()));
     largest_ = std::max(largest_, scale_ + std::abs(trajectory_.work));
     // At rest, only the rounding of earlier energies remains.
-    const double change = std::abs(energy_.total() - trajectory_.work - reference_);
+    const double change = std::abs(energy_.total() - trajectory_.work + trajectory_.heat - reference_);
     if (!(change > 0x1p-60 * largest_)) return;
     // A drive may exchange much energy while T and V are small, and all of these may be 0 before it starts. The change
     // is then compared with the largest energy of the whole run.
@@ -145,6 +151,7 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     ++trajectory_.phases.back().impacts;
     trajectory_.work += exchange.work;
     trajectory_.loss += exchange.loss;
+    trajectory_.heat += exchange.heat;
     if (keep_ == Recording::final_state) {
         trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed});
         return;
@@ -163,6 +170,11 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.joint = std::move(joint);
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
+    event.heat = trajectory_.heat;
+}
+
+void Recorder::friction_at_impact(std::shared_ptr<const Event::FrictionImpulses> friction) {
+    if (keep_ == Recording::full) trajectory_.events.back().friction = std::move(friction);
 }
 
 void Recorder::after_impact(ContactSet opened, Mode mode) {
@@ -178,6 +190,7 @@ void Recorder::event(Event event) {
     }
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
+    event.heat = trajectory_.heat;
     if (event.is_zeno()) event.impacts = trajectory_.phases.back().impacts;
     trajectory_.events.push_back(std::move(event));
 }

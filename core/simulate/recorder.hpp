@@ -20,17 +20,14 @@ class Recorder {
     struct Checkpoint {
         std::size_t pieces, coefficients;
         Statistics statistics;
-        double scale, largest_change, work;
+        double scale, largest_change, work, heat;
         bool any_gap;
     };
     Checkpoint mark() const {
-        return {trajectory_.pieces.size(),
-                trajectory_.coefficients.size(),
-                trajectory_.statistics,
-                scale_,
-                largest_change_,
-                trajectory_.work,
-                any_gap_};
+        return {trajectory_.pieces.size(), trajectory_.coefficients.size(),
+                trajectory_.statistics,    scale_,
+                largest_change_,           trajectory_.work,
+                trajectory_.heat,          any_gap_};
     }
     // Discards everything recorded since the checkpoint.
     void go_back(const Checkpoint& mark);
@@ -52,6 +49,8 @@ class Recorder {
     // Records an impact: the state before it, and its work and loss.
     void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
                 std::shared_ptr<const MultiContactInfo> joint = nullptr);
+    // Adds to the last impact what friction did.
+    void friction_at_impact(std::shared_ptr<const Event::FrictionImpulses> friction);
     // Adds to the last impact the contacts that it opened and the mode after it.
     void after_impact(ContactSet opened, Mode mode);
     // Work and loss of a jump that is not an impact: the loss follows from the energies before and after.

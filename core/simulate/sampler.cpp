@@ -39,15 +39,17 @@ Sample Trajectory::operator()(double t) const { return Sampler(*this).at(t); }
 
 State Sampler::state(const DenseSegment& piece, double t) const {
     const State state = state_in(piece, trajectory_.coefficients, trajectory_.run.q.size(), t);
-    if (!piece.mode.is_free()) {
+    if (!(piece.mode == Mode())) {
         State projected = state;
-        if (projection_->surfaces.project(projected, piece.load_bearing, piece.load_bearing)) return projected;
+        if (projection_->surfaces.settle(projected, piece.motion())) return projected;
     }
     return state;
 }
 
-double Sampler::work(const DenseSegment& piece, double t) const {
-    return piece.work + projection_->work.along(piece, trajectory_.coefficients, t);
+void Sampler::set_work(Sample& sample, const DenseSegment& piece) const {
+    const EnergyFlow flow = projection_->work.along(piece, trajectory_.coefficients, sample.t);
+    sample.work = piece.work + flow.work;
+    sample.heat = piece.heat + flow.heat;
 }
 
 Sample Sampler::at(double t) {
@@ -69,18 +71,20 @@ Sample Sampler::at(double t) {
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
+        sample.heat = trajectory_.heat;
         return sample;
     }
     sample.contact = !std::prev(piece)->mode.is_free();
     sample.mode = std::prev(piece)->mode;
     sample.load_bearing = std::prev(piece)->load_bearing;
     sample.state = state(*std::prev(piece), t);
-    sample.work = work(*std::prev(piece), t);
+    set_work(sample, *std::prev(piece));
     sample.loss = std::prev(piece)->loss;
     // The last step may end at an impact after which no step was made.
     if (t == trajectory_.end_time) {
         const auto& events = trajectory_.events;
-        if (trajectory_.model->contacts() > 1 && !events.empty() && events.back().t == t) {
+        if ((trajectory_.model->contacts() > 1 || trajectory_.model->has_friction()) && !events.empty() &&
+            events.back().t == t) {
             sample.mode = events.back().mode;
             sample.load_bearing = trajectory_.phases.back().load_bearing;
             sample.contact = !sample.mode.is_free();
@@ -88,6 +92,7 @@ Sample Sampler::at(double t) {
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
+        sample.heat = trajectory_.heat;
     }
     return sample;
 }
@@ -100,7 +105,7 @@ Sample Sampler::in(const DenseSegment& piece, double t, bool with_work) const {
     sample.mode = piece.mode;
     sample.load_bearing = piece.load_bearing;
     sample.state = state(piece, t);
-    sample.work = with_work ? work(piece, t) : 0.0;
+    if (with_work) set_work(sample, piece);
     sample.loss = piece.loss;
     return sample;
 }
@@ -197,7 +202,8 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
                 const Mode mode = mode_before(trajectory_, j);
                 take({event.t, static_cast<int>(j), mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained,
                       !mode.is_free(), mode, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
-                      j == 0 ? 0.0 : events[j - 1].loss, load_bearing_contacts(trajectory_, mode, event.t)},
+                      j == 0 ? 0.0 : events[j - 1].loss, load_bearing_contacts(trajectory_, mode, event.t),
+                      j == 0 ? 0.0 : events[j - 1].heat},
                      nullptr);
             }
             ++j;
@@ -229,7 +235,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     if (pass_events(trajectory_.end_time) || !last)
         take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_mode.is_free(),
               trajectory_.end_mode, trajectory_.end, trajectory_.work, trajectory_.loss,
-              trajectory_.phases.back().load_bearing},
+              trajectory_.phases.back().load_bearing, trajectory_.heat},
              nullptr);
 }
 

@@ -19,6 +19,7 @@ struct Sample {
     State state;
     double work = 0.0, loss = 0.0;  // of the run up to t
     ContactSet load_bearing{};      // held contacts whose constraints define the motion (Phase)
+    double heat = 0.0;
 };
 
 // The mode just before an event: the mode after the event before, or at the start.
@@ -59,7 +60,8 @@ class Sampler {
     std::vector<Sample> listed(const Selection& selection, int between) const;
     struct Projection;
     State state(const DenseSegment& piece, double t) const;
-    double work(const DenseSegment& piece, double t) const;
+    // Sets the work and the heat at the sample's time.
+    void set_work(Sample& sample, const DenseSegment& piece) const;
     std::vector<bool> blocks_with_events(std::size_t stride) const;
     const Trajectory& trajectory_;
     std::unique_ptr<Projection> projection_;

@@ -2,7 +2,8 @@
 //
 // The functions are named as in a dense-output stepper of Boost.Odeint. Time runs from 0 in every step, so that a short
 // flight late in a run keeps all its digits; the start time is passed when a step begins. Each step carries (q, v) and
-// the event function of each contact: the gap if it is open, hddot of the mode without it if it is held.
+// the event functions of its mode: of each contact, the gap if it is open, hddot of the mode without it if it is held;
+// then those of friction (ModeDynamics). Below, `contact` is the number of an event function.
 #pragma once
 
 #include <memory>

@@ -35,11 +35,16 @@ void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Ga
     if (motion_ == nullptr || mode != mode_) {
         auto known = motions_.find(mode);
         if (known == motions_.end()) {
-            const SeriesProgram& series = model_->motion(mode).series;
-            known = motions_.emplace(mode, MotionExpansion{{series, parameters_}, {series, tolerance_}}).first;
+            const ModeDynamics& motion = model_->motion(mode);
+            const SeriesProgram& series = motion.series;
+            known =
+                motions_
+                    .emplace(mode, MotionExpansion{{series, parameters_}, {series, tolerance_}, motion.friction.size()})
+                    .first;
         }
         motion_ = &known->second;
         mode_ = mode;
+        step_.set_further_events(motion_->further_events);
     }
     const std::vector<double>& units = gap_units_.at(state);
     for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];

@@ -34,6 +34,7 @@ class TaylorStepper : public Stepper {
     struct MotionExpansion {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
+        std::size_t further_events = 0;
     };
     StepFailure expand(double longest);
     double far_term(int k, std::size_t component, double t) const;

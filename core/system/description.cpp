@@ -243,15 +243,18 @@ std::vector<std::string> output_names(const SystemDescription& system, std::stri
 std::vector<SlidingPlace> sliding_places(const SystemDescription& system) {
     std::vector<SlidingPlace> places;
     const auto add = [&](const auto& table, const Text& level, const std::optional<Text>& static_level,
-                         std::optional<std::size_t> contact, bool never_slides) {
+                         std::size_t number, bool never_slides) {
         places.push_back(
-            {table.name, &table.slip, &level, static_level ? &*static_level : nullptr, contact, never_slides});
+            {table.name, &table.slip, &level, static_level ? &*static_level : nullptr, number, never_slides});
     };
     for (std::size_t i = 0; i < system.constraints.size(); ++i) {
         const ConstraintDescription& c = system.constraints[i];
         if (c.has_friction()) add(c, c.friction, c.static_friction, i, c.never_slides);
     }
-    for (const FrictionDescription& f : system.frictions) add(f, f.level, f.static_level, {}, false);
+    for (std::size_t k = 0; k < system.frictions.size(); ++k) {
+        const FrictionDescription& f = system.frictions[k];
+        add(f, f.level, f.static_level, joint_number(k), false);
+    }
     return places;
 }
 

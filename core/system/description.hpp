@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "../run/mode.hpp"
 #include "../run/options.hpp"
 #include "input_error.hpp"
 
@@ -170,9 +171,9 @@ std::vector<std::string> output_names(const SystemDescription& system, std::stri
 // One contact with friction or one [[friction]]: what they have in common.
 struct SlidingPlace {
     std::string name;
-    const Text *slip, *level;            // level: the coefficient of a contact
-    const Text* static_level;            // null: level at slip 0
-    std::optional<std::size_t> contact;  // null: no gap
+    const Text *slip, *level;  // level: the coefficient of a contact
+    const Text* static_level;  // null: level at slip 0
+    std::size_t number;        // in a Mode: of the contact, or joint_number()
     bool never_slides;
 };
 // All of them: the contacts with friction in the order of the constraints, then [[friction]]. They point into `system`.

@@ -166,7 +166,8 @@ std::vector<ViewDescription> default_views(const SystemDescription& system) {
     };
     const auto& coordinates = system.coordinates;
     for (const CoordinateDescription& coordinate : coordinates) add(coordinate.name, "t", coordinate.name);
-    for (const std::string& gap : output_names(system, "gap")) add(gap, "t", gap);
+    if (!system.constraints.empty())
+        for (const std::string& gap : output_names(system, "gap")) add(gap, "t", gap);
     if (coordinates.size() < 2) return views;
     const auto called_plane = [](const CoordinateDescription& c) { return c.name == "plane"; };
     const bool taken = std::any_of(coordinates.begin(), coordinates.end(), called_plane);

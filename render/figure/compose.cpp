@@ -129,7 +129,7 @@ void include(std::span<const Sample> samples, Values& values, std::size_t curves
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / 2;
-    for (const EventNames& row : event_names) {
+    for (const EventNames& row : possible_events(trajectory.model->has_friction())) {
         const Event::Kind kind = row.kind;
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         const Trajectory* const run = &trajectory;

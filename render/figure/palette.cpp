@@ -109,6 +109,9 @@ constexpr std::array<EventSign, event_names.size()> event_signs{{
     {Event::Kind::impact, Markers::MarkerShape::square, 6.0, blue, sky},
     {Event::Kind::zeno, Markers::MarkerShape::diamond, 11.0, purple, pink},
     {Event::Kind::release, Markers::MarkerShape::triangle, 10.0, green, mint},
+    {Event::Kind::stick, Markers::MarkerShape::circle, 9.0, wine, blush},
+    {Event::Kind::slip, Markers::MarkerShape::triangle, 8.0, wine, blush},
+    {Event::Kind::reversal, Markers::MarkerShape::square, 8.0, wine, blush},
 }};
 static_assert(has_all_event_kinds(event_signs));
 

@@ -35,21 +35,6 @@ TEST(FrictionCommands, CheckPrintsTheFriction) {
 }
 
 // Until runs have friction.
-TEST(FrictionCommands, RunsAreRefusedInOneSentence) {
-    const Folder folder;
-    folder.put("block.toml", rough_block);
-    for (const char* command :
-         {"simulate ./block.toml", "simulate ./block.toml --json -", "sweep ./block.toml --over mu=0.1:0.3:3",
-          "orbit ./block.toml", "figure ./block.toml --out x.png"}) {
-        const Answer answer = folder.run(command);
-        EXPECT_EQ(answer.status, 2) << command;
-        EXPECT_EQ(answer.out, "") << command;
-        EXPECT_NE(answer.err.find("friction is read and checked, but no run has it yet"), std::string::npos)
-            << command << "\n"
-            << answer.err;
-    }
-}
-
 TEST(FrictionCommands, ProofsAreRefused) {
     const Folder folder;
     folder.put("block.toml", rough_block);

@@ -58,24 +58,21 @@ double at_start(const Model& model, Expression e, double speed = 0.0) {
 
 TEST(Friction, IsReadWithItsSlipRow) {
     const auto model = test::typed(on_waves);
-    const auto& frictions = model->equations().frictions;
+    const auto& frictions = model->equations().friction;
     ASSERT_EQ(frictions.size(), 3u);  // waves, foot, axle
-    EXPECT_EQ(model->layout().slips, 3u);
-    const FrictionLaw &waves = frictions[0], &foot = frictions[1], &axle = frictions[2];
-    EXPECT_EQ(waves.contact, std::size_t{0});
-    EXPECT_EQ(foot.contact, std::size_t{2});
-    EXPECT_FALSE(axle.contact);
-    ASSERT_EQ(waves.w.size(), 3u);
-    EXPECT_DOUBLE_EQ(at_start(*model, waves.w[0]), 1.0);
-    EXPECT_DOUBLE_EQ(at_start(*model, waves.w[1]), std::cos(0.3));
-    EXPECT_DOUBLE_EQ(at_start(*model, waves.w[2]), 0.0);
-    EXPECT_DOUBLE_EQ(at_start(*model, waves.drift), -0.25);
+    EXPECT_EQ(model->layout().frictions, 3u);
+    const FrictionLaw &waves = frictions.at(0), &foot = frictions.at(2), &axle = frictions.at(joint_number(0));
+    ASSERT_EQ(waves.d.size(), 3u);
+    EXPECT_DOUBLE_EQ(at_start(*model, waves.d[0]), 1.0);
+    EXPECT_DOUBLE_EQ(at_start(*model, waves.d[1]), std::cos(0.3));
+    EXPECT_DOUBLE_EQ(at_start(*model, waves.d[2]), 0.0);
+    EXPECT_DOUBLE_EQ(at_start(*model, waves.c), -0.25);
     EXPECT_DOUBLE_EQ(at_start(*model, waves.slip), 0.7 - 0.2 * std::cos(0.3) - 0.25);
     EXPECT_DOUBLE_EQ(at_start(*model, waves.level, 0.5), 0.3 + std::exp(-0.5) / 10.0);
     EXPECT_DOUBLE_EQ(at_start(*model, waves.static_level, 0.5), 0.5);
     EXPECT_TRUE(foot.never_slides);
     EXPECT_FALSE(waves.never_slides);
-    EXPECT_DOUBLE_EQ(at_start(*model, axle.w[2]), 2.0);
+    EXPECT_DOUBLE_EQ(at_start(*model, axle.d[2]), 2.0);
     EXPECT_DOUBLE_EQ(at_start(*model, axle.level, 0.5), 0.0125);
     EXPECT_DOUBLE_EQ(at_start(*model, axle.static_level, 0.5), 0.01);  // the level at slip 0
 }
@@ -140,12 +137,12 @@ constraint = [
     const double expected = 0.1 + speed * std::exp(-speed / 0.5);
     for (const char* more : {"", ", normal = true"}) {
         const auto model = test::typed(text("sin(x)", more));
-        const FrictionLaw& law = model->equations().frictions.at(0);
+        const FrictionLaw& law = model->equations().friction.at(0);
         EXPECT_NEAR(at_start(*model, law.level, std::abs(at_start(*model, law.slip))), expected, 1e-15) << more;
         EXPECT_NEAR(at_start(*model, law.static_level), 0.2, 1e-15);
         // The expanded file is the same system.
         const auto expanded = test::typed(expand_system(text("sin(x)", more), "e.toml"));
-        const FrictionLaw& same = expanded->equations().frictions.at(0);
+        const FrictionLaw& same = expanded->equations().friction.at(0);
         EXPECT_NEAR(at_start(*expanded, same.level, std::abs(at_start(*expanded, same.slip))), expected, 1e-15);
     }
     const auto flat = test::typed(text("0*x", ""));
@@ -168,7 +165,7 @@ TEST(Friction, IsPrintedByCheck) {
 }
 
 // Until runs have it. A proof refuses friction for good.
-TEST(Friction, IsRefusedByWhatDoesNotHaveItYet) {
+TEST(Friction, IsNotCoveredByProofs) {
     const auto model = test::typed(on_waves);
     const auto refusal = [](const auto& start) {
         try {
@@ -178,11 +175,6 @@ TEST(Friction, IsRefusedByWhatDoesNotHaveItYet) {
         }
         return std::string();
     };
-    EXPECT_EQ(refusal([&] { simulate(model, model->default_run()); }),
-              "typed.toml:12:13: friction is read and checked, but no run has it yet\n"
-              "    friction = \"mu + exp(-slip)/10\"\n"
-              "                ^\n"
-              "achilles check prints the equations; leave the friction out to run the system without it");
     EXPECT_EQ(refusal([&] { check(*model, problem_from_decimals(model->default_run())); }),
               "typed.toml:12:13: a proof does not cover friction\n"
               "    friction = \"mu + exp(-slip)/10\"\n"

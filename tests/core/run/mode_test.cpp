@@ -35,7 +35,7 @@ TEST(Mode, StartsAsFreeFlight) {
         EXPECT_FALSE(Mode().is_held(i));
     }
     EXPECT_EQ(Mode::holding({}), Mode());
-    EXPECT_LE(sizeof(Mode), sizeof(std::uint32_t));
+    EXPECT_LE(sizeof(Mode), sizeof(std::uint64_t));
 }
 
 TEST(Mode, KnowsTheStateOfEveryContact) {
@@ -69,6 +69,31 @@ TEST(Mode, HasRoomForFourStates) {
             EXPECT_EQ(more.only(set), mode);
             EXPECT_EQ(more.only(ContactSet::of(5)), Mode().with(5, state));
         }
+}
+
+TEST(Mode, ForgetsAnImpliedSlipWithItsContact) {
+    for (const std::size_t i : {std::size_t{0}, std::size_t{7}, std::size_t{8}, std::size_t{15}}) {
+        const Mode both = Mode::holding(ContactSet::of(i).with(3)), implied = both.with_implied_slip(i);
+        EXPECT_TRUE(both.implied().empty());
+        EXPECT_EQ(implied.implied(), ContactSet::of(i));
+        EXPECT_EQ(implied.held(), both.held());
+        EXPECT_EQ(implied.state(i), held);
+        EXPECT_TRUE(implied.slipping().empty());
+        EXPECT_TRUE(implied.joints().empty());
+        EXPECT_EQ(implied.with(3, ContactState::slip_plus).implied(), ContactSet::of(i));
+        EXPECT_EQ(implied.with(i, held), both);
+        EXPECT_EQ(implied.without(i), both.without(i));
+    }
+}
+
+TEST(Mode, KeepsJointsApartFromContacts) {
+    const Mode mode = Mode::holding(ContactSet::of(15)).with(joint_number(0), ContactState::slip_minus);
+    EXPECT_EQ(mode.held(), ContactSet::of(15));
+    EXPECT_EQ(mode.joints(), ContactSet::of(joint_number(0)));
+    EXPECT_EQ(mode.slipping(), ContactSet::of(joint_number(0)));
+    EXPECT_TRUE(mode.without(15).is_free());
+    EXPECT_NE(mode.without(15), Mode());
+    EXPECT_EQ(mode.only({}), mode.without(15));
 }
 
 TEST(Mode, ChangesTheContactsThatAreNamed) {

@@ -60,7 +60,7 @@ TEST(Work, IsTheIntegralOfThePower) {
                     const double to = piece.start + part * (piece.end - piece.start);
                     const WorkAndSize expected = reference_work(trajectory, piece, to);
                     const double of_time = 0x1p-50 * std::abs(to) / (to - piece.start);  // rounding of time in the step
-                    EXPECT_NEAR(work.along(piece, trajectory.coefficients, to), expected.work,
+                    EXPECT_NEAR(work.along(piece, trajectory.coefficients, to).work, expected.work,
                                 accuracy * largest + of_time * expected.size)
                         << name << ", " << to_text(method) << ", " << tolerance << ", t = " << to;
                 }

@@ -1,0 +1,333 @@
+// Dry friction along a run (theory-friction.md 1, 2): which contacts and joints stick or slip at the start and after an
+// event. Numbers propose the mode, and intervals over the rounding box prove it.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "contacts/friction_modes.hpp"
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+namespace {
+
+// At most this many contacts and joints with friction are decided together.
+constexpr int max_rough = 4;
+
+}  // namespace
+
+std::string ExecutionAutomaton::name_of(std::size_t which) const {
+    const SystemDescription& system = model_->description();
+    return "'" + (is_joint(which) ? system.frictions[which - max_contacts].name : system.constraints[which].name) + "'";
+}
+
+ContactSet ExecutionAutomaton::all_joints() const {
+    ContactSet joints;
+    for (const std::size_t i : surfaces_->rough())
+        if (is_joint(i)) joints = joints.with(i);
+    return joints;
+}
+
+// Those of the contacts and joints with friction whose slip is 0 within rounding.
+ContactSet ExecutionAutomaton::at_zero_slip(ContactSet contacts_and_joints) {
+    constexpr double few = 4.0;
+    ContactSet found;
+    for (const std::size_t i : contacts_and_joints.within(surfaces_->rough()))
+        if (std::abs(surfaces_->slip(i, next_.state).u) <= few * surfaces_->slip_error(i, next_.state))
+            found = found.with(i);
+    return found;
+}
+
+// The mode in which these contacts and joints are held, or slip with the sign of their slip.
+Mode ExecutionAutomaton::sliding_mode(ContactSet contacts_and_joints) {
+    const ContactSet resting = at_zero_slip(contacts_and_joints);
+    Mode mode = Mode::holding(contacts_and_joints);
+    for (const std::size_t i : contacts_and_joints.within(surfaces_->rough()).without(resting))
+        mode = mode.with(i, slip_state(surfaces_->slip(i, next_.state).u > 0.0 ? 1 : -1));
+    return mode;
+}
+
+void ExecutionAutomaton::begin_with_friction(ContactSet landing, ContactSet resting) {
+    const Mode mode = sliding_mode(resting.with(all_joints()));
+    if (!surfaces_->settle(next_.state, mode)) return fail_projection();
+    if (landing.empty()) {
+        decide_with_friction(resting, mode);
+    } else {
+        decide_with_friction({}, mode.without(resting));
+    }
+    record_.open(next_.mode, next_.held(), next_.state.t);
+    if (outcome_) return;
+    if (landing.empty()) return begin_stretch(next_.mode, run_.options.end_time);
+    next_.touching = resting;
+    collide_with_friction(landing);
+}
+
+// The event functions of friction in the current mode start without known roots, but for slips that start now.
+void ExecutionAutomaton::start_friction_functions() {
+    const std::vector<FrictionEvent>& friction = model_->motion(next_.mode).friction;
+    next_.starts.resize(surfaces_->count() + friction.size());
+    for (std::size_t k = 0; k < friction.size(); ++k) {
+        EventStart& start = next_.starts[surfaces_->count() + k] = {};
+        const auto root = slip_roots_.find(friction[k].contact);
+        if (friction[k].watched == FrictionFunction::slip && root != slip_roots_.end())
+            start.multiplicity = root->second;
+    }
+    slip_roots_.clear();
+}
+
+bool ExecutionAutomaton::is_pivot(std::size_t event) const {
+    return event >= surfaces_->count() &&
+           model_->motion(next_.mode).friction[event - surfaces_->count()].watched == FrictionFunction::pivot;
+}
+
+void ExecutionAutomaton::accept_friction_event(std::size_t event) {
+    if (completing())
+        return stop(Outcome::Kind::undecided, "the friction changes before the Zeno time at " + where(next_.state));
+    const FrictionEvent what = model_->motion(next_.mode).friction[event - surfaces_->count()];
+    switch (what.watched) {
+        case FrictionFunction::slip:
+            return end_slip(what.contact);
+        case FrictionFunction::upper_limit:
+            return start_slip({what.contact, -1}, event);
+        case FrictionFunction::lower_limit:
+            return start_slip({what.contact, 1}, event);
+        case FrictionFunction::pivot:
+            break;
+    }
+    const Slip slip = surfaces_->slip(what.contact, next_.state);
+    stop(Outcome::Kind::painleve,
+         fmt::format(
+             "{} slides at u = {:.6g}, and W falls to 0, so that no contact force can keep its gap closed: rigid "
+             "bodies with this friction have no motion from here, at {}",
+             name_of(what.contact), slip.u, where(next_.state)));
+}
+
+// ---- transitions ----
+
+void ExecutionAutomaton::end_slip(std::size_t which) {
+    const Mode before = next_.mode;
+    Mode resting = before.with(which, ContactState::held);
+    if (!surfaces_->settle(next_.state, resting)) return fail_projection();
+    // Others may stop at the same instant.
+    resting = resting.with(at_zero_slip(before.slipping()), ContactState::held);
+    if (!surfaces_->settle(next_.state, resting)) return fail_projection();
+    if (!decide_with_friction(before.held(), resting)) return;
+    enter_friction_mode(before);
+}
+
+// Where mu_s = mu(0) the accelerations are continuous: the slip has a double zero, and it starts because the function
+// of the cone falls strictly. Where mu_s > mu(0) the friction force jumps, and the modes are decided anew.
+void ExecutionAutomaton::start_slip(const SlipStart& start, std::size_t event) {
+    const Mode before = next_.mode;
+    ModeKinematics& motion = surfaces_->motion(before);
+    const auto values = motion.enclosed(next_.state);
+    const FrictionLaws& laws = model_->equations().friction;
+    bool jumps = false;
+    for (const std::size_t i : sharing_with(before, start.which, laws).with(start.which))
+        jumps = jumps || laws.at(i).has_jump;
+    bool both = false;  // whether the force itself vanishes
+    for (std::size_t k = 0; k < motion.friction().size(); ++k) {
+        const FrictionEvent& other = motion.friction()[k];
+        const std::size_t number = surfaces_->count() + k;
+        const bool is_limit =
+            other.watched == FrictionFunction::upper_limit || other.watched == FrictionFunction::lower_limit;
+        if (number == event || !is_limit || certainly_positive(values[number].value)) continue;
+        if (other.contact != start.which)
+            return stop(Outcome::Kind::undecided,
+                        fmt::format("cannot decide which of {} and {} starts to slide first, at {}",
+                                    name_of(start.which), name_of(other.contact), where(next_.state)));
+        both = true;
+    }
+    if (both && !is_joint(start.which)) return release_with_friction(start.which);
+    if (jumps) {
+        if (decide_with_friction(before.held(), before, start)) enter_friction_mode(before);
+        return;
+    }
+    if (both || !certainly_negative(values[event].rate))
+        return stop(
+            Outcome::Kind::undecided,
+            fmt::format("the friction force of {} touches its limit: cannot decide whether it starts to slide, at {}",
+                        name_of(start.which), where(next_.state)));
+    next_.mode = before;
+    for (const std::size_t i : sharing_with(before, start.which, laws).with(start.which)) {
+        next_.mode = next_.mode.with(i, slip_state(start.sign));
+        slip_roots_[i] = 2;
+    }
+    enter_friction_mode(before);
+}
+
+// As release(): the force vanishes, and with it the friction force of this contact.
+void ExecutionAutomaton::release_with_friction(std::size_t which) {
+    which_ = which;
+    const Mode before = next_.mode;
+    const auto values = surfaces_->motion(before).enclosed(next_.state);
+    bool others = false;
+    for (const std::size_t i : before.held()) others = others || (i != which && !certainly_negative(values[i].value));
+    if (others || !certainly_positive(values[which].rate))
+        return stop(Outcome::Kind::undecided,
+                    fmt::format("the contact force of {} touches zero{}, and h''' > 0 is not proved at {}",
+                                name_of(which), others ? " together with another one" : "", where(next_.state)));
+    next_.mode = before.without(which);
+    // The next contact with an equal slip carries the friction force.
+    const ContactSet sharing = sharing_with(before, which, model_->equations().friction);
+    if (slip_sign(before.state(which)) == 0 && !before.implied().contains(which) && !sharing.empty())
+        next_.mode = next_.mode.with(*sharing.begin(), ContactState::held);
+    next_.starts[which] = {{0.0, 0.0}, 3};
+    enter_friction_mode(before, ContactSet::of(which));
+}
+
+// Records what has changed since a mode, and begins a segment in the present one. The contacts in `released` are known
+// to be released by a vanishing force.
+void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
+    const Mode mode = next_.mode;
+    ContactSet stick, slip, reversal;
+    for (const std::size_t i : before.held().with(before.joints())) {
+        const int was = slip_sign(before.state(i)), is = slip_sign(mode.state(i));
+        if (!mode.is_held(i))
+            released = released.with(i);
+        else if (was != 0 && is == 0)
+            stick = stick.with(i);
+        else if (was == 0 && is != 0)
+            slip = slip.with(i);
+        else if (was != is)
+            reversal = reversal.with(i);
+    }
+    record_friction(Event::Kind::stick, stick);
+    record_friction(Event::Kind::slip, slip);
+    record_friction(Event::Kind::reversal, reversal);
+    record_friction(Event::Kind::release, released);
+    enter_phase();
+    begin_stretch(mode, run_.options.end_time);
+}
+
+void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) {
+    if (contacts.empty()) return;
+    Event event;
+    event.kind = kind;
+    event.contacts = contacts;
+    event.mode = next_.mode;
+    event.t = next_.state.t;
+    event.q = next_.state.q;
+    event.v_before = event.v_after = next_.state.v;
+    record_.event(std::move(event));
+}
+
+// ---- decision ----
+
+// Decides the modes of closed contacts and of all joints. In `sliding`, those with u = 0 are held or open, the others
+// slip. With `start`, that one must slip with this sign. Sets the mode and the starts of next_; false if the run ends.
+bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start) {
+    using enum ContactState;
+    forget_held();
+    const ContactSet joints = all_joints(), rough = closed.with(joints).within(surfaces_->rough());
+    Mode base;  // joints that slip: their forces are known
+    ContactSet sliding_joints;
+    for (const std::size_t i : joints)
+        if (slip_sign(sliding.state(i)) != 0) {
+            base = base.with(i, sliding.state(i));
+            sliding_joints = sliding_joints.with(i);
+        }
+    const ContactSet decided = closed.with(joints).without(sliding_joints);
+    if (decided.within(surfaces_->rough()).count() > max_rough || closed.count() > max_closed_contacts) {
+        stop(Outcome::Kind::redundant_contacts,
+             fmt::format("{} contacts and joints with friction are closed or at rest at once, and at most {} can be "
+                         "resolved, at {}",
+                         decided.count(), max_rough, where(next_.state)));
+        return false;
+    }
+    ContactRows rows = surfaces_->rows(next_.state, closed, rough.without(sliding_joints), base);
+    const FrictionLaws& laws = model_->equations().friction;
+    FrictionProblem problem;
+    problem.W = rows.W;
+    problem.accelerations.resize(rows.size());
+    for (Eigen::Index k = 0; k < rows.size(); ++k)
+        problem.accelerations[k] = rows.rows[static_cast<std::size_t>(k)].acceleration;
+    for (const std::size_t i : decided) {
+        FrictionProblem::Element each{i, rows.gap_of(i), rows.slip_of(i), 0.0, 0.0, false, {}};
+        if (!is_joint(i)) each.states.push_back(open);
+        if (each.slip < 0) {
+            each.states.push_back(held);
+            problem.elements.push_back(each);
+            continue;
+        }
+        const Slip& slip = rows.slips.at(i);
+        each.slides = slip_sign(sliding.state(i)) != 0;
+        each.sliding = each.slides ? slip.coefficient : surfaces_->slip(i, next_.state, base, 0.0).coefficient;
+        each.resting = slip.static_coefficient;
+        const bool never = surfaces_->never_slides(i);
+        if (never) each.resting = std::numeric_limits<double>::infinity();
+        if (each.slides) {
+            each.states.push_back(sliding.state(i));
+        } else if (start && (start->which == i || sharing_with(sliding, start->which, laws).contains(i))) {
+            each.states.push_back(slip_state(start->sign));
+        } else {
+            each.states.push_back(held);
+            if (!never) each.states.insert(each.states.end(), {slip_plus, slip_minus});
+        }
+        problem.elements.push_back(each);
+    }
+    if (problem.elements.empty()) {
+        next_.mode = base;
+        return true;
+    }
+    group_equal_slips(problem);
+    const FrictionChoice choice = choose_mode(problem);
+    if (choice.kind == FrictionChoice::Kind::none || choice.kind == FrictionChoice::Kind::several) {
+        std::string slips;
+        for (const auto& [i, slip] : rows.slips)
+            slips += fmt::format("{}{} {} at u = {:.6g}", slips.empty() ? "" : ", ", name_of(i),
+                                 slip_sign(sliding.state(i)) != 0 ? "slides" : "is", slip.u);
+        const bool none = choice.kind == FrictionChoice::Kind::none;
+        stop(Outcome::Kind::painleve,
+             fmt::format("{}: rigid bodies with this friction have {} motion{} from here, at {}", slips,
+                         none ? "no" : "more than one", none ? "" : "s", where(next_.state)));
+        return false;
+    }
+    const FrictionMotion& chosen = choice.motions.front();
+    Mode mode = base;
+    for (const FrictionProblem::Element& each : problem.elements)
+        mode = mode.with(each.which, chosen.mode.state(each.which));
+    for (const std::size_t i : implied_slips(problem, chosen.mode)) mode = mode.with_implied_slip(i);
+    if (choice.kind == FrictionChoice::Kind::undecided || !chosen.is_unique || !is_proved(mode, closed, sliding)) {
+        std::string names;
+        for (const FrictionProblem::Element& each : problem.elements)
+            names += (names.empty() ? "" : ", ") + name_of(each.which);
+        if (!chosen.is_unique)
+            stop(Outcome::Kind::redundant_contacts,
+                 fmt::format("the forces of {} are not unique while they stick, at {}", names, where(next_.state)));
+        else
+            stop(Outcome::Kind::undecided,
+                 fmt::format("a force, or the acceleration of a gap or slip, is zero to within rounding: cannot decide "
+                             "whether {} sticks, slides or leaves, at {}",
+                             names, where(next_.state)));
+        return false;
+    }
+    next_.mode = mode;
+    for (const std::size_t i : closed) {
+        next_.starts[i] = {};
+        if (!mode.is_held(i)) next_.starts[i] = {{0.0, 0.0}, 2};
+    }
+    for (const FrictionProblem::Element& each : problem.elements)
+        if (slip_sign(mode.state(each.which)) != 0 && !each.slides) slip_roots_[each.which] = 1;
+    return true;
+}
+
+// Whether the signs that the mode requires are certain over the rounding box of the state.
+bool ExecutionAutomaton::is_proved(Mode mode, ContactSet closed, Mode sliding) {
+    ModeKinematics& motion = surfaces_->motion(mode);
+    const auto values = motion.enclosed(next_.state);
+    for (const std::size_t i : closed) {
+        const Interval& value = values[i].value;
+        if (mode.is_held(i) ? !certainly_negative(value) : !certainly_positive(value)) return false;
+    }
+    for (std::size_t k = 0; k < motion.friction().size(); ++k) {
+        const FrictionEvent& event = motion.friction()[k];
+        const auto& value = values[surfaces_->count() + k];
+        const bool starts = event.watched == FrictionFunction::slip && slip_sign(sliding.state(event.contact)) == 0;
+        if (event.watched == FrictionFunction::slip && !starts) continue;
+        if (!certainly_positive(starts ? value.rate : value.value)) return false;
+    }
+    return true;
+}
+
+}  // namespace achilles

@@ -1,0 +1,171 @@
+// Impacts with friction, of one or several contacts (theory-friction.md 3).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "contacts/friction_modes.hpp"
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+namespace {
+
+// The energy balance: normal impulses dissipate by restitution, tangential ones turn energy into heat, and both move
+// surfaces.
+Exchange energy_of_impact(const ContactRows& rows, const FrictionImpact& impact) {
+    Exchange total;
+    for (Eigen::Index k = 0; k < rows.size(); ++k) {
+        const ContactRows::Row& row = rows.rows[static_cast<std::size_t>(k)];
+        const double p = impact.impulses[k], change = -0.5 * p * (row.rate + impact.after[k]);
+        (row.is_slip ? total.heat : total.loss) += change;
+        total.work -= p * row.drift;
+    }
+    return total;
+}
+
+}  // namespace
+
+// Contacts that land, with those that are held or touch. Joints take no impulse, because their level is finite.
+void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
+    const ContactSet held = next_.held(), still = held.with(next_.touching);
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {  // others that close at the same time, within rounding
+        if (still.with(landing).contains(i)) continue;
+        const Contact other = surfaces_->of(i).at(next_.state);
+        const double rounding = 4.0 * surfaces_->of(i).gap_error(next_.state);
+        if (other.hdot < 0.0 && other.h <= rounding - 0x1p-50 * std::abs(next_.state.t) * other.hdot)
+            landing = landing.with(i);
+    }
+    const ContactSet all = still.with(landing);
+    if (all.count() > max_closed_contacts)
+        return stop(Outcome::Kind::redundant_contacts,
+                    fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
+                                all.count(), max_closed_contacts, names_of(all), where(next_.state)));
+    Mode closed = next_.mode;
+    for (const std::size_t i : next_.touching) closed = closed.with(i, ContactState::held);
+    if (!surfaces_->project(next_.state, all, {})) return fail_projection();
+    ContactRows rows = surfaces_->rows(next_.state, all, all.within(surfaces_->rough()), {});
+    FrictionImpactProblem problem;
+    problem.W = rows.W;
+    problem.before.resize(rows.size());
+    for (Eigen::Index k = 0; k < rows.size(); ++k) {
+        ContactRows::Row& row = rows.rows[static_cast<std::size_t>(k)];
+        const bool is_kept =
+            row.is_slip ? next_.mode.state(row.which) == ContactState::held : still.contains(row.which);
+        if (is_kept) row.rate = 0.0;
+        problem.before[k] = row.rate;
+    }
+    for (const std::size_t i : all) {
+        using enum ContactState;
+        FrictionProblem::Element each{i, rows.gap_of(i), rows.slip_of(i), 0.0, 0.0, false, {open, held}};
+        if (each.slip >= 0 && !surfaces_->never_slides(i))
+            each.states.insert(each.states.end(), {slip_plus, slip_minus});
+        problem.elements.push_back(each);
+        problem.e.push_back(restitution(i));
+        if (each.slip >= 0) {
+            const std::uint32_t speed = model_->layout().sliding_speed();
+            problem.is_constant =
+                problem.is_constant && !depends_on(model_->equations().friction.at(i).level, {&speed, 1});
+        }
+    }
+    problem.coefficient = [&](std::size_t element, double speed) {
+        const std::size_t i = problem.elements[element].which;
+        if (surfaces_->never_slides(i)) return std::numeric_limits<double>::infinity();
+        return surfaces_->slip(i, next_.state, {}, speed).coefficient;
+    };
+    const FrictionImpact impact = friction_impact(problem);
+    if (impact.kind != FrictionChoice::Kind::one) {
+        const bool none = impact.kind == FrictionChoice::Kind::none;
+        const bool pulls = none && problem.elements.size() == 1 &&
+                           surfaces_->rough().contains(problem.elements[0].which) &&
+                           surfaces_->never_slides(problem.elements[0].which);
+        return stop(pulls ? Outcome::Kind::painleve : Outcome::Kind::impact_not_unique,
+                    pulls ? fmt::format("{} would have to pull: a foot that never slides would have to pull, at {}",
+                                        names_of(all), where(next_.state))
+                          : fmt::format("{} impulses obey the impact law with friction of {}, at {}",
+                                        none ? "no" : "several", names_of(all), where(next_.state)));
+    }
+    const Vector v_before = next_.state.v, v_after = rows.after(v_before, impact.impulses);
+    double speed = 0.0;
+    for (const std::size_t i : landing)
+        speed = std::max(speed, -rows.rows[static_cast<std::size_t>(rows.gap_of(i))].rate);
+    auto joint = std::make_shared<MultiContactInfo>();
+    auto friction = std::make_shared<Event::FrictionImpulses>();
+    for (const ContactRows::Row& row : rows.rows) {
+        const double p = impact.impulses[&row - rows.rows.data()];
+        (row.is_slip ? friction->tangential : joint->impulses).emplace_back(row.which, p);
+    }
+    for (const auto& [element, factor] : impact.caps) {
+        friction->energy_cap = factor;
+        friction->capped = friction->capped.with(problem.elements[element].which);
+    }
+    record_.impact(next_.state, v_after, speed, energy_of_impact(rows, impact), landing, std::move(joint));
+    record_.friction_at_impact(std::move(friction));
+    const State before = next_.state;
+    next_.state.v = v_after;
+    // Contacts with hdot+ > 0 leave at once; the others may be held. Those that stick have u+ = 0.
+    ContactSet left;
+    Mode sliding;
+    for (const std::size_t i : all) {
+        const double hdot = impact.after[rows.gap_of(i)];
+        next_.starts[i] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+        if (hdot > 0.0) {
+            if (too_short_to_resolve(i, hdot))
+                return stop(Outcome::Kind::undecided,
+                            fmt::format("the flights of {} became shorter than double precision resolves, and bouncing "
+                                        "with friction is not completed, at {}",
+                                        name_of(i), where(next_.state)));
+            continue;
+        }
+        left = left.with(i);
+        if (rows.slip_of(i) < 0) continue;
+        const double u = impact.after[rows.slip_of(i)];
+        const int sign = slip_sign(impact.mode.state(i));
+        if (sign != 0) sliding = sliding.with(i, slip_state(sign));
+        // No impulse: the slip is what it was before.
+        if (impact.mode.state(i) == ContactState::open && u != 0.0)
+            sliding = sliding.with(i, slip_state(u > 0.0 ? 1 : -1));
+    }
+    const ContactSet resting_joints = at_zero_slip(all_joints());
+    for (const std::size_t i : all_joints().without(resting_joints))
+        sliding = sliding.with(i, slip_state(surfaces_->slip(i, next_.state).u > 0.0 ? 1 : -1));
+    Mode kept = sliding;
+    for (const std::size_t i : left.with(resting_joints))
+        if (slip_sign(kept.state(i)) == 0) kept = kept.with(i, ContactState::held);
+    if (!surfaces_->settle(next_.state, kept)) return fail_projection();
+    change_other_rates(v_before, all);
+    if (!decide_with_friction(left, kept)) return;
+    const ContactSet opened = held.without(next_.held());
+    const bool is_plastic = landing.has_one() && restitution(landing.only()) == 0.0 && opened.empty() &&
+                            next_.mode.is_held(landing.only()) && still == held;
+    record_.after_impact(opened, is_plastic ? record_.mode() : next_.mode);
+    if (is_plastic) record_plastic_landing(landing.only(), before, speed);
+    if (!(next_.mode == record_.mode())) enter_phase();
+    begin_stretch(next_.mode, run_.options.end_time);
+}
+
+// With restitution 0 the contact starts without a bounce, as in capture().
+void ExecutionAutomaton::record_plastic_landing(std::size_t contact, const State& before, double speed) {
+    Certificate certificate;
+    certificate.certified = true;
+    certificate.conditions = run_.options.truncation.conditions;
+    certificate.zeno_low = certificate.zeno_high = certificate.zeno_time = next_.state.t;
+    certificate.shadowing_position = certificate.shadowing_velocity = certificate.uniform_position = 0.0;
+    const Interval force = surfaces_->motion(next_.mode).enclosed(next_.state)[contact].value;
+    certificate.a_min = -force.hi();
+    certificate.a_max = -force.lo();
+    certificate.tightest_bound = "restitution 0: no impact sequence is truncated";
+    certificate.assumptions = {{"normal acceleration", force.hi(), 0.0}};
+    Event event;
+    event.kind = Event::Kind::zeno;
+    event.t = next_.state.t;
+    event.truncation = Event::TruncationRecord{before.t, before.q, before.v, next_.state.v, speed};
+    event.certificate = std::move(certificate);
+    event.contacts = ContactSet::of(contact);
+    event.mode = next_.mode;
+    event.q = next_.state.q;
+    event.v_before = event.v_after = next_.state.v;
+    record_.event(std::move(event));
+}
+
+}  // namespace achilles
