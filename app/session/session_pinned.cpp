@@ -45,7 +45,7 @@ bool same_system(const SystemDescription& a, const SystemDescription& b) {
                  }) &&
            alike(sliding_places(a), sliding_places(b), [](const SlidingPlace& x, const SlidingPlace& y) {
                const Text none;
-               return x.name == y.name && x.contact == y.contact && same_texts(*x.slip, *y.slip) &&
+               return x.name == y.name && x.number == y.number && same_texts(*x.slip, *y.slip) &&
                       same_texts(*x.level, *y.level) &&
                       same_texts(x.static_level ? *x.static_level : none, y.static_level ? *y.static_level : none);
            });

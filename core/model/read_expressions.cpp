@@ -184,7 +184,6 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
                 mistakes.add(std::move(*mistake));
     }
     read_forces(system, layout, reader, equations, mistakes);
-    read_frictions(system, layout, reader, equations, mistakes);
     equations.given.Q = equations.Q;
     attempt_within_limits(mistakes, system, equations, [&] { add_prescribed_motion(motion, layout, equations); });
 }

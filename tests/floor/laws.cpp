@@ -289,6 +289,10 @@ class PhaseCheck {
             case Event::Kind::release:
                 release(event, phase);
                 break;
+            case Event::Kind::stick:
+            case Event::Kind::slip:
+            case Event::Kind::reversal:
+                break;  // accelerations alone may jump
         }
         if (event.mode.held() != phase.mode.held()) next(event);
     }

@@ -31,7 +31,7 @@ FrictionImpactProblem one_impact(const Matrix2d& W, const Vector2d& before, doub
     return problem;
 }
 
-Matrix2d random_matrix(std::mt19937& generator) {
+Matrix2d random_delassus(std::mt19937& generator) {
     std::uniform_real_distribution<double> any(-1.0, 1.0), positive(0.05, 1.0);
     const double N = positive(generator), T = positive(generator);
     return matrix(N, 0.99 * any(generator) * std::sqrt(N * T), T);
@@ -59,7 +59,7 @@ TEST(FrictionModes, OneContactAtRestHasOneState) {
     std::uniform_real_distribution<double> any(-1.0, 1.0);
     int stuck = 0, slid = 0, left = 0;
     for (int i = 0; i < 20000; ++i) {
-        const Matrix2d W = random_matrix(generator);
+        const Matrix2d W = random_delassus(generator);
         const double mu = std::abs(any(generator)) * std::min(2.0, 0.999 * W(0, 0) / std::abs(W(0, 1)));
         const FrictionChoice choice =
             choose_mode(one_contact(W, {any(generator), any(generator)}, mu, mu, {open, held, slip_plus, slip_minus}));
@@ -109,7 +109,7 @@ TEST(FrictionImpact, RandomImpactsObeyTheLawAndGainNoEnergy) {
     std::uniform_real_distribution<double> any(-1.0, 1.0), part(0.0, 1.0);
     int capped = 0, stuck = 0;
     for (int i = 0; i < 100000; ++i) {
-        const Matrix2d W = random_matrix(generator);
+        const Matrix2d W = random_delassus(generator);
         const Vector2d before(-part(generator) - 1e-3, 2.0 * any(generator));
         const double mu = 2.0 * part(generator), e = part(generator);
         const FrictionImpact impact = friction_impact(one_impact(W, before, mu, e));
