@@ -158,10 +158,15 @@ void EquationsOnPage::flat(std::size_t index) {
 }
 
 void EquationsOnPage::unwritten_conditions() {
-    if (model_.contacts() < 2 || (!simplified_.while_held.empty() && model_.contacts() == 2)) return;
+    const std::size_t contacts = model_.contacts(), pairs = contacts * (contacts - 1);
+    const bool has_pairs = simplified_.while_held.size() == pairs;
+    if (contacts < 2 || (has_pairs && contacts == 2)) return;
+    const char* const held = simplified_.while_held.empty() ? "any other contacts"
+                             : has_pairs                    ? "two or more other contacts"
+                             : contacts == 2                ? "a contact with friction"
+                                                            : "a contact with friction, or two or more other contacts,";
     const std::string left_out =
-        fmt::format("Zeno conditions with {} other contacts held are not printed; a run derives those that it needs.",
-                    simplified_.while_held.empty() ? "any" : "two or more");
+        fmt::format("Zeno conditions with {} held are not printed; a run derives those that it needs.", held);
     page_.sentence({left_out, left_out});
 }
 

@@ -385,8 +385,13 @@ MaxDifference compare_with_differences(const Model& model, const Run& run, const
         ++result.states;
         for (Eigen::Index i = 0; i < found.size(); ++i)
             note(result.derived, equations.names[static_cast<std::size_t>(i)], distance(found[i], wanted[i]));
-        for (Eigen::Index i = 0; i < found_held.size(); ++i)
-            note(result.derived, "hddot while others are held", distance(found_held[i], wanted[found.size() + i]));
+        for (Eigen::Index i = 0; i < found_held.size(); ++i) {
+            const HeldCondition& condition = simplified.while_held[static_cast<std::size_t>(i)];
+            const std::size_t k = condition.contact, j = condition.mode.held().only(),
+                              pair = k * (model.contacts() - 1) + j - (j > k ? 1 : 0);
+            note(result.derived, "hddot while others are held",
+                 distance(found_held[i], wanted[found.size() + static_cast<Eigen::Index>(pair)]));
+        }
         const Reals text = written(at), meant = originals(at);
         for (Eigen::Index i = 0; i < text.size(); ++i)
             note(result.simplified, printed.names[static_cast<std::size_t>(i)], distance(text[i], meant[i]));

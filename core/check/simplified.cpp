@@ -381,7 +381,7 @@ SimplifiedEquations::SimplifiedEquations(const Model& model, const Run& run, std
     for (std::size_t i = 0; i < model.contacts(); ++i) contacts.push_back(simplify(model, run, i));
     for (std::size_t i = 0; i < model.contacts(); ++i)
         for (std::size_t j = 0; j < model.contacts() && motions_; ++j) {
-            if (i == j) continue;
+            if (i == j || e.friction.contains(j)) continue;  // with friction it may stick or slide
             HeldCondition& condition = while_held.emplace_back();
             condition.contact = i;
             condition.mode = Mode::holding(ContactSet::of(j));

@@ -1,5 +1,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "model/model.hpp"
 #include "number/float_environment.hpp"
@@ -209,6 +210,18 @@ void add_modes(Json& result, const Trajectory& trajectory, Mode mode) {
         modes[contact_names(*trajectory.model, ContactSet::of(i)).front()] = state_word(mode.state(i));
 }
 
+// The sign of the slip that begins: a number, or one for each contact by name where they differ.
+void add_direction(Json& result, const Trajectory& trajectory, const Event& event) {
+    Json& direction = result["direction"] = Json::object();
+    std::set<int> signs;
+    for (const std::size_t i : event.contacts) {
+        const int sign = slip_sign(event.mode.state(i));
+        direction[contact_names(*trajectory.model, ContactSet::of(i)).front()] = sign;
+        signs.insert(sign);
+    }
+    if (signs.size() == 1) direction = *signs.begin();
+}
+
 // What friction does at an impact.
 void add_friction(Json& result, const Trajectory& trajectory, const Event::FrictionImpulses& friction) {
     result["tangential_impulses"] = by_contact(trajectory, friction.tangential);
@@ -265,8 +278,8 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     }
     if (!event.is_friction())
         add_modes(result, trajectory, event.mode);
-    else if (event.kind != Event::Kind::stick && event.contacts.has_one())
-        result["direction"] = slip_sign(event.mode.state(event.contacts.only()));
+    else if (event.kind != Event::Kind::stick)
+        add_direction(result, trajectory, event);
     if (event.is_zeno()) result["impacts"] = event.impacts;
     if (event.truncation)
         result["truncation"] = {{"t", number_json(event.truncation->t)},

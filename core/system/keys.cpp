@@ -261,6 +261,25 @@ std::string_view instead_of_key(std::string_view word, std::string_view heading)
         std::string_view headings = {};  // of the tables where it counts; empty: all
     };
     static constexpr KeyAdvice others[] = {
+        {"joint joints hinge pin revolute prismatic connect weld equality loop to",
+         "there are no joints: place a body on another by on, at and angle, in the coordinates; for a closed loop "
+         "choose "
+         "coordinates that close the loop, or use a stiff spring",
+         "[[body]] a system file"},
+        {"gravity g",
+         "with bodies write world = {gravity = [0, -9.81]}; with energies gravity is a part of the potential, as m*g*y",
+         "a system file"},
+        {"gravity g", "gravity belongs to [world]: world = {gravity = [0, -9.81]}", "[[body]] [[force]] [run]"},
+        {"mass m inertia", "a ground has no mass: write a [[body]] with a rod, disc or ring, which can be touched too",
+         "[[ground]]"},
+        {"angle rotation", "turn the points of its line, or put it on a body without mass", "[[ground]]"},
+        {"box polygon rod", "write one [[ground]] with a line for each side, or a [[body]]", "[[ground]]"},
+        {"start rate velocity speed", "start and rate belong to the [[coordinate]] that places the body", "[[body]]"},
+        {"fixed static", "leave it out: a body whose place has no coordinate stands still; or write a [[ground]]",
+         "[[body]]"},
+        {"restitution e bounce", "restitution belongs to the [[constraint]] of two bodies, or of a body and a ground",
+         "[[body]] [[ground]]"},
+        {"damping damper", "write a [[damper]] with the same ends", "[[spring]]"},
         {"friction mu mu_s mu_k friction_coefficient",
          "friction is a key of a [[constraint]]; without a gap it is a table of its own, [[friction]]"},
         {"gravity g", "gravity is a part of the potential, as m*g*y, with a [[parameter]] g"},

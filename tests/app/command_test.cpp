@@ -202,7 +202,7 @@ TEST(Command, IsListedOnce) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 63u) << list;
+    EXPECT_EQ(all.size(), 65u) << list;
 }
 
 TEST(Command, ListsAllWhereNoneIsNear) {
