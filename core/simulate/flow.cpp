@@ -108,6 +108,7 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
 WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
     : any_(model.equations().has_power() || model.has_friction()),
       dof_(model.dof()),
+      tolerance_(run.options.tolerance),
       model_(&model),
       parameters_(run.parameters) {}
 
@@ -129,8 +130,10 @@ EnergyFlow WorkIntegrator::along(const DenseSegment& piece, std::span<const doub
 
 std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                                     std::span<const double> coefficients, double to) const {
-    // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
-    constexpr double rounding = 0x1p-53, accurate = 0x1p-42;
+    // Terms decrease at least by half, so those left out are below a fifteenth of the last four. The work is as accurate
+    // as the polynomials.
+    constexpr double rounding = 0x1p-53;
+    const double accurate = std::max(0x1p-42, tolerance_ / 2.0);
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
     constexpr std::array<double, 2 * max_coordinates> zeros{};
     const std::size_t width = 2 * static_cast<std::size_t>(dof_), outputs = model_->has_friction() ? 2 : 1;

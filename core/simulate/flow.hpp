@@ -102,12 +102,14 @@ class WorkIntegrator {
     };
     Power* power_in(Mode mode);
     // The integral of the series of the power along the polynomials of the step. nullopt if its last terms are not
-    // small: a power that depends on time may vary much faster than the motion. Gauss quadrature then evaluates it.
+    // small compared with the tolerance: a power that depends on time may vary much faster than the motion. Gauss
+    // quadrature then evaluates it.
     std::optional<EnergyFlow> by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                         std::span<const double> coefficients, double to) const;
 
     bool any_;
     Eigen::Index dof_;
+    double tolerance_;  // of the motion
     const Model* model_;
     std::vector<double> parameters_;
     std::map<Mode, std::optional<Power>> powers_;  // by mode, created at first use; nullopt if it is always 0
