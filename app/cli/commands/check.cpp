@@ -27,11 +27,6 @@ int check(const CheckArguments& arguments) {
     const std::string text = read_text(find_system(arguments.system));
     OutputFiles files;
     files.add("-");
-    if (arguments.expand) {
-        files.put("-", printable(expand_system(text, arguments.system)));
-        files.commit();
-        return reached_end;
-    }
     const SystemDescription description = parse_system(text, arguments.system);
     const Run run = requested_run(description, arguments.settings, arguments.overrides);
     const auto before = std::chrono::steady_clock::now();
@@ -39,6 +34,11 @@ int check(const CheckArguments& arguments) {
     const std::chrono::duration<double> deriving = std::chrono::steady_clock::now() - before;
     validate_overrides(model, run, arguments.settings);
     warn(description, run);
+    if (arguments.expand) {
+        files.put("-", printable(expand_system(text, arguments.system)));
+        files.commit();
+        return reached_end;
+    }
     double disagreement = 0.0;
     const Notation notation = arguments.latex ? Notation::latex : Notation::text;
     const bool is_whole = arguments.latex || arguments.verbose;
