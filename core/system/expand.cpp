@@ -257,11 +257,7 @@ class MechanismExpander {
         if (made.empty()) return;
         TomlValue* typed = find_entry(parent, "drawing");
         if (typed != nullptr && typed->kind != TomlValue::Kind::array) return;
-        if (typed == nullptr) {
-            TomlValue list = made_point({}, at);
-            list.items.clear();
-            typed = &set_entry(parent, "drawing", std::move(list));
-        }
+        if (typed == nullptr) typed = &set_entry(parent, "drawing", made_list(at));
         typed->items.insert(typed->items.begin(), std::make_move_iterator(made.begin()),
                             std::make_move_iterator(made.end()));
     }

@@ -75,10 +75,11 @@ struct RigidBody : PlacedShape {
     ProductSum mass, inertia;  // about the center of mass
     LocalPoint center;
     const PlacedShape* on = nullptr;  // may be a ground
-    bool is_jointed = false;          // its origin is a point of another body or of the world, about which it turns
-    ProductSum height, along;         // on a ground: the distance of its origin, and its velocity along the tangent
-    std::string placement;            // for the summary: "at hip, rotated by `theta`"
-    std::string how;                  // "uniform rod"; "" if mass or inertia are as typed
+    // The angle of another body or of the world, if its origin is a point there, about which it turns.
+    std::optional<ProductSum> joint;
+    ProductSum height, along;  // on a ground: the distance of its origin, and its velocity along the tangent
+    std::string placement;     // for the summary: "at hip, rotated by `theta`"
+    std::string how;           // "uniform rod"; "" if mass or inertia are as typed
 };
 
 struct GroundSurface : PlacedShape {
@@ -169,7 +170,7 @@ class PlacedMechanism {
     Entry* entry_of(const std::string& name);
     void place(Entry& entry);
     void place_body(RigidBody& body, const Fields& fields);
-    bool is_joint(const RigidBody& body, const NamedPoint& origin) const;
+    std::optional<ProductSum> joint_of(const RigidBody& body, const NamedPoint& origin) const;
     void place_ground(GroundSurface& ground, const Fields& fields);
     void place_on_ground(RigidBody& body, const Fields& fields, const GroundSurface& ground);
     void place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve);

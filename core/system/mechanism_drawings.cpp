@@ -9,44 +9,43 @@
 
 namespace achilles {
 
-TomlValue made_string(std::string text, const Location& at) {
+namespace {
+
+TomlValue made(TomlValue::Kind kind, const Location& at, std::string text = {}) {
     TomlValue value;
-    value.kind = TomlValue::Kind::string;
+    value.kind = kind;
     value.at = at;
     value.text = {std::move(text), at, false};
     return value;
 }
 
+}  // namespace
+
+TomlValue made_string(std::string text, const Location& at) {
+    return made(TomlValue::Kind::string, at, std::move(text));
+}
+
 TomlValue made_number(double number, const Location& at) {
-    TomlValue value;
-    value.kind = TomlValue::Kind::number;
-    value.at = at;
+    TomlValue value = made(TomlValue::Kind::number, at, fmt::format("{}", number));
     value.number = number;
-    value.text = {fmt::format("{}", number), at, false};
     return value;
 }
 
 TomlValue made_boolean(bool boolean, const Location& at) {
-    TomlValue value;
-    value.kind = TomlValue::Kind::boolean;
-    value.at = at;
+    TomlValue value = made(TomlValue::Kind::boolean, at);
     value.boolean = boolean;
     return value;
 }
 
+TomlValue made_list(const Location& at) { return made(TomlValue::Kind::array, at); }
+
 TomlValue made_point(const std::array<std::string, 2>& point, const Location& at) {
-    TomlValue value;
-    value.kind = TomlValue::Kind::array;
-    value.at = at;
+    TomlValue value = made_list(at);
     for (const std::string& text : point) value.items.push_back(made_string(text, at));
     return value;
 }
 
-TomlValue made_table(const Location& at) {
-    TomlValue value;
-    value.at = at;
-    return value;
-}
+TomlValue made_table(const Location& at) { return made(TomlValue::Kind::table, at); }
 
 TomlValue* find_entry(TomlValue& table, std::string_view key) {
     for (TomlEntry& entry : table.entries)
@@ -92,12 +91,12 @@ class MechanismPainter {
                 add(drawings, ground_drawing(*ground), Layer::ground);
         }
         for (std::size_t i = 0; i < mechanism_.springs.size(); ++i)
-            if (mechanism_.springs[i].between && !mechanism_.springs[i].is_hidden) draw_connection(i, result.free);
+            if (!mechanism_.springs[i].is_hidden) draw_connection(i, result.free);
         for (const RigidBody* body : mechanism_.bodies()) {
             if (body->is_hidden) continue;
             if (auto drawing = body_drawing(*body)) add(result.free, std::move(*drawing), Layer::body);
             if (turns_visibly(*body)) add(result.free, spoke(*body), Layer::body);
-            if (body->is_jointed && body->shape != TouchShape::none) add(result.free, joint(*body), Layer::body);
+            if (body->joint && body->shape != TouchShape::none) add(result.free, joint(*body), Layer::body);
         }
         for (std::size_t i = 0; i < contacts_.size(); ++i)
             if (contacts_[i]) mark_contact(*contacts_[i], result.of_contacts[i], result.free);
@@ -140,6 +139,13 @@ class MechanismPainter {
     // A part of the size, with one digit.
     double part_of_size(double part) const { return read_number(fmt::format("{:.1g}", part * size_)).value; }
 
+    // The same in hundredths; in millionths if that is 0.
+    ProductSum length(double part) const {
+        const long hundredths = std::lround(100.0 * part * size_);
+        return hundredths != 0 ? symbols_.number(hundredths, 100)
+                               : symbols_.number(std::lround(1e6 * part * size_), 1'000'000);
+    }
+
     TomlValue shape(const char* name, const Location& at) const {
         TomlValue table = made_table(at);
         set_entry(table, "shape", made_string(name, at));
@@ -157,6 +163,13 @@ class MechanismPainter {
     }
     void put_point(TomlValue& table, const char* key, const MovingPoint& point) const {
         set_entry(table, key, made_point(world_point(symbols_, point), table.at));
+    }
+    // The limits of a curve's parameter, which is called like the abscissa.
+    ProductSum curve_parameter() const { return ProductSum::from(symbols_.graph().symbol(symbols_.abscissa())); }
+    void put_over(TomlValue& curve, const std::array<std::string, 2>& limits) const {
+        TomlValue over = made_point(limits, curve.at);
+        over.items.insert(over.items.begin(), made_string(symbols_.text(curve_parameter()), curve.at));
+        set_entry(curve, "over", std::move(over));
     }
     MovingPoint at(const PlacedShape& body, const LocalPoint& point) const {
         return symbols_.kinematics().point_in(body.frame, point.x, point.y);
@@ -179,11 +192,8 @@ class MechanismPainter {
         }
         if (ground.shape == TouchShape::curve) {
             TomlValue drawing = shape("curve", ground.at);
-            const ProductSum x = ProductSum::from(symbols_.graph().symbol(symbols_.abscissa()));
-            put_point(drawing, "at", at(ground, {x, ProductSum::from(ground.height)}));
-            TomlValue over = made_point({ground.over[0].text, ground.over[1].text}, ground.at);
-            over.items.insert(over.items.begin(), made_string(symbols_.text(x), ground.at));
-            set_entry(drawing, "over", std::move(over));
+            put_point(drawing, "at", at(ground, {curve_parameter(), ProductSum::from(ground.height)}));
+            put_over(drawing, {ground.over[0].text, ground.over[1].text});
             return drawing;
         }
         const bool is_disc = ground.shape == TouchShape::disc;
@@ -226,8 +236,7 @@ class MechanismPainter {
                 drawing = shape("polyline", body.at);
                 put(drawing, "color", steel);
                 set_entry(drawing, "fill", made_boolean(true, body.at));
-                TomlValue points = made_point({}, body.at);
-                points.items.clear();
+                TomlValue points = made_list(body.at);
                 for (std::size_t i = 0; i <= body.corners.size(); ++i)
                     points.items.push_back(
                         made_point(world_point(symbols_, at(body, body.corners[i % body.corners.size()])), body.at));
@@ -264,6 +273,7 @@ class MechanismPainter {
     // A spring or damper; side by side if several have the same ends.
     void draw_connection(std::size_t index, std::vector<TomlValue>& drawings) const {
         const SpringOrDamper& spring = mechanism_.springs[index];
+        if (!spring.between) return draw_torsion(spring, drawings);
         TomlValue drawing = shape(spring.is_damper ? "damper" : "spring", spring.at);
         const auto& [from, to] = *spring.between;
         long before = 0, all = 0;
@@ -286,6 +296,41 @@ class MechanismPainter {
         add(drawings, std::move(drawing), Layer::connection);
     }
 
+    // At the joint that turns by the angle: a spiral from the one body to the other, or a vane in a round housing. Nothing
+    // if no joint does.
+    void draw_torsion(const SpringOrDamper& spring, std::vector<TomlValue>& drawings) const {
+        const auto turns_alike = [&](const ProductSum& turn) {
+            return !symbols_.depends_on_coordinates(turn - spring.angle) ||
+                   !symbols_.depends_on_coordinates(turn + spring.angle);
+        };
+        for (const RigidBody* body : mechanism_.bodies()) {
+            if (!body->joint) continue;
+            const ProductSum& angle = body->frame.angle;
+            const bool is_of_joint = turns_alike(angle - *body->joint);
+            if (!is_of_joint && !turns_alike(angle)) continue;
+            const ProductSum s = curve_parameter(), pi = ProductSum::from(symbols_.graph().pi());
+            const auto add_curve = [&](const ProductSum& direction, const ProductSum& distance) {
+                TomlValue drawing = shape("curve", spring.at);
+                MovingPoint place = body->frame.origin;
+                place.position = place.position + PlanarVector(direction, distance, {});
+                put_point(drawing, "at", place);
+                put_over(drawing, {"0", "1"});
+                put(drawing, "width", 1.5);
+                add(drawings, std::move(drawing), Layer::connection);
+            };
+            if (spring.is_damper) {
+                const ProductSum radius = length(0.055), two = symbols_.number(2);
+                add_curve(angle + two * pi * s, radius);
+                add_curve(angle + symbols_.number(1, 4) * pi, (two * s - symbols_.number(1)).packed() * radius);
+            } else {
+                const ProductSum base = is_of_joint ? *body->joint : ProductSum{};
+                const ProductSum distance = (length(0.12) - s * length(0.055)).packed();
+                add_curve(base + s * (angle - base + symbols_.number(6) * pi), distance);
+            }
+            return;
+        }
+    }
+
     // What holds an end that is on no body.
     void draw_mount(const NamedPoint& end, const Location& at, std::vector<TomlValue>& drawings) const {
         if (end.carrier != nullptr) return;
@@ -299,10 +344,8 @@ class MechanismPainter {
 
     // The vector to the left of a spring whose length is this part of the size, with two digits.
     PlanarVector to_the_left(const SpringOrDamper& spring, double part) const {
-        const long hundredths = std::lround(100.0 * part * size_);
         if (part == 0.0) return {};
-        const ProductSum aside = hundredths != 0 ? symbols_.number(hundredths, 100)
-                                                 : symbols_.number(std::lround(1e6 * part * size_), 1'000'000);
+        const ProductSum aside = length(part);
         const auto& [from, to] = *spring.between;
         const PlanarVector along = to.point.position - from.point.position;
         const PointDistance length = distance_between(mechanism_, from, to, true, spring.at);
@@ -329,7 +372,7 @@ class MechanismPainter {
         }
         Graph& graph = symbols_.graph();
         const PlanarVector d = to.position - from.position;
-        const ProductSum s = ProductSum::from(graph.symbol(symbols_.abscissa()));
+        const ProductSum s = curve_parameter();
         const ProductSum &L = contact.longest, slack = power(L, 2) - dot(d, d, graph);
         // The tiny term keeps the root real where rounding makes the string a little too long.
         const ProductSum depth =
@@ -338,9 +381,7 @@ class MechanismPainter {
         PlanarVector place = from.position + PlanarVector({}, {}, -sag);
         for (const auto& [angle, x, y] : d.terms) place = place + PlanarVector(angle, s * x.packed(), s * y.packed());
         put_point(drawing, "at", {place, {}, {}});
-        TomlValue over = made_point({"0", "1"}, at);
-        over.items.insert(over.items.begin(), made_string(symbols_.text(s), at));
-        set_entry(drawing, "over", std::move(over));
+        put_over(drawing, {"0", "1"});
         return drawing;
     }
 

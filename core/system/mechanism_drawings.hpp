@@ -12,6 +12,7 @@ namespace achilles {
 TomlValue made_string(std::string text, const Location& at);
 TomlValue made_number(double number, const Location& at);
 TomlValue made_boolean(bool boolean, const Location& at);
+TomlValue made_list(const Location& at);  // empty
 TomlValue made_point(const std::array<std::string, 2>& point, const Location& at);
 TomlValue made_table(const Location& at);
 TomlValue& set_entry(TomlValue& table, const std::string& key, TomlValue value);  // adds or replaces

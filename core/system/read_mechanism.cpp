@@ -343,7 +343,7 @@ void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
         if (at != nullptr) origin = read_point(*at, fields, "at", on);
         body.frame = kinematics.frame_at(origin.point, axes, turn);
         if (at == nullptr) origin.carrier = on;
-        body.is_jointed = is_joint(body, origin);
+        body.joint = joint_of(body, origin);
         body.placement = "at " + origin.name;
     }
     if (angle != nullptr) body.placement += fmt::format(", rotated by `{}`", symbols_.text(turn));
@@ -357,11 +357,12 @@ void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
     if (const TomlValue* width = fields.find("width")) body.width = *width;
 }
 
-bool PlacedMechanism::is_joint(const RigidBody& body, const NamedPoint& origin) const {
+std::optional<ProductSum> PlacedMechanism::joint_of(const RigidBody& body, const NamedPoint& origin) const {
     const MovingFrame& base = origin.carrier ? origin.carrier->frame : world_.frame;
     const auto place = components(origin.point.position - base.origin.position, base.angle, symbols_.graph());
-    return symbols_.depends_on_coordinates(body.frame.angle - base.angle) &&
-           !symbols_.depends_on_coordinates(place[0]) && !symbols_.depends_on_coordinates(place[1]);
+    const bool turns = symbols_.depends_on_coordinates(body.frame.angle - base.angle);
+    if (!turns || symbols_.depends_on_coordinates(place[0]) || symbols_.depends_on_coordinates(place[1])) return {};
+    return base.angle;
 }
 
 void PlacedMechanism::read_points(PlacedShape& shape, const Fields& fields) {

@@ -162,6 +162,58 @@ constraint = [{gap = "y", restitution = 0.5}]
     }
 }
 
+// A spiral or a vane at the joint that turns by the angle, against the other body or the world.
+TEST(MechanismDrawings, PutTorsionSpringsAndDampersAtTheirJoints) {
+    const auto drawn = [](const std::string& angle, const std::string& more = "") {
+        return drawings_in(std::string(plane_head) + R"toml(body = [
+  {name = "a", mass = 1, rod = [[0, 0], [0, -1]], angle = "x"},
+  {name = "b", mass = 1, rod = [[0, 0], [0, -1]], on = "a", at = "end", angle = "-y"},
+  {name = "slider", mass = 1, at = ["phi", 0]}]
+constraint = [{gap = "phi + 1", restitution = 0}]
+spring = [{angle = ")toml" +
+                           angle + "\", stiffness = 1" + more + "}]\ndamper = [{angle = \"" + angle +
+                           "\", damping = 1" + more + "}]\n");
+    };
+    const std::map<std::string, double> start{{"x", 0.3}, {"y", 0.9}, {"phi", 0.0}};
+    const auto end_of = [&](const DrawingDescription& spiral, double s, double y) {
+        std::map<std::string, double> values = start;
+        values["y"] = y;
+        values[spiral.over] = s;
+        return std::array{value_in(spiral.points[0][0].text, values), value_in(spiral.points[0][1].text, values)};
+    };
+    for (const auto& [angle, axes] : {std::pair{"y", 0.3}, {"b.angle", 0.0}, {"2 - y", 0.3}}) {
+        const auto all = drawn(angle);
+        const auto curves = of_shape(all, Shape::curve);
+        ASSERT_EQ(curves.size(), 3U) << angle;
+        const DrawingDescription &spiral = curves[0], &housing = curves[1], &vane = curves[2];
+        const double joint[] = {std::sin(0.3), -std::cos(0.3)};
+        const auto outer = end_of(spiral, 0.0, 0.9), inner = end_of(spiral, 1.0, 0.9),
+                   turned = end_of(spiral, 1.0, 1.1);
+        // The outer end is held by the other body, the inner one turns with its own.
+        EXPECT_NEAR(std::atan2(outer[1] - joint[1], outer[0] - joint[0]), axes, 1e-12) << angle;
+        EXPECT_EQ(end_of(spiral, 0.0, 1.1), outer) << angle;
+        EXPECT_NEAR(std::atan2(inner[1] - joint[1], inner[0] - joint[0]), 0.3 - 0.9, 1e-12) << angle;
+        EXPECT_NEAR(std::atan2(turned[1] - joint[1], turned[0] - joint[0]), 0.3 - 1.1, 1e-12) << angle;
+        EXPECT_LT(std::hypot(inner[0] - joint[0], inner[1] - joint[1]),
+                  0.8 * std::hypot(outer[0] - joint[0], outer[1] - joint[1]));
+        // The vane is a diameter of the housing and turns with the body.
+        const auto rim = end_of(housing, 0.4, 0.9), tip = end_of(vane, 1.0, 0.9), other = end_of(vane, 0.0, 0.9);
+        const double radius = std::hypot(rim[0] - joint[0], rim[1] - joint[1]);
+        EXPECT_NEAR(std::hypot(tip[0] - joint[0], tip[1] - joint[1]), radius, 1e-12) << angle;
+        EXPECT_NEAR(std::hypot(tip[0] - other[0], tip[1] - other[1]), 2.0 * radius, 1e-12) << angle;
+        const auto later = end_of(vane, 1.0, 1.1);
+        EXPECT_NEAR(
+            std::atan2(tip[1] - joint[1], tip[0] - joint[0]) - std::atan2(later[1] - joint[1], later[0] - joint[0]),
+            0.2, 1e-12)
+            << angle;
+        EXPECT_EQ(spiral.color, "") << "like other springs";
+    }
+    EXPECT_EQ(of_shape(drawn("phi"), Shape::curve).size(), 0U) << "no joint turns by it";
+    EXPECT_EQ(of_shape(drawn("x + 2*y"), Shape::curve).size(), 0U);
+    EXPECT_EQ(of_shape(drawn("x"), Shape::curve).size(), 3U);
+    EXPECT_EQ(of_shape(drawn("y", ", hidden = true"), Shape::curve).size(), 0U);
+}
+
 // A string hangs down where it is slack, and is as long as it says while it sags little.
 TEST(MechanismDrawings, LetAStringSag) {
     const auto all = drawings_in(R"toml(coordinate = [{name = "x", start = 0.9}]
