@@ -11,6 +11,7 @@
 #include "model/unpressed.hpp"
 #include "number/float_environment.hpp"
 #include "number/jet.hpp"
+#include "system/expand.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -44,13 +45,21 @@ InputError Model::too_large(const char* what, const ExpressionTooLarge& problem)
     return description_.error(mistake.at, mistake.message, mistake.hint);
 }
 
-Expression Model::read(const Text& text, const Scope& scope, Graph& graph) const {
+Expression Model::read(const Text& typed, const Scope& scope, Graph& graph) const {
+    const bool is_in_file = typed.at.line > 0;
+    Text text = typed;
+    if (!is_in_file) text.at = {0, 1};
+    const auto error_at = [&](const Location& at, const std::string& message, const std::string& hint) {
+        // A text that is in no file is shown in the message itself.
+        return is_in_file ? description_.error(at, message, hint) : InputError({}, at, message, hint, typed.text);
+    };
     try {
+        text = with_body_values(description_, scope, text);
         return parse(text.text, scope, graph);
     } catch (const ParseError& error) {
-        if (text.at.line > 0) throw description_.error(place_in(text, error.offset), error.what(), error.hint);
-        // The text is in no file, so the message shows the text itself.
-        throw InputError({}, place_in({text.text, {0, 1}}, error.offset), error.what(), error.hint, text.text);
+        throw error_at(place_in(text, error.offset), error.what(), error.hint);
+    } catch (const Mistake& mistake) {
+        throw error_at(mistake.at, mistake.message, mistake.hint);
     }
 }
 

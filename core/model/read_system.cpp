@@ -38,6 +38,7 @@ SystemDescription parse_system(std::string text, std::string name) {
     const bool has_equations = check_expressions(read.system, std::move(read.names), read.mistakes);
     if (read.mistakes.count() > 0 && read.has_system && has_equations) check_start(read.system, read.mistakes);
     read.mistakes.raise(read.system);
+    if (!read.typed_views.empty()) read.system.views = std::move(read.typed_views);
     return std::move(read.system);
 }
 

@@ -371,6 +371,25 @@ MechanismExpansion expand_mechanism(TomlValue& root, ParsedFile& reading) {
     return result;
 }
 
+Text with_body_values(const SystemDescription& system, const Scope& scope, const Text& typed) {
+    const MechanismSummary& mechanism = system.mechanism;
+    const auto is_body = [&](std::string_view name) {
+        return !scope.allowed.contains(std::string(name)) &&
+               std::any_of(mechanism.bodies.begin(), mechanism.bodies.end(),
+                           [&](const SummaryLine& body) { return body.name == name; });
+    };
+    const auto names = dotted_names_in(typed.text);
+    const bool has_value = std::any_of(names.begin(), names.end(), [&](std::string_view name) {
+        return name.find('.') != name.npos || is_body(name);
+    });
+    if (mechanism.contacts.empty() || !has_value) return typed;
+    const TomlValue root = read_toml(system.source_text, system.file);
+    Names known;
+    for (const auto& [name, symbol] : scope.allowed) known.places.emplace(name, Location{});
+    ErrorCollector mistakes;  // stays empty: the file has been read before
+    return PlacedMechanism(root, system, known, mistakes).substituted(typed);
+}
+
 namespace {
 
 std::string quoted(const std::string& text) {

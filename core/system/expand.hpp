@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "expression/parse.hpp"
 #include "system/read_tables.hpp"
 #include "system/toml_tree.hpp"
 
@@ -15,6 +16,10 @@ struct MechanismExpansion {
     bool has_mechanism = false, has_failed = false;
 };
 MechanismExpansion expand_mechanism(TomlValue& root, ParsedFile& reading);
+
+// An expression as typed in a view or outside of the file, with values such as shank.end.x replaced as in the file; the
+// names of `scope` come first. Throws Mistake for a wrong name of a body or point.
+Text with_body_values(const SystemDescription& system, const Scope& scope, const Text& typed);
 
 // The tree as TOML, in the style of the gallery. [extra] is left out.
 std::string to_toml(const TomlValue& root);

@@ -195,6 +195,14 @@ class PlacedMechanism {
     const SystemDescription& system_;
 };
 
+// The names in an expression with the parts after their dots and with their primes, such as thigh.end.x', as pieces of
+// the text.
+std::vector<std::string_view> dotted_names_in(std::string_view text);
+
+// The two items of an array. Throws Mistake, which says what is expected.
+const std::vector<TomlValue>& two_items(const Fields& fields, std::string_view key, const TomlValue& value,
+                                        std::string_view expected);
+
 inline constexpr std::string_view closed_loop_advice =
     "for a closed loop choose coordinates that close the loop, or use a stiff spring";
 

@@ -15,8 +15,20 @@ namespace {
 constexpr std::size_t max_shapes = 200;    // bodies and grounds
 constexpr std::size_t max_text = 1000000;  // characters of an expression with the values of bodies
 
-// The names in an expression with the parts after their dots and with their primes, such as thigh.end.x', as pieces of
-// the text.
+}  // namespace
+
+const std::vector<TomlValue>& two_items(const Fields& fields, std::string_view key, const TomlValue& value,
+                                        std::string_view expected) {
+    if (value.kind != TomlValue::Kind::array) throw fields.wrong_type(key, value, expected);
+    const std::size_t n = value.items.size();
+    if (n != 2)
+        throw Mistake{
+            value.at,
+            fmt::format("'{}' in {} must be {}, not {} item{}", key, fields.where(), expected, n, n == 1 ? "" : "s"),
+            {}};
+    return value.items;
+}
+
 std::vector<std::string_view> dotted_names_in(std::string_view text) {
     std::vector<std::string_view> names;
     for (std::size_t at = 0; at < text.size();) {
@@ -32,6 +44,8 @@ std::vector<std::string_view> dotted_names_in(std::string_view text) {
     }
     return names;
 }
+
+namespace {
 
 std::vector<std::string> split_at_dots(const std::string& name) {
     std::vector<std::string> parts(1);
@@ -187,7 +201,10 @@ ProductSum PlacedMechanism::value_of(const std::string& token, const Location& a
         throw Mistake{at, fmt::format("{} is an acceleration", token), "it follows from the equations of motion"};
     const bool is_number = parts.size() > 1 && (last == "x" || last == "y" || last == "angle");
     if (!is_number) {
-        if (parts.size() > 1) find_point({name, at}, nullptr);  // reports unknown names
+        if (parts.size() > 1) find_point({parts[0] + "." + parts[1], at}, nullptr);  // reports unknown names
+        if (parts.size() > 2)
+            throw Mistake{at, fmt::format("'{}' is not a coordinate of a point", name),
+                          fmt::format("write {0}.{1}.x or {0}.{1}.y", parts[0], parts[1])};
         const Entry* entry = entry_of(parts[0]);
         const char* what = parts.size() > 1 ? "point" : entry == nullptr ? "place" : entry->ground ? "ground" : "body";
         throw Mistake{

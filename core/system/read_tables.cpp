@@ -504,6 +504,9 @@ ParsedFile read_tables(std::string text, std::string name, std::string* expanded
                     system.reinitialization_at = word->at;
             });
     rewrite(read);
+    TomlValue typed;
+    for (const TomlEntry& entry : root.entries)
+        if (entry.key == "view") typed.entries.push_back(entry);
     reading.expansion = expand_mechanism(root, read);
     if (expanded != nullptr) *expanded = to_toml(with_title(root, system.title));
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
@@ -512,6 +515,9 @@ ParsedFile read_tables(std::string text, std::string name, std::string* expanded
     if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);
+    ErrorCollector reported;
+    for (Fields& view : tables(typed, "view", reported))
+        reported.attempt([&] { read.typed_views.push_back(read_view(view, reported)); });
     return read;
 }
 

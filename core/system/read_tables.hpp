@@ -30,7 +30,8 @@ struct ParsedFile {
     SystemDescription system;
     Names names;
     ErrorCollector mistakes;
-    bool has_system = false;  // any mistakes so far are in drawings and views only
+    std::vector<ViewDescription> typed_views;  // with names such as thigh.end.x as typed
+    bool has_system = false;                   // any mistakes so far are in drawings and views only
 };
 
 // Reads the tables of a system file from its text; `name` is the file's name in messages. Throws InputError if nothing

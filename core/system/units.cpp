@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "expression/parse.hpp"
+#include "system/expand.hpp"
 
 namespace achilles {
 
@@ -109,7 +110,7 @@ std::string written(const Unit& unit) {
 class SymbolUnits {
  public:
     // Of the derived quantities, reads only those that the expression may name, because kinetic energies are long.
-    SymbolUnits(const SystemDescription& description, std::string_view expression) {
+    SymbolUnits(const SystemDescription& description, std::string_view expression) : description_(description) {
         const auto names = [&](std::string_view name) { return expression.find(name) != std::string_view::npos; };
         const MaybeUnit second = read("s");
         bool has_units = false;
@@ -151,7 +152,9 @@ class SymbolUnits {
 
     MaybeUnit of(std::string_view text) {
         try {
-            return unit_of(parse(text, scope_, graph_));
+            return unit_of(parse(with_body_values(description_, scope_, {std::string(text), {}}).text, scope_, graph_));
+        } catch (const Mistake&) {  // an unknown name of a body
+            return std::nullopt;
         } catch (const ParseError&) {
             return std::nullopt;
         } catch (const ExpressionTooLarge&) {
@@ -202,6 +205,7 @@ class SymbolUnits {
         }
     }
 
+    const SystemDescription& description_;
     Graph graph_;
     Scope scope_;
     std::vector<MaybeUnit> symbols_, nodes_;

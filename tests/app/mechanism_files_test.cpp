@@ -1,6 +1,8 @@
 // Mistakes in files of bodies as a user meets them: status 2, the caret under the mistake, and nothing written.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdio>
 #include <regex>
 #include <sstream>
 
@@ -81,6 +83,44 @@ TEST_P(MechanismFiles, AreRefusedWithTheCaretAtTheMistake) {
         while (std::getline(message, shown) && shown.find_first_not_of(' ') != shown.rfind('^')) previous = shown;
         EXPECT_EQ(previous.substr(shown.find('^')).find(std::string(one.caret).substr(0, 3)), 0U) << answer.err;
     }
+}
+
+// Names of bodies in options: values, their units, derivatives, and what is told of a wrong name.
+TEST(NamesOfBodies, AreKnownToSweeps) {
+    const Folder folder;
+    folder.put("arm.toml", R"(coordinate = [{name = "theta", start = 0.5, unit = "rad"}]
+parameter = [{name = "L", value = 2, unit = "m"}]
+body = [{name = "arm", mass = 1, rod = [[0, 0], ["L", 0]], angle = "theta"}]
+constraint = [{gap = "theta", restitution = 0.5}]
+run = {end_time = 1}
+)");
+    const std::string sweep = "sweep arm.toml --over L=1:3:3 --csv - --print ";
+    const Answer values = folder.run(sweep + "arm.end.x --print \"d(arm.end.y, theta)\"");
+    EXPECT_EQ(values.status, 0) << values.err;
+    std::istringstream lines(values.out);
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_NE(line.find("arm.end.x"), std::string::npos) << line;
+    for (const double length : {1.0, 2.0, 3.0}) {
+        ASSERT_TRUE(std::getline(lines, line));
+        double L = 0.0, x = 0.0, slope = 0.0;
+        ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &L, &x, &slope), 3) << line;
+        EXPECT_EQ(L, length);
+        EXPECT_NEAR(x, length * std::cos(0.5), 1e-12);
+        EXPECT_NEAR(slope, length * std::cos(0.5), 1e-9);
+    }
+    for (const auto& [print, message] :
+         {std::pair{"am.end.x", "--print am.end.x:1: unknown body or ground 'am'; did you mean 'arm'?"},
+          {"arm.tip.x", "unknown point 'tip' of 'arm'"},
+          {"arm", "'arm' is a body, and a number is needed here"},
+          {"arm.end", "write arm.end.x or arm.end.y"},
+          {"1+arm.end.z", "write arm.end.x or arm.end.y"}}) {
+        const Answer wrong = folder.run(sweep + print);
+        EXPECT_EQ(wrong.status, 2) << print;
+        EXPECT_NE(wrong.err.find(message), std::string::npos) << wrong.err;
+        EXPECT_NE(wrong.err.find('^'), std::string::npos) << wrong.err;
+    }
+    EXPECT_EQ(folder.run("sweep arm.toml --over L=1:3:3 --print t --at \"arm.end.x - 1\"").status, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(OneAtATime, MechanismFiles, testing::ValuesIn(file_mistakes),

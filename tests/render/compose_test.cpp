@@ -207,6 +207,22 @@ TEST(FigureComposition, AnglesThatAreComputedAreShownInDegrees) {
     }
 }
 
+// A point of a body is called as typed, in the unit of its value.
+TEST(FigureComposition, PointsOfBodiesKeepTheirNames) {
+    const auto model = std::make_shared<const Model>(parse_system(R"(coordinate = [{name = "theta", unit = "rad"}]
+parameter = [{name = "L", value = 2, unit = "m"}]
+body = [{name = "arm", mass = 1, rod = [[0, 0], [0, "-L"]], angle = "theta"}]
+constraint = [{gap = "theta + 1", restitution = 0}]
+view = [{x = "t", y = "arm.end.x"}, {x = "arm.angle", y = "arm.end.y'"}]
+)"));
+    const auto& views = model->description().views;
+    const PreparedView place(*model, views[0]), rate(*model, views[1]);
+    EXPECT_EQ(with_unit(place.label(), place.unit()), "arm.end.𝑥 (m)");
+    EXPECT_EQ(with_unit(rate.label(), rate.unit()), "arm.end.𝑦\u0307 (m/s)");
+    EXPECT_EQ(name_of(views[0]), "arm.end.x");
+    EXPECT_EQ(rate.quantities()[0].unit, "°");
+}
+
 // With thousands of steps, no flight may lose its height.
 TEST(FigureComposition, EveryOneOfVeryManyFlightsHasItsHeight) {
     const auto model = test::load("ball_on_floor");

@@ -11,6 +11,7 @@
 #include "expression/parse.hpp"
 #include "output/output.hpp"
 #include "run/trajectory.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 namespace {
@@ -191,6 +192,46 @@ TEST(DrawingsOnBodies, AreTurnedWithTheirParameter) {
 // ---- prescribed motion ----
 
 // In axes that move and turn with time, a free body moves on a straight line of the world, and a free spin stays.
+// Views keep the names of bodies as typed, and every expression that is typed later knows them; a coordinate comes before
+// a body with its name.
+TEST(NamesOfBodies, StayInViewsAndAreKnownLater) {
+    const std::string text = R"toml(coordinate = [{name = "theta", start = 0.3, rate = 2, unit = "rad"}, {name = "s"}]
+parameter = [{name = "L", value = 2, unit = "m"}]
+body = [
+  {name = "arm", mass = 1, rod = [[0, 0], ["L", 0]], angle = "theta"},
+  {name = "s", mass = 1, at = ["s", 5]}]
+constraint = [{gap = "arm.end.y", restitution = 0}]
+view = [{x = "arm.end.x", y = ["2*arm.end.y", "s.y"]}]
+)toml";
+    const Model model(parse_system(text, "f.toml"));
+    const ViewDescription& view = model.description().views.at(0);
+    EXPECT_EQ(view.x.text, "arm.end.x");
+    EXPECT_EQ(view.y[0].text, "2*arm.end.y");
+    EXPECT_EQ(view.name, "2*arm.end.y");
+    const auto value = [&](const std::string& expression) {
+        const Text typed{expression, {}};
+        const Program program = model.compile_view({&typed, 1});
+        auto run = model.evaluator<double>(program, model.default_run().parameters);
+        const achilles::Run start = model.default_run();
+        set_state(run, {start.q, start.v});
+        run.run();
+        return run.output(0);
+    };
+    EXPECT_NEAR(value("arm.end.x + s.y"), 2.0 * std::cos(0.3) + 5.0, 1e-15);
+    EXPECT_NEAR(value("arm.end.y'"), 4.0 * std::cos(0.3), 1e-15);
+    EXPECT_EQ(value("s + 1"), 1.0);
+    EXPECT_EQ(unit_of_expression(model.description(), "arm.end.x"), "m");
+    EXPECT_EQ(unit_of_expression(model.description(), "arm.angle'"), "rad/s");
+    EXPECT_EQ(unit_of_expression(model.description(), "am.end.x"), "");
+    try {
+        value("1 + arm.edn.x");
+        FAIL() << "no such point";
+    } catch (const InputError& error) {
+        EXPECT_EQ(error.message, "unknown point 'edn' of 'arm'; did you mean 'end'?");
+        EXPECT_EQ(error.at.column, 5);
+    }
+}
+
 TEST(PrescribedMotion, LeavesAFreeBodyOnAStraightLine) {
     const auto model = test::typed(
         R"toml(coordinate = [{name = "x", start = 0.4, rate = 0.3}, {name = "y", start = -0.2}, {name = "phi", rate = 2}]
