@@ -39,8 +39,7 @@ class ContactReader {
           between_(fields.need("between")) {}
 
     ShapeContact read() {
-        if (between_.kind != TomlValue::Kind::array || between_.items.size() != 2)
-            throw fields_.wrong_type("between", between_, "[what touches, what is touched]");
+        two_items(fields_, "between", between_, "[what touches, what is touched]");
         const TomlValue* longest = fields_.find("longest");
         if (longest != nullptr) {
             read_string(*longest);
@@ -78,7 +77,7 @@ class ContactReader {
         result_.name = fmt::format("string from {} to {}", from.name, to.name);
         result_.force = "lambda is the tension";
         result_.behind =
-            fmt::format("'{}' and '{}' start {{}} farther apart than the string is long", from.name, to.name);
+            fmt::format("'{}' and '{}' start {{:.4g}} farther apart than the string is long", from.name, to.name);
         result_.hint = "choose a nearer start or a longer string";
         result_.point = from;
         result_.other = to;
@@ -141,7 +140,7 @@ class ContactReader {
         result_.name = fmt::format("{} {} {}", result_.point.name, touched.shape == TouchShape::ring ? "inside" : "on",
                                    touched.name);
         result_.force = "a distance: lambda is the force";
-        result_.behind = fmt::format("'{}' starts {{}} {} '{}'", result_.point.name, side->other, touched.name);
+        result_.behind = fmt::format("'{}' starts {{:.4g}} {} '{}'", result_.point.name, side->other, touched.name);
         result_.hint = side->hint;
         if (touched.is_ground) speed_ = static_cast<const GroundSurface&>(touched).speed;
         turning_ = touched.frame.rate + touched.frame.drift;

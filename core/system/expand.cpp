@@ -303,8 +303,10 @@ class MechanismExpander {
         if (!body.inertia.is_zero()) {
             line.pattern += fmt::format(", {{{}}} about its center", line.values.size());
             line.values.push_back(symbols_.text(body.inertia));
-            // Lengths that are plain numbers have no unit of their own.
-            if (!body.mass.is_zero() && unit_of_expression(system_, line.values[0]) == "kg") line.units = {"", "kg*m^2"};
+            // Masses and lengths that are plain numbers have no unit of their own.
+            const bool has_mass = !body.mass.is_zero();
+            if (has_mass && unit_of_expression(system_, line.values[0]) == "kg") line.units = {"", "kg*m^2"};
+            if (has_mass && unit_of_expression(system_, line.values[1]) == "m^2") line.units = {"kg", "kg*m^2"};
             if (!body.how.empty()) line.pattern += fmt::format(" ({})", body.how);
         } else if (!body.mass.is_zero()) {
             line.pattern += ", a point";

@@ -153,6 +153,7 @@ class PlacedMechanism {
         Fields fields;
         std::unique_ptr<RigidBody> body;  // one of the two
         std::unique_ptr<GroundSurface> ground;
+        bool has_unknown_keys;  // reported: what follows from the lack of the right ones is not
         enum class State { unseen, on_the_way, done, failed } state = State::unseen;
         PlacedShape& shape() const { return body ? static_cast<PlacedShape&>(*body) : *ground; }
     };
@@ -174,6 +175,7 @@ class PlacedMechanism {
     void place_ground(GroundSurface& ground, const Fields& fields);
     void place_on_ground(RigidBody& body, const Fields& fields, const GroundSurface& ground);
     void place_on_curve(RigidBody& body, const LocalPoint& place, const GroundSurface& curve);
+    bool is_zero_at_start(const LocalPoint& vector) const;
     void read_shape(PlacedShape& shape, const Fields& fields);
     void read_mass(RigidBody& body, const Fields& fields);
     ProductSum spread_mass(RigidBody& body) const;

@@ -18,8 +18,8 @@ void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) 
     ground.on = on;
     read_shape(ground, fields);
     if (ground.shape == TouchShape::none)
-        throw Mistake{ground.at, fmt::format("the ground '{}' has no shape", ground.name),
-                      "write one of: line = [from, to], curve = \"f(x)\", disc = r, ring = r"};
+        fields.need("line", {ground.at, fmt::format("the ground '{}' has no shape", ground.name),
+                             "write one of: line = [from, to], curve = \"f(x)\", disc = r, ring = r"});
     const bool is_round = ground.shape == TouchShape::disc || ground.shape == TouchShape::ring;
     if (const TomlValue* at = fields.find("at")) {
         if (!is_round)
@@ -34,11 +34,12 @@ void PlacedMechanism::place_ground(GroundSurface& ground, const Fields& fields) 
         throw Mistake{over->at, "'over' belongs to a curve", "leave it out: a line is infinite"};
     if (ground.shape != TouchShape::curve) return;
     ground.height = read(fields.expression("curve"), Allowed::curve).expression(symbols_.graph());
-    const TomlValue& over = fields.need("over");
-    if (over.kind != TomlValue::Kind::array || over.items.size() != 2)
-        throw fields.wrong_type("over", over, "where the curve is drawn, [low, high]");
-    ground.over = {substituted(fields.expression("over", over.items[0])),
-                   substituted(fields.expression("over", over.items[1]))};
+    fields.need("over", {ground.at, fmt::format("missing key 'over' in {}", fields.where()),
+                         "write over = [low, high], where the curve is drawn"});
+    const TomlValue& over = *fields.find("over");
+    const std::vector<TomlValue>& limits = two_items(fields, "over", over, "where the curve is drawn, [low, high]");
+    ground.over = {substituted(fields.expression("over", limits[0])),
+                   substituted(fields.expression("over", limits[1]))};
 }
 
 // Places a body at [s, d], and finds the velocity of its origin along the tangent, in the axes of the ground.
@@ -136,10 +137,9 @@ void PlacedMechanism::read_springs(const TomlValue& root, const char* key) {
             if (between != nullptr && angle != nullptr)
                 throw Mistake{angle->at, fmt::format("{} needs either 'between' or 'angle'", fields.where()), {}};
             if (between != nullptr) {
-                if (between->kind != TomlValue::Kind::array || between->items.size() != 2)
-                    throw fields.wrong_type("between", *between, "two points");
-                spring.between = {read_point(between->items[0], fields, "between", nullptr),
-                                  read_point(between->items[1], fields, "between", nullptr)};
+                const std::vector<TomlValue>& ends = two_items(fields, "between", *between, "two points");
+                spring.between = {read_point(ends[0], fields, "between", nullptr),
+                                  read_point(ends[1], fields, "between", nullptr)};
                 if (is_rigid((*spring.between)[0], (*spring.between)[1]))
                     throw Mistake{
                         between->at,

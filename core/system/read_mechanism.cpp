@@ -86,8 +86,13 @@ PlacedMechanism::PlacedMechanism(const TomlValue& root, const SystemDescription&
 
 // The names of all bodies and grounds, before any of them is placed.
 void PlacedMechanism::list_names(const TomlValue& root, const char* key) {
-    for (Fields& fields : tables(root, key, mistakes_)) {
+    const std::size_t before_tables = mistakes_.count();
+    std::vector<Fields> list = tables(root, key, mistakes_);
+    are_names_complete_ = are_names_complete_ && names_.complete && mistakes_.count() == before_tables;
+    for (Fields& fields : list) {
+        const std::size_t before = mistakes_.count();
         fields.allow(keys_of(fields.where()), mistakes_);
+        const bool has_unknown_keys = mistakes_.count() > before;
         const bool is_ground = fields.where() == "[[ground]]";
         const bool is_listed = mistakes_.attempt([&] {
             const Text name = fields.string("name");
@@ -103,7 +108,7 @@ void PlacedMechanism::list_names(const TomlValue& root, const char* key) {
             }
             if (entries_.size() == max_shapes)
                 throw Mistake{fields.table().at, fmt::format("more than {} bodies and grounds", max_shapes), {}};
-            Entry entry{fields, nullptr, nullptr};
+            Entry entry{fields, nullptr, nullptr, has_unknown_keys};
             if (is_ground)
                 entry.ground = std::make_unique<GroundSurface>();
             else
@@ -274,7 +279,10 @@ ProductSum PlacedMechanism::read(const Text& text, Allowed allowed, const std::s
             if (!names_.complete || names_.reported.contains(bare)) throw ErrorAlreadyReported{};
             names_.reported.insert(bare);
         }
-        throw Mistake{place_in(plain, error.offset), error.what(), error.hint};
+        const auto apart = measured(text.text);
+        const bool has_unit = apart && !symbols_.scope(allowed).allowed.contains(apart->unit);
+        throw Mistake{place_in(plain, error.offset), error.what(),
+                      has_unit ? "write the number alone, in kg, m, s, rad and N" : error.hint};
     } catch (const std::domain_error& error) {
         throw Mistake{text.at, error.what(), {}};
     }
@@ -318,8 +326,8 @@ void PlacedMechanism::place(Entry& entry) {
             place_ground(*entry.ground, entry.fields);
     });
     way_.pop_back();
-    entry.state = is_placed ? done : failed;
-    if (!is_placed) throw ErrorAlreadyReported{};
+    entry.state = is_placed && !entry.has_unknown_keys ? done : failed;
+    if (entry.state == failed) throw ErrorAlreadyReported{};
 }
 
 void PlacedMechanism::read_world(const TomlValue& root) {
@@ -395,7 +403,8 @@ void PlacedMechanism::read_points(PlacedShape& shape, const Fields& fields) {
             if (is_reserved_name)
                 throw Mistake{entry.at, fmt::format("the point name '{}' is reserved", entry.key),
                               "choose another name"};
-            shape.points.emplace(entry.key, read_local(entry.value, fields, "points", Allowed::positions));
+            LocalPoint& point = shape.points[entry.key];  // also after a mistake, so that the name is known
+            point = read_local(entry.value, fields, "points", Allowed::positions);
         });
 }
 
@@ -410,6 +419,14 @@ constexpr ShapeKey shape_keys[] = {
     {"polygon", TouchShape::polygon}, {"line", TouchShape::line}, {"curve", TouchShape::curve}};
 
 }  // namespace
+
+// True if a vector is 0 for the parameters of the file.
+bool PlacedMechanism::is_zero_at_start(const LocalPoint& vector) const {
+    const auto is_nothing = [&](const ProductSum& part) {
+        return part.is_zero() || (symbols_.is_constant(part) && symbols_.at_start(part) == 0.0);
+    };
+    return is_nothing(vector.x) && is_nothing(vector.y);
+}
 
 void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
     const ShapeKey* found = nullptr;
@@ -443,10 +460,9 @@ void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
             break;
         case TouchShape::rod:
         case TouchShape::line:
-            if (value.kind != TomlValue::Kind::array || value.items.size() != 2)
-                throw fields.wrong_type(found->key, value, "two points, [from, to]");
+            two_items(fields, found->key, value, "two points, [from, to]");
             read_corners({"start", "end"});
-            if (shape.corners[0].x == shape.corners[1].x && shape.corners[0].y == shape.corners[1].y)
+            if (is_zero_at_start({shape.corners[1].x - shape.corners[0].x, shape.corners[1].y - shape.corners[0].y}))
                 throw Mistake{
                     value.at, fmt::format("'{}' in {}: its ends are one point", found->key, fields.where()), {}};
             break;
@@ -457,8 +473,7 @@ void PlacedMechanism::read_shape(PlacedShape& shape, const Fields& fields) {
             read_corners({});
             break;
         case TouchShape::box: {
-            if (value.kind != TomlValue::Kind::array || value.items.size() != 2)
-                throw fields.wrong_type("box", value, "its width and height, [w, h]");
+            two_items(fields, "box", value, "its width and height, [w, h]");
             shape.size = {read_positive(fields, "box", value.items[0], false),
                           read_positive(fields, "box", value.items[1], false)};
             const ProductSum half = symbols_.number(1, 2), x = half * shape.size.x, y = half * shape.size.y;

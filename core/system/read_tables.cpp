@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <climits>
+#include <limits>
 #include <utility>
 
 #include "expression/name_suggestions.hpp"
@@ -179,10 +180,11 @@ void read_parameters(FileReader& reading) {
             if (is_named) read_derived(reading, fields, {parameter.name, parameter.unit, parameter.about, {}});
             continue;
         }
-        mistakes.attempt([&] {
+        const bool has_value = mistakes.attempt([&] {
             parameter.value = fields.number("value", parameter.unit);
             parameter.at = fields.need("value").at;
         });
+        if (!has_value) parameter.value = std::numeric_limits<double>::quiet_NaN();  // so that nothing is said of it
         const bool is_restitution = contains(restitutions, parameter.name);
         const std::array<double, 2> usual = is_restitution ? std::array{0.0, 1.0} : range_around(parameter.value);
         parameter.has_range = fields.find("range") != nullptr;

@@ -51,6 +51,8 @@ const FileMistake file_mistakes[] = {
      "choose coordinates that close the loop"},
     {"Joint", "double_pendulum", "run = {", "joint = [{body = \"upper\"}]\nrun = {", "joint", "no joints"},
     {"GravityAlone", "falling_rod", R"(gravity = [0, "-g"])", R"(gravity = "-g")", "\"-g\"", R"(gravity = [0, "-g"])"},
+    {"UnknownShape", "double_pendulum", "rod = [[0, 0], [0, \"-L2\"]]", "bar = [[0, 0], [0, \"-L2\"]]", "bar",
+     "unknown key 'bar'"},
     {"WordOfAnotherProgram", "double_pendulum", R"(mass = "m1")", R"(m = "m1")", "m = ", "did you mean 'mass'?"},
 };
 

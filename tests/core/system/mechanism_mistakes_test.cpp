@@ -86,6 +86,43 @@ place one of them by coordinates; for a closed loop choose coordinates that clos
       {name = "ball", mass = "m", disc = "r", at = ["x", "ball.y"], ang...
                ^
 place one of them by coordinates; for a closed loop choose coordinates that close the loop, or use a stiff spring)m"},
+    {"LineOfNoLength", R"m([[-2, 0], [2, 0]])m", R"m([["m - 3", 0], [-2, 0]])m",
+     R"m(f.toml:7:35: 'line' in [[ground]]: its ends are one point
+    ground = [{name = "floor", line = [["m - 3", 0], [-2, 0]]}]
+                                      ^)m"},
+    {"MassWithUnit", R"m(mass = "m")m", R"m(mass = "2 mg")m",
+     R"m(f.toml:5:29: 'mg' may not follow a number: write numbers without units (a file has the key unit for that) and products with '*'
+      {name = "ball", mass = "2 mg", disc = "r", at = ["x", "y"], angle = "phi"},
+                                ^
+write the number alone, in kg, m, s, rad and N)m"},
+    {"OneEnd", R"m(["ball", "floor"])m", R"m(["ball"])m",
+     R"m(f.toml:9:26: 'between' in [[constraint]] must be [what touches, what is touched], not 1 item
+    constraint = [{between = ["ball"], restitution = 0.5}]
+                             ^)m"},
+    {"ThirdAxis", R"m(0]]}]
+)m",
+     R"m(0]]}]
+view = [{name = "v", x = "t", y = ["ball.center.z"]}]
+)m",
+     R"m(f.toml:8:37: 'ball.center.z' is not a coordinate of a point
+    view = [{name = "v", x = "t", y = ["ball.center.z"]}]
+                                        ^
+write ball.center.x or ball.center.y)m"},
+    {"UnknownShape", R"m(disc = "r")m", R"m(rodd = "r")m",
+     R"m(f.toml:5:31: unknown key 'rodd' in [[body]]; did you mean 'rod'?
+      {name = "ball", mass = "m", rodd = "r", at = ["x", "y"], angle = "phi"},
+                                  ^
+known keys: name, at, angle, on, mass, rod, disc, ring, box, polygon, center, inertia, points, color, width, hidden)m"},
+    {"UnknownShapeOfAGround", R"m(line = [[-2)m", R"m(lin = [[-2)m",
+     R"m(f.toml:7:28: unknown key 'lin' in [[ground]]; did you mean 'line'?
+    ground = [{name = "floor", lin = [[-2, 0], [2, 0]]}]
+                               ^
+known keys: name, line, curve, over, disc, ring, at, on, speed)m"},
+    {"UnknownTable", R"m(body = [)m", R"m(bodies = [)m",
+     R"m(f.toml:4:1: unknown key 'bodies' in a system file; did you mean 'body'?
+    bodies = [
+    ^
+known keys: title, source, coordinate, parameter, lagrangian, constraint, world, body, ground, spring, damper, force, torque, run, view, drawing, truncation, orbit, extra)m"},
     {"Color", R"m(disc = "r", )m", R"m(disc = "r", color = "red", )m",
      R"m(f.toml:5:52: 'red' is not a color
       {name = "ball", mass = "m", disc = "r", color = "red", at = ["x", "y"], angle = "phi"},
@@ -126,7 +163,7 @@ lagrangian = {kinetic = "x'^2"}
                             ^
 leave it out, or leave out [[body]]; potential, dissipation and force may be given)m"},
     {"StringTooShort", R"m("ball", "floor"])m", R"m("world.hook", "ball"], longest = 1)m",
-     R"m(f.toml:9:26: 'world.hook' and 'ball' start 2.0016662039607267 farther apart than the string is long
+     R"m(f.toml:9:26: 'world.hook' and 'ball' start 2.002 farther apart than the string is long
     constraint = [{between = ["world.hook", "ball"], longest = 1, restitution = 0.5}]
                              ^
 choose a nearer start or a longer string)m"},
