@@ -143,8 +143,8 @@ class ContactReader {
         result_.behind = fmt::format("'{}' starts {{:.4g}} {} '{}'", result_.point.name, side->other, touched.name);
         result_.hint = side->hint;
         if (touched.is_ground) speed_ = static_cast<const GroundSurface&>(touched).speed;
-        turning_ = touched.frame.rate + touched.frame.drift;
-        if (result_.touches != nullptr) spin_ = result_.touches->frame.rate + result_.touches->frame.drift;
+        turning_ = touched.frame.turning();
+        if (result_.touches != nullptr) spin_ = result_.touches->frame.turning();
         const bool is_body = result_.touches != nullptr && !result_.touches->is_ground && result_.point.is_whole;
         const auto* body = is_body ? static_cast<const RigidBody*>(result_.touches) : nullptr;
         if (body != nullptr && body->on == &touched && !(is_curve && radius_.is_zero())) return touch_carrier(*body);
@@ -167,7 +167,7 @@ class ContactReader {
     };
     RelativeMotion relative_to(const MovingPoint& origin) const {
         const MovingPoint& p = result_.point.point;
-        return {p.position - origin.position, p.velocity + p.drift - (origin.velocity + origin.drift)};
+        return {p.position - origin.position, p.motion() - origin.motion()};
     }
 
     // h = n.(p - a) - r, slip = e.(v_p - v_a) - W e.J(p - a) + r (w - W) - speed, with the tangent e and J a quarter turn.

@@ -176,6 +176,13 @@ Mistake Fields::wrong_type(std::string_view key, const TomlValue& value, std::st
     return {value.at, fmt::format("'{}' in {} must be {}, not {}", key, where_, expected, kind_name(value.kind)), {}};
 }
 
+Mistake no_name(const Text& name) {
+    const std::string latin = spelled_out(name.text);
+    return {name.at, fmt::format("'{}' is not a name", shown(name.text)),
+            is_name(latin) ? "spell out Greek letters: write " + latin
+                           : "a name is a letter followed by letters, digits and underscores"};
+}
+
 void read_unit(const Fields& fields, std::string& unit) {
     unit = fields.string_or("unit", "");
     for (std::size_t at = 0; at < unit.size(); ++at) {

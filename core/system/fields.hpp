@@ -59,6 +59,9 @@ class Fields {
     std::vector<std::string> misspelt_;  // keys present under a misspelled name
 };
 
+// For a text that is no name. A Greek letter is spelled out in the advice.
+Mistake no_name(const Text& name);
+
 // Reads the unit of the quantity. Degrees are not allowed, because sines are evaluated in radians; after this mistake
 // the unit is set to rad. Throws Mistake.
 void read_unit(const Fields& fields, std::string& unit);

@@ -110,7 +110,8 @@ struct AppliedLoad {
     std::optional<NamedPoint> point, against_point;       // force
     const RigidBody *body = nullptr, *against = nullptr;  // torque
     MovingFrame axes;                                     // of the force
-    ProductSum x, y, torque;
+    LocalPoint force;
+    ProductSum torque;
     Location at;
 };
 
@@ -167,7 +168,9 @@ class PlacedMechanism {
     void list_names(const TomlValue& root, const char* key);
     void read_world(const TomlValue& root);
     void read_springs(const TomlValue& root, const char* key);
-    void read_loads(const TomlValue& root);
+    void read_loads(const TomlValue& root, const char* key);
+    void read_force(AppliedLoad& load, const Fields& fields);
+    void read_torque(AppliedLoad& load, const Fields& fields);
     Entry* entry_of(const std::string& name);
     void place(Entry& entry);
     void place_body(RigidBody& body, const Fields& fields);

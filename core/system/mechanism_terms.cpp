@@ -131,7 +131,7 @@ class TermDeriver {
             length = distance_between(mechanism_, (*spring.between)[0], (*spring.between)[1], true, spring.at);
         } else {
             length.value = spring.angle;
-            length.rate = kinematics_.rate_of(spring.angle) + kinematics_.drift_of(spring.angle);
+            length.rate = kinematics_.change_of(spring.angle);
         }
         if (!symbols_.depends_on_coordinates(length.value))
             throw Mistake{spring.at,
@@ -155,7 +155,7 @@ class TermDeriver {
     }
 
     void add_load(const AppliedLoad& load) {
-        const PlanarVector force(load.axes.angle, load.x.packed(), load.y.packed());
+        const PlanarVector force(load.axes.angle, load.force.x.packed(), load.force.y.packed());
         bool has_motion = false;
         for (std::size_t i = 0; i < kinematics_.rates().size(); ++i) {
             const std::uint32_t rate = kinematics_.rates()[i];
@@ -215,12 +215,12 @@ PointDistance distance_between(const PlacedMechanism& mechanism, const NamedPoin
     if (may_be_signed && (part[0].is_zero() || part[1].is_zero())) {
         const ProductSum& along = part[0].is_zero() ? part[1] : part[0];
         result.value = symbols.at_start(along) < 0.0 ? -along : along;
-        result.rate = kinematics.rate_of(result.value) + kinematics.drift_of(result.value);
+        result.rate = kinematics.change_of(result.value);
         result.is_signed = true;
         return result;
     }
     result.value = symbols.positive_root(power(part[0], 2) + power(part[1], 2));
-    const PlanarVector motion = to.point.velocity + to.point.drift - (from.point.velocity + from.point.drift);
+    const PlanarVector motion = to.point.motion() - from.point.motion();
     result.rate = dot(d, motion, graph).packed() / result.value;
     return result;
 }

@@ -51,7 +51,7 @@ void PlacedMechanism::place_on_ground(RigidBody& body, const Fields& fields, con
                       fmt::format("'{}' is on the ground '{}': 'at' must be [s, d]", body.name, ground.name),
                       "s is the place along the ground, d the distance from it to the free side"};
     const LocalPoint place = read_local(*at, fields, "at", Allowed::positions);
-    const ProductSum &s = place.x, &d = place.y, s_rate = kinematics.rate_of(s) + kinematics.drift_of(s);
+    const ProductSum &s = place.x, &d = place.y, s_rate = kinematics.change_of(s);
     body.height = d;
     body.placement = fmt::format("on {} at `{}`, `{}` from it", ground.name, symbols_.text(s), symbols_.text(d));
     const MovingFrame& base = ground.frame;
@@ -149,69 +149,67 @@ void PlacedMechanism::read_springs(const TomlValue& root, const char* key) {
             } else {
                 spring.angle = read(fields.expression("angle"), Allowed::positions);
             }
-            spring.coefficient = read(fields.expression(spring.is_damper ? "damping" : "stiffness"),
-                                      spring.is_damper ? Allowed::rates : Allowed::positions)
-                                     .packed();
+            const char* const coefficient = spring.is_damper ? "damping" : "stiffness";
+            spring.coefficient =
+                read(fields.expression(coefficient), spring.is_damper ? Allowed::rates : Allowed::positions).packed();
+            const auto check_sign = [&](const char* key_of_value, const char* what, const ProductSum& value) {
+                const double number = symbols_.at_start(value);
+                if (number < 0.0)
+                    throw Mistake{fields.need(key_of_value).at,
+                                  fmt::format("the {} is negative at the start: {}", what, number),
+                                  {}};
+            };
             if (!spring.is_damper) {
                 if (between != nullptr)
                     fields.need("rest", {spring.at, "missing key 'rest' in [[spring]]: its length without force",
                                          "write rest = 0 for a spring that pulls its ends together"});
                 if (fields.find("rest")) spring.rest = read(fields.expression("rest"), Allowed::positions);
-                if (between != nullptr && symbols_.at_start(spring.rest) < 0.0)
-                    throw Mistake{
-                        fields.need("rest").at,
-                        fmt::format("the rest length is negative at the start: {}", symbols_.at_start(spring.rest)),
-                        {}};
+                if (between != nullptr) check_sign("rest", "rest length", spring.rest);
             }
-            if (symbols_.at_start(spring.coefficient) < 0.0)
-                throw Mistake{
-                    fields.need(spring.is_damper ? "damping" : "stiffness").at,
-                    fmt::format("the {} is negative at the start: {}", spring.is_damper ? "damping" : "stiffness",
-                                symbols_.at_start(spring.coefficient)),
-                    {}};
+            check_sign(coefficient, coefficient, spring.coefficient);
             spring.is_hidden = fields.flag_or("hidden", false);
             springs.push_back(std::move(spring));
         });
     }
 }
 
-void PlacedMechanism::read_loads(const TomlValue& root) {
-    for (Fields& fields : tables(root, "force", mistakes_)) {
+void PlacedMechanism::read_loads(const TomlValue& root, const char* key) {
+    for (Fields& fields : tables(root, key, mistakes_)) {
         fields.allow(keys_of(fields.where()), mistakes_);
         mistakes_.attempt([&] {
             AppliedLoad load;
             load.at = fields.table().at;
-            PlacedShape* on = on_of(fields);
-            load.axes = on ? on->frame : world_.frame;
-            load.point = read_point(fields.need("at"), fields, "at", on);
-            const LocalPoint value = read_local(fields.need("value"), fields, "value", Allowed::rates);
-            load.x = value.x;
-            load.y = value.y;
-            if (const TomlValue* against = fields.find("against"))
-                load.against_point = read_point(*against, fields, "against", nullptr);
+            if (fields.where() == "[[force]]")
+                read_force(load, fields);
+            else
+                read_torque(load, fields);
             loads.push_back(std::move(load));
         });
     }
-    for (Fields& fields : tables(root, "torque", mistakes_)) {
-        fields.allow(keys_of(fields.where()), mistakes_);
-        mistakes_.attempt([&] {
-            AppliedLoad load;
-            load.at = fields.table().at;
-            const auto body_of = [&](const char* key) -> const RigidBody* {
-                const Text name = fields.string(key);
-                const PlacedShape* shape = find(name);
-                if (shape == nullptr && std::string(key) == "on")
-                    throw Mistake{name.at, "a torque acts on a body, not on the world", {}};
-                if (shape != nullptr && shape->is_ground)
-                    throw Mistake{name.at, fmt::format("'{}' is a ground: a torque acts on a body", name.text), {}};
-                return static_cast<const RigidBody*>(shape);
-            };
-            load.body = body_of("on");
-            if (fields.find("against")) load.against = body_of("against");
-            load.torque = read(fields.expression("value"), Allowed::rates);
-            loads.push_back(std::move(load));
-        });
-    }
+}
+
+void PlacedMechanism::read_force(AppliedLoad& load, const Fields& fields) {
+    PlacedShape* on = on_of(fields);
+    load.axes = on ? on->frame : world_.frame;
+    load.point = read_point(fields.need("at"), fields, "at", on);
+    load.force = read_local(fields.need("value"), fields, "value", Allowed::rates);
+    if (const TomlValue* against = fields.find("against"))
+        load.against_point = read_point(*against, fields, "against", nullptr);
+}
+
+void PlacedMechanism::read_torque(AppliedLoad& load, const Fields& fields) {
+    const auto body_of = [&](const char* key) {
+        const Text name = fields.string(key);
+        const PlacedShape* shape = find(name);
+        if (shape == nullptr && std::string(key) == "on")
+            throw Mistake{name.at, "a torque acts on a body, not on the world", {}};
+        if (shape != nullptr && shape->is_ground)
+            throw Mistake{name.at, fmt::format("'{}' is a ground: a torque acts on a body", name.text), {}};
+        return static_cast<const RigidBody*>(shape);
+    };
+    load.body = body_of("on");
+    if (fields.find("against")) load.against = body_of("against");
+    load.torque = read(fields.expression("value"), Allowed::rates);
 }
 
 }  // namespace achilles

@@ -35,12 +35,14 @@ std::array<ProductSum, 2> components(const PlanarVector& vector, const ProductSu
 // its position.
 struct MovingPoint {
     PlanarVector position, velocity, drift;
+    PlanarVector motion() const { return velocity + drift; }
 };
 
 // Axes that move. Their angular velocity is rate + drift.
 struct MovingFrame {
     MovingPoint origin;
     ProductSum angle, rate, drift;
+    ProductSum turning() const { return rate + drift; }
 };
 
 // The derivatives of quantities that depend on coordinates and time.
@@ -52,6 +54,7 @@ class Kinematics {
 
     ProductSum rate_of(const ProductSum& quantity) const;   // sum of d/dq_i v_i
     ProductSum drift_of(const ProductSum& quantity) const;  // d/dt at constant coordinates
+    ProductSum change_of(const ProductSum& quantity) const { return rate_of(quantity) + drift_of(quantity); }
     // The point (x, y) of a frame; x and y may depend on coordinates and time.
     MovingPoint point_in(const MovingFrame& frame, const ProductSum& x, const ProductSum& y) const;
     // A frame at a point, turned by an angle against other axes.

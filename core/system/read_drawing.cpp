@@ -58,7 +58,7 @@ void read_over(const SystemDescription& system, const Fields& fields, DrawingDes
         throw Mistake{over.at, R"('over' in [[drawing]] must be ["name", low, high])", {}};
     }
     const Text& own = over.items[0].text;
-    if (!is_name(own.text)) throw Mistake{own.at, fmt::format("'{}' is not a name", shown(own.text)), {}};
+    if (!is_name(own.text)) throw no_name(own);
     if (is_reserved(own.text)) throw Mistake{own.at, fmt::format("the name '{}' is reserved", own.text), {}};
     const auto same = [&](const auto& other) { return other.name == own.text; };
     if (std::any_of(system.coordinates.begin(), system.coordinates.end(), same) ||

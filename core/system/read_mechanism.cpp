@@ -81,7 +81,7 @@ PlacedMechanism::PlacedMechanism(const TomlValue& root, const SystemDescription&
     mistakes_.attempt([&] { read_world(root); });
     for (Entry& entry : entries_) mistakes_.attempt([&] { place(entry); });
     for (const char* key : {"spring", "damper"}) read_springs(root, key);
-    read_loads(root);
+    for (const char* key : {"force", "torque"}) read_loads(root, key);
 }
 
 // The names of all bodies and grounds, before any of them is placed.
@@ -96,9 +96,7 @@ void PlacedMechanism::list_names(const TomlValue& root, const char* key) {
         const bool is_ground = fields.where() == "[[ground]]";
         const bool is_listed = mistakes_.attempt([&] {
             const Text name = fields.string("name");
-            if (!is_name(name.text))
-                throw Mistake{name.at, fmt::format("'{}' is not a name", shown(name.text)),
-                              "a name is a letter followed by letters, digits and underscores"};
+            if (!is_name(name.text)) throw no_name(name);
             if (is_world(name.text)) throw Mistake{name.at, "the name 'world' is reserved", "choose another name"};
             if (Entry* other = entry_of(name.text)) {
                 other->state = Entry::State::failed;  // either of the two may be meant
@@ -223,10 +221,10 @@ ProductSum PlacedMechanism::value_of(const std::string& token, const Location& a
                           fmt::format("write {}.angle", parts[0])};
         const PlacedShape* shape = find({parts[0], at});
         const MovingFrame& frame = shape ? shape->frame : world_.frame;
-        return is_rate ? frame.rate + frame.drift : frame.angle;
+        return is_rate ? frame.turning() : frame.angle;
     }
     const NamedPoint point = find_point({name.substr(0, name.size() - last.size() - 1), at}, nullptr);
-    const PlanarVector vector = is_rate ? point.point.velocity + point.point.drift : point.point.position;
+    const PlanarVector vector = is_rate ? point.point.motion() : point.point.position;
     return components(vector, {}, kinematics.graph())[last == "x" ? 0 : 1];
 }
 
@@ -356,9 +354,7 @@ void PlacedMechanism::place_body(RigidBody& body, const Fields& fields) {
     const ProductSum turn = angle ? read(fields.expression("angle"), Allowed::positions) : ProductSum{};
     if (on != nullptr && on->is_ground) {
         place_on_ground(body, fields, static_cast<GroundSurface&>(*on));
-        body.frame.angle = body.frame.angle + turn;
-        body.frame.rate = body.frame.rate + kinematics.rate_of(turn);
-        body.frame.drift = body.frame.drift + kinematics.drift_of(turn);
+        body.frame = kinematics.frame_at(body.frame.origin, body.frame, turn);
     } else {
         const MovingFrame& axes = on ? on->frame : world_.frame;
         const TomlValue* at = fields.find("at");
@@ -399,7 +395,7 @@ void PlacedMechanism::read_points(PlacedShape& shape, const Fields& fields) {
         mistakes_.attempt([&] {
             constexpr std::string_view of_every_body = "x y angle origin center";
             const bool is_reserved_name = has_word(of_every_body, entry.key) || shape.points.contains(entry.key);
-            if (!is_name(entry.key)) throw Mistake{entry.at, fmt::format("'{}' is not a name", shown(entry.key)), {}};
+            if (!is_name(entry.key)) throw no_name({entry.key, entry.at});
             if (is_reserved_name)
                 throw Mistake{entry.at, fmt::format("the point name '{}' is reserved", entry.key),
                               "choose another name"};

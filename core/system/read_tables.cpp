@@ -55,13 +55,6 @@ struct FileReader {
     std::map<std::string, Location> contact_names = {};  // and of [[friction]]
 };
 
-Mistake no_name(const Text& name) {
-    const std::string latin = spelled_out(name.text);
-    return {name.at, fmt::format("'{}' is not a name", shown(name.text)),
-            is_name(latin) ? "spell out Greek letters: write " + latin
-                           : "a name is a letter followed by letters, digits and underscores"};
-}
-
 Mistake used_twice(const Text& name, const Location& other) {
     return {name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
             fmt::format("it is already the name at line {}", other.line)};
