@@ -172,7 +172,7 @@ TEST(MechanismDrawings, PutTorsionSpringsAndDampersAtTheirJoints) {
 constraint = [{gap = "phi + 1", restitution = 0}]
 spring = [{angle = ")toml" +
                            angle + "\", stiffness = 1" + more + "}]\ndamper = [{angle = \"" + angle +
-                           "\", damping = 1" + more + "}]\n");
+                           "\", damping = 1}]\n");
     };
     const std::map<std::string, double> start{{"x", 0.3}, {"y", 0.9}, {"phi", 0.0}};
     const auto end_of = [&](const DrawingDescription& spiral, double s, double y) {
@@ -211,7 +211,7 @@ spring = [{angle = ")toml" +
     EXPECT_EQ(of_shape(drawn("phi"), Shape::curve).size(), 0U) << "no joint turns by it";
     EXPECT_EQ(of_shape(drawn("x + 2*y"), Shape::curve).size(), 0U);
     EXPECT_EQ(of_shape(drawn("x"), Shape::curve).size(), 3U);
-    EXPECT_EQ(of_shape(drawn("y", ", hidden = true"), Shape::curve).size(), 0U);
+    EXPECT_EQ(of_shape(drawn("y", ", hidden = true"), Shape::curve).size(), 2U) << "the damper";
 }
 
 // A string hangs down where it is slack, and is as long as it says while it sags little.
