@@ -4,18 +4,19 @@
 // (h, hdot with (h, hdot)' = (hdot, hddot)), for a held one hddot (with rate h'''). Steps are therefore as short as
 // these functions require, and the gap after an impact is an increment from zero instead of a difference of large
 // numbers (theory.md 9.3).
+//
+// Odeint tries a step and controls its length. This file keeps the two ends with their rates, which determine the dense
+// output together with Odeint's value in the middle of the step.
 #include <algorithm>
-
-// Must be included first: dense_output_runge_kutta.hpp does not include it.
-#include <boost/numeric/odeint/util/unwrap_reference.hpp>
-
-#include <boost/numeric/odeint/stepper/dense_output_runge_kutta.hpp>
-#include <boost/numeric/odeint/stepper/generation.hpp>
+#include <boost/numeric/odeint/algebra/default_operations.hpp>
+#include <boost/numeric/odeint/stepper/controlled_runge_kutta.hpp>
 #include <boost/numeric/odeint/stepper/runge_kutta_dopri5.hpp>
+#include <boost/numeric/odeint/util/is_resizeable.hpp>
 #include <cmath>
 #include <limits>
 
 #include "contacts/contact_law.hpp"
+#include "number/inner_loops.hpp"
 #include "simulate/contact_cache.hpp"
 #include "simulate/stepper.hpp"
 
@@ -25,34 +26,116 @@ namespace {
 
 namespace odeint = boost::numeric::odeint;
 // q, v, then for each contact its event function in units of GapUnits: h, hdot of a gap; hddot, 0 of a force.
+// Their number is even.
 using Values = std::vector<double>;
-using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<Values>>::type;
+using Pair = Pack<double, 2>;
+
+// The loops of Odeint over the components, a pair at a time: each operation on a pair is one vector instruction.
+struct PairAlgebra {
+    // The places of the numbers are arguments, so that they stay in registers in the loop.
+    template <class Operation, class... From>
+    static void apply(double* to, std::size_t width, const Operation& operation, const From*... from) {
+        for (std::size_t i = 0; i < width; i += Pair::count) {
+            Pair::Value value;
+            operation(value, Pair::load(from + i)...);
+            Pair::store(value, to + i);
+        }
+    }
+    // The names and arguments that Odeint requires.
+    template <class Operation>
+    static void for_each3(Values& to, const Values& a, const Values& b, Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data());
+    }
+    template <class Operation>
+    static void for_each4(Values& to, const Values& a, const Values& b, const Values& c, Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data(), c.data());
+    }
+    template <class Operation>
+    static void for_each5(Values& to, const Values& a, const Values& b, const Values& c, const Values& d,
+                          Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data(), c.data(), d.data());
+    }
+    template <class Operation>
+    static void for_each6(Values& to, const Values& a, const Values& b, const Values& c, const Values& d,
+                          const Values& e, Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data(), c.data(), d.data(), e.data());
+    }
+    template <class Operation>
+    static void for_each7(Values& to, const Values& a, const Values& b, const Values& c, const Values& d,
+                          const Values& e, const Values& f, Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data(), c.data(), d.data(), e.data(), f.data());
+    }
+    template <class Operation>
+    static void for_each8(Values& to, const Values& a, const Values& b, const Values& c, const Values& d,
+                          const Values& e, const Values& f, const Values& g, Operation operation) {
+        apply(to.data(), to.size(), operation, a.data(), b.data(), c.data(), d.data(), e.data(), f.data(), g.data());
+    }
+};
+
+// The largest error of a component, relative to the tolerance times 1 + |y| + |dt y'|, which is the measure of Odeint's
+// default checker.
+class ErrorChecker {
+ public:
+    explicit ErrorChecker(double tolerance = 1e-6) : tolerance_(tolerance) {}
+    double error(const PairAlgebra&, const Values& y, const Values& dydt, const Values& error, double dt) const {
+        Pair::Value largest{};
+        for (std::size_t i = 0; i < y.size(); i += Pair::count) {
+            const Pair::Value size = size_of(Pair::load(&y[i])) + std::abs(dt) * size_of(Pair::load(&dydt[i]));
+            const Pair::Value part = size_of(Pair::load(&error[i])) / (tolerance_ + tolerance_ * size);
+            largest = largest < part ? part : largest;
+        }
+        return std::max(largest[0], largest[1]);
+    }
+
+ private:
+    static Pair::Value size_of(const Pair::Value& x) { return x < 0.0 ? -x : x; }
+    double tolerance_;
+};
+
+using Dopri5Method =
+    odeint::runge_kutta_dopri5<Values, double, Values, double, PairAlgebra, odeint::default_operations>;
+using ControlledDopri5 = odeint::controlled_runge_kutta<Dopri5Method, ErrorChecker>;
 
 bool is_finite(const Values& values) {
-    return std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); });
+    Pair::Value sum{};  // 0 times infinity is NaN
+    for (std::size_t i = 0; i < values.size(); i += Pair::count) sum += 0.0 * Pair::load(&values[i]);
+    return sum[0] + sum[1] == 0.0;
 }
+
+// One end of a step, with the rates there.
+struct StepEnd {
+    Values y, dydt;
+};
+
+// The rate of an event function: an output of the motion, hddot of a gap or h''' of a force.
+struct EventRate {
+    const double* output = nullptr;
+    bool is_of_gap = true;
+    double per_unit = 1.0;  // exact: units are powers of two
+};
 
 class Dopri5 : public Stepper {
  public:
     Dopri5(const Model& model, const Run& run)
         : dof_(static_cast<std::size_t>(model.dof())),
           tolerance_(run.options.tolerance),
-          dense_(odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>())),
+          method_(ErrorChecker(tolerance_)),
           model_(&model),
           parameters_(run.parameters),
-          contacts_(model.contacts()),
-          gaps_(contacts_),
-          units_(model, run) {}
+          accelerations_(dof_),
+          pivots_(dof_),
+          event_rates_(model.contacts()),
+          gaps_(model.contacts()),
+          units_(model, run) {
+        for (Values* values : {&from_.y, &from_.dydt, &to_.y, &to_.dydt, &middle_}) values->resize(width());
+    }
 
     void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
     StepFailure redo_step(double duration, double least) override;
     double current_time() const override { return span_; }
-    const State& current_state() override { return to_; }
-    void event_function(std::size_t contact, Polynomial& p) const override {
-        p = component(event(contact));
-        for (int k = 0; k <= p.degree; ++k) p.c[static_cast<std::size_t>(k)] *= unit(contact);
-    }
+    const State& current_state() override { return end_; }
+    void event_function(std::size_t contact, Polynomial& p) const override;
     std::uint32_t coefficients(std::vector<double>& coefficients) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
@@ -60,206 +143,206 @@ class Dopri5 : public Stepper {
     long evaluations() const override { return evaluations_; }
 
  private:
-    void derivative(const Values& y, Values& dydt, double passed);
-    auto system() {
-        return [this](const Values& y, Values& dydt, double passed) { derivative(y, dydt, passed); };
-    }
-    void guess_first_step();
-    void set(double dt);
+    void choose_mode(Mode mode);
+    void evaluate_motion(const Values& y, double time);
+    void set_rates(const Values& y, Values& dydt) const;
+    void begin_step();
+    double first_step() const;
     StepFailure advance(double dt, double least);
-    StepFailure accept();
+    StepFailure try_step(double dt);
     StepFailure failure_here() const;
+    std::array<Pair::Value, 5> terms(std::size_t first) const;
     double own_remainder(std::size_t contact, const Polynomial& p) const;
     double hddot_error(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
-    bool watches_gap(std::size_t contact) const {
-        return contact < contacts_ && law_of(mode_.state(contact)).watched == WatchedFunction::gap;
-    }
-    double unit(std::size_t contact) const { return contact < contacts_ ? units_[contact] : 1.0; }
+    bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
-    Values values_of(const State& state) const;
-    Polynomial component(std::size_t i) const {
-        return interpolate({nodes_[0][i], nodes_[1][i], nodes_[2][i], nodes_[3][i], nodes_[4][i]});
-    }
 
     std::size_t dof_;
     double tolerance_;
-    Dense dense_;
+    ControlledDopri5 method_;
     const Model* model_;
     std::vector<double> parameters_;
     Mode mode_;
-    Model::MotionEvaluators motions_;                   // by mode, created at first use
-    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
+    Model::MotionEvaluators motions_;                    // by mode, created at first use
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;   // the entry of mode_
+    bool is_evaluated_ = false;                          // motion_ has outputs for its inputs
+    std::vector<const double*> accelerations_, pivots_;  // outputs of motion_
+    std::vector<EventRate> event_rates_;                 // for each contact
     double span_ = 0.0;
-    double natural_ = 0.0;  // length of the next step by the error control; 0: unknown
-    State from_, to_;       // the ends of the last step
-    double time_ = 0.0;     // s, start of the step
-    double begun_ = 0.0;    // the same on Odeint's clock
-    std::size_t contacts_;
-    std::vector<Gap> gaps_;  // at from_, for each event function
+    double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
+    double next_ = 0.0;      // the same after the last step, if its length is by the error control
+    double time_ = 0.0;      // s, start of the step
+    std::vector<Gap> gaps_;  // at the start of the step
     GapUnits units_;
-    bool continuing_ = false;  // Odeint's stepper is at to_, ready for a step of natural_
-    std::array<Values, 5> nodes_;
+    StepEnd from_, to_;          // ends of the step
+    State end_;                  // the state of to_, or where the next step starts
+    bool is_continued_ = false;  // the next step starts at to_
+    Values middle_;              // in the middle of the step
     long evaluations_ = 0;
 };
 
-// y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact; `passed` is Odeint's clock. If M is not
-// positive definite, the derivative is NaN and the step fails.
-void Dopri5::derivative(const Values& y, Values& dydt, double passed) {
-    ++evaluations_;
-    MotionTerms<Evaluator<double>>& motion = *motion_;
-    for (std::size_t i = 0; i < 2 * dof_; ++i) motion.input(i) = y[i];
-    motion.clock() = time_ + (passed - begun_);
-    motion.run();
-    bool regular = true;
-    for (std::size_t i = 0; i < dof_; ++i) regular = regular && motion.pivot(i) > 0.0;
+void Dopri5::choose_mode(Mode mode) {
+    mode_ = mode;
+    motion_ = &model_->lazily(motions_, mode, parameters_);
+    is_evaluated_ = false;
     for (std::size_t i = 0; i < dof_; ++i) {
-        dydt[i] = y[dof_ + i];
-        dydt[dof_ + i] = regular ? motion.acceleration(i) : std::numeric_limits<double>::quiet_NaN();
+        accelerations_[i] = &motion_->acceleration(i);
+        pivots_[i] = &motion_->pivot(i);
     }
-    for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact) {
-        const std::size_t i = event(contact);
-        dydt[i] = watches_gap(contact) ? y[i + 1] : motion.jerk(forces++) / unit(contact);
-        dydt[i + 1] = watches_gap(contact) ? motion.hddot(contact) / unit(contact) : 0.0;
-    }
+    for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact)
+        event_rates_[contact] = watches_gap(contact) ? EventRate{&motion_->hddot(contact), true, 1.0}
+                                                     : EventRate{&motion_->jerk(forces++), false, 1.0};
 }
 
-Values Dopri5::values_of(const State& state) const {
-    Values y(width(), 0.0);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        y[i] = state.q[static_cast<Eigen::Index>(i)];
-        y[dof_ + i] = state.v[static_cast<Eigen::Index>(i)];
+void Dopri5::evaluate_motion(const Values& y, double time) {
+    ++evaluations_;
+    for (std::size_t i = 0; i < 2 * dof_; i += Pair::count) Pair::store(Pair::load(&y[i]), &motion_->input(i));
+    motion_->clock() = time;
+    motion_->run();
+    is_evaluated_ = true;
+}
+
+// y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact, from the evaluated motion. If M is not positive
+// definite, the derivative is NaN and the step fails.
+void Dopri5::set_rates(const Values& y, Values& dydt) const {
+    const double* const from = y.data();
+    double* to = dydt.data();
+    bool is_regular = true;
+    for (const double* pivot : pivots_) is_regular = is_regular && *pivot > 0.0;
+    for (std::size_t i = dof_; i < 2 * dof_; ++i) *to++ = from[i];
+    for (const double* acceleration : accelerations_)
+        *to++ = is_regular ? *acceleration : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t contact = 0; contact < event_rates_.size(); ++contact, to += 2) {
+        const EventRate& rate = event_rates_[contact];
+        const double value = *rate.output * rate.per_unit;
+        to[0] = rate.is_of_gap ? from[event(contact) + 1] : value;
+        to[1] = rate.is_of_gap ? value : 0.0;
     }
-    return y;
 }
 
 void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
-    if (motion_ == nullptr || mode != mode_) motion_ = &model_->lazily(motions_, mode, parameters_);
-    mode_ = mode;
-    to_ = state;
-    units_.at(state);
-    time_ = state.t;
-    begun_ = 0.0;
-    // Odeint's buffers have the size of the first state that they see.
-    if (gaps.size() != gaps_.size())
-        dense_ = odeint::make_dense_output(tolerance_, tolerance_, odeint::runge_kutta_dopri5<Values>());
+    if (motion_ == nullptr || mode != mode_) choose_mode(mode);
+    end_ = state;
+    const std::vector<double>& units = units_.at(state);
+    for (std::size_t contact = 0; contact < units.size(); ++contact)
+        event_rates_[contact].per_unit = 1.0 / units[contact];
     gaps_.assign(gaps.begin(), gaps.end());
-    continuing_ = false;
-    if (natural_ == 0.0) guess_first_step();
+    is_continued_ = false;
+}
+
+// Sets from_. The motion is not evaluated again if its last evaluation, at the end of the step before, was at the same
+// state.
+void Dopri5::begin_step() {
+    Values& y = from_.y;
+    for (std::size_t i = 0; i < dof_; ++i) {
+        y[i] = end_.q.data()[i];
+        y[dof_ + i] = end_.v.data()[i];
+    }
+    const bool is_known =
+        is_evaluated_ && motion_->clock() == time_ && std::equal(y.data(), y.data() + 2 * dof_, &motion_->input(0));
+    if (!is_known) evaluate_motion(y, time_);
+    for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
+        const std::size_t i = event(contact);
+        Gap& gap = gaps_[contact];
+        if (is_continued_) {
+            gap.h = units_[contact] * to_.y[i];
+            gap.hdot = units_[contact] * to_.y[i + 1];
+        }
+        y[i] = (watches_gap(contact) ? gap.h : motion_->hddot(contact)) / units_[contact];
+        y[i + 1] = watches_gap(contact) ? gap.hdot / units_[contact] : 0.0;
+    }
+    set_rates(y, from_.dydt);
 }
 
 // First step of a run: a guess from the first derivative, which the error control corrects.
-void Dopri5::guess_first_step() {
-    Values dydt(width());
-    const Values y = values_of(to_);
-    derivative(y, dydt, begun_);
+double Dopri5::first_step() const {
     double size = 1e-3, rate = 1e-3;
     for (std::size_t i = 0; i < 2 * dof_; ++i) {
-        size = std::max(size, std::abs(y[i]));
-        rate = std::max(rate, std::abs(dydt[i]));
+        size = std::max(size, std::abs(from_.y[i]));
+        rate = std::max(rate, std::abs(from_.dydt[i]));
     }
-    natural_ = std::isfinite(rate) ? size / rate * std::pow(tolerance_, 0.2) : 1e-3;
-}
-
-void Dopri5::set(double dt) {
-    Values y = values_of(from_);
-    if (!(mode_ == Mode())) {  // hddot and the functions of friction at the state itself
-        for (std::size_t i = 0; i < 2 * dof_; ++i) motion_->input(i) = y[i];
-        motion_->clock() = time_;
-        motion_->run();
-    }
-    for (std::size_t contact = 0; contact < gaps_.size(); ++contact) {
-        const std::size_t i = event(contact);
-        y[i] = (watches_gap(contact) ? gaps_[contact].h : motion_->hddot(contact)) / unit(contact);
-        if (watches_gap(contact)) y[i + 1] = gaps_[contact].hdot / unit(contact);
-    }
-    dense_.initialize(y, 0.0, dt);
-    begun_ = 0.0;
+    return std::isfinite(rate) ? size / rate * std::pow(tolerance_, 0.2) : 1e-3;
 }
 
 // The reason why no step has a finite result, from the size of the state.
 StepFailure Dopri5::failure_here() const {
-    for (const double y : values_of(from_))
-        if (!(std::abs(y) < 1e150)) return StepFailure::not_a_number;  // diverges to infinity
+    for (std::size_t i = 0; i < 2 * dof_; ++i)
+        if (!(std::abs(from_.y[i]) < 1e150)) return StepFailure::not_a_number;  // diverges to infinity
     return StepFailure::left_the_domain;
 }
 
-// Reads the last step: dense output at theta = 0, 1/4, 1/2, 3/4, 1, which determines a quartic.
-StepFailure Dopri5::accept() {
-    const double begin = dense_.previous_time();
-    span_ = dense_.current_time() - begin;
-    for (std::size_t k = 0; k < 5; ++k) {
-        nodes_[k].resize(width());
-        if (k == 0) nodes_[k] = dense_.previous_state();
-        if (k == 4) nodes_[k] = dense_.current_state();
-        if (k > 0 && k < 4) dense_.calc_state(begin + 0.25 * static_cast<double>(k) * span_, nodes_[k]);
-        if (!is_finite(nodes_[k])) return StepFailure::not_a_number;
+// One step that the error control accepts. The result may be infinite or NaN.
+StepFailure Dopri5::try_step(double dt) {
+    constexpr int most_rejections = 500;
+    const auto system = [this](const Values& y, Values& dydt, double passed) {
+        evaluate_motion(y, time_ + passed);
+        set_rates(y, dydt);
+    };
+    span_ = 0.0;
+    for (int rejections = 0;; ++rejections) {
+        if (rejections == most_rejections) return StepFailure::step_too_small;
+        if (method_.try_step(system, from_.y, from_.dydt, span_, to_.y, to_.dydt, dt) == odeint::success) break;
     }
-    for (std::size_t i = 0; i < dof_; ++i) {
-        to_.q[static_cast<Eigen::Index>(i)] = nodes_[4][i];
-        to_.v[static_cast<Eigen::Index>(i)] = nodes_[4][dof_ + i];
-    }
+    next_ = dt;
+    if (!is_finite(to_.y) || !is_finite(to_.dydt)) return StepFailure::not_a_number;
+    method_.stepper().calc_state(0.5 * span_, middle_, from_.y, from_.dydt, 0.0, to_.y, to_.dydt, span_);
+    std::copy_n(to_.y.data(), dof_, end_.q.data());
+    std::copy_n(to_.y.data() + dof_, dof_, end_.v.data());
+    is_continued_ = true;
     return StepFailure::none;
 }
 
-// Steps from `from` by dt, or less if the error control or the domain requires it.
+// Steps from from_ by dt, or less if the error control or the domain requires it.
 StepFailure Dopri5::advance(double dt, double least) {
-    bool finite = true;
+    StepFailure failure = StepFailure::none;
     while (dt > least) {
-        set(dt);
-        try {
-            dense_.do_step(system());
-        } catch (const odeint::odeint_error&) {  // 500 rejections in a row
-            return StepFailure::step_too_small;
-        }
-        finite = accept() == StepFailure::none;
-        if (finite) return span_ > least ? StepFailure::none : StepFailure::step_too_small;
+        failure = try_step(dt);
+        if (failure == StepFailure::none) return span_ > least ? StepFailure::none : StepFailure::step_too_small;
+        if (failure == StepFailure::step_too_small) return failure;
         dt *= 0.25;
     }
-    return finite ? StepFailure::step_too_small : failure_here();
+    return failure == StepFailure::none ? StepFailure::step_too_small : failure_here();
 }
 
 StepFailure Dopri5::do_step(double time, double longest, double first, double least) {
     time_ = time;
-    begun_ = continuing_ ? dense_.current_time() : 0.0;
+    begin_step();
+    if (natural_ == 0.0) natural_ = first_step();
     const double wanted = first > 0.0 ? std::min(first, natural_) : natural_;
-    const bool by_order = wanted < natural_ || wanted > longest;
-    for (std::size_t contact = 0; continuing_ && contact < gaps_.size(); ++contact) {
-        gaps_[contact].h = unit(contact) * nodes_[4][event(contact)];
-        gaps_[contact].hdot = unit(contact) * nodes_[4][event(contact) + 1];
-    }
-    from_ = to_;
-    StepFailure failure = StepFailure::not_a_number;
-    if (continuing_ && !by_order) {
-        try {
-            dense_.do_step(system());
-            failure = accept();
-        } catch (const odeint::odeint_error&) {
-            return StepFailure::step_too_small;
-        }
-    }
-    if (failure != StepFailure::none) failure = advance(std::min(wanted, longest), least);
-    if (failure != StepFailure::none) return failure;
+    const bool is_shortened = wanted < natural_ || wanted > longest;
+    const StepFailure failure = advance(std::min(wanted, longest), least);
     // A step shortened by request gives no information about the step that the error control would allow.
-    const double next = dense_.current_time_step();
-    natural_ = by_order ? std::max(next, natural_) : next;
-    continuing_ = true;
+    if (failure == StepFailure::none) natural_ = is_shortened ? std::max(next_, natural_) : next_;
     return failure;
 }
 
-StepFailure Dopri5::redo_step(double duration, double least) {
-    continuing_ = false;
-    return advance(duration, least);
+StepFailure Dopri5::redo_step(double duration, double least) { return advance(duration, least); }
+
+// Of two adjacent components, the polynomials of degree 4 in theta with the values and rates at both ends of the step and
+// the value in its middle, in terms of differences from the first value.
+std::array<Pair::Value, 5> Dopri5::terms(std::size_t first) const {
+    const auto at = [first](const Values& values) { return Pair::load(&values[first]); };
+    const auto begin = at(from_.y), rise = at(to_.y) - begin, rate = span_ * at(from_.dydt),
+               end_rate = span_ * at(to_.dydt);
+    const auto bend = 16.0 * (at(middle_) - begin) - 8.0 * rise - 2.0 * (rate - end_rate);
+    return {begin, rate, 3.0 * rise - 2.0 * rate - end_rate + bend, rate + end_rate - 2.0 * (rise + bend), bend};
+}
+
+void Dopri5::event_function(std::size_t contact, Polynomial& p) const {
+    const auto c = terms(event(contact));
+    p.degree = 4;
+    for (std::size_t k = 0; k < c.size(); ++k) p.c[k] = units_[contact] * c[k][0];
 }
 
 std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
-    const std::size_t first = coefficients.size();
-    coefficients.resize(first + 10 * dof_);
-    for (std::size_t i = 0; i < 2 * dof_; ++i) {
-        Polynomial p = component(i);
-        p.c[1] += nodes_[4][i] - p(1.0);
-        for (std::size_t k = 0; k <= 4; ++k) coefficients[first + 2 * dof_ * k + i] = p.c[k];
+    const std::size_t first = coefficients.size(), block = 2 * dof_;
+    coefficients.resize(first + 5 * block);
+    for (std::size_t i = 0; i < block; i += Pair::count) {
+        auto c = terms(i);
+        c[1] += Pair::load(&to_.y[i]) - (c[0] + (c[1] + (c[2] + (c[3] + c[4]))));  // ends at to_ itself
+        for (std::size_t k = 0; k < c.size(); ++k) Pair::store(c[k], &coefficients[first + block * k + i]);
     }
     return 4;
 }
@@ -269,7 +352,7 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
-    const double allowed = 4.0 * tolerance_ * (unit(contact) + size);
+    const double allowed = 4.0 * tolerance_ * (units_[contact] + size);
     return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
@@ -278,7 +361,7 @@ double Dopri5::hddot_error(std::size_t contact, const Polynomial& p) const {
     return gaps_[contact].hddot_error(watches_gap(contact)
                                           ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                           : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
-                                      unit(contact));
+                                      units_[contact]);
 }
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
@@ -297,7 +380,7 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     end.error = earlier_error(contact, p) + own;
     end.state_error = gap.state_error;
     end.rate_error = gap.rate_error + hddot_error(contact, p) * span_ +
-                     std::min(4.0 * tolerance_ * (unit(contact) + std::abs(end.hdot)), own / span_);
+                     std::min(4.0 * tolerance_ * (units_[contact] + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace
