@@ -10,7 +10,8 @@ EventStepper::EventStepper(const Model& model, const Run& run, ContactCache& sur
       surfaces_(&surfaces),
       usual_(model, run),
       gaps_(surfaces.count()),
-      along_(surfaces.count()) {
+      along_(surfaces.count()),
+      at_end_(surfaces.count()) {
     result_.starts.resize(surfaces.count());
 }
 
@@ -38,7 +39,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     result_.steps = 0;
     result_.state = &request.state;
     shortened_ = 0;
-    known_ = {};
+    forget_step();
     const StepFailure failure = flow_->step(request.until);
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
@@ -112,13 +113,26 @@ bool EventStepper::has_exact_start() const { return run_.options.tolerance <= ex
 // Whether the step reaches the time `until`.
 bool EventStepper::is_last() const { return flow_->end_time() >= request_->until; }
 
+// Forgets what was computed for the last step, which is replaced.
+void EventStepper::forget_step() {
+    known_ = known_at_end_ = {};
+    is_projected_ = false;
+}
+
+// A contact at the end of the last step, evaluated once.
+const Contact& EventStepper::contact_at_end(std::size_t contact) {
+    if (!known_at_end_.contains(contact)) surfaces_->of(contact).evaluate(flow_->end(), at_end_[contact]);
+    known_at_end_ = known_at_end_.with(contact);
+    return at_end_[contact];
+}
+
 // Shortens the last step to a fraction of its length. Returns false if the result would not be a step.
 bool EventStepper::end_step_at(double theta) {
     return theta > 0.0 && theta < 1.0 && end_step_after(theta * flow_->duration());
 }
 
 bool EventStepper::end_step_after(double duration) {
-    known_ = {};
+    forget_step();
     return flow_->redo_step(duration) == StepFailure::none;
 }
 

@@ -123,6 +123,9 @@ class EventStepper {
     FirstCrossing friction_descent();
     bool end_on_surface();
     // Events of either kind.
+    const Contact& contact_at_end(std::size_t contact);
+    void project_end();
+    void forget_step();
     bool end_step_at(double theta);
     bool end_step_after(double duration);
     void end_step(double gap);
@@ -153,6 +156,13 @@ class EventStepper {
     std::vector<Gap> gaps_;          // at the start of a segment
     std::vector<Polynomial> along_;  // gap polynomials of the contacts in known_, for the current step
     ContactSet known_;
+    std::vector<Contact> at_end_;  // contacts at the end of the step, of those in known_at_end_
+    ContactSet known_at_end_;
+    // The end of the step, projected onto the surfaces of the held contacts, and their smallest gap; nullopt if that
+    // fails. Kept while is_projected_.
+    State projected_;
+    std::optional<double> projected_gap_;
+    bool is_projected_ = false;
     long evaluations_ = 0;  // reported so far
 };
 

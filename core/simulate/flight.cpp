@@ -31,7 +31,7 @@ void EventStepper::make_gap(std::size_t contact, Polynomial& h) {
     for (int j = 0; j < multiplicity; ++j) h.c[static_cast<std::size_t>(j)] = 0.0;  // known roots stay roots
     if (flow_->is_expansion()) return;
     ContactKinematics& surface = surfaces_->of(contact);
-    const Contact end = surface.at(flow_->end());
+    const Contact& end = contact_at_end(contact);
     const Polynomial::EndValue reached = h.at_end();
     const double value = end.h - reached.value, slope = end.hdot * flow_->duration() - reached.slope;
     if (!surface.within_gap_error(value, 4.0, end, flow_->end())) {
@@ -94,7 +94,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         }
         const Polynomial& h = gap_along(i);
         ContactKinematics& surface = surfaces_->of(i);
-        const Contact end = surface.at(flow_->end());
+        const Contact& end = contact_at_end(i);
         const Polynomial::EndValue reached = h.at_end();
         Gap gap{reached.value, reached.slope / flow_->duration()};
         if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
@@ -166,7 +166,7 @@ StepResult::StepOutcome EventStepper::land_under() {
 std::optional<StepResult::StepOutcome> EventStepper::locate_impact(double theta) {
     double duration = theta * flow_->duration();
     for (int round = 0; round < 8; ++round) {
-        known_ = {};
+        forget_step();
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
         if (flow_->is_expansion()) break;
         const bool shortened = flow_->duration() < duration * (1.0 - 1e-12);
@@ -175,7 +175,7 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_impact(double theta)
         if (shortened || !(hdot < 0.0)) return std::nullopt;
         const double correction = -h(1.0) / hdot;
         if (std::abs(correction) < 1e-7 && std::abs(correction) < 1e-3 * duration) {
-            known_ = {};
+            forget_step();
             flow_->shift_end(correction);
             break;
         }
@@ -187,6 +187,7 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_impact(double theta)
 // Ends the last step on the contact surface, with an impact.
 StepResult::StepOutcome EventStepper::end_flight() {
     const std::size_t contact = contact_;
+    known_at_end_ = {};
     const bool landed = surfaces_->land(flow_->edit_end(), contact, request_->mode, result_.contact);
     double least = landed ? result_.contact.h : surfaces_->of(contact).at(flow_->end()).h;
     if (landed) {
@@ -229,9 +230,23 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
     return std::nullopt;
 }
 
+// Computes projected_.
+void EventStepper::project_end() {
+    if (is_projected_) return;
+    projected_ = flow_->end();
+    projected_gap_ = surfaces_->settle(projected_, request_->mode);
+    is_projected_ = true;
+}
+
 // Projects the end of the last step onto the surfaces of the held contacts. Returns false if that fails.
 bool EventStepper::end_on_surface() {
-    const auto gap = surfaces_->settle(flow_->edit_end(), request_->mode);
+    State& end = flow_->edit_end();
+    known_at_end_ = {};
+    std::optional<double> gap = projected_gap_;
+    if (is_projected_)
+        end = projected_;
+    else
+        gap = surfaces_->settle(end, request_->mode);
     end_step(gap ? *gap : is_of_friction(contact_) ? 0.0 : surfaces_->of(contact_).at(flow_->end()).h);
     return gap.has_value();
 }
@@ -279,9 +294,8 @@ FirstCrossing EventStepper::force_descent() {
     flow_->event_function(contact_, force);
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow_->is_expansion()) {
-        State end = flow_->end();
-        surfaces_->settle(end, request_->mode);
-        force.c[2] += -negative_force_at(end) - force(1.0);
+        project_end();
+        force.c[2] += -negative_force_at(projected_) - force(1.0);
     }
     if (multiplicity > 0) {
         force.c[0] = 0.0;
@@ -296,7 +310,7 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta
     const double longest = flow_->duration();  // limits Newton's method, which diverges if the force only touches zero
     double duration = theta * longest;
     for (int round = 0; round < 8; ++round) {
-        known_ = {};
+        forget_step();
         if (const auto failure = flow_->redo_step(duration); failure != StepFailure::none) return fail(failure);
         const bool projected = surfaces_->settle(flow_->edit_end(), request_->mode).has_value();
         if (!projected || flow_->duration() < duration * (1.0 - 1e-12)) return std::nullopt;
@@ -304,7 +318,7 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta
         const double correction = -negative_force_at(end) / rate_of_force_at(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
-            known_ = {};
+            forget_step();
             flow_->shift_end(correction);
             surfaces_->settle(flow_->edit_end(), request_->mode);
             break;

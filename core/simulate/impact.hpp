@@ -43,6 +43,8 @@ class ContactKinematics {
     ContactKinematics(const Model& model, const Run& run, std::size_t contact = 0, Mode mode = {});
 
     Contact at(const State& state);
+    // The same, stored in `contact`.
+    void evaluate(const State& state, Contact& contact);
     // Error bound of h at q: the radius of its interval enclosure over all states that round to this one.
     double gap_error(const State& state);
     // Whether |value|, a difference of gaps, is at most `times` that bound.
@@ -65,8 +67,6 @@ class ContactKinematics {
     double jerk(const State& state);
 
  private:
-    // Evaluates the terms of the contact at a state and stores them in `contact`.
-    void evaluate(const State& state, Contact& contact);
     Evaluator<Interval>& normal_enclosure();
     const Model* model_;
     const Model::ContactPrograms* programs_;
