@@ -107,6 +107,11 @@ struct StepEnd {
     Values y, dydt;
 };
 
+// Outputs of the motion for a coordinate.
+struct CoordinateOutputs {
+    const double *acceleration = nullptr, *pivot = nullptr;
+};
+
 // The rate of an event function: an output of the motion, hddot of a gap or h''' of a force.
 struct EventRate {
     const double* output = nullptr;
@@ -122,8 +127,7 @@ class Dopri5 : public Stepper {
           method_(ErrorChecker(tolerance_)),
           model_(&model),
           parameters_(run.parameters),
-          accelerations_(dof_),
-          pivots_(dof_),
+          coordinates_(dof_),
           event_rates_(model.contacts()),
           gaps_(model.contacts()),
           units_(model, run) {
@@ -165,11 +169,11 @@ class Dopri5 : public Stepper {
     const Model* model_;
     std::vector<double> parameters_;
     Mode mode_;
-    Model::MotionEvaluators motions_;                    // by mode, created at first use
-    MotionTerms<Evaluator<double>>* motion_ = nullptr;   // the entry of mode_
-    bool is_evaluated_ = false;                          // motion_ has outputs for its inputs
-    std::vector<const double*> accelerations_, pivots_;  // outputs of motion_
-    std::vector<EventRate> event_rates_;                 // for each contact
+    Model::MotionEvaluators motions_;                   // by mode, created at first use
+    MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
+    bool is_evaluated_ = false;                         // motion_ has outputs for its inputs
+    std::vector<CoordinateOutputs> coordinates_;
+    std::vector<EventRate> event_rates_;  // for each contact
     double span_ = 0.0;
     double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
     double next_ = 0.0;      // the same after the last step, if its length is by the error control
@@ -187,10 +191,7 @@ void Dopri5::choose_mode(Mode mode) {
     mode_ = mode;
     motion_ = &model_->lazily(motions_, mode, parameters_);
     is_evaluated_ = false;
-    for (std::size_t i = 0; i < dof_; ++i) {
-        accelerations_[i] = &motion_->acceleration(i);
-        pivots_[i] = &motion_->pivot(i);
-    }
+    for (std::size_t i = 0; i < dof_; ++i) coordinates_[i] = {&motion_->acceleration(i), &motion_->pivot(i)};
     for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact)
         event_rates_[contact] = watches_gap(contact) ? EventRate{&motion_->hddot(contact), true, 1.0}
                                                      : EventRate{&motion_->jerk(forces++), false, 1.0};
@@ -207,18 +208,23 @@ void Dopri5::evaluate_motion(const Values& y, double time) {
 // y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact, from the evaluated motion. If M is not positive
 // definite, the derivative is NaN and the step fails.
 void Dopri5::set_rates(const Values& y, Values& dydt) const {
-    const double* const from = y.data();
+    const double* from = y.data();
     double* to = dydt.data();
     bool is_regular = true;
-    for (const double* pivot : pivots_) is_regular = is_regular && *pivot > 0.0;
-    for (std::size_t i = dof_; i < 2 * dof_; ++i) *to++ = from[i];
-    for (const double* acceleration : accelerations_)
-        *to++ = is_regular ? *acceleration : std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t contact = 0; contact < event_rates_.size(); ++contact, to += 2) {
-        const EventRate& rate = event_rates_[contact];
+    for (std::size_t i = 0; i < dof_; ++i) {
+        to[i] = from[dof_ + i];
+        to[dof_ + i] = *coordinates_[i].acceleration;
+        is_regular = is_regular & (*coordinates_[i].pivot > 0.0);
+    }
+    if (!is_regular) std::fill_n(to + dof_, dof_, std::numeric_limits<double>::quiet_NaN());
+    from += 2 * dof_;
+    to += 2 * dof_;
+    for (const EventRate& rate : event_rates_) {
         const double value = *rate.output * rate.per_unit;
-        to[0] = rate.is_of_gap ? from[event(contact) + 1] : value;
+        to[0] = rate.is_of_gap ? from[1] : value;
         to[1] = rate.is_of_gap ? value : 0.0;
+        from += 2;
+        to += 2;
     }
 }
 
