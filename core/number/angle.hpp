@@ -16,6 +16,9 @@ struct SineCosine {
     double sine = 0.0, cosine = 1.0;
 };
 SineCosine sine_and_cosine(double angle);
+// The sine alone, from the cache or else computed and not cached: accelerations need it many times in a step of dopri5.
+// A cosine alone is mostly that of a potential energy, at a state where the next step needs the sine too.
+double sine(double angle);
 inline void sine_and_cosine(double angle, double& sine, double& cosine) {
     const SineCosine wave = sine_and_cosine(angle);
     sine = wave.sine;

@@ -18,9 +18,8 @@ using Function = double (*)(double);
 
 constexpr std::size_t max_instructions = 20000;
 
-double whole_power(double x, int n) { return integer_power(x, n); }
-double sine(double x) { return sine_and_cosine(x).sine; }
 double cosine(double x) { return sine_and_cosine(x).cosine; }
+double whole_power(double x, int n) { return integer_power(x, n); }
 void both(double x, double* sine, double* cosine) {
     const SineCosine value = sine_and_cosine(x);
     *sine = value.sine;
