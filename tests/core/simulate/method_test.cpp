@@ -61,6 +61,17 @@ TEST(Methods, AgreeOnEverySystem) {
     }
 }
 
+// dopri5 has seven stages. The last one is evaluated where the next step starts, so a try takes six evaluations. The
+// start of a step is evaluated only after an impact or a projection, and not again for a repeated step.
+TEST(Methods, Dopri5KeepsTheRatesAtTheEndsOfAStep) {
+    const auto model = test::load("double_pendulum");
+    auto run = model->default_run();
+    run.options.method = Method::dopri5;
+    run.options.tolerance = 1e-9;
+    const Statistics statistics = simulate(model, run).statistics;
+    EXPECT_LT(static_cast<double>(statistics.evaluations), 7.3 * static_cast<double>(statistics.steps));
+}
+
 // Against 40-digit references: the error at t = 20 is rounding.
 TEST(Methods, TaylorReachesTheReferenceTo1e13) {
     for (const test::Problem& problem : test::problems) {
