@@ -205,8 +205,8 @@ void Dopri5::evaluate_motion(const Values& y, double time) {
     is_evaluated_ = true;
 }
 
-// y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact, from the evaluated motion. If M is not positive
-// definite, the derivative is NaN and the step fails.
+// y' = (v, f, hdot, hddot) in free flight, (v, f_c, h''', 0) in contact, from the evaluated motion. If M is not
+// positive definite, the derivative is NaN and the step fails.
 void Dopri5::set_rates(const Values& y, Values& dydt) const {
     const double* from = y.data();
     double* to = dydt.data();
@@ -326,8 +326,8 @@ StepFailure Dopri5::do_step(double time, double longest, double first, double le
 
 StepFailure Dopri5::redo_step(double duration, double least) { return advance(duration, least); }
 
-// Of two adjacent components, the polynomials of degree 4 in theta with the values and rates at both ends of the step and
-// the value in its middle, in terms of differences from the first value.
+// The polynomials of two adjacent components in theta, of degree 4, with the values and rates at both ends of the step
+// and the value in its middle. In terms of differences from the first value.
 std::array<Pair::Value, 5> Dopri5::terms(std::size_t first) const {
     const auto at = [first](const Values& values) { return Pair::load(&values[first]); };
     const auto begin = at(from_.y), rise = at(to_.y) - begin, rate = span_ * at(from_.dydt),
