@@ -128,11 +128,8 @@ class Dopri5 : public Stepper {
           model_(&model),
           parameters_(run.parameters),
           coordinates_(dof_),
-          event_rates_(model.contacts()),
-          gaps_(model.contacts()),
-          units_(model, run) {
-        for (Values* values : {&from_.y, &from_.dydt, &to_.y, &to_.dydt, &middle_}) values->resize(width());
-    }
+          contacts_(model.contacts()),
+          units_(model, run) {}
 
     void initialize(Mode mode, const State& state, std::span<const Gap> gaps) override;
     StepFailure do_step(double time, double longest, double first, double least) override;
@@ -147,7 +144,7 @@ class Dopri5 : public Stepper {
     long evaluations() const override { return evaluations_; }
 
  private:
-    void choose_mode(Mode mode);
+    void choose_mode(Mode mode, std::size_t functions);
     void evaluate_motion(const Values& y, double time);
     void set_rates(const Values& y, Values& dydt) const;
     void begin_step();
@@ -159,7 +156,10 @@ class Dopri5 : public Stepper {
     double own_remainder(std::size_t contact, const Polynomial& p) const;
     double hddot_error(std::size_t contact, const Polynomial& p) const;
     double earlier_error(std::size_t contact, const Polynomial& p) const;
-    bool watches_gap(std::size_t contact) const { return law_of(mode_.state(contact)).watched == WatchedFunction::gap; }
+    bool watches_gap(std::size_t contact) const {
+        return contact < contacts_ && law_of(mode_.state(contact)).watched == WatchedFunction::gap;
+    }
+    double unit(std::size_t contact) const { return contact < contacts_ ? units_[contact] : 1.0; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
 
@@ -173,12 +173,13 @@ class Dopri5 : public Stepper {
     MotionTerms<Evaluator<double>>* motion_ = nullptr;  // the entry of mode_
     bool is_evaluated_ = false;                         // motion_ has outputs for its inputs
     std::vector<CoordinateOutputs> coordinates_;
-    std::vector<EventRate> event_rates_;  // for each contact
+    std::size_t contacts_;
+    std::vector<EventRate> event_rates_;  // for each event function
     double span_ = 0.0;
     double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
     double next_ = 0.0;      // the same after the last step, if its length is by the error control
     double time_ = 0.0;      // s, start of the step
-    std::vector<Gap> gaps_;  // at the start of the step
+    std::vector<Gap> gaps_;  // at the start of the step, for each event function
     GapUnits units_;
     StepEnd from_, to_;          // ends of the step
     State end_;                  // the state of to_, or where the next step starts
@@ -187,8 +188,14 @@ class Dopri5 : public Stepper {
     long evaluations_ = 0;
 };
 
-void Dopri5::choose_mode(Mode mode) {
+void Dopri5::choose_mode(Mode mode, std::size_t functions) {
     mode_ = mode;
+    if (functions != gaps_.size() || motion_ == nullptr) {
+        gaps_.resize(functions);
+        event_rates_.resize(functions);
+        for (Values* values : {&from_.y, &from_.dydt, &to_.y, &to_.dydt, &middle_}) values->resize(width());
+        method_ = ControlledDopri5(ErrorChecker(tolerance_));  // its buffers have the size of the first state
+    }
     motion_ = &model_->lazily(motions_, mode, parameters_);
     is_evaluated_ = false;
     for (std::size_t i = 0; i < dof_; ++i) coordinates_[i] = {&motion_->acceleration(i), &motion_->pivot(i)};
@@ -229,7 +236,7 @@ void Dopri5::set_rates(const Values& y, Values& dydt) const {
 }
 
 void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
-    if (motion_ == nullptr || mode != mode_) choose_mode(mode);
+    if (motion_ == nullptr || mode != mode_) choose_mode(mode, gaps.size());
     end_ = state;
     const std::vector<double>& units = units_.at(state);
     for (std::size_t contact = 0; contact < units.size(); ++contact)
@@ -253,11 +260,11 @@ void Dopri5::begin_step() {
         const std::size_t i = event(contact);
         Gap& gap = gaps_[contact];
         if (is_continued_) {
-            gap.h = units_[contact] * to_.y[i];
-            gap.hdot = units_[contact] * to_.y[i + 1];
+            gap.h = unit(contact) * to_.y[i];
+            gap.hdot = unit(contact) * to_.y[i + 1];
         }
-        y[i] = (watches_gap(contact) ? gap.h : motion_->hddot(contact)) / units_[contact];
-        y[i + 1] = watches_gap(contact) ? gap.hdot / units_[contact] : 0.0;
+        y[i] = (watches_gap(contact) ? gap.h : motion_->hddot(contact)) / unit(contact);
+        y[i + 1] = watches_gap(contact) ? gap.hdot / unit(contact) : 0.0;
     }
     set_rates(y, from_.dydt);
 }
@@ -339,7 +346,7 @@ std::array<Pair::Value, 5> Dopri5::terms(std::size_t first) const {
 void Dopri5::event_function(std::size_t contact, Polynomial& p) const {
     const auto c = terms(event(contact));
     p.degree = 4;
-    for (std::size_t k = 0; k < c.size(); ++k) p.c[k] = units_[contact] * c[k][0];
+    for (std::size_t k = 0; k < c.size(); ++k) p.c[k] = unit(contact) * c[k][0];
 }
 
 std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
@@ -358,7 +365,7 @@ std::uint32_t Dopri5::coefficients(std::vector<double>& coefficients) const {
 double Dopri5::own_remainder(std::size_t contact, const Polynomial& p) const {
     double size = 0.0;
     for (int i = 0; i <= p.degree; ++i) size += std::abs(p.c[static_cast<std::size_t>(i)]);
-    const double allowed = 4.0 * tolerance_ * (units_[contact] + size);
+    const double allowed = 4.0 * tolerance_ * (unit(contact) + size);
     return (watches_gap(contact) ? std::min(allowed, std::abs(p.c[4])) : allowed) + 8.0 * 0x1p-53 * size;
 }
 
@@ -367,7 +374,7 @@ double Dopri5::hddot_error(std::size_t contact, const Polynomial& p) const {
     return gaps_[contact].hddot_error(watches_gap(contact)
                                           ? (2.0 * std::abs(p.c[2]) + 6.0 * std::abs(p.c[3]) / span_) / (span_ * span_)
                                           : std::abs(p.c[0]) + std::abs(p.c[1]) / span_,
-                                      units_[contact]);
+                                      unit(contact));
 }
 
 double Dopri5::earlier_error(std::size_t contact, const Polynomial& p) const {
@@ -386,7 +393,7 @@ void Dopri5::add_error(std::size_t contact, const Polynomial& p, Gap& end) const
     end.error = earlier_error(contact, p) + own;
     end.state_error = gap.state_error;
     end.rate_error = gap.rate_error + hddot_error(contact, p) * span_ +
-                     std::min(4.0 * tolerance_ * (units_[contact] + std::abs(end.hdot)), own / span_);
+                     std::min(4.0 * tolerance_ * (unit(contact) + std::abs(end.hdot)), own / span_);
 }
 
 }  // namespace
