@@ -190,7 +190,7 @@ Certificate PaperConditions::certificate_of(const Collision& collision, const Bo
     return certificate;
 }
 
-std::optional<Certificate> PaperConditions::do_certify(const Collision& collision) {
+std::optional<Certificate> PaperConditions::do_certify(const Collision& collision, CertificateScope) {
     return prove(collision, truncation_);
 }
 

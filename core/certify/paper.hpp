@@ -38,7 +38,7 @@ class PaperConditions : public TruncationConditions {
     bool fails_at_point(const Collision& collision) override;
 
  protected:
-    std::optional<Certificate> do_certify(const Collision& collision) override;
+    std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) override;
     // The same with tolerances so large that no bound exceeds them.
     std::optional<Certificate> do_prove_any(const Collision& collision) override;
 

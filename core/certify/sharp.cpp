@@ -16,6 +16,12 @@ double times(const Interval& x, const Interval& factor) {
     return product <= std::numeric_limits<double>::max() ? product : std::numeric_limits<double>::infinity();
 }
 
+// Whether all inequalities that decide the truncation hold. The decision must be known.
+bool holds(const Certificate& certificate) {
+    const Certificate::Decision& decision = *certificate.decision;
+    return decision.time.ratio() <= 1.0 && decision.position.ratio() <= 1.0 && decision.velocity.ratio() <= 1.0;
+}
+
 }  // namespace
 
 // Bounds over X: of -hddot, of the height of flights (h_m), and of the accumulation time.
@@ -199,8 +205,10 @@ void SharpConditions::predict_radii(const Collision& collision, const Accelerati
     }
 }
 
-// The certificate of the collision, whatever the tolerances; nullopt if nothing can be proved.
-std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
+// The certificate of the collision, whatever the tolerances; nullopt if nothing can be proved. The enclosure of third
+// order is left out if the decision does not need it. It is made around the estimate of the Zeno time, so it does not
+// change that.
+std::optional<Certificate> SharpConditions::prove(const Collision& collision, CertificateScope scope) {
     const AccelerationTrend trend = trend_at(collision);
     if (!(trend.a > 0.0) || !(mid(e_) < 1.0)) return std::nullopt;
     begin_box(collision);
@@ -211,10 +219,14 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision) {
         if (!contain(*time)) continue;
         std::optional<Certificate::OtherContactBounds> others;
         if (!prove_other_contacts_stay(variables_, others)) return std::nullopt;
-        sharpen(*time, trend);
         find_shadow(*time);
-        Certificate certificate = certificate_of(collision, *time, trend);
-        certificate.others = std::move(others);
+        std::optional<Certificate> certificate;
+        if (scope == CertificateScope::decision) certificate = certificate_of(collision, *time, trend);
+        if (!certificate || !holds(*certificate)) {
+            sharpen(*time, trend);
+            certificate = certificate_of(collision, *time, trend);
+        }
+        certificate->others = std::move(others);
         return certificate;
     }
     return std::nullopt;
@@ -247,13 +259,13 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     return c;
 }
 
-std::optional<Certificate> SharpConditions::do_certify(const Collision& collision) {
-    auto certificate = prove(collision);
+std::optional<Certificate> SharpConditions::do_certify(const Collision& collision, CertificateScope scope) {
+    auto certificate = prove(collision, scope);
     if (!certificate || !certificate->uniform_position) return std::nullopt;
+    if (holds(*certificate)) return certificate;
     const Certificate::Decision& decision = *certificate->decision;
     const double position = decision.position.ratio();
     const double cubic = std::max(decision.time.ratio(), decision.velocity.ratio());
-    if (position <= 1.0 && cubic <= 1.0) return certificate;
     if (position > cubic) {
         remember(collision.speed, position, 2);
     } else {

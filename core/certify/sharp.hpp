@@ -6,7 +6,8 @@
 //
 // time       A_lo w <= tau_inf - tau_k <= A w =: T (certify/truncation.hpp). In the motion that takes longest, -hddot
 //            is a_min while the contact opens; while it closes, -hddot is first a_min, then a_max. The interval is
-//            intersected with the one of third order.
+//            intersected with the one of third order,
+//            except if only the decision is required (CertificateScope) and the attained bounds suffice for it.
 //
 // inclusion  If rho_q = max |v| T and rho_s = max |s'| T are below X's radii, X contains the motion until tau_inf: at a
 //            first exit, the time passed would be less than T, so (q, s) would be strictly inside. If the system
@@ -54,8 +55,10 @@ class SharpConditions : public TruncationConditions {
     }
 
  protected:
-    std::optional<Certificate> do_certify(const Collision& collision) override;
-    std::optional<Certificate> do_prove_any(const Collision& collision) override { return prove(collision); }
+    std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) override;
+    std::optional<Certificate> do_prove_any(const Collision& collision) override {
+        return prove(collision, CertificateScope::full);
+    }
 
  private:
     struct Time;
@@ -69,7 +72,7 @@ class SharpConditions : public TruncationConditions {
         std::vector<Interval> E_q, E_s;  // at tau_inf
         std::vector<Interval> uniform;   // bound on q at all times
     };
-    std::optional<Certificate> prove(const Collision& collision);
+    std::optional<Certificate> prove(const Collision& collision, CertificateScope scope);
     void begin_box(const Collision& collision);
     void predict_radii(const Collision& collision, const AccelerationTrend& trend);
     std::optional<Time> time_over_box();

@@ -127,6 +127,10 @@ class ConditionsBase {
     Evaluator<Interval> other_contact_program_;
 };
 
+// What a certificate must contain. `decision`: what decides, and what the further motion depends on; the enclosure of
+// the accumulation time may then be wider, because nobody will read it.
+enum class CertificateScope { full, decision };
+
 class TruncationConditions : protected ConditionsBase {
  public:
     TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
@@ -141,9 +145,9 @@ class TruncationConditions : protected ConditionsBase {
     virtual void restart(const Interval& e) { e_ = e; }
     // The certificate if the conditions are proved for the tolerances of the run; otherwise nullopt. Slow: call
     // fails_at_point() first.
-    std::optional<Certificate> certify(const Collision& collision) {
+    std::optional<Certificate> certify(const Collision& collision, CertificateScope scope = CertificateScope::full) {
         const FloatEnvironmentGuard ground;
-        return do_certify(collision);
+        return do_certify(collision, scope);
     }
     // The certificate that can be proved here whatever the tolerances, for a collision after which no further flight
     // can be resolved numerically.
@@ -155,7 +159,7 @@ class TruncationConditions : protected ConditionsBase {
     }
 
  protected:
-    virtual std::optional<Certificate> do_certify(const Collision& collision) = 0;
+    virtual std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) = 0;
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
     // The variation of -hddot at a collision.
     AccelerationTrend trend_at(const Collision& collision);

@@ -71,11 +71,12 @@ void ExecutionAutomaton::land_alone(const Contact& contact) {
                         kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
     if (e == 0.0) {
         capture(contact, collision);
-    } else if (auto certificate =
-                   could_truncate(collision) ? prove(&TruncationConditions::certify, collision) : std::nullopt) {
+    } else if (auto certificate = could_truncate(collision)
+                                      ? timed([&] { return conditions_->certify(collision, proof_scope_); })
+                                      : std::nullopt) {
         complete(contact, collision, std::move(*certificate));
     } else if (too_short_to_resolve(collision, e)) {
-        if (auto proved = prove(&TruncationConditions::prove_any, collision)) {
+        if (auto proved = timed([&] { return conditions_->prove_any(collision); })) {
             complete(contact, collision, std::move(*proved));
         } else if (surfaces_->count() > 1) {
             if (!complete_pair(ContactSet::of(which_), impact(contact, next_.state.v, e), true))
@@ -103,12 +104,6 @@ bool ExecutionAutomaton::could_truncate(const Collision& collision) {
         conditions_ = all_conditions_.back().conditions.get();
     }
     return !conditions_->fails_at_point(collision);
-}
-
-// Calls a proof of the conditions; could_truncate() must have been called.
-std::optional<Certificate> ExecutionAutomaton::prove(
-    std::optional<Certificate> (TruncationConditions::*question)(const Collision&), const Collision& collision) {
-    return timed([&] { return ((*conditions_).*question)(collision); });
 }
 
 // Applies Newton's impact law and starts the next flight.

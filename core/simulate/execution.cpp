@@ -27,6 +27,7 @@ constexpr int max_stalled = 100;
 ExecutionAutomaton::ExecutionAutomaton(std::shared_ptr<const Model> model, const Run& run, ContactCache& surfaces,
                                        RunMonitor* watch, Recording keep, AmbiguityPolicy ambiguity_policy)
     : ambiguity_policy_(ambiguity_policy),
+      proof_scope_(keep == Recording::full ? CertificateScope::full : CertificateScope::decision),
       watch_(watch),
       run_(run),
       model_(std::move(model)),

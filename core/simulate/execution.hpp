@@ -114,8 +114,6 @@ class ExecutionAutomaton {
         return result;
     }
     bool could_truncate(const Collision& collision);
-    std::optional<Certificate> prove(std::optional<Certificate> (TruncationConditions::*question)(const Collision&),
-                                     const Collision& collision);
     void bounce(const Contact& contact, double e);
     bool is_well_resolved(double speed) const;
     bool too_short_to_resolve(const Collision& collision, double e);
@@ -210,6 +208,7 @@ class ExecutionAutomaton {
     long evaluations_ = 0;
     int stalled_ = 0;  // consecutive steps as short as the resolution of t
     AmbiguityPolicy ambiguity_policy_;
+    CertificateScope proof_scope_;  // of certificates that decide a truncation
     RunMonitor* watch_;
     Run run_;
     std::optional<Outcome> outcome_;

@@ -155,6 +155,43 @@ TEST(Truncation, TheZenoTimeIsEnclosedToThirdOrder) {
     }
 }
 
+// A decision without a report leaves out the enclosure of third order, except where only that one is narrow enough.
+// Everything that the further motion depends on is the same.
+TEST(Truncation, ADecisionAloneLeavesTheMotionAsItIs) {
+    int wider = 0, as_narrow = 0;
+    for (const auto& problem : test::problems) {
+        const auto model = test::load(problem.asset);
+        auto run = model->default_run();
+        run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-13;
+        const Trajectory trajectory = simulate(model, run);
+        ContactKinematics surface(*model, run);
+        run.options.truncation.eps_q = run.options.truncation.eps_v = 1e-2;
+        for (const double eps_t : {1e-3, 1e-5, 1e-7, 1e-9}) {
+            run.options.truncation.eps_t = eps_t;
+            const auto reports = truncation_conditions(*model, run), decisions = truncation_conditions(*model, run);
+            for (const Event& event : test::events_of(trajectory, Event::Kind::impact)) {
+                const State before{event.q, event.v_before, event.t};
+                const Contact contact = surface.at(before);
+                const Vector s = reinitialize(contact, before.v, Reinitialization::kinetic);
+                const Collision collision{before, -contact.hdot, s, s};
+                const auto report = reports->certify(collision);
+                const auto decision = decisions->certify(collision, CertificateScope::decision);
+                ASSERT_EQ(decision.has_value(), report.has_value()) << problem.key << ", " << eps_t << ", " << event.t;
+                if (!report) continue;
+                EXPECT_EQ(decision->zeno_time, report->zeno_time);
+                EXPECT_EQ(decision->shadowing_position, report->shadowing_position);
+                EXPECT_EQ(decision->shadowing_velocity, report->shadowing_velocity);
+                EXPECT_LE(decision->zeno_low, report->zeno_low);
+                EXPECT_GE(decision->zeno_high, report->zeno_high);
+                const bool same = decision->zeno_high - decision->zeno_low == report->zeno_high - report->zeno_low;
+                ++(same ? as_narrow : wider);
+            }
+        }
+    }
+    EXPECT_GT(wider, 10);
+    EXPECT_GT(as_narrow, 10);
+}
+
 // With units so small that a_min^2 underflows, time and position of the Zeno point are bounded but the shadowing error
 // is not. Then no shadowing bound is reported, and none may cause a cut.
 TEST(Truncation, NothingIsClaimedOfAShadowWithoutABound) {
