@@ -17,6 +17,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_ = {};
     trajectory_.model = std::move(model);
     trajectory_.run = run;
+    trajectory_.phases.reserve(8);
     any_gap_ = false;
     largest_ = largest_change_ = 0.0;
     if (keep_ == Recording::final_state) {
