@@ -69,6 +69,7 @@
 //   vectors: a wider load from a copy in pieces of 16 bytes waits for them      -27 percent (AVX2)
 //   runs in contact keep their lanes, which are refilled one by one             -3 percent (AVX2)
 //   square roots of four at once                                                -1 percent (AVX2)
+//   certificates of final states without the enclosure of third order           -4 percent (AVX2)
 // The pendulum's map (bench_explorer sweep), whose flights take many steps:
 //   flights with 1.2 times the order of a single step; half of that for short
 //   ones, predicted by the flight before                                        -12 percent
@@ -78,13 +79,14 @@
 // Without effect: rows summed in another order, no vzeroupper between orders, more or fewer runs at a time (12 to 48).
 // With AVX2: rules of both halves emitted alternately, results that no rule reads again not stored, factors of the
 // newest row loaded once for all sums, -O3, prefetching of the next run, batch_simulator.cpp in one unit with the
-// automaton. With a loss: both ends of an interval in one vector (+8 percent).
-// The remaining time of an ensemble of balls with AVX2: 18.6 us a run, for 60 steps, 18 impacts and 1.1 certificates.
+// automaton; other orders in contact or in flight; roots of concave gaps without Bernstein coefficients (few gaps are
+// found to be concave). With a loss: both ends of an interval in one vector (+8 percent).
+// The remaining time of an ensemble of balls with AVX2: 18.2 us a run, for 60 steps, 18 impacts and 1.1 certificates.
 // All lanes are in use (99.6 percent), and 0.4 percent of the steps are made alone.
-//   machine code of the series (3.6 instructions a cycle)              26 percent
-//   certificates, with their sines and memory (3.4 us each)            21
-//   compiled functions of eight runs, with their sines                 18
-//   impacts, requests and results of single runs                       17
+//   machine code of the series (3.6 instructions a cycle)              27 percent
+//   certificates, with their sines and memory (2.8 us each)            18
+//   compiled functions of eight runs, with their sines                 19
+//   impacts, requests and results of single runs                       18
 //   roots that partial sums do not show, steps made alone               5
 //   start and end of a run, memory, the rest                           13
 #include "bench/engine.hpp"
