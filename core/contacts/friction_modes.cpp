@@ -279,7 +279,8 @@ FrictionImpact capped_impact(const FrictionImpactProblem& problem) {
     const double size = impact.kind == FrictionChoice::Kind::one
                             ? impact.impulses.cwiseAbs().dot(problem.before.cwiseAbs() + impact.after.cwiseAbs())
                             : 0.0;
-    if (!(impact.energy_change > 0x1p-46 * size)) return impact;
+    impact.gains_energy = impact.energy_change > 0x1p-46 * size;
+    if (!impact.gains_energy || problem.may_gain_energy) return impact;
     double gains = 1.0, loses = 0.0;
     while (gains - loses > 0x1p-54) {
         const double middle = 0.5 * (gains + loses);
@@ -343,6 +344,7 @@ FrictionImpact friction_impact(const FrictionImpactProblem& problem) {
             part.e.push_back(problem.e[i]);
         }
         part.is_constant = problem.is_constant;
+        part.may_gain_energy = problem.may_gain_energy;
         part.coefficient = [&](std::size_t i, double speed) { return problem.coefficient(members[i], speed); };
         part.W = problem.W(rows, rows);
         part.before = problem.before(rows);
@@ -355,6 +357,7 @@ FrictionImpact friction_impact(const FrictionImpactProblem& problem) {
         for (const FrictionProblem::Element& each : part.elements)
             whole.mode = whole.mode.with(each.which, solved.mode.state(each.which));
         whole.energy_change += solved.energy_change;
+        whole.gains_energy = whole.gains_energy || solved.gains_energy;
         for (const auto& [i, factor] : solved.caps) whole.caps.emplace_back(members[i], factor);
     }
 }

@@ -71,12 +71,14 @@ struct FrictionImpactProblem {
     // mu of an element at a sliding speed, and whether it depends on it.
     std::function<double(std::size_t element, double speed)> coefficient;
     bool is_constant = true;
+    bool may_gain_energy = false;  // otherwise restitutions are reduced until no energy is gained
 };
 struct FrictionImpact {
     FrictionChoice::Kind kind = FrictionChoice::Kind::none;  // none or several: no impulses obey the law, or several do
     Mode mode;                                               // open: no impulse; held: u+ = 0; slip
     Eigen::VectorXd impulses, after;                         // by row
     double energy_change = 0.0;                              // of the kinetic energy relative to the surfaces
+    bool gains_energy = false;                               // at some contacts that nothing couples with the others
     // The restitutions of coupled contacts were multiplied by this factor, because the impact would gain energy.
     std::vector<std::pair<std::size_t, double>> caps;  // by element
 };

@@ -172,10 +172,12 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
     return text + ".\n";
 }
 
-std::string end_line(const ErrorEstimate& estimate, const std::string& prove_command) {
+std::string end_line(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.no_estimate_reason;
-    return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
+    const std::string text = fmt::format("State at the end: {}.", state);
+    if (trajectory.model->has_friction()) return text + "\n";  // which proofs do not cover
+    return fmt::format("{} For a proof of the whole run: {}\n", text, prove_command);
 }
 
 std::string first_line(const Trajectory& trajectory, const EventDescriptions& sentences) {
@@ -217,6 +219,10 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::painleve:
         case Outcome::Kind::impact_not_unique:
             return "Try a smaller friction coefficient, or choose an earlier --end.";
+        case Outcome::Kind::energy_gain:
+            return "To reduce the restitution until no energy is gained: --energy-gain cap.";
+        case Outcome::Kind::too_many_events:
+            return "Try a larger --max-events.";
     }
     return "";
 }
@@ -232,7 +238,7 @@ std::string answer(const Trajectory& trajectory, const ErrorEstimate& estimate, 
             "--json. Stop instead: --simultaneous stop\n",
             trajectory.ambiguous_impacts, trajectory.ambiguous_impacts == 1 ? "impact has" : "impacts have");
     text += "\n" + ContactChanges(trajectory, estimate).text() + "\n";
-    text += times_line(trajectory, estimate) + end_line(estimate, prove_command);
+    text += times_line(trajectory, estimate) + end_line(trajectory, estimate, prove_command);
     const Statistics& s = trajectory.statistics;
     return text + fmt::format("{} impact{}, {} steps. For impacts, bounds and assumptions: --verbose\n", s.impacts,
                               s.impacts == 1 ? "" : "s", s.steps);

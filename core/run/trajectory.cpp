@@ -121,6 +121,10 @@ std::string_view to_text(Outcome::Kind kind) {
             return "painleve";
         case Outcome::Kind::impact_not_unique:
             return "impact not unique";
+        case Outcome::Kind::energy_gain:
+            return "energy gain";
+        case Outcome::Kind::too_many_events:
+            return "too many events";
         case Outcome::Kind::cancelled:
             return "cancelled";
         default:

@@ -228,6 +228,8 @@ struct Outcome {
         redundant_contacts,    // they leave no motion, or are too many to decide
         painleve,              // rigid bodies with this friction have no motion, or several
         impact_not_unique,     // no impulses with friction obey the impact law, or several
+        energy_gain,           // an impact with friction would gain energy, and the options ask to stop
+        too_many_events,       // sticks, slips and reversals
         cancelled              // by another thread
     };
     Kind kind = Kind::end_time;

@@ -57,7 +57,18 @@ ContactCache::ContactCache(const Model& model, const Run& run)
     : model_(&model), run_(run), restitutions_(model.restitutions(run.parameters)) {
     free_.reserve(model.contacts());
     for (std::size_t i = 0; i < model.contacts(); ++i) free_.emplace_back(model, run, i);
-    for (const auto& [which, law] : model.equations().friction) rough_ = rough_.with(which);
+    const Layout& layout = model.layout();
+    std::vector<std::uint32_t> state{layout.t(), layout.sliding_speed()};
+    for (std::uint32_t i = 0; i < layout.dof; ++i) state.insert(state.end(), {layout.q(i), layout.v(i)});
+    for (const auto& [which, law] : model.equations().friction) {
+        rough_ = rough_.with(which);
+        if (depends_on(law.level, state) || depends_on(law.static_level, state)) {
+            varying_ = varying_.with(which);
+        } else if (!law.never_slides) {
+            const FrictionLevels levels = friction_levels(which, run.start());
+            if (mag(levels.present) == 0.0 && mag(levels.sticking) == 0.0) frictionless_ = frictionless_.with(which);
+        }
+    }
 }
 
 ContactKinematics& ContactCache::of(std::size_t contact, Mode mode) {
@@ -133,7 +144,7 @@ Slip ContactCache::slip(std::size_t which, const State& state, Mode mode, std::o
     return slip;
 }
 
-double ContactCache::slip_error(std::size_t which, const State& state) {
+SlipTerms<Evaluator<Interval>>& ContactCache::slip_at_rest(std::size_t which, const State& state) {
     const FloatEnvironmentGuard ground;
     auto known = slip_enclosures_.find(which);
     if (known == slip_enclosures_.end())
@@ -142,7 +153,17 @@ double ContactCache::slip_error(std::size_t which, const State& state) {
     set_rounding_box(known->second, state);
     known->second.input(model_->layout().sliding_speed()) = Interval(0.0);
     known->second.run();
-    return rad(known->second.u());
+    return known->second;
+}
+
+ContactCache::FrictionLevels ContactCache::friction_levels(std::size_t which, const State& state) {
+    const FloatEnvironmentGuard ground;
+    auto& terms = slip_at_rest(which, state);
+    FrictionLevels levels{terms.coefficient(), terms.coefficient(), terms.static_coefficient()};
+    terms.input(model_->layout().sliding_speed()) = abs(terms.u());
+    terms.run();
+    levels.present = terms.coefficient();
+    return levels;
 }
 
 ContactRows ContactCache::rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode) {

@@ -76,12 +76,24 @@ class ContactCache {
     // The slip in a mode in which the contact or joint is open; coefficients at this speed, or at |u|.
     Slip slip(std::size_t which, const State& state, Mode mode = {}, std::optional<double> speed = {});
     // Error bound of u over the rounding box of a state.
-    double slip_error(std::size_t which, const State& state);
+    double slip_error(std::size_t which, const State& state) { return rad(slip_at_rest(which, state).u()); }
+    // Coefficients over that box: at the present |u|, at |u| = 0, and of sticking.
+    struct FrictionLevels {
+        Interval present, at_rest, sticking;
+        // Whether they may be in the domain of the law: 0 <= mu, mu(0) <= mu_s.
+        bool are_allowed() const { return !certainly_negative(present) && !certainly_less(sticking, at_rest); }
+    };
+    FrictionLevels friction_levels(std::size_t which, const State& state);
     // The gaps of these contacts and the slips of those among `sliding`, contacts and joints. Accelerations are those
     // of the mode, in which they are all open.
     ContactRows rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode);
     // Whether a contact or joint has friction, and all of them.
     ContactSet rough() const { return rough_; }
+    // Those whose coefficients depend on the state.
+    ContactSet varying() const { return varying_; }
+    // Those whose coefficients are 0 with the parameters of this run. They slide, and their slip is not watched: the
+    // events are those of a system without this friction.
+    ContactSet frictionless() const { return frictionless_; }
     bool never_slides(std::size_t which) const { return model_->equations().friction.at(which).never_slides; }
     bool has_friction() const { return !rough_.empty(); }
     // Projects q onto the surfaces of the held contacts, and v so that hdot = 0 for them and u = 0 for all that stick.
@@ -116,6 +128,8 @@ class ContactCache {
  private:
     std::optional<double> project_several(State& state, ContactSet onto, ContactSet still);
     std::optional<double> settle_with_friction(State& state, Mode mode);
+    // Terms of the slip over the rounding box of a state, with coefficients at |u| = 0.
+    SlipTerms<Evaluator<Interval>>& slip_at_rest(std::size_t which, const State& state);
     UnpressedContacts& unpressed();
     bool land_while_held(State& state, std::size_t contact, Mode mode, Contact& landed);
 
@@ -124,7 +138,7 @@ class ContactCache {
     std::vector<Restitution> restitutions_;
     std::vector<ContactKinematics> free_;
     std::map<ContactInMode, ContactKinematics> in_modes_;
-    ContactSet rough_;
+    ContactSet rough_, varying_, frictionless_;
     std::map<Mode, ModeKinematics> motions_;
     std::map<ContactInMode, SlipTerms<Evaluator<double>>> slips_;
     std::map<std::size_t, SlipTerms<Evaluator<Interval>>> slip_enclosures_;

@@ -41,6 +41,7 @@ const StepResult& EventStepper::step(const StepRequest& request) {
     shortened_ = 0;
     forget_step();
     const StepFailure failure = flow_->step(request.until);
+    if (failure == StepFailure::none && !is_friction_allowed(flow_->end())) end_where_friction_is_not_allowed();
     result_.end = failure != StepFailure::none ? fail(failure) : find_event();
     result_.which = contact_;
     const long evaluations = usual_.evaluations() + (exact_ ? exact_->evaluations() : 0);
@@ -60,10 +61,35 @@ StepResult::StepOutcome EventStepper::find_event() {
     return end_without_event();
 }
 
+// Whether the coefficients of friction that act are in the domain of their law.
+bool EventStepper::is_friction_allowed(const State& state) {
+    for (const std::size_t i : surfaces_->varying().within(held().with(request_->mode.joints())))
+        if (!surfaces_->friction_levels(i, state).are_allowed()) return false;
+    return true;
+}
+
+// Shortens the last step, whose end is not allowed, to end just after the motion leaves the domain.
+void EventStepper::end_where_friction_is_not_allowed() {
+    std::vector<double> coefficients;
+    const DenseSegment piece = flow_->piece(coefficients);
+    double inside = 0.0, outside = 1.0;
+    for (double middle = 0.5; middle > inside && middle < outside; middle = 0.5 * (inside + outside)) {
+        const double t = piece.start + middle * (piece.end - piece.start);
+        (is_friction_allowed(state_in(piece, coefficients, model_->dof(), t)) ? inside : outside) = middle;
+    }
+    end_step_at(outside);
+}
+
+bool EventStepper::is_slip_of_frictionless(std::size_t event) {
+    if (surfaces_->frictionless().empty()) return false;
+    const FrictionEvent& friction = surfaces_->motion(request_->mode).friction()[event - surfaces_->count()];
+    return friction.watched == FrictionFunction::slip && surfaces_->frictionless().contains(friction.contact);
+}
+
 std::optional<EventStepper::EventCandidate> EventStepper::first_incident(std::uint64_t but) {
     std::optional<EventCandidate> first;
     for (std::size_t i = 0; i < events(); ++i) {
-        if ((but & bit(i)) != 0 || (!is_of_friction(i) && !is_watched(i))) continue;
+        if ((but & bit(i)) != 0 || (is_of_friction(i) ? is_slip_of_frictionless(i) : !is_watched(i))) continue;
         contact_ = i;
         const FirstCrossing descent = this->descent();
         if (descent.kind == FirstCrossing::Kind::none) continue;

@@ -135,6 +135,9 @@ class EventStepper {
     ContactSet held() const { return request_->held(); }
     WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
     bool is_of_friction(std::size_t event) const { return event >= surfaces_->count(); }
+    bool is_slip_of_frictionless(std::size_t event);
+    bool is_friction_allowed(const State& state);
+    void end_where_friction_is_not_allowed();
     std::size_t events() const { return request_->starts.size(); }
     bool is_watched(std::size_t contact) const {
         return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);

@@ -48,7 +48,7 @@ bool ExecutionAutomaton::restart(const Run& run) {
         known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
     record_.restart(model_, run_);
     last_step_ = proving_ = cut_error_ = 0.0;
-    stalled_ = load_sharing_changes_ = 0;
+    stalled_ = load_sharing_changes_ = friction_events_ = 0;
     evaluations_ = 0;
     completion_.reset();
     outcome_.reset();
@@ -185,6 +185,7 @@ void ExecutionAutomaton::accept(const StepResult& result) {
     switch (result.end) {
         case StepOutcome::no_event:
             next_.begins = false;
+            if (surfaces_->has_friction() && !check_friction_levels(next_.held().with(next_.mode.joints()))) return;
             return check_touching();
         case StepOutcome::impact:
             return land(result.which, result.contact);

@@ -173,6 +173,8 @@ class ExecutionAutomaton {
     Mode sliding_mode(ContactSet contacts_and_joints);
     void enter_friction_mode(Mode before, ContactSet released = {});
     void record_friction(Event::Kind kind, ContactSet contacts);
+    bool check_friction_levels(ContactSet contacts_and_joints);
+    std::string slips_text(const ContactRows& rows, Mode sliding) const;
     void collide_with_friction(ContactSet landing);
     void record_plastic_landing(std::size_t contact, const State& before, double speed);
     std::string name_of(std::size_t contact_or_joint) const;
@@ -236,6 +238,7 @@ class ExecutionAutomaton {
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique
     std::map<std::size_t, int> slip_roots_;  // order of the zero of u at the start of a segment, by contact or joint
+    int friction_events_ = 0;                // sticks, slips and reversals so far
     // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
     double load_sharing_since_ = 0.0;
     int load_sharing_changes_ = 0;

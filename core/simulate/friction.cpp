@@ -2,6 +2,7 @@
 // event. Numbers propose the mode, and intervals over the rounding box prove it.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "contacts/friction_modes.hpp"
@@ -32,7 +33,7 @@ ContactSet ExecutionAutomaton::all_joints() const {
 ContactSet ExecutionAutomaton::at_zero_slip(ContactSet contacts_and_joints) {
     constexpr double few = 4.0;
     ContactSet found;
-    for (const std::size_t i : contacts_and_joints.within(surfaces_->rough()))
+    for (const std::size_t i : contacts_and_joints.within(surfaces_->rough()).without(surfaces_->frictionless()))
         if (std::abs(surfaces_->slip(i, next_.state).u) <= few * surfaces_->slip_error(i, next_.state))
             found = found.with(i);
     return found;
@@ -163,6 +164,20 @@ void ExecutionAutomaton::release_with_friction(std::size_t which) {
     const auto values = surfaces_->motion(before).enclosed(next_.state);
     bool others = false;
     for (const std::size_t i : before.held()) others = others || (i != which && !certainly_negative(values[i].value));
+    // The friction force of a foot that never slides need not vanish with its contact force.
+    if (!others && surfaces_->rough().contains(which) && surfaces_->never_slides(which)) {
+        const Interval hddot = surfaces_->of(which, before.without(which)).hddot(next_.state);
+        if (certainly_negative(hddot))
+            return stop(Outcome::Kind::painleve,
+                        fmt::format("the contact force of {} vanishes, and released it would penetrate with the "
+                                    "acceleration {:.6g}: a foot that never slides would have to pull, at {}",
+                                    name_of(which), mid(hddot), where(next_.state)));
+        if (certainly_positive(hddot)) {
+            next_.mode = before.without(which);
+            next_.starts[which] = {{0.0, 0.0}, 2};
+            return enter_friction_mode(before, ContactSet::of(which));
+        }
+    }
     if (others || !certainly_positive(values[which].rate))
         return stop(Outcome::Kind::undecided,
                     fmt::format("the contact force of {} touches zero{}, and h''' > 0 is not proved at {}",
@@ -196,12 +211,17 @@ void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
     record_friction(Event::Kind::slip, slip);
     record_friction(Event::Kind::reversal, reversal);
     record_friction(Event::Kind::release, released);
+    if (outcome_) return;
     enter_phase();
     begin_stretch(mode, run_.options.end_time);
 }
 
 void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) {
-    if (contacts.empty()) return;
+    if (contacts.empty() || outcome_) return;
+    if (kind != Event::Kind::release && ++friction_events_ > run_.options.max_events)
+        return stop(Outcome::Kind::too_many_events,
+                    fmt::format("{} sticks, slips and reversals by t = {:.9g}; try a larger --max-events",
+                                run_.options.max_events, next_.state.t));
     Event event;
     event.kind = kind;
     event.contacts = contacts;
@@ -212,6 +232,40 @@ void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) 
     record_.event(std::move(event));
 }
 
+// Ends the run where coefficients leave the domain of their law. Called at the ends of steps, which are shortened to it,
+// and at events; the values at the start of a run are checked with its input. False if the run ends.
+bool ExecutionAutomaton::check_friction_levels(ContactSet contacts_and_joints) {
+    for (const std::size_t i : contacts_and_joints.within(surfaces_->varying())) {
+        const ContactCache::FrictionLevels levels = surfaces_->friction_levels(i, next_.state);
+        if (levels.are_allowed()) continue;
+        const std::string text =
+            certainly_negative(levels.present)
+                ? fmt::format("the {} of {} falls below 0 at the slip {:.6g}", is_joint(i) ? "level" : "friction",
+                              name_of(i), surfaces_->slip(i, next_.state).u)
+                : fmt::format("the static {0} of {1} falls below its {0} at slip 0, {2:.6g}",
+                              is_joint(i) ? "level" : "friction", name_of(i), mid(levels.at_rest));
+        stop(Outcome::Kind::left_the_domain, fmt::format("{}, at {}", text, where(next_.state)));
+    }
+    return !outcome_;
+}
+
+// The slips of these rows, with the numbers of Painleve's paradox: W_sigma of what slides, and the free acceleration of
+// its gap.
+std::string ExecutionAutomaton::slips_text(const ContactRows& rows, Mode sliding) const {
+    std::string text;
+    for (const auto& [i, slip] : rows.slips) {
+        const int sign = slip_sign(sliding.state(i));
+        text += fmt::format("{}{} {} at u = {:.6g}", text.empty() ? "" : ", ", name_of(i), sign != 0 ? "slides" : "is",
+                            slip.u);
+        if (sign == 0 || is_joint(i)) continue;
+        const Eigen::Index gap = rows.gap_of(i);
+        const double W = rows.W(gap, gap) - sign * slip.coefficient * rows.W(gap, rows.slip_of(i));
+        text += fmt::format(" with W = {:.6g} and the free acceleration {:.6g} of its gap", W,
+                            rows.rows[static_cast<std::size_t>(gap)].acceleration);
+    }
+    return text;
+}
+
 // ---- decision ----
 
 // Decides the modes of closed contacts and of all joints. In `sliding`, those with u = 0 are held or open, the others
@@ -220,6 +274,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
     using enum ContactState;
     forget_held();
     const ContactSet joints = all_joints(), rough = closed.with(joints).within(surfaces_->rough());
+    if (!check_friction_levels(rough)) return false;
     Mode base;  // joints that slip: their forces are known
     ContactSet sliding_joints;
     for (const std::size_t i : joints)
@@ -273,14 +328,13 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
     group_equal_slips(problem);
     const FrictionChoice choice = choose_mode(problem);
     if (choice.kind == FrictionChoice::Kind::none || choice.kind == FrictionChoice::Kind::several) {
-        std::string slips;
-        for (const auto& [i, slip] : rows.slips)
-            slips += fmt::format("{}{} {} at u = {:.6g}", slips.empty() ? "" : ", ", name_of(i),
-                                 slip_sign(sliding.state(i)) != 0 ? "slides" : "is", slip.u);
         const bool none = choice.kind == FrictionChoice::Kind::none;
+        const bool pulls = none && std::any_of(problem.elements.begin(), problem.elements.end(),
+                                               [](const auto& each) { return std::isinf(each.resting); });
         stop(Outcome::Kind::painleve,
-             fmt::format("{}: rigid bodies with this friction have {} motion{} from here, at {}", slips,
-                         none ? "no" : "more than one", none ? "" : "s", where(next_.state)));
+             fmt::format("{}: rigid bodies with this friction have {} motion from here{}, at {}",
+                         slips_text(rows, sliding), none ? "no" : "more than one",
+                         pulls ? ": a foot that never slides would have to pull" : "", where(next_.state)));
         return false;
     }
     const FrictionMotion& chosen = choice.motions.front();

@@ -41,11 +41,11 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 all.count(), max_closed_contacts, names_of(all), where(next_.state)));
-    Mode closed = next_.mode;
-    for (const std::size_t i : next_.touching) closed = closed.with(i, ContactState::held);
     if (!surfaces_->project(next_.state, all, {})) return fail_projection();
+    if (!check_friction_levels(all)) return;
     ContactRows rows = surfaces_->rows(next_.state, all, all.within(surfaces_->rough()), {});
     FrictionImpactProblem problem;
+    problem.may_gain_energy = run_.options.energy_gain == EnergyGain::stop;
     problem.W = rows.W;
     problem.before.resize(rows.size());
     for (Eigen::Index k = 0; k < rows.size(); ++k) {
@@ -58,7 +58,10 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
     for (const std::size_t i : all) {
         using enum ContactState;
         FrictionProblem::Element each{i, rows.gap_of(i), rows.slip_of(i), 0.0, 0.0, false, {open, held}};
-        if (each.slip >= 0 && !surfaces_->never_slides(i))
+        if (surfaces_->frictionless().contains(i)) {
+            each.slides = true;  // with either sign, since its friction force is 0
+            each.states = {open, slip_plus};
+        } else if (each.slip >= 0 && !surfaces_->never_slides(i))
             each.states.insert(each.states.end(), {slip_plus, slip_minus});
         problem.elements.push_back(each);
         problem.e.push_back(restitution(i));
@@ -85,6 +88,11 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
                           : fmt::format("{} impulses obey the impact law with friction of {}, at {}",
                                         none ? "no" : "several", names_of(all), where(next_.state)));
     }
+    if (impact.gains_energy)
+        return stop(Outcome::Kind::energy_gain,
+                    fmt::format("the impact of {} would change the energy by {:.6g}, a gain: skew bodies may gain some "
+                                "where their slip ends within the impact, at {}",
+                                names_of(landing), impact.energy_change, where(next_.state)));
     const Vector v_before = next_.state.v, v_after = rows.after(v_before, impact.impulses);
     double speed = 0.0;
     for (const std::size_t i : landing)
@@ -123,7 +131,8 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         const int sign = slip_sign(impact.mode.state(i));
         if (sign != 0) sliding = sliding.with(i, slip_state(sign));
         // No impulse: the slip is what it was before.
-        if (impact.mode.state(i) == ContactState::open && u != 0.0)
+        const bool has_sign = surfaces_->frictionless().contains(i);
+        if (has_sign || (impact.mode.state(i) == ContactState::open && u != 0.0))
             sliding = sliding.with(i, slip_state(u > 0.0 ? 1 : -1));
     }
     const ContactSet resting_joints = at_zero_slip(all_joints());

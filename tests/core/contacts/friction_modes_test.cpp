@@ -96,6 +96,21 @@ TEST(FrictionImpact, KanesParadoxIsCapped) {
     EXPECT_NEAR(impact.energy_change, 0.0, 1e-12);
 }
 
+// The same without the cap: T rises from 0.5 to 0.6328125.
+TEST(FrictionImpact, KanesParadoxGainsEnergy) {
+    FrictionImpactProblem problem = one_impact(matrix(1.0, 0.6, 1.0), {-1.0, -0.6}, 1.0, 0.9);
+    problem.may_gain_energy = true;
+    const FrictionImpact impact = friction_impact(problem);
+    ASSERT_EQ(impact.kind, FrictionChoice::Kind::one);
+    EXPECT_NEAR(impact.impulses[0], 2.40625, 1e-12);
+    EXPECT_NEAR(impact.impulses[1], -0.84375, 1e-12);
+    EXPECT_NEAR(impact.after[0], 0.9, 1e-12);
+    EXPECT_NEAR(impact.after[1], 0.0, 1e-12);
+    EXPECT_NEAR(impact.energy_change, 0.1328125, 1e-12);
+    EXPECT_TRUE(impact.gains_energy);
+    EXPECT_TRUE(impact.caps.empty());
+}
+
 TEST(FrictionImpact, WithoutFrictionIsNewtons) {
     const FrictionImpact impact = friction_impact(one_impact(matrix(2.0, 0.6, 1.0), {-1.0, 0.7}, 0.0, 0.5));
     ASSERT_EQ(impact.kind, FrictionChoice::Kind::one);
@@ -132,6 +147,43 @@ TEST(FrictionImpact, RandomImpactsObeyTheLawAndGainNoEnergy) {
     }
     EXPECT_GT(capped, 300);
     EXPECT_GT(stuck, 10000);
+}
+
+// The same for two contacts of a plane body: no impact gains energy, and velocities obey W.
+TEST(FrictionImpact, RandomImpactsOfTwoContactsGainNoEnergy) {
+    std::mt19937 generator(11);
+    std::uniform_real_distribution<double> any(-1.0, 1.0), part(0.0, 1.0);
+    int solved = 0, capped = 0;
+    for (int i = 0; i < 5000; ++i) {
+        Eigen::MatrixXd rows(4, 3);  // of gaps and slips, in units in which M = 1
+        for (Eigen::Index k = 0; k < 2; ++k) {
+            const double angle = 3.0 * any(generator);
+            rows.row(2 * k) << std::cos(angle), std::sin(angle), any(generator);
+            rows.row(2 * k + 1) << -std::sin(angle), std::cos(angle), any(generator);
+        }
+        FrictionImpactProblem problem;
+        problem.elements = {{0, 0, 1, 0.0, 0.0, false, {open, held, slip_plus, slip_minus}},
+                            {1, 2, 3, 0.0, 0.0, false, {open, held, slip_plus, slip_minus}}};
+        problem.e = {part(generator), part(generator)};
+        problem.W = rows * rows.transpose();
+        problem.before = rows * Eigen::Vector3d(any(generator), any(generator), any(generator));
+        if (problem.before[0] > 0.0 || problem.before[2] > 0.0) continue;
+        const double mu[] = {part(generator), part(generator)};
+        problem.coefficient = [&mu](std::size_t element, double) { return mu[element]; };
+        const FrictionImpact impact = friction_impact(problem);
+        if (impact.kind != FrictionChoice::Kind::one) continue;
+        ++solved;
+        capped += impact.caps.empty() ? 0 : 1;
+        const double size = 1.0 + impact.impulses.norm();
+        ASSERT_LE((problem.before + problem.W * impact.impulses - impact.after).norm(), 1e-9 * size) << i;
+        ASSERT_LE(impact.energy_change, 1e-12 * size) << i;
+        for (Eigen::Index k = 0; k < 2; ++k) {
+            ASSERT_GE(impact.impulses[2 * k], -1e-12 * size) << i;
+            ASSERT_LE(std::abs(impact.impulses[2 * k + 1]), mu[k] * impact.impulses[2 * k] + 1e-9 * size) << i;
+        }
+    }
+    EXPECT_GT(solved, 1000);
+    EXPECT_GT(capped, 10);
 }
 
 // A coefficient that depends on the speed belongs to the slip at the end of the compression.

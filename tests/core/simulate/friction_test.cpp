@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -39,6 +40,23 @@ friction = [{{name = "joint", {}}}]
                        x, v, joint);
 }
 
+// The accuracy that each method must reach.
+double accuracy(Method method) { return method == Method::taylor ? 1e-12 : 1e-7; }
+
+// E(end) - E(start) - work + loss + heat, and the largest |T| + |V| of both.
+std::pair<double, double> balance(const Trajectory& run) {
+    const Model& model = *run.model;
+    auto energy = model.evaluator(model.energy(), run.run.parameters);
+    double difference = 0.0, size = 0.0;
+    for (const auto& [state, sign] : {std::pair(run.run.start(), -1.0), std::pair(run.end, 1.0)}) {
+        set_state(energy, state);
+        energy.run();
+        difference += sign * (energy.kinetic() + energy.potential());
+        size = std::max(size, std::abs(energy.kinetic()) + std::abs(energy.potential()));
+    }
+    return {difference - run.work + run.loss + run.heat, size};
+}
+
 Trajectory run_of(const std::string& text, double end, Method method = Method::taylor) {
     const auto model = derive(parse_system(text));
     achilles::Run run = model->default_run();
@@ -47,7 +65,9 @@ Trajectory run_of(const std::string& text, double end, Method method = Method::t
     run.options.tolerance = method == Method::taylor ? 1e-14 : 1e-10;
     Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
-    EXPECT_LT(trajectory.statistics.energy_drift, method == Method::taylor ? 1e-12 : 1e-7);
+    EXPECT_LT(trajectory.statistics.energy_drift, accuracy(method));
+    const auto [difference, size] = balance(trajectory);
+    EXPECT_NEAR(difference, 0.0, accuracy(method) * (size + trajectory.heat + std::abs(trajectory.work)));
     return trajectory;
 }
 
@@ -58,8 +78,8 @@ std::vector<double> times_of(const Trajectory& trajectory, Kind kind) {
     return times;
 }
 
-// The accuracy that the issue asks of each method.
-double accuracy(Method method) { return method == Method::taylor ? 1e-12 : 1e-7; }
+// The same against references that were integrated numerically, with 29 digits.
+double quadrature(Method method) { return method == Method::taylor ? 1e-9 : 1e-7; }
 
 class Friction : public testing::TestWithParam<Method> {};
 
@@ -144,9 +164,13 @@ TEST_P(Friction, FollowsAStribeckCurve) {
     const auto run = run_of(oscillator(0.0, 0.2, R"-(slip = "x' - 0.2", level = "1/(1 + 3*slip)")-"), 45.0, GetParam());
     const std::vector<double> slips = times_of(run, Kind::slip), sticks = times_of(run, Kind::stick);
     ASSERT_GE(slips.size(), 3u);
-    const double wanted = GetParam() == Method::taylor ? 1e-9 : 1e-6;
-    EXPECT_NEAR(sticks[0] - slips[0], 4.29599952548015488336, wanted);
-    EXPECT_NEAR(slips[2] - slips[1], 12.00103129483057864690, wanted);
+    EXPECT_NEAR(sticks[0] - slips[0], 4.29599952548015488336, quadrature(GetParam()));
+    EXPECT_NEAR(slips[2] - slips[1], 12.00103129483057864690, quadrature(GetParam()));
+    const auto other =
+        run_of(oscillator(0.0, 0.2, R"-(slip = "x' - 0.2", level = "1/(1 + 2.5*slip)")-"), 45.0, GetParam());
+    const std::vector<double> starts = times_of(other, Kind::slip);
+    ASSERT_GE(starts.size(), 3u);
+    EXPECT_NEAR(starts[2] - starts[1], 11.63686151895857427947654701, quadrature(GetParam()));
 }
 
 // A table that starts to move at V = 1 - cos t carries a block until sin t exceeds mu. The accelerations are continuous
@@ -199,19 +223,13 @@ constraint = [{{gap = "y", restitution = 0.5, slip = "x'", friction = 0.5}}]
     ASSERT_TRUE(sliding.events[1].friction);
     EXPECT_NEAR(sliding.events[1].friction->tangential.at(0).second, -0.375, accuracy(GetParam()));
     EXPECT_NEAR(sliding.events[1].joint->impulses.at(0).second, 0.75, accuracy(GetParam()));
-    const auto balance = [](const Trajectory& run) {
-        const auto energy = [&](const State& state, double alpha) {
-            return 0.5 * state.v.squaredNorm() + state.q[1] - alpha * state.q[0];
-        };
-        const double alpha = 0.45;
-        return energy(run.end, alpha) - energy(run.run.start(), alpha) + run.loss + run.heat;
-    };
-    EXPECT_NEAR(balance(sliding), 0.0, 10.0 * accuracy(GetParam()));
 }
 
 // A block 1 x 4 that rocks from one corner to the other (theory-friction.md 3).
 TEST_P(Friction, RocksFromCornerToCorner) {
-    for (const auto& [mu, ratio] : {std::pair(0.2, 31.0 / 34.0), std::pair(0.1, 38.0 / 47.0)}) {
+    const double least = 12.0 / 65.0;  // the friction that the sticking corner needs
+    for (const auto& [mu, ratio] : {std::pair(0.2, 31.0 / 34.0), std::pair(0.1, 38.0 / 47.0),
+                                    std::pair(least + 1e-9, 31.0 / 34.0), std::pair(least - 1e-9, 31.0 / 34.0)}) {
         const auto run = run_of(fmt::format(
                                     R"-(coordinate = [{{name = "x", rate = 2}}, {{name = "y", start = 2, rate = -0.5}},
               {{name = "phi", rate = -1}}]
@@ -236,9 +254,9 @@ friction = "mu"
         ASSERT_FALSE(run.events.empty());
         const Event& impact = run.events[0];
         ASSERT_TRUE(impact.is_impact());
-        EXPECT_NEAR(impact.v_after[2] / impact.v_before[2], ratio, 1e-13);
+        EXPECT_NEAR(impact.v_after[2] / impact.v_before[2], ratio, mu < least && mu != 0.1 ? 1e-8 : 1e-13);
         EXPECT_FALSE(run.end_mode.is_held(0));
-        EXPECT_EQ(run.end_mode.state(1) == ContactState::held, mu == 0.2);
+        EXPECT_EQ(impact.mode.state(1) == ContactState::held, mu > least);
     }
 }
 
@@ -290,8 +308,6 @@ constraint = [{gap = "y - sin(x)", restitution = 0, slip = "x' + cos(x)*y'", fri
     ASSERT_EQ(times_of(run, Kind::stick).size(), 1u);
     EXPECT_EQ(run.end_mode.state(0), ContactState::held);
     EXPECT_LT(std::abs(std::cos(run.end.q[0])), 0.2);  // the slope where it stopped
-    const double energy = run.end.q[1] + 0.5 * run.end.v.squaredNorm();
-    EXPECT_NEAR(energy - 9.0 + run.loss + run.heat, 0.0, GetParam() == Method::taylor ? 1e-11 : 1e-6);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, Friction, testing::Values(Method::taylor, Method::dopri5));
@@ -316,7 +332,31 @@ constraint = [{{name = "tip", gap = "y - sin(phi)", restitution = 0, slip = "x' 
     EXPECT_NE(none.message.find("no motion"), std::string::npos) << none.message;
     EXPECT_EQ(two.kind, Outcome::Kind::painleve);
     EXPECT_NE(two.message.find("more than one motion"), std::string::npos) << two.message;
+    EXPECT_NE(two.message.find("'tip' slides at u = -4.03923 with W = -0.415064 and the free acceleration 0.247077"),
+              std::string::npos)
+        << two.message;
     EXPECT_EQ(outcome_of(3.0, 0.0).kind, Outcome::Kind::end_time);
+}
+
+// W = 1 + 3 cos phi (cos phi - mu sin phi) is negative between 45 degrees and atan 4.
+TEST(Painleve, HasItsRegion) {
+    const auto has_motion = [](double phi) {
+        const auto model = derive(parse_system(fmt::format(
+            R"-(coordinate = [{{name = "x", rate = -3}}, {{name = "y", start = "sin({0})"}},
+              {{name = "phi", start = {0}}}]
+lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2/3)/2"
+lagrangian.potential = "y"
+constraint = [{{name = "tip", gap = "y - sin(phi)", restitution = 0, slip = "x' + sin(phi)*phi'", friction = "5/3"}}]
+)-",
+            phi)));
+        achilles::Run run = model->default_run();
+        run.options.end_time = 1e-9;
+        return simulate(model, run).outcome.kind == Outcome::Kind::end_time;
+    };
+    EXPECT_TRUE(has_motion(0.25 * std::numbers::pi - 1e-6));
+    EXPECT_FALSE(has_motion(0.25 * std::numbers::pi + 1e-6));
+    EXPECT_FALSE(has_motion(std::atan(4.0) - 1e-6));
+    EXPECT_TRUE(has_motion(std::atan(4.0) + 1e-6));
 }
 
 // While it slides into the region where W is negative, the force grows without bound: the run ends before.
@@ -332,6 +372,7 @@ constraint = [{name = "tip", gap = "y - sin(phi)", restitution = 0, slip = "x' +
     const Trajectory trajectory = simulate(model, run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::painleve) << trajectory.outcome.message;
     EXPECT_LT(trajectory.end.q[2], std::numbers::pi / 4.0);  // where W vanishes
+    EXPECT_GT(trajectory.end.q[2], std::numbers::pi / 4.0 - 0.02);
 }
 
 TEST(NeverSlides, StaysOnASteepSlope) {
@@ -342,7 +383,8 @@ TEST(NeverSlides, StaysOnASteepSlope) {
 
 // The toy woodpecker by Glocker and Pfeiffer: it slides and sticks on a pole, with impacts of three contacts. Its orbit
 // attracts with the multiplier -0.84; times after the start of slip are from extrapolation with 113 bits.
-TEST(Woodpecker, HasItsEventsAndPeriod) {
+TEST_P(Friction, MakesAWoodpeckerPeck) {
+    const double wanted = quadrature(GetParam());
     const auto run = run_of(R"-(coordinate = [{name = "y", rate = -0.01}, {name = "pM", start = "-0.0006/0.0058"},
               {name = "pS", start = -0.205, rate = 17.57}]
 parameter = [{name = "mM", value = 3e-4}, {name = "JM", value = 5e-9}, {name = "mS", value = 4.5e-3},
@@ -370,7 +412,7 @@ restitution = 0
 slip = "y' + 0.0031*pM'"
 friction = 0.3
 )-",
-                            40.0);
+                            40.0, GetParam());
     std::size_t start = run.events.size(), end = start;
     for (std::size_t i = 0; i < run.events.size(); ++i)
         if (run.events[i].kind == Kind::slip) start = std::exchange(end, i);
@@ -391,19 +433,27 @@ friction = 0.3
         ASSERT_LE(i, end);
         EXPECT_EQ(run.events[i].kind, kind) << t;
         EXPECT_EQ(run.events[i].contacts, ContactSet::of(contact)) << t;
-        EXPECT_NEAR(run.events[i].t - run.events[start].t, t, 1e-9);
+        EXPECT_NEAR(run.events[i].t - run.events[start].t, t, wanted);
     }
     EXPECT_EQ(i, end);
-    EXPECT_NEAR(run.events[start].q[0] - run.events[end].q[0], 0.019445379284716526658, 1e-9);
-    const double dissipated =
-        run.events[end].heat - run.events[start].heat + run.events[end].loss - run.events[start].loss;
-    EXPECT_NEAR(dissipated, 0.0007911296664896863568764 + 0.0001245143532690454504081, 1e-12);
-}
-
-// A coefficient that is the number 0 is no friction.
-TEST(FrictionOfZero, IsNone) {
-    const auto model = derive(parse_system(block(0.5, 1.0, R"(slip = "x'", friction = 0)")));
-    EXPECT_FALSE(model->has_friction());
+    EXPECT_NEAR(run.events[end].q[2], -0.20513534924352575665, wanted);
+    EXPECT_NEAR(run.events[end].v_after[2], 17.5746662055760778630163, 20.0 * wanted);
+    EXPECT_NEAR(run.events[start].q[0] - run.events[end].q[0], 0.019445379284716526658, wanted);
+    // The reference books the heat of impacts as their loss: its heat is that of contact. At the impact of the beak the
+    // slip reverses, and friction does positive work.
+    const double slips[3][3] = {{1.0, 0.01, 0.015 - 0.0201}, {1.0, 0.0031, 0.0}, {1.0, 0.0031, 0.0}};
+    double heat_of_impacts = 0.0;
+    for (std::size_t k = start; k < end; ++k)
+        if (run.events[k].is_impact())
+            for (const auto& [contact, p] : run.events[k].friction->tangential)
+                for (int c = 0; c < 3; ++c)
+                    heat_of_impacts -=
+                        0.5 * p * slips[contact][c] * (run.events[k].v_before + run.events[k].v_after)[c];
+    EXPECT_LT(heat_of_impacts, -1e-6);
+    const double heat = run.events[end].heat - run.events[start].heat,
+                 loss = run.events[end].loss - run.events[start].loss;
+    EXPECT_NEAR(heat - heat_of_impacts, 0.0007911296664896863568764, 1e-3 * wanted);
+    EXPECT_NEAR(loss + heat_of_impacts, 0.0001245143532690454504081, 1e-3 * wanted);
 }
 
 }  // namespace
