@@ -323,7 +323,8 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
     for (std::size_t i = 0; i < curves; ++i)
         if (!framing.hidden.contains(i)) request.shown.push_back(i);
     request.over_time = view.quantities()[0].is_time;
-    request.with_work = values.reads(trajectory.model->layout().work());
+    const Layout& layout = trajectory.model->layout();
+    request.with_work = values.reads(layout.work()) || values.reads(layout.heat());
     request.noise.assign(curves + 1, noise.y);
     request.noise[0] = noise.x;
     request.size = framing.size;
