@@ -75,7 +75,10 @@ class Certificate(Record):
 
 
 class Event(Record):
-    """An impact, a Zeno point or a release. An impact has v_before and v_after, the others have v; a Zeno point has a certificate."""
+    """An impact, a Zeno point or a release; with friction, a stick, a slip or a reversal.
+
+    An impact has v_before and v_after, the others have v. A Zeno point has a certificate, the start of a slip and a
+    reversal a direction (1 or -1), and an impact with friction has tangential_impulses."""
 
     kind: str
     t: float
@@ -97,6 +100,10 @@ class Event(Record):
     not_unique: bool
     rounded_zero: bool
     alternatives: list[Record]
+    direction: int
+    modes: Record
+    tangential_impulses: Record
+    energy_capped: Record
 
 
 class Phase(Record):
@@ -108,6 +115,7 @@ class Phase(Record):
     end: float
     impacts: int
     not_unique: bool
+    modes: Record
 
 
 class OrbitPoint(Record):

@@ -81,7 +81,7 @@ class Run(_Result):
         return self.evaluate(expression)
 
     def evaluate(self, expression: str, t: float | Sequence[float] | np.ndarray | None = None) -> np.ndarray:
-        """An expression of t, coordinates, rates, parameters, gap, gap', lambda, energy, work, loss: along run.t, or at times t."""
+        """An expression of t, coordinates, rates, parameters, gap, gap', lambda, energy, work, loss (with friction slip, friction_force, heat): along run.t, or at times t."""
         if not isinstance(expression, str):
             raise TypeError(f"an expression such as \"y - sin(x)\" is expected, not {type(expression).__name__}")
         if t is None:
@@ -103,7 +103,7 @@ class Run(_Result):
         return times
 
     events: list[Event] = entry(
-        "events", "Impacts, Zeno points and releases, in time. Dicts with attributes: pandas.DataFrame(run.events) is a table.")
+        "events", "Impacts, Zeno points, releases and events of friction, in time. Dicts with attributes: pandas.DataFrame(run.events) is a table.")
 
     @property
     def certificates(self) -> list[Certificate]:
@@ -127,7 +127,7 @@ class Run(_Result):
 
     phases: list[Phase] = entry("phases", "The parts of the run, in time.")
     outcome: Record = entry("outcome", 'Why the run ended: kind, "end time" if it was completed, and message.')
-    end: Record = entry("end", "The end of the run: t, q, v, phase, held, work, loss, error_estimate.")
+    end: Record = entry("end", "The end of the run: t, q, v, phase, held, work, loss, error_estimate; with friction heat and modes.")
 
     @property
     def error_estimate(self) -> Record | None:
