@@ -81,10 +81,15 @@ class Differences {
           lagrangian_(model, run, {model.equations().given.kinetic - model.equations().given.potential}),
           graph_(model.equations().energy.graph()),
           forces_(model, run, given_forces(model, graph_)),
-          gaps_(model, run, model.equations().gaps) {}
+          gaps_(model, run, model.equations().gaps),
+          slips_(model, run, slips_of(model)) {
+        for (const auto& [which, law] : model.equations().friction)
+            if (!is_joint(which)) rough_.push_back(static_cast<Eigen::Index>(which));
+    }
 
     // Returns M, bias and Q (with the forces of a prescribed motion), then dh, hdot, hddot and lambda of each contact.
-    // Last comes hddot of each contact while one of the others is held, for each of the others in turn.
+    // Last comes hddot of each contact while one of the others is held, for each of the others in turn; with friction
+    // it sticks.
     Reals operator()(const PreciseState& at) {
         const auto L = [&](const PreciseState& x) { return lagrangian_(x)[0]; };
         const auto R = [&](const PreciseState& x) { return forces_(x)[dof_]; };
@@ -108,8 +113,10 @@ class Differences {
         const Eigen::PartialPivLU<Matrix> inverse(M);
         const Reals f = inverse.solve(Q - b), now = gaps_(at);
         // h along q + v t + f t^2/2
-        const auto later = [&](const Real& t) { return gaps_({at.q + at.v * t + f * (t * t / 2), at.v, at.t + t}); };
-        const Reals up = later(step), down = later(-step);
+        const auto later = [&](const Real& t) {
+            return PreciseState{at.q + at.v * t + f * (t * t / 2), at.v + f * t, at.t + t};
+        };
+        const Reals up = gaps_(later(step)), down = gaps_(later(-step));
         const Eigen::Index m = now.size();
         const Reals hddot = (up - 2 * now + down) / (step * step);
         Matrix G(m, dof_);
@@ -117,6 +124,11 @@ class Differences {
             for (Eigen::Index i = 0; i < dof_; ++i)
                 G(k, i) = slope([&](const PreciseState& x) { return gaps_(x)[k]; }, at, &PreciseState::q, i);
         const Matrix W = G * inverse.solve(Matrix(G.transpose()));
+        const Matrix rows = joined(G, at);
+        const Matrix W_rows = rows * inverse.solve(Matrix(rows.transpose()));
+        Reals accelerations(rows.rows());
+        accelerations.head(m) = hddot;
+        accelerations.tail(rows.rows() - m) = (slips_(later(step)) - slips_(later(-step))) / (2 * step);
         Reals all(dof_ * dof_ + 2 * dof_ + m * (dof_ + 3) + m * (m - 1));
         all.head(dof_ * dof_ + 2 * dof_) << M.reshaped(), b, Q;
         Eigen::Index next = dof_ * dof_ + 2 * dof_;
@@ -129,11 +141,49 @@ class Differences {
         }
         for (Eigen::Index k = 0; k < m; ++k)
             for (Eigen::Index j = 0; j < m; ++j)
-                if (j != k) all[next++] = hddot[k] - W(k, j) / W(j, j) * hddot[j];
+                if (j != k) all[next++] = while_kept(k, rows_of(j, m), W_rows, accelerations);
         return all;
     }
 
  private:
+    static std::vector<Expression> slips_of(const Model& model) {
+        std::vector<Expression> slips;
+        for (const auto& [which, law] : model.equations().friction)
+            if (!is_joint(which)) slips.push_back(law.slip);
+        return slips;
+    }
+    // The rows of all gaps, then those of the slips.
+    Matrix joined(const Matrix& G, const PreciseState& at) {
+        Matrix rows(G.rows() + static_cast<Eigen::Index>(rough_.size()), dof_);
+        rows.topRows(G.rows()) = G;
+        for (Eigen::Index k = G.rows(); k < rows.rows(); ++k)
+            for (Eigen::Index i = 0; i < dof_; ++i)
+                rows(k, i) =
+                    slope([&](const PreciseState& x) { return slips_(x)[k - G.rows()]; }, at, &PreciseState::v, i);
+        return rows;
+    }
+    // Those that a held contact keeps at acceleration 0.
+    std::vector<Eigen::Index> rows_of(Eigen::Index contact, Eigen::Index gaps) const {
+        std::vector<Eigen::Index> kept{contact};
+        const auto found = std::find(rough_.begin(), rough_.end(), contact);
+        if (found != rough_.end()) kept.push_back(gaps + (found - rough_.begin()));
+        return kept;
+    }
+    // The acceleration of row k while forces along the rows `kept` keep theirs at 0.
+    static Real while_kept(Eigen::Index k, const std::vector<Eigen::Index>& kept, const Matrix& W,
+                           const Reals& accelerations) {
+        const auto n = static_cast<Eigen::Index>(kept.size());
+        Matrix A(n, n);
+        Reals a(n), coupling(n);
+        for (Eigen::Index i = 0; i < n; ++i) {
+            const Eigen::Index row = kept[static_cast<std::size_t>(i)];
+            for (Eigen::Index j = 0; j < n; ++j) A(i, j) = W(row, kept[static_cast<std::size_t>(j)]);
+            a[i] = accelerations[row];
+            coupling[i] = W(k, row);
+        }
+        const Reals forces = A.partialPivLu().solve(a);
+        return accelerations[k] - coupling.dot(forces);
+    }
     // -dc_i/dt - sum_k (dc_i/dq_k - dc_k/dq_i) v_k, where c is dL/dv at v = 0.
     Real force_of_motion(const PreciseState& at, Eigen::Index i) {
         const auto c = [&](Eigen::Index k) {
@@ -152,7 +202,8 @@ class Differences {
     bool has_prescribed_motion_;
     Functions lagrangian_;
     Graph graph_;
-    Functions forces_, gaps_;
+    Functions forces_, gaps_, slips_;
+    std::vector<Eigen::Index> rough_;  // the contacts with friction, in the order of slips_
 };
 
 // Reproducible random numbers in [low, high].
