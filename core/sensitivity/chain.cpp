@@ -46,9 +46,6 @@ Chain::Chain(const Trajectory& trajectory, ChainOptions options)
       h_(model_->contacts()),
       u_(model_->contacts()) {
     check(trajectory.run);
-    if (model_->has_friction())
-        throw InputError("derivatives", {}, "runs with dry friction have no derivatives yet",
-                         "leave out --derivatives, or the friction");
     state_ = trajectory.run.start();
     mode_ = trajectory.phases.front().mode;
     for (std::size_t i = 0; i < model_->contacts(); ++i) {
@@ -57,6 +54,7 @@ Chain::Chain(const Trajectory& trajectory, ChainOptions options)
         if (at.h <= 4.0 * contact.gap_error(state_) && std::abs(at.hdot) <= 4.0 * contact.hdot_error(state_))
             resting_ = resting_.with(i);
     }
+    find_critical_slips();
     if (!trajectory.pieces.empty() && trajectory.pieces.front().start == state_.t) {
         const double t = state_.t;
         state_ = state_in(trajectory.pieces.front(), trajectory.coefficients, model_->dof(), t);
@@ -92,6 +90,33 @@ ContactGradient& Chain::surface(std::size_t contact, Mode mode) {
     if (!known)
         known = std::make_unique<ContactGradient>(*model_, model_->programs_of(contact, mode).contact_terms, tangent_,
                                                   trajectory_->run.parameters);
+    return *known;
+}
+
+SlipGradient& Chain::slip(std::size_t which) {
+    auto& known = slips_[which];
+    if (!known)
+        known =
+            std::make_unique<SlipGradient>(*model_, model_->slip_terms(which), tangent_, trajectory_->run.parameters);
+    return *known;
+}
+
+Gradient& Chain::event_functions(Mode mode) {
+    auto& known = event_functions_[mode];
+    if (!known)
+        known =
+            std::make_unique<Gradient>(*model_, model_->motion(mode).program, tangent_, trajectory_->run.parameters);
+    return *known;
+}
+
+// It depends only on parameters.
+Gradient& Chain::restitution(std::size_t contact) {
+    auto& known = restitutions_[contact];
+    if (!known) {
+        known =
+            std::make_unique<Gradient>(*model_, model_->restitution(contact), tangent_, trajectory_->run.parameters);
+        known->at(state_);
+    }
     return *known;
 }
 
@@ -157,11 +182,18 @@ ChainLink& Chain::add(ChainLink::Kind kind, std::optional<std::size_t> event) {
 
 const ChainLink* Chain::next() {
     if (next_link_ == link_count_) next_link_ = link_count_ = 0;
+    if (!begun_) {
+        begun_ = true;
+        if (model_->has_friction()) begin_with_friction();
+    }
     while (link_count_ == 0 && broken_.empty()) {
         const auto& pieces = trajectory_->pieces;
         const auto& events = trajectory_->events;
         const bool any_piece = next_piece_ < pieces.size(), any_event = next_event_ < events.size();
-        if (!any_piece && !any_event) return nullptr;
+        if (!any_piece && !any_event) {
+            if (model_->has_friction()) end_with_friction();
+            return nullptr;
+        }
         if (any_event && (!any_piece || events[next_event_].t <= pieces[next_piece_].start))
             handle_event(next_event_++);
         else
@@ -198,7 +230,7 @@ void Chain::step() {
             return break_off("the derivatives would need steps below the resolution of time");
         state_ = state_in(piece, trajectory_->coefficients, model_->dof(), t);
         state_.t = t;
-        if (!mode_.is_free()) {
+        if (!(mode_ == Mode())) {
             retract(link.J, mode_);
             if (is_end && options_.errors) retract(left_out, mode_);
         }
@@ -250,6 +282,7 @@ void Chain::watch_minima(const FlowSensitivity& slope, double span) {
 // Projects the rows of q and v onto h = 0, hdot = 0 of the held contacts of a mode: dq -= n dh, then dv -= n dhdot. The
 // contacts are processed one by one, each while those before it are held, so that these stay satisfied.
 void Chain::retract(RowMatrix& J, Mode onto) {
+    if (model_->has_friction()) return settle(J, onto);
     const auto each = [&](const auto& act) {
         ContactSet before;
         for (const std::size_t i : onto.held()) {

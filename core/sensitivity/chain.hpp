@@ -86,6 +86,11 @@ class Chain {
     void complete(RowMatrix& Z);
     // The contacts that are closed at rest at the start: a change must not change their h and u.
     ContactSet resting_at_start() const { return resting_; }
+    // The contacts and joints whose slip is 0 at the start and whose friction would jump with it: a change must not
+    // change these slips. They slide from there, or only static friction holds them. Then the derivatives of a slip by
+    // the components there.
+    ContactSet critical_slips_at_start() const { return critical_slips_; }
+    Eigen::RowVectorXd slip_row_at_start(std::size_t which);
 
     // The next link, valid until the next call; null at the end of the run, or once the chain is broken.
     const ChainLink* next();
@@ -103,6 +108,21 @@ class Chain {
     void land(std::size_t event);
     void reach_zeno_point(std::size_t event);
     void release(std::size_t event);
+    // With dry friction (chain_friction.cpp, friction_impact_sensitivity.cpp).
+    void find_critical_slips();
+    void begin_with_friction();
+    void end_with_friction();
+    void change_friction(std::size_t event);
+    std::optional<std::size_t> vanishing_function(std::size_t event);
+    double slip_residual(std::size_t which, double at_event);
+    void move_onto(RowMatrix& J, ContactSet surfaces);
+    void settle(RowMatrix& J, Mode onto);
+    void land_with_friction(std::size_t event);
+    struct ImpactRows;
+    bool add_loaded_contacts(const Event& now, ImpactRows& impact);
+    bool add_slip(const Event& now, std::size_t contact, ImpactRows& impact);
+    void complete_landing(const Event& now, const Event* rests, const ImpactRows& impact, ChainLink& link);
+    double coefficient_rate(std::size_t which, double speed);
     void break_off(std::string reason) { broken_ = std::move(reason); }
 
     ChainLink& add(ChainLink::Kind kind, std::optional<std::size_t> event = {});
@@ -116,6 +136,9 @@ class Chain {
     void watch_minima(const FlowSensitivity& slope, double span);
 
     ContactGradient& surface(std::size_t contact, Mode mode);
+    SlipGradient& slip(std::size_t which);
+    Gradient& event_functions(Mode mode);
+    Gradient& restitution(std::size_t contact);
     FlowSensitivity& slope(Mode mode);
 
     const Trajectory* trajectory_;
@@ -126,13 +149,17 @@ class Chain {
     std::map<ContactInMode, std::unique_ptr<ContactGradient>> contacts_;
     std::map<ContactInMode, std::unique_ptr<Gradient>> trends_, normals_;
     std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
+    std::map<std::size_t, std::unique_ptr<SlipGradient>> slips_;
+    std::map<std::size_t, std::pair<Program, std::optional<Evaluator<double>>>> coefficient_rates_;
+    std::map<Mode, std::unique_ptr<Gradient>> event_functions_;
     std::map<Mode, std::unique_ptr<FlowSensitivity>> slopes_;
     std::map<Mode, std::unique_ptr<FlowDifference>> differences_;  // used instead of slopes_ for errors
     Model::MotionEvaluators motions_;
 
     State state_;
     Mode mode_;
-    ContactSet resting_;
+    ContactSet resting_, critical_slips_;
+    bool begun_ = false;
     std::size_t next_piece_ = 0, next_event_ = 0;
     bool waiting_ = false;         // between a truncation and its Zeno point
     std::vector<double> h_, u_;    // of every contact, at state_

@@ -45,15 +45,15 @@ void Chain::handle_event(std::size_t event) {
     state_ = {now.q, now.v_before, now.t};
     switch (now.kind) {
         case Event::Kind::impact:
-            return land(event);
+            return model_->has_friction() ? land_with_friction(event) : land(event);
         case Event::Kind::zeno:
             return reach_zeno_point(event);
         case Event::Kind::release:
-            return release(event);
+            return model_->has_friction() ? change_friction(event) : release(event);
         case Event::Kind::stick:
         case Event::Kind::slip:
         case Event::Kind::reversal:
-            return;  // refused by the constructor
+            return change_friction(event);
     }
 }
 
@@ -107,12 +107,6 @@ void Chain::land(std::size_t event) {
     if (auto reason = next_completion(event, joins)) return break_off(std::move(*reason));
     ContactGradient& contact = surface(i, others);
     contact.at(state_);
-    auto& restitution = restitutions_[i];
-    if (!restitution) {  // it depends only on parameters
-        restitution =
-            std::make_unique<Gradient>(*model_, model_->restitution(i), tangent_, trajectory_->run.parameters);
-        restitution->at(state_);
-    }
     const double u = u_[i];
     const auto hddot_at = [&](const Vector& v) {
         return surfaces_.of(i, others).normal_acceleration({state_.q, v, state_.t});
@@ -127,7 +121,7 @@ void Chain::land(std::size_t event) {
     // Back onto the surface: the rows of q leave it by the omitted terms of steps.
     for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= contact.n(k) * contact.h_row();
     J.row(tangent_.h(i)).setZero();
-    const ValueWithGradient before{u, J.row(tangent_.u(i))}, e{surfaces_.restitution(i).value, restitution->row(0)};
+    const ValueWithGradient before{u, J.row(tangent_.u(i))}, e{surfaces_.restitution(i).value, restitution(i).row(0)};
     const bool completes = joins.contains(i);
     const bool rests = completes || now.mode.is_held(i);
     if (completes) {
@@ -269,9 +263,13 @@ void Chain::meet_surface(std::size_t contact, Mode others, ChainLink& crossing) 
     crossing.by_place = surface.h_row();
     ChainLink& link = add(ChainLink::Kind::jump);
     RowMatrix& J = link.J;
-    ContactGradient& landing = this->surface(contact, others);
-    landing.at(state_);
-    for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= landing.n(k) * crossing.by_place;
+    if (model_->has_friction()) {
+        move_onto(J, mode_.held().with(contact));
+    } else {
+        ContactGradient& landing = this->surface(contact, others);
+        landing.at(state_);
+        for (std::size_t k = 0; k < tangent_.dof; ++k) J.row(tangent_.q(k)) -= landing.n(k) * crossing.by_place;
+    }
     J.row(tangent_.h(contact)).setZero();
     J.row(tangent_.u(contact)) = surface.hdot_row() * J;
 }

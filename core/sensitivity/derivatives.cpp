@@ -14,7 +14,8 @@ namespace {
 using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
 
 // Refuses directions that leave the surface of a contact at rest at the start: the perturbed run would start in the air
-// or below the surface.
+// or below the surface. It refuses those that change a slip that is 0 at the start and slides from there, or is held by
+// static friction alone: the friction force would depend on the sign of the change.
 void refuse(Chain& chain, const Model& model, const RowMatrix& Z, std::vector<std::string>& refused) {
     const TangentLayout& tangent = chain.tangent();
     constexpr double rounding = 1e-12;
@@ -31,6 +32,12 @@ void refuse(Chain& chain, const Model& model, const RowMatrix& Z, std::vector<st
                 refused[static_cast<std::size_t>(k)] =
                     fmt::format("the run starts in contact ('{}'), and this direction changes the gap rate", name);
         }
+        for (const std::size_t i : chain.critical_slips_at_start())
+            if (std::abs(chain.slip_row_at_start(i) * Z.col(k)) > rounding * size)
+                refused[static_cast<std::size_t>(k)] = fmt::format(
+                    "the run starts at slip 0 ('{}'), where its friction jumps, and this direction changes the slip",
+                    is_joint(i) ? model.description().frictions[i - max_contacts].name
+                                : model.description().constraints[i].name);
     }
 }
 

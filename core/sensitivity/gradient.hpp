@@ -60,6 +60,10 @@ class Gradient {
         rows_.setZero(static_cast<Eigen::Index>(program.output_count()), tangent.size());
     }
 
+    // Sets a further input of the program, by slot; derivatives do not refer to it.
+    void set_input(std::size_t slot, double value) {
+        for (Evaluator<Number>& evaluator : evaluators_) evaluator.input(slot) = value;
+    }
     // Evaluates at a state.
     void at(const State& state) {
         const std::size_t n = tangent_.dof;
@@ -103,6 +107,11 @@ class Gradient {
     RowMatrix rows_;
 };
 
+// Gives the index of an output in place of its value, for the names of a class of terms.
+struct IdentityLayout {
+    std::size_t output(std::size_t index) const { return index; }
+};
+
 // The quantities of a contact with their derivatives, by name.
 class ContactGradient : public Gradient {
  public:
@@ -115,13 +124,40 @@ class ContactGradient : public Gradient {
     auto h_row() const { return row(places_.h()); }
     auto hdot_row() const { return row(places_.hdot()); }
     auto n_row(std::size_t i) const { return row(places_.impulse_direction(i)); }
+    double g(std::size_t i) const { return value(places_.gradient(i)); }
+    auto g_row(std::size_t i) const { return row(places_.gradient(i)); }
+    double W() const { return value(places_.W()); }
+    auto W_row() const { return row(places_.W()); }
 
  private:
-    // Returns the index of an output in place of its value, for the names of ContactTerms.
-    struct IdentityLayout {
-        std::size_t output(std::size_t index) const { return index; }
-    };
     ContactTerms<IdentityLayout> places_;
+};
+
+// The slip of a contact or joint and its friction coefficient at a sliding speed, with their derivatives. Those of the
+// coefficient are at a fixed sliding speed.
+class SlipGradient : public Gradient {
+ public:
+    SlipGradient(const Model& model, const TypedProgram<SlipTerms>& program, const TangentLayout& tangent,
+                 std::span<const double> parameters)
+        : Gradient(model, program, tangent, parameters),
+          places_({}, tangent.dof),
+          speed_(model.layout().sliding_speed()) {}
+    void at(const State& state, double speed) {
+        set_input(speed_, speed);
+        Gradient::at(state);
+    }
+    double u() const { return value(places_.u()); }
+    double coefficient() const { return value(places_.coefficient()); }
+    double d(std::size_t i) const { return value(places_.d(i)); }
+    double impulse(std::size_t i) const { return value(places_.impulse(i)); }
+    auto u_row() const { return row(places_.u()); }
+    auto coefficient_row() const { return row(places_.coefficient()); }
+    auto d_row(std::size_t i) const { return row(places_.d(i)); }
+    auto impulse_row(std::size_t i) const { return row(places_.impulse(i)); }
+
+ private:
+    SlipTerms<IdentityLayout> places_;
+    std::size_t speed_;
 };
 
 }  // namespace achilles

@@ -1,0 +1,284 @@
+// The effect of an impact with dry friction on a small change (theory-friction.md 3, 6). The branch of every loaded
+// contact is that of the run: it sticks, or slides to one side. In it the impulses obey equations, which are
+// differentiated:
+//
+//     gap     (1 + e) hdot- + (W P)_N = 0
+//     stick   u- + (W P)_T = 0
+//     slip    P_T + sigma mu(u_s) P_N = 0,    u_s = (u+ + e u-)/(1 + e)
+#include <cmath>
+
+#include "contacts/impact_law.hpp"
+#include "number/dense.hpp"
+#include "sensitivity/chain.hpp"
+
+namespace achilles {
+
+using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
+
+namespace {
+
+constexpr double strictly = 1e-10;  // relative to the size of an impact; below it a branch may change
+
+double impulse_of(const std::vector<std::pair<std::size_t, double>>& impulses, std::size_t contact) {
+    for (const auto& [which, impulse] : impulses)
+        if (which == contact) return impulse;
+    return 0.0;
+}
+
+}  // namespace
+
+// The gaps and slips of the loaded contacts, with derivatives by the components before the impact.
+struct Chain::ImpactRows {
+    struct Row {
+        double impulse, rate;
+        RowVectorXd rate_row;
+        VectorXd gradient, direction;             // G and M^-1 G', by coordinate
+        RowMatrix gradient_rows, direction_rows;  // their derivatives
+        // Of a gap: its restitution. Of a slip: the row of its gap, and 0 if it sticks, else the sign of the slip.
+        double e;
+        RowVectorXd e_row;
+        std::size_t gap;
+        bool is_slip;
+        int sign = 0;
+        double coefficient = 0.0, coefficient_rate = 0.0;  // mu, and its derivative by u_s
+        RowVectorXd coefficient_row;                       // at a fixed u_s
+    };
+    std::size_t landing;
+    ContactSet loaded;  // besides the landing contact
+    std::vector<Row> rows;
+
+    double W(std::size_t i, std::size_t j) const { return rows[i].gradient.dot(rows[j].direction); }
+    // The rate after the impact minus that before it, and its derivative at fixed impulses.
+    double jump(std::size_t i) const {
+        double sum = 0.0;
+        for (std::size_t j = 0; j < rows.size(); ++j) sum += W(i, j) * rows[j].impulse;
+        return sum;
+    }
+    RowVectorXd jump_row(std::size_t i) const {
+        RowVectorXd sum = RowVectorXd::Zero(rows[i].rate_row.size());
+        for (const Row& other : rows)
+            sum += other.impulse * (other.direction.transpose() * rows[i].gradient_rows +
+                                    rows[i].gradient.transpose() * other.direction_rows);
+        return sum;
+    }
+    // dP: the equations above are A dP + b = 0.
+    MatrixXd impulse_rows() const;
+    // The derivative of v+ - v-.
+    RowMatrix velocity_rows() const;
+};
+
+MatrixXd Chain::ImpactRows::impulse_rows() const {
+    const auto count = static_cast<Index>(rows.size());
+    MatrixXd A(count, count), b(count, rows.front().rate_row.size());
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        const auto k = static_cast<Index>(i);
+        const Row& row = rows[i];
+        RowVectorXd by_impulses(count);
+        for (Index j = 0; j < count; ++j) by_impulses[j] = W(i, static_cast<std::size_t>(j));
+        const RowVectorXd changed = jump_row(i);
+        if (!row.is_slip) {
+            A.row(k) = by_impulses;
+            b.row(k) = (1.0 + row.e) * row.rate_row + row.rate * row.e_row + changed;
+        } else if (row.sign == 0) {
+            A.row(k) = by_impulses;
+            b.row(k) = row.rate_row + changed;
+        } else {
+            const double p = row.sign * rows[row.gap].impulse, once = 1.0 + row.e, u = row.rate + jump(i) / once;
+            const double by_speed = p * row.coefficient_rate * (u < 0.0 ? -1.0 : 1.0);
+            A.row(k) = by_speed / once * by_impulses;
+            A(k, k) += 1.0;
+            A(k, static_cast<Index>(row.gap)) += row.sign * row.coefficient;
+            b.row(k) = p * row.coefficient_row +
+                       by_speed * (row.rate_row + changed / once - jump(i) / (once * once) * row.e_row);
+        }
+    }
+    return -least_solution(A, b);
+}
+
+RowMatrix Chain::ImpactRows::velocity_rows() const {
+    const MatrixXd impulses = impulse_rows();
+    RowMatrix change = RowMatrix::Zero(rows.front().direction.size(), impulses.cols());
+    for (std::size_t i = 0; i < rows.size(); ++i)
+        change += rows[i].direction * impulses.row(static_cast<Index>(i)) + rows[i].impulse * rows[i].direction_rows;
+    return change;
+}
+
+// mu'(u_s)
+double Chain::coefficient_rate(std::size_t which, double speed) {
+    const std::uint32_t slot = model_->layout().sliding_speed();
+    auto& [program, rate] = coefficient_rates_[which];
+    if (!rate) {
+        Graph graph(model_->equations().energy.graph());  // a copy, because threads share the model
+        const Expression change = derivative(graph.adopt(model_->equations().friction.at(which).level), slot);
+        program = Program(std::span(&change, 1), model_->layout().slots());
+        rate = model_->evaluator(program, trajectory_->run.parameters);
+    }
+    set_state(*rate, state_);
+    rate->input(slot) = speed;
+    rate->run();
+    return rate->output(0);
+}
+
+// Adds the gap of the landing contact and of those that the impact loads, with their slips. Breaks off and returns
+// false where a small change may load others.
+bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
+    double scale = 0.0;
+    for (const auto& [contact, impulse] : now.joint->impulses) scale = std::max(scale, impulse);
+    for (const auto& [contact, impulse] : now.joint->impulses) {
+        const bool lands = contact == impact.landing;
+        if (!lands && !mode_.is_held(contact)) {
+            break_off("a contact that is closed without a force takes part in an impact");
+            return false;
+        }
+        if (!lands && !(impulse > strictly * scale)) {
+            if (surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot > strictly * now.impact_speed) continue;
+            break_off("an impact neither loads a held contact nor opens it");
+            return false;
+        }
+        if (!lands) impact.loaded = impact.loaded.with(contact);
+        ContactGradient& gap = surface(contact, {});
+        gap.at(state_);
+        ImpactRows::Row& row = impact.rows.emplace_back();
+        row = {impulse,
+               lands ? -now.impact_speed : 0.0,
+               RowVectorXd::Zero(tangent_.size()),
+               {},
+               {},
+               {},
+               {},
+               0.0,
+               {},
+               impact.rows.size() - 1,
+               false,
+               0,
+               0.0,
+               0.0,
+               {}};
+        row.rate_row[tangent_.u(contact)] = 1.0;  // a held contact has u' = 0
+        row.e = surfaces_.restitution(contact).value;
+        row.e_row = restitution(contact).row(0);
+        const auto n = static_cast<Index>(tangent_.dof);
+        row.gradient.resize(n);
+        row.direction.resize(n);
+        row.gradient_rows.resize(n, tangent_.size());
+        row.direction_rows.resize(n, tangent_.size());
+        for (std::size_t i = 0; i < tangent_.dof; ++i) {
+            const auto k = static_cast<Index>(i);
+            row.gradient[k] = gap.g(i);
+            row.direction[k] = gap.W() * gap.n(i);
+            row.gradient_rows.row(k) = gap.g_row(i);
+            row.direction_rows.row(k) = gap.W() * gap.n_row(i) + gap.n(i) * gap.W_row();
+        }
+        if (surfaces_.rough().contains(contact) && !add_slip(now, contact, impact)) return false;
+    }
+    return true;
+}
+
+// Adds the slip of the last contact, in the branch of its impulse.
+bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) {
+    ImpactRows::Row row = impact.rows.back();
+    const double normal = row.impulse, e = row.e, before = surfaces_.slip(contact, state_).u;
+    double after = surfaces_.slip(contact, {now.q, now.v_after, now.t}).u;
+    if (std::abs(after) <= strictly * (std::abs(before) + now.impact_speed)) after = 0.0;
+    const double speed = std::abs(after + e * before) / (1.0 + e);
+    SlipGradient& slip = this->slip(contact);
+    slip.at(state_, speed);
+    row.is_slip = true;
+    row.impulse = now.friction ? impulse_of(now.friction->tangential, contact) : 0.0;
+    row.rate = mode_.state(contact) == ContactState::held ? 0.0 : before;
+    row.rate_row = slip.u_row();
+    for (std::size_t i = 0; i < tangent_.dof; ++i) {
+        const auto k = static_cast<Index>(i);
+        row.gradient[k] = slip.d(i);
+        row.direction[k] = slip.impulse(i);
+        row.gradient_rows.row(k) = slip.d_row(i);
+        row.direction_rows.row(k) = slip.impulse_row(i);
+    }
+    row.sign = after > 0.0 ? 1 : after < 0.0 ? -1 : 0;
+    if (row.sign == 0 && !surfaces_.never_slides(contact) &&
+        !(std::abs(row.impulse) < (1.0 - strictly) * slip.coefficient() * normal)) {
+        break_off(
+            "an impact is at the limit between sticking and sliding: the derivatives depend on the direction of "
+            "the perturbation");
+        return false;
+    }
+    if (row.sign != 0) {
+        row.coefficient = slip.coefficient();
+        row.coefficient_row = slip.coefficient_row();
+        row.coefficient_rate = coefficient_rate(contact, speed);
+    }
+    impact.rows.push_back(std::move(row));
+    return true;
+}
+
+void Chain::land_with_friction(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    if (now.contacts.count() != 1)
+        return break_off(
+            "several contacts close at the same time: which is first depends on the direction of the perturbation");
+    if (now.friction && now.friction->energy_cap)
+        return break_off(
+            "an impact would gain energy, and its restitution is reduced: derivatives are not computed past it");
+    const auto& events = trajectory_->events;
+    const bool rests = event + 1 < events.size() && events[event + 1].is_zeno() && events[event + 1].t == now.t;
+    if (rests && !is_plastic_landing(events[event + 1]))
+        return break_off("derivatives of impact sequences with friction that end at a Zeno point are not computed");
+    const std::size_t i = now.contacts.only();
+    set_gaps();
+    h_[i] = 0.0;
+    u_[i] = -now.impact_speed;
+    RowVectorXd to_surface = RowVectorXd::Zero(tangent_.size());
+    to_surface[tangent_.h(i)] = 1.0;
+    ChainLink& crossing = cross(event, to_surface, 0.0);
+    ImpactRows impact{i, {}, {}};
+    if (!add_loaded_contacts(now, impact)) return;
+    if (options_.errors) meet_surface(i, {}, crossing);
+    ChainLink& link = add(ChainLink::Kind::jump, event);
+    RowMatrix& J = link.J;
+    move_onto(J, mode_.held().with(i));  // the rows of q leave it by the omitted terms of steps
+    J.row(tangent_.h(i)).setZero();
+    complete_landing(now, rests ? &events[event + 1] : nullptr, impact, link);
+    settle(J, mode_);
+    for (std::size_t k = 0; k < tangent_.contacts; ++k) {
+        if (mode_.is_held(k) || k == i) continue;
+        ContactGradient& other = surface(k, {});
+        other.at(state_);
+        J.row(tangent_.u(k)) = other.hdot_row() * J;
+    }
+    set_gaps();
+    if (mode_.is_held(i)) return;
+    h_[i] = 0.0;
+    u_[i] = newton::rate_after(surfaces_.restitution(i).value, -now.impact_speed);
+}
+
+// Sets the rows of v and of the gap rate to those after the impact, and the mode. With restitution 0 the contact rests
+// from here on (`rests`, else null); a restitution that grows from 0 moves its Zeno time by 2 w e'/a, and nothing else.
+void Chain::complete_landing(const Event& now, const Event* rests, const ImpactRows& impact, ChainLink& link) {
+    const std::size_t i = impact.landing;
+    RowMatrix& J = link.J;
+    const auto after = [&](const ImpactRows& rows) {
+        RowMatrix result = J;
+        result.middleRows(tangent_.v(0), static_cast<Index>(tangent_.dof)) += rows.velocity_rows() * J;
+        return result;
+    };
+    const double e = surfaces_.restitution(i).value, u = -now.impact_speed;
+    const RowVectorXd e_row = restitution(i).row(0), u_row = J.row(tangent_.u(i));
+    state_.v = now.v_after;
+    if (rests == nullptr) {
+        J = after(impact);
+        J.row(tangent_.u(i)) = -(e * u_row + u * e_row * J);
+        mode_ = now.mode;
+        return;
+    }
+    ImpactRows at_rest = impact;
+    for (ImpactRows::Row& row : at_rest.rows) row.e_row.setZero();
+    if (!options_.errors)
+        link.completion = ChainLink::PendingCompletion{i, mode_.only(impact.loaded), now.impact_speed, after(impact)};
+    J = after(at_rest);
+    mode_ = rests->mode;
+    const double a = -surfaces_.of(i, mode_.without(i)).normal_acceleration(state_);
+    J.row(tangent_.accumulation_time()) = 2.0 * now.impact_speed / a * e_row;
+    waiting_ = true;
+}
+
+}  // namespace achilles
