@@ -130,7 +130,6 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         return none("errors are estimated only for Taylor's method (--method taylor)");
     if (options.truncation.reinitialization != Reinitialization::kinetic)
         return none("errors are estimated only with the kinetic reinitialization, not with the Euclidean one");
-    if (trajectory.model->has_friction()) return none("errors are not estimated yet for runs with dry friction");
     if (trajectory.pieces.empty() && trajectory.end_time > options.start_time)
         return none("only the final state of this run was stored");
     if (trajectory.pieces.size() > max_estimated_steps)
