@@ -33,6 +33,7 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     const bool several = description.constraints.size() > 1;
     if (is_settable(description, print)) return unit_of(description, print);
     if (word == "zeno_time" || word == "impact_time" || word == "release_time") return "s";
+    if ((word == "stick_time" || word == "slip_time") && !sliding_places(description).empty()) return "s";
     if (word == "impact_speed") return several ? "" : unit_of_expression(description, "gap'");
     if (word == "least_gap") return several ? "" : unit_of_expression(description, "gap");
     return unit_of_expression(description, print);
@@ -88,10 +89,10 @@ void check_quantity(const SystemDescription& description, const std::string& pri
         if (name == "held" || name == "outcome")
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
-        if (name == "impacts" || name == "zeno_points" || name == "releases")
+        if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print the quantity without d(...)");
-        if (name == "least_gap" || name == "work" || name == "loss")
+        if (name == "least_gap" || name == "work" || name == "loss" || name == "heat")
             throw refused_slope(
                 print, fmt::format("derivatives of '{}' are not computed", name),
                 "print the quantity without d(...); differences of its values approximate its derivative");
@@ -187,7 +188,8 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
     const bool jumps_tell_no_loss =
         model_->contacts() > 1 || sweep.base.options.truncation.reinitialization == Reinitialization::euclidean;
     needs_everything_ = sweep.at || quantities_ || needs_least_gap_ ||
-                        (asks("work") && model_->equations().has_power()) || (asks("loss") && jumps_tell_no_loss);
+                        (asks("work") && model_->equations().has_power()) || (asks("loss") && jumps_tell_no_loss) ||
+                        (model_->has_friction() && (asks("work") || asks("heat")));
 }
 
 void RunMeasures::add_slope(const SweepSpec& sweep, const std::string& print, const std::string& quantity,
@@ -269,6 +271,7 @@ void MeasureEvaluator::at_end(const Trajectory& trajectory, std::vector<double>&
     sample.state = trajectory.end;
     sample.work = trajectory.work;
     sample.loss = trajectory.loss;
+    sample.heat = trajectory.heat;
     const bool has_events = !trajectory.events.empty();
     if (has_events) sequence_ = sequence_of(trajectory);
     std::vector<Quantity> differentiated;

@@ -12,7 +12,8 @@ std::optional<PathBounds> PathBounds::of(const Model& model, const Program& sect
                                          std::span<const double> parameters) {
     const Layout& layout = model.layout();
     const std::vector<bool> inputs = section.inputs_of(1);
-    bool is_known = !inputs[layout.work()];
+    bool is_known = !inputs[layout.work()] && (layout.frictions == 0 || !inputs[layout.heat()]);
+    for (std::size_t k = 0; k < layout.frictions; ++k) is_known = is_known && !inputs[layout.friction_force(k)];
     for (std::size_t i = 0; i < layout.contacts; ++i)
         is_known = is_known && !inputs[layout.acceleration(i)] && !inputs[layout.force(i)];
     if (!is_known) return std::nullopt;
@@ -204,6 +205,7 @@ std::vector<SectionPoint> events_of(const Trajectory& trajectory, const Section&
         sample.state = {event.q, event.v_after, event.t};
         sample.work = event.work;
         sample.loss = event.loss;
+        sample.heat = event.heat;
         moments.push_back(std::move(moment));
     }
     return moments;

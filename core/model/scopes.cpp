@@ -295,14 +295,21 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
     };
     using enum RunQuantity::Kind;
     using enum Event::Kind;
-    for (const auto& [name, quantity] : {std::pair<const char*, RunQuantity>{"zeno_time", {time, zeno}},
-                                         {"impact_time", {time, impact}},
-                                         {"impact_speed", {speed, impact}},
-                                         {"release_time", {time, release}},
-                                         {"zeno_points", {count, zeno}},
-                                         {"impacts", {count, impact}},
-                                         {"releases", {count, release}},
-                                         {"least_gap", {least_gap, {}}}}) {
+    std::vector<std::pair<const char*, RunQuantity>> named{
+        {"zeno_time", {time, zeno}},       {"impact_time", {time, impact}}, {"impact_speed", {speed, impact}},
+        {"release_time", {time, release}}, {"zeno_points", {count, zeno}},  {"impacts", {count, impact}},
+        {"releases", {count, release}},    {"least_gap", {least_gap, {}}}};
+    const std::pair<const char*, RunQuantity> of_friction[] = {{"stick_time", {time, stick}},
+                                                               {"slip_time", {time, Event::Kind::slip}},
+                                                               {"sticks", {count, stick}},
+                                                               {"slips", {count, Event::Kind::slip}}};
+    if (layout.frictions > 0) {
+        named.insert(named.end(), std::begin(of_friction), std::end(of_friction));
+    } else {
+        for (const auto& [name, quantity] : of_friction)
+            scope.forbidden.emplace(name, fmt::format("'{}' is of friction, and this system has none", name));
+    }
+    for (const auto& [name, quantity] : named) {
         scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;
         scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });

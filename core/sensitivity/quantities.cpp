@@ -24,7 +24,7 @@ struct Quantities::EvaluationPoint {
     State state;
     Mode mode;
     ContactSet load_bearing;
-    double work = 0.0, loss = 0.0;
+    double work = 0.0, loss = 0.0, heat = 0.0;
     std::size_t events = 0;
     // Derivatives of the state, coordinate by direction, and of the time, by direction; empty if there are none.
     std::optional<Derivatives::FinalSensitivity> slopes{};
@@ -76,11 +76,13 @@ class Quantities::Inputs {
         set(layout_.t(), place_.state.t, place_.time_slope);
         set(layout_.work(), place_.work, none);
         set(layout_.loss(), place_.loss, none);
-        if (layout_.contacts == 1) return set(layout_.contact(), place_.mode.is_free() ? 0.0 : 1.0);
+        if (layout_.frictions > 0) set(layout_.heat(), place_.heat, none);
+        if (layout_.contacts == 1 && layout_.frictions == 0)
+            return set(layout_.contact(), place_.mode.is_free() ? 0.0 : 1.0);
         set_contacts(none);
     }
 
-    // Sets hddot and lambda of each contact.
+    // Sets hddot and lambda of each contact, and the forces of friction.
     void set_contacts(const RowVectorXd& none) {
         const auto& slopes = place_.slopes;
         const std::vector<double>& parameters = trajectory_.run.parameters;
@@ -99,6 +101,20 @@ class Quantities::Inputs {
             gradient.at(place_.state);
             return RowVectorXd(gradient.row(output) * Z);
         };
+        // The derivative of lambda or tau (output 0 or 1), which a program gives times a scale.
+        const auto quotient_of = [&](std::size_t which, std::size_t output) {
+            Gradient gradient(model_, model_.friction_force(which, place_.mode), tangent, parameters);
+            gradient.at(place_.state);
+            const double scale = gradient.value(2), value = gradient.value(output) / scale;
+            return RowVectorXd((gradient.row(output) - value * gradient.row(2)) / scale * Z);
+        };
+        for (std::size_t k = 0; const auto& [which, law] : model_.equations().friction) {
+            const bool acts = slopes && place_.mode.is_held(which);
+            set(layout_.friction_force(k++), forces.friction_force(which),
+                !slopes ? none
+                : acts  ? quotient_of(which, 1)
+                        : RowVectorXd(RowVectorXd::Zero(K_)));
+        }
         for (std::size_t i = 0; i < layout_.contacts; ++i) {
             const bool held = place_.mode.is_held(i);
             const double a = forces.acceleration(i), f = forces.force(i);
@@ -107,7 +123,9 @@ class Quantities::Inputs {
                 set(layout_.force(i), f, none);
             } else if (held) {
                 set(layout_.acceleration(i), a);
-                set(layout_.force(i), f, derivatives_of(model_.programs_of(i, place_.mode.without(i)).force, 0));
+                set(layout_.force(i), f,
+                    layout_.frictions > 0 ? quotient_of(i, 0)
+                                          : derivatives_of(model_.programs_of(i, place_.mode.without(i)).force, 0));
             } else {
                 set(layout_.force(i), f);
                 set(layout_.acceleration(i), a,
@@ -151,7 +169,7 @@ namespace {
 std::string reason_of(const std::string& expression, const Derivatives& derivatives, double value) {
     if (!(value == value)) return "the quantity does not exist in this run";
     for (const std::string& name : names_in(expression))
-        if (name == "work" || name == "loss" || name == "least_gap")
+        if (name == "work" || name == "loss" || name == "least_gap" || name == "heat")
             return "derivatives of " + name + " are not computed";
     if (!derivatives.broken.empty()) return derivatives.broken;
     return "the quantity has none there";
@@ -176,6 +194,7 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
                               trajectory.phases.back().load_bearing,
                               trajectory.work,
                               trajectory.loss,
+                              trajectory.heat,
                               trajectory.events.size(),
                               derivatives.end,
                               RowVectorXd::Zero(K)};
@@ -185,7 +204,7 @@ std::vector<Quantity> Quantities::of(const Trajectory& trajectory, const Derivat
 std::vector<Quantity> Quantities::at(const Trajectory& trajectory, const Derivatives& derivatives, std::size_t event,
                                      ContactSet load_bearing) const {
     const Event& now = trajectory.events[event];
-    EvaluationPoint place{{now.q, now.v_after, now.t}, now.mode, load_bearing, now.work, now.loss, event + 1};
+    EvaluationPoint place{{now.q, now.v_after, now.t}, now.mode, load_bearing, now.work, now.loss, now.heat, event + 1};
     place.time_slope = RowVectorXd::Constant(static_cast<Index>(derivatives.refused.size()), nothing);
     if (event < derivatives.events.size()) {
         const Derivatives::EventSensitivity& slopes = derivatives.events[event];
