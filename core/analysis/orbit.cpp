@@ -59,14 +59,39 @@ void set_psi(const Model& model, const Trajectory& run, OrbitPoint& point) {
     }
 }
 
-// Number of zero multipliers: two for every contact held at one time, and two for a plastic impact.
+// Number of contacts whose slip ends in an impact: u+ = 0, and a change of u- is forgotten.
+int count_stuck(ContactCache& surfaces, const Event& impact) {
+    if (impact.friction == nullptr) return 0;
+    constexpr double rounding = 1e-10;
+    int stuck = 0;
+    for (const auto& [contact, impulse] : impact.friction->tangential) {
+        const double before = surfaces.slip(contact, {impact.q, impact.v_before, impact.t}).u,
+                     after = surfaces.slip(contact, {impact.q, impact.v_after, impact.t}).u;
+        if (impulse != 0.0 && std::abs(after) <= rounding * (std::abs(before) + impact.impact_speed)) ++stuck;
+    }
+    return stuck;
+}
+
+// Number of zero multipliers: two for every contact held at one time, and two for a plastic impact. With friction, one
+// more for every contact or joint that sticks at one time or in an impact (theory-friction.md 6).
 std::size_t count_zero_multipliers(const Model& model, const Trajectory& run) {
     int most = 0;
-    for (const Phase& phase : run.phases) most = std::max(most, phase.mode.held().count());
-    for (const Event& event : run.events)
+    ContactCache surfaces(model, run.run);
+    for (const Phase& phase : run.phases) {
+        const ContactSet stuck =
+            phase.mode.elements_in(ContactState::held).within(surfaces.rough()).without(phase.mode.implied());
+        most = std::max(most, 2 * phase.mode.held().count() + stuck.count());
+    }
+    for (const Event& event : run.events) {
+        int forgotten = event.is_impact() ? count_stuck(surfaces, event) : 0;
         for (std::size_t i = 0; i < model.contacts(); ++i)
-            if (event.contacts.contains(i) && model.restitution(run.run.parameters, i) == 0.0) most = std::max(most, 1);
-    return std::min(2 * static_cast<std::size_t>(most), 2 * static_cast<std::size_t>(model.dof()));
+            if (event.contacts.contains(i) && model.restitution(run.run.parameters, i) == 0.0) {
+                forgotten += 2;
+                break;
+            }
+        most = std::max(most, forgotten);
+    }
+    return std::min(static_cast<std::size_t>(most), 2 * static_cast<std::size_t>(model.dof()));
 }
 
 }  // namespace

@@ -59,8 +59,8 @@ struct OrbitPoint {
     State flight;  // the state in the middle of a flight, where a run can start
     // The 2n eigenvalues of the monodromy matrix, in decreasing size, with the flow's 1 first.
     std::vector<std::complex<double>> multipliers;
-    // Number of multipliers that are exactly 0: two for every contact held at one time, by the rank of the monodromy
-    // matrix.
+    // Number of multipliers that are exactly 0: two for every contact held at one time, one for every contact or joint
+    // that sticks at one time, by the rank of the monodromy matrix.
     std::size_t zero_multipliers = 0;
     bool is_autonomous = false;  // without a drive: one multiplier, that of a shift in time, is exactly 1
     bool stable = false;         // all others are less than 1 in size

@@ -17,6 +17,13 @@ namespace achilles {
 
 using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
+namespace {
+
+// Where a period may start: no contact is closed and no joint sticks, so that all directions have derivatives.
+bool is_flight(Mode mode) { return mode.is_free() && mode.elements_in(ContactState::held).empty(); }
+
+}  // namespace
+
 ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const ReturnCondition& closing,
                      OrbitMonitor* watch)
     : model_(std::move(model)), run_(run), watch_(watch) {
@@ -117,9 +124,14 @@ ShootingResult ReturnMap::shoot(const ShootingPoint& lap, std::optional<std::siz
     if (shot.run.outcome.kind != Outcome::Kind::end_time)
         throw OrbitNotFound(
             fmt::format("a trial run stopped at t = {:.10g} s: {}", shot.run.end_time, shot.run.outcome.message));
-    if (!shot.run.phases.front().mode.is_free() || !shot.run.end_mode.is_free())
+    const Mode begins = shot.run.phases.front().mode, ends = shot.run.end_mode;
+    if (!is_flight(begins) || !is_flight(ends))
         throw OrbitNotFound(
-            "the search reached a start in contact, but needs one in free flight; try another guess (--from, --set)");
+            begins.is_free() && ends.is_free()
+                ? "the search reached a start at which a joint sticks, but needs one at which all of them slide; try "
+                  "another guess (--from, --set)"
+                : "the search reached a start in contact, but needs one in free flight; try another guess (--from, "
+                  "--set)");
     const auto P = static_cast<Index>(lap.parameters.size());
     MatrixXd directions = MatrixXd::Identity(2 * n + P + 1, 2 * n + P);
     for (Index k = 0; parameter && k < P; ++k)
@@ -141,8 +153,8 @@ ShootingResult ReturnMap::shoot(const ShootingPoint& lap, std::optional<std::siz
         shot.defect[i] -= shift.value;
         shot.P.row(i) -= shift.slope;
     }
-    shot.F0 = rate(lap.parameters, shot.run.run.start(), {});
-    shot.F1 = rate(lap.parameters, shot.run.end, {});
+    shot.F0 = rate(lap.parameters, shot.run.run.start(), begins);
+    shot.F1 = rate(lap.parameters, shot.run.end, ends);
     shot.event_signature = signature_of(sequence_of(shot.run), RunEnd(shot.run.outcome.kind));
     if (!shot.M.allFinite() || !shot.P.allFinite()) throw OrbitNotFound("no derivative: it is not finite");
     return shot;
@@ -275,7 +287,7 @@ std::vector<FlightPhase> flights_of(const Trajectory& run) {
     Mode mode = run.phases.front().mode;
     bool released = false;
     const auto add = [&](double to) {
-        if (mode.is_free() && to > from) flights.push_back({from, to, released});
+        if (is_flight(mode) && to > from) flights.push_back({from, to, released});
     };
     for (const Event& event : run.events) {
         // The last impact before a truncation is followed by its Zeno point; there is no flight between them.

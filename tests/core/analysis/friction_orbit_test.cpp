@@ -1,0 +1,92 @@
+// Periodic orbits with dry friction against references of 34 digits (theory-friction.md 8).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "analysis/orbit.hpp"
+#include "core/systems.hpp"
+
+namespace achilles::test {
+namespace {
+
+OrbitSearchResult search(const std::shared_ptr<const Model>& model, double end, const ReturnCondition& closing = {}) {
+    OrbitProblem problem;
+    problem.run = model->default_run();
+    problem.run.options.tolerance = tightest_options().tolerance;
+    problem.run.options.end_time = end;
+    problem.closing = closing;
+    return find_orbit(model, problem);
+}
+
+// A mass on a spring, carried by a belt of speed 1/5.
+std::shared_ptr<const Model> belt(double rate, const std::string& level) {
+    return typed(fmt::format(R"toml(coordinate = [{{name = "x", start = 0.9, rate = {}}}]
+lagrangian.kinetic = "x'^2/2"
+lagrangian.potential = "x^2/2"
+friction = [{{name = "belt", slip = "x' - 1/5", level = "{}", static_level = 1}}]
+)toml",
+                             rate, level));
+}
+
+// It sticks for 6 s, and slips for pi + 2 atan(1/3). The stick forgets the one direction besides the flow.
+TEST(FrictionOrbit, OfTheBeltWithCoulombsLaw) {
+    const OrbitSearchResult found = search(belt(0.0, "0.4"), 30.0);
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_NEAR(found.orbit->period, 6.0 + std::numbers::pi + 2.0 * std::atan(1.0 / 3.0), 1e-11);
+    EXPECT_EQ(found.orbit->zero_multipliers, 1u);
+    EXPECT_EQ(found.orbit->multipliers, (std::vector<std::complex<double>>{1.0, 0.0}));
+    EXPECT_TRUE(found.orbit->stable);
+}
+
+TEST(FrictionOrbit, OfTheBeltWithAFallingCoefficient) {
+    const OrbitSearchResult found = search(belt(0.0, "1/(1 + 3*slip)"), 40.0);
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_NEAR(found.orbit->period, 12.00103129483057864690, 1e-10);
+    EXPECT_EQ(found.orbit->zero_multipliers, 1u);
+}
+
+// Glocker's woodpecker falls by 0.0194 m in each period. Contact 2 sticks, which forgets three directions. Of the others
+// one is the flow, and one is a shift along the pole, which changes nothing.
+TEST(FrictionOrbit, OfTheWoodpecker) {
+    const auto model = typed(R"toml(coordinate = [{name = "y", rate = -0.01}, {name = "pM", start = "-0.0006/0.0058"},
+              {name = "pS", start = -0.205, rate = 17.57}]
+parameter = [{name = "mM", value = 3e-4}, {name = "JM", value = 5e-9}, {name = "mS", value = 4.5e-3},
+             {name = "JS", value = 7e-7}, {name = "lM", value = 0.01}, {name = "lG", value = 0.015},
+             {name = "c", value = 5.6e-3}, {name = "g", value = 9.81}]
+lagrangian.kinetic = """(mS + mM)*y'^2/2 + mS*y'*(lM*pM' + lG*pS') + (JM + mS*lM^2)*pM'^2/2 + mS*lM*lG*pM'*pS'
+    + (JS + mS*lG^2)*pS'^2/2"""
+lagrangian.potential = "g*((mS + mM)*y + mS*(lM*pM + lG*pS)) + c/2*(pM - pS)^2"
+[[constraint]]
+name = "beak"
+gap = "0.0024 - 0.02*pS"
+restitution = 0.5
+slip = "y' + lM*pM' + (lG - 0.0201)*pS'"
+friction = 0.3
+[[constraint]]
+name = "low"
+gap = "0.0006 + 0.0058*pM"
+restitution = 0
+slip = "y' + 0.0031*pM'"
+friction = 0.3
+[[constraint]]
+name = "up"
+gap = "0.0006 - 0.0058*pM"
+restitution = 0
+slip = "y' + 0.0031*pM'"
+friction = 0.3
+)toml");
+    const OrbitSearchResult found =
+        search(model, 1.0, {{"0.14597606514375182", {}}, {{"-0.019445379284716526658", {}}, {"0", {}}, {"0", {}}}});
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_NEAR(found.orbit->period, 0.14597606514375182352691686, 1e-12);
+    EXPECT_EQ(found.orbit->zero_multipliers, 3u);
+    ASSERT_EQ(found.orbit->multipliers.size(), 6u);
+    EXPECT_NEAR(found.orbit->multipliers[1].real(), 1.0, 1e-8);
+    EXPECT_NEAR(found.orbit->multipliers[2].real(), -0.8391556530475859, 1e-8);
+    EXPECT_EQ(found.orbit->multipliers[2].imag(), 0.0);
+}
+
+}  // namespace
+}  // namespace achilles::test
