@@ -29,15 +29,14 @@ struct PaperConditions::Bounds {
     std::vector<Interval> box, n;       // V, and the impulse directions over it
 };
 
-PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
+PaperConditions::PaperConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key,
                                  ContactSet unpressed, const FloatEnvironmentGuard& ground)
-    : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
-      point_(model.evaluator(model.programs_of(contact, mode).definition7_terms, run.parameters)),
-      hddot_(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
-             model.evaluator<Interval>(model.bouncing(contact, mode).gradient, run.parameters),
-             model.bouncing(contact, mode).variables),
-      box_(model.evaluator<Interval>(model.programs_of(contact, mode).definition7_terms, run.parameters)),
-      rates_(model.evaluator<Interval>(model.bouncing(contact, mode).rates, run.parameters)) {}
+    : TruncationConditions(model, run, e, key, unpressed, ground),
+      point_(model.evaluator(model.programs_of(key.contact, key.mode).definition7_terms, run.parameters)),
+      hddot_(model.evaluator<Interval>(model.bouncing(key).hddot, run.parameters),
+             model.evaluator<Interval>(model.bouncing(key).gradient, run.parameters), model.bouncing(key).variables),
+      box_(model.evaluator<Interval>(model.programs_of(key.contact, key.mode).definition7_terms, run.parameters)),
+      rates_(model.evaluator<Interval>(model.bouncing(key).rates, run.parameters)) {}
 
 // Evaluates the conditions with the values at the restart in place of the maxima. These are never stricter than the
 // real conditions, so a collision that fails here (with a margin for rounding) cannot be certified.

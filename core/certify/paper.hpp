@@ -32,8 +32,8 @@ namespace achilles {
 
 class PaperConditions : public TruncationConditions {
  public:
-    PaperConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                    ContactSet unpressed, const FloatEnvironmentGuard& ground);
+    PaperConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key, ContactSet unpressed,
+                    const FloatEnvironmentGuard& ground);
 
     bool fails_at_point(const Collision& collision) override;
 

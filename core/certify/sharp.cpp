@@ -8,8 +8,6 @@ namespace achilles {
 
 namespace {
 
-constexpr double doubt = 1.5;  // accepted error factor of a guess that was made at another collision
-
 // max |x| times a nonnegative factor, rounded up; infinity if there is no bound.
 double times(const Interval& x, const Interval& factor) {
     const double product = (Interval(mag(x)) * factor).hi();
@@ -35,31 +33,24 @@ struct SharpConditions::Time {
     }
 };
 
-SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
+SharpConditions::SharpConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key,
                                  ContactSet unpressed, const FloatEnvironmentGuard& ground)
-    : TruncationConditions(model, run, e, contact, mode, unpressed, ground),
-      hddot_(Range(model.evaluator<Interval>(model.bouncing(contact, mode).hddot, run.parameters),
-                   model.evaluator<Interval>(model.bouncing(contact, mode).shadow, run.parameters),
-                   model.bouncing(contact, mode).variables),
-             dof_),
-      guess_(model.evaluator(model.bouncing(contact, mode).rates, run.parameters)),
+    : TruncationConditions(model, run, e, key, unpressed, ground),
+      hddot_(
+          Range(model.evaluator<Interval>(model.bouncing(key).hddot, run.parameters),
+                model.evaluator<Interval>(model.bouncing(key).shadow, run.parameters), model.bouncing(key).variables),
+          dof_),
+      guess_(model.evaluator(model.bouncing(key).rates, run.parameters)),
       box_(dof_),
       shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
-      variables_(model.bouncing(contact, mode).variables.size()),
+      variables_(model.bouncing(key).variables.size()),
       need_q_(dof_),
       need_s_(dof_),
       rising_(2 * dof_) {}
 
-// Predicts, in double, whether a proof would fail, and skips it if so; the next impact is then tried. It never replaces
-// a proof. The bounds fall with a power of w, so the last proof or guess is extrapolated.
-bool SharpConditions::fails_by_speed(double speed) {
-    if (speed > last_speed_) too_wide_ = 0.0;  // a new bouncing sequence
-    last_speed_ = speed;
-    const double slower = speed / wide_speed_;
-    return slower < 1.0 && too_wide_ * slower * slower * (power_ == 3 ? slower : 1.0) > doubt;
-}
-
-// If that does not decide: the maximum distance from the constrained motion in the next flight, to leading order.
+// Predicts, in double, whether a proof would fail, and skips it if so; the next impact is then tried. If the earlier
+// proofs and guesses do not decide, it estimates the maximum distance from the constrained motion in the next flight, to
+// leading order.
 bool SharpConditions::fails_at_point(const Collision& collision) {
     if (fails_by_speed(collision.speed)) return true;
     const AccelerationTrend trend = trend_at(collision);
@@ -70,14 +61,9 @@ bool SharpConditions::fails_at_point(const Collision& collision) {
     const double uniform = n * e * w * e * w / (2.0 * trend.a) / truncation_.eps_q;
     if (uniform <= 1.0) return false;
     const double T = 2.0 * e * w / (trend.a * (1.0 - e)), varying = std::abs(trend.b) * T + std::abs(trend.c) * w;
-    if (varying < 0.25 * trend.a) remember(w, uniform, 2);  // a varies little, so the guess holds at the next impacts
+    if (varying < 0.25 * trend.a)
+        earlier_.remember(w, uniform, 2);  // a varies little, so the guess holds at the next impacts
     return true;
-}
-
-void SharpConditions::remember(double speed, double too_wide, int power) {
-    wide_speed_ = speed;
-    too_wide_ = too_wide;
-    power_ = power;
 }
 
 // The attained bounds of theory.md 4; nullopt if X is too large for them.
@@ -177,8 +163,13 @@ void SharpConditions::begin_box(const Collision& collision) {
         const auto k = static_cast<Eigen::Index>(i);
         const double v = std::abs(collision.before.v[k]);
         const Interval &n = contact_.impulse_direction(i), &g = contact_.gradient(i);
+        // With friction s differs from v- by n_sigma w, and by the error of the slip in it.
+        constexpr double few = 4.0;
+        const double moved = slip_sign(state_) == 0
+                                 ? (abs(n) * box_.w).hi()
+                                 : few * (v + std::abs(collision.before.v[k] - collision.tangential[k]));
         box_.q0[i] = rounding_interval(collision.before.q[k], std::abs(collision.before.q[k]));
-        box_.s0[i] = rounding_interval(collision.tangential[k], v + (abs(n) * box_.w).hi());
+        box_.s0[i] = rounding_interval(collision.tangential[k], v + moved);
         box_.d[i] = euclidean ? box_.w * abs(n - g / g2) : Interval(0.0);
     }
 }
@@ -254,6 +245,7 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     }
     c.a_min = time.a_min.lo();
     c.a_max = time.a_max.hi();
+    if (slip_sign(state_) != 0) c.tail = Certificate::Tail::slip;
     decide(c, time.half_width());
     c.assumptions = {{"e^2 a_max/a_min", (square(e_) * time.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
     return c;
@@ -267,9 +259,9 @@ std::optional<Certificate> SharpConditions::do_certify(const Collision& collisio
     const double position = decision.position.ratio();
     const double cubic = std::max(decision.time.ratio(), decision.velocity.ratio());
     if (position > cubic) {
-        remember(collision.speed, position, 2);
+        earlier_.remember(collision.speed, position, 2);
     } else {
-        remember(collision.speed, cubic, 3);
+        earlier_.remember(collision.speed, cubic, 3);
     }
     return std::nullopt;
 }

@@ -45,13 +45,13 @@ namespace achilles {
 
 class SharpConditions : public TruncationConditions {
  public:
-    SharpConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
-                    ContactSet unpressed, const FloatEnvironmentGuard& ground);
+    SharpConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key, ContactSet unpressed,
+                    const FloatEnvironmentGuard& ground);
     bool fails_at_point(const Collision& collision) override;
-    bool fails_by_speed(double speed) override;
+    bool fails_by_speed(double speed) override { return earlier_.fails(speed); }
     void restart(const Interval& e) override {
         TruncationConditions::restart(e);
-        wide_speed_ = too_wide_ = last_speed_ = 0.0;
+        earlier_ = {};
     }
 
  protected:
@@ -80,15 +80,10 @@ class SharpConditions : public TruncationConditions {
     void sharpen(Time& time, const AccelerationTrend& trend);
     void find_shadow(const Time& time);
     Certificate certificate_of(const Collision& collision, const Time& time, const AccelerationTrend& trend) const;
-    void remember(double speed, double too_wide, int power);
 
     ShadowTerms<Range> hddot_;
     BouncingRates<Evaluator<double>> guess_;
-    // The last proof or guess that was too wide: its impact speed, the factor by which it was too wide, and the power
-    // of the speed with which that factor falls.
-    double wide_speed_ = 0.0, too_wide_ = 0.0;
-    int power_ = 3;
-    double last_speed_ = 0.0;  // speed of the last collision that was examined
+    SpeedGuess earlier_;
     // Data of the current proof, kept as members so that further proofs allocate no memory.
     SharpBox box_;
     ShadowingBound shadow_;

@@ -8,6 +8,7 @@
 #include "certify/paper.hpp"
 #include "certify/range.hpp"
 #include "certify/sharp.hpp"
+#include "certify/sticking.hpp"
 #include "contacts/delassus.hpp"
 
 namespace achilles {
@@ -69,11 +70,32 @@ Interval third_order_accumulation_time(const AccelerationTrend& trend, const Acc
 }
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
-                                                            std::size_t contact, Mode mode, ContactSet unpressed) {
+                                                            const BouncingKey& key, ContactSet unpressed) {
     const FloatEnvironmentGuard ground;
+    if (model.equations().friction.contains(key.contact) && key.state == ContactState::held)
+        return std::make_unique<StickingConditions>(model, run, e, key, unpressed, ground);
     if (run.options.truncation.conditions == Conditions::paper)
-        return std::make_unique<PaperConditions>(model, run, e, contact, mode, unpressed, ground);
-    return std::make_unique<SharpConditions>(model, run, e, contact, mode, unpressed, ground);
+        return std::make_unique<PaperConditions>(model, run, e, key, unpressed, ground);
+    return std::make_unique<SharpConditions>(model, run, e, key, unpressed, ground);
+}
+
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
+                                                            std::size_t contact, Mode mode, ContactSet unpressed) {
+    return truncation_conditions(model, run, e, BouncingKey{contact, mode}, unpressed);
+}
+
+bool SpeedGuess::fails(double speed) {
+    constexpr double doubt = 1.5;              // accepted error factor of a guess that was made at another collision
+    if (speed > last_speed_) too_wide_ = 0.0;  // a new bouncing sequence
+    last_speed_ = speed;
+    const double slower = speed / wide_speed_;
+    return slower < 1.0 && too_wide_ * slower * slower * (power_ == 3 ? slower : 1.0) > doubt;
+}
+
+void SpeedGuess::remember(double speed, double too_wide, int power) {
+    wide_speed_ = speed;
+    too_wide_ = too_wide;
+    power_ = power;
 }
 
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, std::size_t contact,
@@ -124,7 +146,9 @@ bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
     set_box(other_contact_program_, box);
     other_contact_program_.run();
     proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
-    return proved.has_value();
+    if (!proved) return false;
+    if (proved->held.empty() && !proved->least_gap) proved.reset();  // there is no other contact
+    return true;
 }
 
 Certificate ConditionsBase::certificate_at(double tau_k, const AccumulationTime& accumulation_time,
@@ -149,15 +173,18 @@ void ConditionsBase::decide(Certificate& c, double half_width) const {
     c.tightest_bound = c.decision->closest().name;
 }
 
-TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact,
-                                           Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground)
-    : ConditionsBase(model, run, model.contacts() == 1 ? nullptr : &model.other_contact_terms(contact, mode),
-                     model.bouncing(contact, mode).variables, unpressed, ground),
+TruncationConditions::TruncationConditions(const Model& model, const Run& run, const Interval& e,
+                                           const BouncingKey& key, ContactSet unpressed,
+                                           const FloatEnvironmentGuard& ground)
+    : ConditionsBase(model, run,
+                     model.contacts() == 1 && !model.has_friction() ? nullptr : &model.other_contact_terms(key),
+                     model.bouncing(key).variables, unpressed, ground),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
       e_(e),
-      contact_(model.evaluator<Interval>(model.programs_of(contact, mode).contact_terms, run.parameters)),
-      trend_(model.evaluator(model.bouncing(contact, mode).trend, run.parameters)) {}
+      state_(key.state),
+      contact_(model.evaluator<Interval>(model.programs_of(key.contact, key.mode).contact_terms, run.parameters)),
+      trend_(model.evaluator(model.bouncing(key).trend, run.parameters)) {}
 
 AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
     set_state(trend_, collision.with(collision.tangential));
@@ -194,6 +221,8 @@ std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const Ot
         if (!certainly_positive(gap)) return std::nullopt;
         others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
     }
+    for (std::size_t i = 0; i < other_contact_terms.positive; ++i)
+        if (!certainly_positive(program.output(next++))) return std::nullopt;
     return others;
 }
 

@@ -71,12 +71,27 @@ Interval third_order_error(const AccelerationTrend& trend, const AccelerationBou
 
 // A collision, with all quantities that the conditions may use.
 struct Collision {
-    State before;        // (q, v-) at tau_k, h(q) = 0
-    double speed = 0.0;  // w = |hdot| before
-    Vector tangential;   // s = v- - n hdot
-    Vector restart;      // after reinitialization: s, or v*
+    State before;          // (q, v-) at tau_k, h(q) = 0
+    double speed = 0.0;    // w = |hdot| before
+    Vector tangential;     // s = v- - n hdot
+    Vector restart;        // after reinitialization: s, or v*
+    Vector position = {};  // q at the restart, if it differs from that before: of a contact that sticks at its impacts
     // The same position and time with another velocity.
     State with(const Vector& v) const { return {before.q, v, before.t}; }
+};
+
+// Whether a proof will probably fail at an impact speed, from earlier proofs and guesses. It never replaces a proof.
+class SpeedGuess {
+ public:
+    // The bounds fall with a power of w, so the last proof or guess is extrapolated.
+    bool fails(double speed);
+    // A proof or guess at this speed was too wide by a factor that falls with this power of the speed.
+    void remember(double speed, double too_wide, int power);
+
+ private:
+    double wide_speed_ = 0.0, too_wide_ = 0.0;
+    int power_ = 3;
+    double last_speed_ = 0.0;  // speed of the last collision that was examined
 };
 
 // A box around a collision in q, s and t: the rounding of the computed state, and radii beyond that.
@@ -133,7 +148,7 @@ enum class CertificateScope { full, decision };
 
 class TruncationConditions : protected ConditionsBase {
  public:
-    TruncationConditions(const Model& model, const Run& run, const Interval& e, std::size_t contact, Mode mode,
+    TruncationConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key,
                          ContactSet unpressed, const FloatEnvironmentGuard& ground);
     virtual ~TruncationConditions() = default;
     // Fast check: true if the conditions obviously fail.
@@ -161,18 +176,27 @@ class TruncationConditions : protected ConditionsBase {
  protected:
     virtual std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) = 0;
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
+
+ public:
+    // The restart of the motion in contact, before it is projected. A contact that sticks at its impacts drifts.
+    virtual State restart_at(const Collision& collision) { return collision.with(collision.restart); }
+
+ protected:
     // The variation of -hddot at a collision.
     AccelerationTrend trend_at(const Collision& collision);
 
     std::uint32_t sigma_;
     bool autonomous_;
     Interval e_;
+    ContactState state_;
     ContactTerms<Evaluator<Interval>> contact_;
     TrendTerms<Evaluator<double>> trend_;
 };
 
-// The conditions selected by the options of the run, for a contact with restitution e in a mode in which it is open.
-// Held contacts in `unpressed` need no contact force.
+// The conditions selected by the options of the run, for a contact with restitution e; Model::has_bouncing() must be
+// true. Held contacts in `unpressed` need no contact force.
+std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
+                                                            const BouncingKey& key, ContactSet unpressed);
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
                                                             std::size_t contact, Mode mode, ContactSet unpressed);
 // The same; evaluates e.
@@ -188,8 +212,8 @@ Interval norm(const std::vector<Interval>& x);
 Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>>& contact);
 
 // The bounds on the other contacts from the outputs of their program, which must have run. Returns nullopt if one of
-// them is not proved pressed, or open. Contacts in `unpressed`, which need no force (theory-gaps.md 2.7), need not be
-// pressed.
+// them is not proved pressed, or open, or a function of friction is not proved positive. Contacts in `unpressed`, which
+// need no force (theory-gaps.md 2.7), need not be pressed.
 std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
                                                                         const Evaluator<Interval>& program,
                                                                         ContactSet unpressed);

@@ -7,8 +7,41 @@
 
 namespace achilles {
 
-BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout) {
-    Graph graph(contact.gap.graph());
+namespace {
+
+// B, D and the rate F of s, if n depends on the slip u = d v + c (theory-friction.md 4.1):
+//     F = R - n_u (d R) sigma/(1 + sigma d n_u),   R = f - n hddot - (n_q v + n_t) sigma at v = s + n sigma
+//     B = dF/dsigma at sigma = 0,   D = 1/2 d2F/dsigma2
+struct SlipDependentRate {
+    Row B, D, rate;
+};
+SlipDependentRate slip_dependent_rate(const BouncingContact& contact, const Row& velocity,
+                                      const std::vector<std::uint32_t>& q, const std::vector<std::uint32_t>& v,
+                                      const Layout& layout, Graph& graph) {
+    const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
+    const std::uint32_t slots[] = {layout.sigma()};
+    const Expression at_zero[] = {graph.number(0)};
+    const Row n = adopt(graph, contact.n), d = adopt(graph, contact.d), n_u = adopt(graph, contact.n_u),
+              f = at_velocity(adopt(graph, contact.f), v, velocity);
+    const Expression hddot = substitute(graph.adopt(contact.hddot), v, velocity);
+    const Row turning = sum(along(n, q, velocity), derivative(n, layout.t()));
+    Row R;
+    for (std::size_t i = 0; i < n.size(); ++i) R.push_back(f[i] - n[i] * hddot - turning[i] * sigma);
+    const Expression share = product(d, R) * sigma / (graph.number(1) + sigma * product(d, n_u));
+    SlipDependentRate result;
+    for (std::size_t i = 0; i < n.size(); ++i) {
+        result.rate.push_back(R[i] - n_u[i] * share);
+        const Expression slope = derivative(result.rate[i], layout.sigma());
+        result.B.push_back(substitute(slope, slots, at_zero));
+        result.D.push_back(half * derivative(slope, layout.sigma()));
+    }
+    return result;
+}
+
+}  // namespace
+
+BouncingModel derive_bouncing(const BouncingContact& contact, const Equations& equations, const Layout& layout) {
+    Graph graph(contact.hddot.graph());
     const std::size_t count = layout.dof;
     std::vector<std::uint32_t> q, v;
     Row s;
@@ -18,7 +51,7 @@ BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& 
         s.push_back(graph.symbol(layout.v(i)));
     }
     const Expression sigma = graph.symbol(layout.sigma()), half = graph.number(1, 2);
-    const Row A = adopt(graph, contact.f_c), n = adopt(graph, contact.direction);
+    const Row A = adopt(graph, contact.f_c), n = adopt(graph, contact.n);
     Row velocity;
     for (std::size_t i = 0; i < count; ++i) velocity.push_back(s[i] + n[i] * sigma);
     const Row slope = along(A, v, n);  // df_c/dv n
@@ -35,6 +68,13 @@ BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& 
         for (std::size_t i = 0; i < count; ++i)
             rate[i] = acceleration[i] - (turn[i] + twist[i] * sigma + n_t[i]) * sigma;
     }
+    const bool depends_on_slip = !contact.n_u.empty();
+    if (depends_on_slip) {
+        SlipDependentRate all = slip_dependent_rate(contact, velocity, q, v, layout, graph);
+        B = std::move(all.B);
+        D = std::move(all.D);
+        rate = std::move(all.rate);
+    }
     const Row ndot = sum(along(n, q, velocity), n_t);
     const Row Bdot = sum(sum(along(B, q, velocity), along(B, v, rate)), derivative(B, layout.t()));
     const Row dA_dq = row_by_row(A, q), dA_ds = row_by_row(A, v);
@@ -50,17 +90,20 @@ BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& 
 
     const Slots slots = layout.slots();
     const Row slope_of_hddot = gradient(hddot, variables),
-              shadow = ShadowTerms<NoOutputs>::list(A, n, B, D, ndot, Bdot, dA_dq, dA_ds, drift);
+              shadow = ShadowTerms<NoOutputs>::list(A, n, B, D, depends_on_slip ? sum(ndot, along(n, v, rate)) : ndot,
+                                                    Bdot, dA_dq, dA_ds, drift);
     return {variables,
             Program(Row{hddot}, slots),
             Program(slope_of_hddot, slots),
             TypedProgram<BouncingRates>::of(slots, velocity, rate),
             TypedProgram<TrendTerms>::of(slots, hddot_of_v, rate_along, by_sigma),
-            Program(joined({slope_of_hddot, shadow}), slots)};
+            Program(joined({slope_of_hddot, shadow}), slots),
+            {}};
 }
 
 OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
-                                        const Expressions& velocity, ContactModes& motions, const Layout& layout) {
+                                        const Expressions& velocity, ContactModes& motions, const Layout& layout,
+                                        const Expressions& positive) {
     const std::vector<ContactEquations>& contacts = motions.of(mode).contacts;
     std::vector<std::uint32_t> v;
     for (std::size_t i = 0; i < layout.dof; ++i) v.push_back(layout.v(i));
@@ -79,7 +122,8 @@ OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing
             gaps.push_back(contacts[j].gap);
         }
     }
-    result.program = Program(joined({outputs, gaps}), layout.slots());
+    result.positive = positive.size();
+    result.program = Program(joined({outputs, gaps, positive}), layout.slots());
     return result;
 }
 
@@ -91,30 +135,26 @@ OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactM
     return derive_other_contacts({contact}, mode, velocity, motions, layout);
 }
 
-PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
-                         const Equations& equations, const Layout& layout) {
-    const ModeEquations& both = motions.of(mode.with(ContactSet::of(first).with(second), ContactState::held));
-    const ModeEquations& open = motions.of(mode);
-    Graph& graph = motions.graph();
+Expressions pair_velocity(const std::array<Expressions, 2>& N, const Layout& layout) {
+    Graph& graph = N[0].front().graph();
+    Row velocity;
+    for (std::size_t i = 0; i < layout.dof; ++i)
+        velocity.push_back(graph.symbol(layout.v(i)) + N[0][i] * graph.symbol(layout.sigma()) +
+                           N[1][i] * graph.symbol(layout.second_sigma()));
+    return velocity;
+}
+
+TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array<Expressions, 2>& N,
+                                          const Expressions& accelerations, const Expressions& delassus, bool bent,
+                                          const Layout& layout) {
     const std::size_t n = layout.dof;
-    const std::array<std::size_t, 2> pair{first, second};
+    Graph& graph = A.front().graph();
     const std::array<Expression, 2> sigma{graph.symbol(layout.sigma()), graph.symbol(layout.second_sigma())};
-    std::vector<std::uint32_t> q, v;
-    Row s, velocity;
-    for (std::size_t i = 0; i < n; ++i) {
-        q.push_back(layout.q(i));
-        v.push_back(layout.v(i));
-        s.push_back(graph.symbol(layout.v(i)));
-        Expression rate = s[i];
-        for (std::size_t k = 0; k < 2; ++k) rate = rate + both.contacts[pair[k]].direction[i] * sigma[k];
-        velocity.push_back(rate);
-    }
-    const Row& A = both.f;
-    const bool bent = !equations.quadratic_in_rates;
+    const std::vector<std::uint32_t> q = slots_from(layout.q(0), n), v = slots_from(layout.v(0), n);
+    const Row s = symbols(v, graph), velocity = pair_velocity(N, layout);
     const auto at_state = [&](const Row& row) { return bent ? at_velocity(row, v, velocity) : row; };
-    std::array<Row, 2> N, slope, N_t, B;
+    std::array<Row, 2> slope, N_t, B;
     for (std::size_t k = 0; k < 2; ++k) {
-        N[k] = both.contacts[pair[k]].direction;
         slope[k] = along(A, v, N[k]);
         N_t[k] = derivative(N[k], layout.t());
         const Row turn = along(N[k], q, s);
@@ -136,13 +176,22 @@ PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, Conta
     for (std::size_t k = 0; k < 2; ++k) {
         Bdot[k] = sum(sum(along(B[k], q, velocity), along(B[k], v, rate)), derivative(B[k], layout.t()));
     }
-    const auto hddot = [&](std::size_t k) { return substitute(open.contacts[pair[k]].hddot, v, velocity); };
+    return TypedProgram<PairTerms>::of(layout.slots(), accelerations, delassus, A, joined({N[0], N[1]}),
+                                       joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
+                                       joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
+}
+
+PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
+                         const Equations& equations, const Layout& layout) {
+    const ModeEquations& both = motions.of(mode.with(ContactSet::of(first).with(second), ContactState::held));
+    const ModeEquations& open = motions.of(mode);
+    const std::array<Row, 2> N{both.contacts[first].direction, both.contacts[second].direction};
+    const Row velocity = pair_velocity(N, layout);
+    const Row hddot = at_velocity({open.contacts[first].hddot, open.contacts[second].hddot},
+                                  slots_from(layout.v(0), layout.dof), velocity);
     const Row delassus{open.contacts[first].W, open.contacts[first].delassus[second], open.contacts[second].W};
     PairPrograms result;
-    result.terms =
-        TypedProgram<PairTerms>::of(layout.slots(), Row{hddot(0), hddot(1)}, delassus, A, joined({N[0], N[1]}),
-                                    joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
-                                    joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
+    result.terms = derive_pair_terms(both.f, N, hddot, delassus, !equations.quadratic_in_rates, layout);
     result.others = derive_other_contacts({first, second}, mode, velocity, motions, layout);
     return result;
 }

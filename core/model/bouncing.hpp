@@ -12,6 +12,8 @@
 // In every program here the slots of v hold s, and the slot sigma holds hdot.
 #pragma once
 
+#include <array>
+
 #include "model/derive.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
@@ -19,15 +21,18 @@
 namespace achilles {
 
 // At sigma = 0: hddot, its time derivative along the constrained motion (P below), and its derivative with respect to
-// sigma.
+// sigma. For a contact that sticks at its impacts, the derivative with respect to its slip u follows.
 template <class Base>
 class TrendTerms : public Terms<Base> {
  public:
     using Terms<Base>::Terms;
-    static Expressions list(Expression hddot, Expression rate, Expression by_sigma) { return {hddot, rate, by_sigma}; }
+    static Expressions list(Expression hddot, Expression rate, Expression by_sigma, const Expressions& by_slip = {}) {
+        return joined({{hddot, rate, by_sigma}, by_slip});
+    }
     decltype(auto) hddot() const { return this->output(0); }
     decltype(auto) rate() const { return this->output(1); }
     decltype(auto) by_sigma() const { return this->output(2); }
+    decltype(auto) by_slip() const { return this->output(3); }
 };
 
 // The rates q' = s + n sigma and s'.
@@ -80,38 +85,12 @@ class ShadowTerms : public Terms<Base> {
     decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(k * this->dof_ + i); }
 };
 
-struct BouncingModel {
-    // The variables of the programs: q, s, sigma, and t if the system depends on time.
-    std::vector<std::uint32_t> variables;
-    Program hddot;                      // hddot(q, s + n sigma)
-    Program gradient;                   // its derivatives with respect to the variables
-    TypedProgram<BouncingRates> rates;  // of q and s
-    TypedProgram<TrendTerms> trend;
-    Program shadow;  // the gradient again (it shares most of its work with the rest), then ShadowTerms
-};
-
-// Conditions on the other contacts while one contact (theory-gaps.md 2.3) or two contacts (3) bounce. Every other
-// contact is held or open. `velocity` has an expression for each slot of v. The program returns:
-//   for every bouncing contact: W;
-//   for every held contact, in the mode that holds the other held ones: hddot (negative if pressed), W, and for each
-//       bouncing contact kappa, the factor by which it transmits an impulse;
-//   for every open contact: its gap.
-struct OtherContactTerms {
-    std::vector<std::size_t> bouncing, held, open;
-    Program program;
-};
-OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
-                                        const Expressions& velocity, ContactModes& motions, const Layout& layout);
-OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
-
-// Derives and compiles the programs of a contact, in a copy of its graph.
-BouncingModel derive_bouncing(const ContactEquations& contact, const Equations& equations, const Layout& layout);
-
 // Two contacts that bounce together, in coordinates that their impacts do not change (theory-gaps.md 3). N has a column
 // for each contact, N = M^-1 G_C' W_CC^-1 while others are held, and
 //     v = s + N sigma,   q' = s + N sigma,   s' = F(q,s,sigma,t) = A + B sigma + sum D_ij sigma_i sigma_j
 // A is the acceleration while both are held. The slots of v hold s; sigma and the second sigma are hdot of the two
-// contacts.
+// contacts. For a contact that sticks at its impacts (theory-friction.md 4.2) they are hdot and its slip u, and its
+// second "hddot" is the acceleration of the slip.
 template <class Base>
 class PairTerms : public Terms<Base> {
  public:
@@ -138,6 +117,54 @@ class PairTerms : public Terms<Base> {
  private:
     decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(5 + k * this->dof_ + i); }
 };
+
+// A contact that bounces while the other contacts and joints are in some mode. Its impacts move v along n.
+struct BouncingContact {
+    Expression hddot;
+    Expressions f, f_c, n;  // the accelerations in flight and in contact, f_c = f - n hddot
+    // If n depends on v, which it does through the slip u = d v + c only: d and dn/du. Otherwise empty.
+    Expressions d, n_u;
+};
+
+struct BouncingModel {
+    // The variables of the programs: q, s, sigma, and t if the system depends on time. For a contact that sticks at its
+    // impacts the slip (second sigma) follows sigma, and only `trend` and `sticking` are set.
+    std::vector<std::uint32_t> variables;
+    Program hddot;                      // hddot(q, s + n sigma)
+    Program gradient;                   // its derivatives with respect to the variables
+    TypedProgram<BouncingRates> rates;  // of q and s
+    TypedProgram<TrendTerms> trend;
+    Program shadow;  // the gradient again (it shares most of its work with the rest), then ShadowTerms
+    TypedProgram<PairTerms> sticking;
+};
+
+// Conditions on the other contacts while one contact (theory-gaps.md 2.3) or two contacts (3) bounce. Every other
+// contact is held or open. `velocity` has an expression for each slot of v. The program returns:
+//   for every bouncing contact: W;
+//   for every held contact, in the mode that holds the other held ones: hddot (negative if pressed), W, and for each
+//       bouncing contact kappa, the factor by which it transmits an impulse;
+//   for every open contact: its gap;
+//   with friction: functions that must stay positive (theory-friction.md 4.1).
+struct OtherContactTerms {
+    std::vector<std::size_t> bouncing, held, open;
+    Program program;
+    std::size_t positive = 0;  // the number of functions of friction
+};
+OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
+                                        const Expressions& velocity, ContactModes& motions, const Layout& layout,
+                                        const Expressions& positive = {});
+OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
+
+// Derives and compiles the programs of a contact, in a copy of its graph.
+BouncingModel derive_bouncing(const BouncingContact& contact, const Equations& equations, const Layout& layout);
+
+// The terms of v = s + N sigma for two components of sigma: the columns of N, A, the accelerations of sigma in flight
+// at this velocity, and W. If A is `bent`, it is no polynomial of degree 2 in the velocity.
+TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array<Expressions, 2>& N,
+                                          const Expressions& accelerations, const Expressions& delassus, bool bent,
+                                          const Layout& layout);
+// The velocity s + N sigma of these terms.
+Expressions pair_velocity(const std::array<Expressions, 2>& N, const Layout& layout);
 
 struct PairPrograms {
     TypedProgram<PairTerms> terms;

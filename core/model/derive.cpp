@@ -252,6 +252,9 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
                        return is_steady(law.slip) && is_steady(law.level) && is_steady(law.static_level);
                    });
     for (const Expression force : e.Q) e.quadratic_in_rates = e.quadratic_in_rates && is_quadratic(force, v_slots);
+    const std::uint32_t speed = layout.sliding_speed();
+    for (const auto& [which, law] : e.friction)
+        e.quadratic_in_rates = e.quadratic_in_rates && !depends_on(law.level, {&speed, 1});
 }
 
 Expression jerk_of(const ContactEquations& contact, const Layout& layout) {

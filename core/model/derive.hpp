@@ -84,7 +84,9 @@ struct Equations {
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive
     bool autonomous = true;          // nothing depends on time
-    bool quadratic_in_rates = true;  // the forces, and therefore f_c, have degree 2 or less in the rates
+    bool quadratic_in_rates =
+        true;  // the forces, and therefore f_c, have degree 2 or less in the rates; none depends on a
+               // sliding speed
 
     bool has_power() const;
     bool has_prescribed_motion() const { return kinetic != given.kinetic; }
@@ -108,6 +110,7 @@ class ContactModes {
     ContactModes(const Equations& equations, const Layout& layout);
     const ModeEquations& of(Mode mode);
     Graph& graph() { return graph_; }
+    const FrictionLaws& friction() const { return friction_; }  // in this graph
 
     // Of a mode with friction (model/friction.hpp).
     WatchedFriction watched_friction(const ModeEquations& motion);

@@ -201,14 +201,17 @@ bool Model::stays_closed_without_force(std::size_t contact, Mode mode) const {
                    [&] { return needs_no_force(contact, mode, contact_modes(), layout_); });
 }
 
-const BouncingModel& Model::bouncing(std::size_t contact, Mode mode) const {
-    return derived(bouncings_, {mode, contact},
-                   [&] { return derive_bouncing(contact_modes().of(mode).contacts.at(contact), equations_, layout_); });
+const BouncingModel& Model::bouncing(const BouncingKey& key) const {
+    return derived(bouncings_, key, [&] { return derive_bouncing(key, contact_modes(), equations_, layout_); });
 }
 
-const OtherContactTerms& Model::other_contact_terms(std::size_t contact, Mode mode) const {
-    return derived(other_contact_terms_, {mode, contact},
-                   [&] { return derive_other_contacts(contact, mode, contact_modes(), layout_); });
+const OtherContactTerms& Model::other_contact_terms(const BouncingKey& key) const {
+    return derived(other_contact_terms_, key, [&] { return derive_other_contacts(key, contact_modes(), layout_); });
+}
+
+bool Model::has_bouncing(const BouncingKey& key) const {
+    if (!has_friction()) return true;
+    return derived(has_bouncing_, key, [&] { return achilles::has_bouncing(key, contact_modes()); });
 }
 
 const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode mode) const {

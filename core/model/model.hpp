@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "expression/parse.hpp"
-#include "model/bouncing.hpp"
 #include "model/derive.hpp"
 #include "model/domain_boundaries.hpp"
+#include "model/friction_bouncing.hpp"
 #include "model/restitution.hpp"
 #include "model/scopes.hpp"
 #include "program/program.hpp"
@@ -100,8 +100,15 @@ class Model {
 
     // The programs of the truncation conditions of a contact in a mode in which it is open, derived at first use.
     // Throws InputError if they are too large.
-    const BouncingModel& bouncing(std::size_t contact = 0, Mode mode = {}) const;
-    const OtherContactTerms& other_contact_terms(std::size_t contact, Mode mode) const;
+    const BouncingModel& bouncing(std::size_t contact = 0, Mode mode = {}) const { return bouncing({contact, mode}); }
+    const OtherContactTerms& other_contact_terms(std::size_t contact, Mode mode) const {
+        return other_contact_terms({contact, mode});
+    }
+    // The same for a contact with friction, which slides or sticks at its impacts; the second tells whether the
+    // bouncing has such programs. Without friction it has.
+    const BouncingModel& bouncing(const BouncingKey& key) const;
+    const OtherContactTerms& other_contact_terms(const BouncingKey& key) const;
+    bool has_bouncing(const BouncingKey& key) const;
     // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
@@ -189,8 +196,8 @@ class Model {
     mutable std::map<Mode, Program> powers_;
     mutable std::map<Mode, SeriesProgram> power_series_;
     mutable std::map<ContactInMode, ContactPrograms> programs_;
-    mutable std::map<ContactInMode, BouncingModel> bouncings_;
-    mutable std::map<ContactInMode, OtherContactTerms> other_contact_terms_;
+    mutable std::map<BouncingKey, BouncingModel> bouncings_;
+    mutable std::map<BouncingKey, OtherContactTerms> other_contact_terms_;
     mutable std::map<ContactInMode, bool> closed_without_force_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     mutable std::map<ContactInMode, TypedProgram<SlipTerms>> slip_terms_;
@@ -202,6 +209,7 @@ class Model {
     std::vector<DomainBoundary> edges_;
     TypedProgram<EnergyTerms> energy_;
     TypedProgram<StartTerms> start_;
+    mutable std::map<BouncingKey, bool> has_bouncing_;
 };
 
 // ---- derived parameters ----

@@ -192,6 +192,7 @@ Json certificate_of(const Trajectory& trajectory, const Certificate& c) {
                        {"c2", number_json(p.c2)},
                        {"c3", number_json(p.c3)}});
     }
+    if (c.tail != Certificate::Tail::none) result["tail"] = to_text(c.tail);
     Json inequalities = Json::array();
     for (const Inequality& inequality : c.inequalities())
         inequalities.push_back({{"name", inequality.name},
@@ -281,6 +282,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     else if (event.kind != Event::Kind::stick)
         add_direction(result, trajectory, event);
     if (event.is_zeno()) result["impacts"] = event.impacts;
+    if (event.sticks_from > 0) result["sticks_from"] = event.sticks_from;
     if (event.truncation)
         result["truncation"] = {{"t", number_json(event.truncation->t)},
                                 {"q", list(event.truncation->q)},

@@ -154,6 +154,11 @@ class RunTimeline {
                                 time(event.truncation->t), event.truncation->impact_speed);
         if (!event.certificate) return text;
         text += indented(sentence(*event.certificate, model_.description()));
+        if (event.sticks_from > 0)
+            text += indented(fmt::format("sticks from impact {} on: each stops the slip{}", event.sticks_from,
+                                         event.certificate->tail == Certificate::Tail::stick_then_slip
+                                             ? "; slides from the Zeno point on"
+                                             : ""));
         if (!is_plastic && index < estimate_.events.size())
             text += indented(
                 fmt::format("integration error of this time: about {:.1g} s (estimate)", estimate_.events[index]));
@@ -253,6 +258,7 @@ std::string sentence(const Certificate& c, const SystemDescription& description)
             "higher): uniform position; at tau_inf the computed position and velocity are within {} and {} of the "
             "exact ones: shadowing position and velocity",
             position(*c.uniform_position), position(*c.shadowing_position), velocity(*c.shadowing_velocity));
+    if (c.tail == Certificate::Tail::slip) text += "; slides through: no impact from the cut on stops its slip";
     if (c.cut_at_resolution) text += "; cut there because shorter flights cannot be resolved in double precision";
     const Inequality* closest = c.decision ? &c.decision->closest() : nullptr;
     if (closest != nullptr && !(closest->left <= closest->right))

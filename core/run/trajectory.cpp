@@ -83,6 +83,20 @@ std::vector<EventRecord> sequence_of(const Trajectory& trajectory) {
 
 double flush_noise_to_zero(double value, double scale) { return std::abs(value) < noise * scale ? 0.0 : value; }
 
+std::string_view to_text(Certificate::Tail tail) {
+    switch (tail) {
+        case Certificate::Tail::none:
+            return "none";
+        case Certificate::Tail::slip:
+            return "slip";
+        case Certificate::Tail::stick:
+            return "stick";
+        case Certificate::Tail::stick_then_slip:
+            return "stick then slip";
+    }
+    return "";
+}
+
 std::string_view to_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "hybrid" : "constrained"; }
 
 const Inequality& Certificate::Decision::closest() const {

@@ -65,7 +65,11 @@ struct Inequality {
 // What is proved about a truncated impact sequence. Bounds are proved by interval evaluation. They do not include
 // errors before tau_k (integration, rounding), nor the accumulation of errors over several truncations.
 struct Certificate {
+    // With friction: whether the contact slides with one sign at all impacts from the one at the cut on, or sticks. It
+    // may stick at all impacts and slide from the Zeno point on.
+    enum class Tail : std::uint8_t { none, slip, stick, stick_then_slip };
     bool certified = false;
+    Tail tail = Tail::none;
     Conditions conditions = Conditions::sharp;
     Reinitialization reinitialization = Reinitialization::kinetic;
     bool cut_at_resolution = false;                                // completed: further flights cannot be resolved
@@ -143,6 +147,7 @@ struct Event : EventBase {
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
     double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
+    int sticks_from = 0;                            // zeno: the first of those after which none slides; 0: it slides
     struct TruncationRecord {                       // zeno: the impact at the cut, and the restart
         double t = 0.0;
         Vector q, v_before, v;  // v: after reinitialization
@@ -295,6 +300,7 @@ inline constexpr double noise = 1e-14;
 double flush_noise_to_zero(double value, double scale);
 
 std::string_view to_text(Phase::Kind);
+std::string_view to_text(Certificate::Tail);
 std::string_view to_text(Outcome::Kind);
 
 }  // namespace achilles

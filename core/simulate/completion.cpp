@@ -54,11 +54,7 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
 // An impact of one contact that leaves all held contacts held.
 void ExecutionAutomaton::land_alone(const Contact& contact) {
     const double e = restitution(which_);
-    conditions_ = nullptr;
-    const ContactSet unpressed = always_unpressed(next_.mode);
-    for (const ContactConditions& known : all_conditions_)
-        if (known.contact == which_ && known.mode == next_.mode && known.unpressed == unpressed)
-            conditions_ = known.conditions.get();
+    find_conditions(ContactState::held);
     // For most impacts this check is enough. Flights near rounding level need the full treatment below, because the
     // bouncing must end there.
     if (e > 0.0 && conditions_ != nullptr && conditions_->fails_by_speed(-contact.hdot) &&
@@ -92,15 +88,26 @@ void ExecutionAutomaton::land_alone(const Contact& contact) {
     }
 }
 
+// Sets conditions_ to those of the contact in the current mode, if they exist. With friction, the contact slides or
+// sticks at its impacts.
+void ExecutionAutomaton::find_conditions(ContactState state) {
+    conditions_ = nullptr;
+    const ContactSet unpressed = always_unpressed(next_.mode);
+    for (const ContactConditions& known : all_conditions_)
+        if (known.contact == which_ && known.mode == next_.mode && known.state == state && known.unpressed == unpressed)
+            conditions_ = known.conditions.get();
+}
+
 // Creates the truncation conditions at first use. The fast check itself is not timed: it takes less time than reading
 // the clock.
-bool ExecutionAutomaton::could_truncate(const Collision& collision) {
+bool ExecutionAutomaton::could_truncate(const Collision& collision, ContactState state) {
     if (conditions_ == nullptr) {
         const ContactSet unpressed = always_unpressed(next_.mode);
         const Interval& e = surfaces_->restitution(which_).enclosure;
-        all_conditions_.push_back({which_, next_.mode, unpressed, timed([&] {
-                                       return truncation_conditions(*model_, run_, e, which_, next_.mode, unpressed);
-                                   })});
+        all_conditions_.push_back(
+            {which_, next_.mode, unpressed, state, timed([&] {
+                 return truncation_conditions(*model_, run_, e, {which_, next_.mode, state}, unpressed);
+             })});
         conditions_ = all_conditions_.back().conditions.get();
     }
     return !conditions_->fails_at_point(collision);
@@ -180,10 +187,24 @@ void ExecutionAutomaton::complete(const Contact& contact, const Collision& colli
         plastic = record_.exchange_of_jump(next_.state, collision.with(collision.restart), plastic.work);
     record_.impact(next_.state, impact(contact, next_.state.v, restitution(which_)), collision.speed, plastic,
                    ContactSet::of(which_));
+    continue_to_zeno_point(collision, ContactState::held, std::move(certificate));
+}
+
+// The motion in contact from the restart of this collision, until the estimated Zeno time.
+void ExecutionAutomaton::continue_to_zeno_point(const Collision& collision, ContactState state, Certificate certificate,
+                                                int sticks_from) {
     next_.state = collision.with(collision.restart);
-    const Mode mode = next_.mode.with(which_, ContactState::held);
+    const Mode mode = next_.mode.with(which_, state);
+    if (collision.position.size() > 0) {
+        next_.state.q = collision.position;
+        for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+            const Contact contact = surfaces_->of(i).at(next_.state);
+            next_.starts[i] = {{contact.h, contact.hdot}, 0};
+        }
+    } else {
+        change_rates(collision.before.v, ContactSet::of(which_));
+    }
     for (const std::size_t i : mode.held()) next_.starts[i] = {};
-    change_rates(collision.before.v, ContactSet::of(which_));
     next_.unpressed = unpressed_of(next_.unpressed, mode);
     cut_error_ += std::max(certificate.shadowing_position.value_or(0.0), certificate.shadowing_velocity.value_or(0.0));
     Event& event = completion_.emplace();
@@ -192,9 +213,11 @@ void ExecutionAutomaton::complete(const Contact& contact, const Collision& colli
     event.truncation = Event::TruncationRecord{collision.before.t, collision.before.q, collision.before.v,
                                                collision.restart, collision.speed};
     event.certificate = std::move(certificate);
+    event.sticks_from = sticks_from;
     event.contacts = ContactSet::of(which_);
     event.mode = mode;
     begin_stretch(mode, std::min(event.t, run_.options.end_time));
+    next_.keeps_stick = event.certificate->tail == Certificate::Tail::stick_then_slip;
 }
 
 // Records the Zeno event and continues in the constrained phase.
@@ -202,6 +225,10 @@ void ExecutionAutomaton::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
     next_.state.t = event.t;
+    if (next_.keeps_stick) {
+        if (!decide_with_friction(next_.held(), next_.mode)) return;
+        event.mode = next_.mode;
+    }
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
@@ -213,6 +240,7 @@ void ExecutionAutomaton::pass_zeno_point() {
 void ExecutionAutomaton::enter_phase() {
     record_.close(next_.state.t);
     record_.open(next_.resting(), next_.held(), next_.state.t);
+    last_sliding_impact_ = 0;
 }
 
 // Starts a new phase if the mode has changed; otherwise only the load-bearing contacts may have.

@@ -59,6 +59,10 @@ struct ContactRows {
     Eigen::Index find(std::size_t which, bool is_slip) const;
 };
 
+// The energy balance of an impact with friction: normal impulses dissipate by restitution, tangential ones turn energy
+// into heat, and both move surfaces.
+Exchange energy_of_impact(const ContactRows& rows, const Eigen::VectorXd& impulses);
+
 class ContactCache {
  public:
     ContactCache(const Model& model, const Run& run);

@@ -89,13 +89,22 @@ bool EventStepper::is_slip_of_frictionless(std::size_t event) {
 std::optional<EventStepper::EventCandidate> EventStepper::first_incident(std::uint64_t but) {
     std::optional<EventCandidate> first;
     for (std::size_t i = 0; i < events(); ++i) {
-        if ((but & bit(i)) != 0 || (is_of_friction(i) ? is_slip_of_frictionless(i) : !is_watched(i))) continue;
+        if ((but & bit(i)) != 0) continue;
+        if (is_of_friction(i) ? is_slip_of_frictionless(i) || is_kept(i) : !is_watched(i)) continue;
         contact_ = i;
         const FirstCrossing descent = this->descent();
         if (descent.kind == FirstCrossing::Kind::none) continue;
         if (!first || descent.theta < first->descent.theta) first = EventCandidate{i, descent};
     }
     return first;
+}
+
+// Whether this is the limit of a contact that is kept sticking.
+bool EventStepper::is_kept(std::size_t event) const {
+    if (!request_->keeps_stick) return false;
+    const FrictionEvent& limit = model_->motion(request_->mode).friction[event - surfaces_->count()];
+    return !is_joint(limit.contact) &&
+           (limit.watched == FrictionFunction::upper_limit || limit.watched == FrictionFunction::lower_limit);
 }
 
 // First zero crossing of the contact's event function in the last step.

@@ -44,6 +44,7 @@ struct StepRequest {
     bool begins = true;              // starts a new segment; otherwise continues from the end of the last step
     bool exactly = false;            // use exact_tolerance instead of the tolerance of the run
     bool plain = false;              // may be answered by fast steps that detect only "no event" and plain impacts
+    bool keeps_stick = false;        // what sticks goes on sticking, whatever force that needs: before a Zeno point
 
     ContactSet held() const { return mode.held(); }
     Mode resting() const { return mode.with(load_sharing_candidates, ContactState::held); }
@@ -139,6 +140,7 @@ class EventStepper {
     bool is_friction_allowed(const State& state);
     void end_where_friction_is_not_allowed();
     std::size_t events() const { return request_->starts.size(); }
+    bool is_kept(std::size_t event) const;
     bool is_watched(std::size_t contact) const {
         return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);
     }

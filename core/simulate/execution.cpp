@@ -47,6 +47,7 @@ bool ExecutionAutomaton::restart(const Run& run) {
     for (ContactConditions& known : all_conditions_)
         known.conditions->restart(surfaces_->restitution(known.contact).enclosure);
     record_.restart(model_, run_);
+    last_sliding_impact_ = 0;
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = load_sharing_changes_ = friction_events_ = 0;
     evaluations_ = 0;
@@ -228,7 +229,7 @@ void ExecutionAutomaton::begin_stretch(Mode mode, double until) {
     next_.first_step = 0.0;
     next_.until = until;
     next_.begins = true;
-    next_.exactly = false;
+    next_.exactly = next_.keeps_stick = false;
     if (surfaces_->has_friction()) start_friction_functions();
 }
 

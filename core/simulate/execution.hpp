@@ -113,11 +113,14 @@ class ExecutionAutomaton {
         proving_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - clock).count();
         return result;
     }
-    bool could_truncate(const Collision& collision);
+    void find_conditions(ContactState state);
+    bool could_truncate(const Collision& collision, ContactState state = ContactState::held);
     void bounce(const Contact& contact, double e);
     bool is_well_resolved(double speed) const;
     bool too_short_to_resolve(const Collision& collision, double e);
     void complete(const Contact& contact, const Collision& collision, Certificate certificate);
+    void continue_to_zeno_point(const Collision& collision, ContactState state, Certificate certificate,
+                                int sticks_from = 0);
     void capture(const Contact& contact, const Collision& collision);
     void pass_zeno_point();
     void release(std::size_t which);
@@ -155,7 +158,7 @@ class ExecutionAutomaton {
     bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
-    // ---- friction (friction.cpp, friction_impact.cpp) ----
+    // ---- friction (friction.cpp, friction_impact.cpp, friction_completion.cpp) ----
     // A contact or joint that leaves its cone, and the sign of its slip.
     struct SlipStart {
         std::size_t which;
@@ -176,6 +179,19 @@ class ExecutionAutomaton {
     bool check_friction_levels(ContactSet contacts_and_joints);
     std::string slips_text(const ContactRows& rows, Mode sliding) const;
     void collide_with_friction(ContactSet landing);
+    // An impact with friction, before it is recorded.
+    struct ImpactWithFriction {
+        ContactSet landing;
+        const ContactRows& rows;
+        const Eigen::VectorXd& impulses;  // by row
+        Mode mode;                        // open: no impulse; held: the slip stops
+        bool is_capped;
+        std::shared_ptr<const MultiContactInfo> joint;
+        std::shared_ptr<const Event::FrictionImpulses> friction;
+    };
+    bool complete_with_friction(const ImpactWithFriction& impact);
+    Exchange exchange_of_cut(const ImpactWithFriction& impact, const Eigen::VectorXd& plastic,
+                             const Collision& collision);
     void record_plastic_landing(std::size_t contact, const State& before, double speed);
     std::string name_of(std::size_t contact_or_joint) const;
     ContactSet all_joints() const;
@@ -224,6 +240,7 @@ class ExecutionAutomaton {
         std::size_t contact;
         Mode mode;
         ContactSet unpressed;
+        ContactState state;  // with friction: whether it slides or sticks at its impacts
         std::unique_ptr<TruncationConditions> conditions;
     };
     std::vector<ContactConditions> all_conditions_;
@@ -242,8 +259,9 @@ class ExecutionAutomaton {
     // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
     double load_sharing_since_ = 0.0;
     int load_sharing_changes_ = 0;
-    double cut_error_ = 0.0;  // error of the state by truncations so far, as certified
-    double proving_ = 0.0;    // s, wall-clock time of proofs
+    double cut_error_ = 0.0;       // error of the state by truncations so far, as certified
+    double proving_ = 0.0;         // s, wall-clock time of proofs
+    int last_sliding_impact_ = 0;  // the last impact of the phase that did not stop the slip
 };
 
 }  // namespace achilles

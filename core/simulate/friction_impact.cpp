@@ -9,22 +9,17 @@
 
 namespace achilles {
 
-namespace {
-
-// The energy balance: normal impulses dissipate by restitution, tangential ones turn energy into heat, and both move
-// surfaces.
-Exchange energy_of_impact(const ContactRows& rows, const FrictionImpact& impact) {
+Exchange energy_of_impact(const ContactRows& rows, const Eigen::VectorXd& impulses) {
+    const Eigen::VectorXd change_of_rates = rows.W * impulses;
     Exchange total;
     for (Eigen::Index k = 0; k < rows.size(); ++k) {
         const ContactRows::Row& row = rows.rows[static_cast<std::size_t>(k)];
-        const double p = impact.impulses[k], change = -0.5 * p * (row.rate + impact.after[k]);
+        const double p = impulses[k], change = -p * (row.rate + 0.5 * change_of_rates[k]);
         (row.is_slip ? total.heat : total.loss) += change;
         total.work -= p * row.drift;
     }
     return total;
 }
-
-}  // namespace
 
 // Contacts that land, with those that are held or touch. Joints take no impulse, because their level is finite.
 void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
@@ -107,8 +102,13 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         friction->energy_cap = factor;
         friction->capped = friction->capped.with(problem.elements[element].which);
     }
-    record_.impact(next_.state, v_after, speed, energy_of_impact(rows, impact), landing, std::move(joint));
+    if (landing == all &&
+        complete_with_friction({landing, rows, impact.impulses, impact.mode, !impact.caps.empty(), joint, friction}))
+        return;
+    record_.impact(next_.state, v_after, speed, energy_of_impact(rows, impact.impulses), landing, std::move(joint));
     record_.friction_at_impact(std::move(friction));
+    if (!landing.has_one() || impact.mode.state(landing.only()) != ContactState::held)
+        last_sliding_impact_ = record_.impacts_of_phase();
     const State before = next_.state;
     next_.state.v = v_after;
     // Contacts with hdot+ > 0 leave at once; the others may be held. Those that stick have u+ = 0.

@@ -58,6 +58,8 @@ class Recorder {
     // Records any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }
+    int impacts_of_phase() const { return trajectory_.phases.back().impacts; }
+    bool knows_energies() const { return keep_ == Recording::full; }
     long steps() const { return trajectory_.statistics.steps; }
     // Memory of everything recorded, bytes.
     double bytes() const;

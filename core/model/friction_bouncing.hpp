@@ -1,0 +1,31 @@
+// Contacts that bounce in a system with dry friction (theory-friction.md 4): what their programs need.
+#pragma once
+
+#include <tuple>
+
+#include "model/bouncing.hpp"
+
+namespace achilles {
+
+// How a contact bounces: the state in which it is held after its Zeno point, and until then in the motion that replaces
+// the bouncing. A contact with friction slides with one sign at every impact, or it sticks (held).
+struct BouncingKey {
+    std::size_t contact = 0;
+    Mode mode = {};  // of the others, in which this contact is open
+    ContactState state = ContactState::held;
+    friend bool operator<(const BouncingKey& a, const BouncingKey& b) {
+        return std::tie(a.mode, a.contact, a.state) < std::tie(b.mode, b.contact, b.state);
+    }
+};
+
+// Whether the impacts leave the others in their states: no contact is held, and joints that stick feel no impulse. A
+// joint that sticks and feels the impulses slides and sticks again in every flight, for ever.
+bool has_bouncing(const BouncingKey& key, ContactModes& modes);
+
+// The programs of such a contact. Its slip may be kept at 0 by its impacts; then `sticking` is set.
+BouncingModel derive_bouncing(const BouncingKey& key, ContactModes& modes, const Equations& equations,
+                              const Layout& layout);
+// The conditions on the others, and on the slip of this contact.
+OtherContactTerms derive_other_contacts(const BouncingKey& key, ContactModes& modes, const Layout& layout);
+
+}  // namespace achilles
