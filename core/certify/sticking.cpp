@@ -272,7 +272,7 @@ std::optional<Certificate> StickingConditions::certificate_of(const Collision& c
     return c;
 }
 
-std::optional<Certificate> StickingConditions::do_certify(const Collision& collision) {
+std::optional<Certificate> StickingConditions::do_certify(const Collision& collision, CertificateScope) {
     auto certificate = prove(collision);
     if (!certificate) return std::nullopt;
     const Certificate::Decision& decision = *certificate->decision;

@@ -41,7 +41,7 @@ class StickingConditions : public TruncationConditions {
     State restart_at(const Collision& collision) override;
 
  protected:
-    std::optional<Certificate> do_certify(const Collision& collision) override;
+    std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) override;
     std::optional<Certificate> do_prove_any(const Collision& collision) override { return prove(collision); }
 
  private:
