@@ -172,12 +172,25 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
     return text + ".\n";
 }
 
+// Proofs do not cover friction.
 std::string end_line(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.no_estimate_reason;
-    const std::string text = fmt::format("State at the end: {}.", state);
-    if (trajectory.model->has_friction()) return text + "\n";  // which proofs do not cover
-    return fmt::format("{} For a proof of the whole run: {}\n", text, prove_command);
+    if (trajectory.model->has_friction()) return fmt::format("State at the end: {}.\n", state);
+    return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
+}
+
+// Only with friction: "Heat of friction 4.52 J, loss at impacts 0.301 J."
+std::string dissipation_line(const Trajectory& trajectory, const EventDescriptions& sentences) {
+    if (!trajectory.model->has_friction()) return "";
+    Sample end;
+    end.t = trajectory.end_time, end.state = trajectory.end;
+    const double error = sentences.precision().of_energy(end);
+    const auto text = [&](double value) {
+        const std::string shown = sentences.energy(value, error);
+        return shown.empty() ? with_unit("0", sentences.energy_unit()) : shown;
+    };
+    return fmt::format("Heat of friction {}, loss at impacts {}.\n", text(trajectory.heat), text(trajectory.loss));
 }
 
 std::string first_line(const Trajectory& trajectory, const EventDescriptions& sentences) {
@@ -238,6 +251,7 @@ std::string answer(const Trajectory& trajectory, const ErrorEstimate& estimate, 
             "--json. Stop instead: --simultaneous stop\n",
             trajectory.ambiguous_impacts, trajectory.ambiguous_impacts == 1 ? "impact has" : "impacts have");
     text += "\n" + ContactChanges(trajectory, estimate).text() + "\n";
+    text += dissipation_line(trajectory, sentences);
     text += times_line(trajectory, estimate) + end_line(trajectory, estimate, prove_command);
     const Statistics& s = trajectory.statistics;
     return text + fmt::format("{} impact{}, {} steps. For impacts, bounds and assumptions: --verbose\n", s.impacts,

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <algorithm>
+#include <cctype>
+#include <cmath>
 
 #include "output/precision.hpp"
 #include "simulate/sampler.hpp"
@@ -33,9 +35,56 @@ std::string joined_names(const Model& model, ContactSet contacts, std::string_vi
     return fmt::format("{}", fmt::join(contact_names(model, contacts), between));
 }
 
+bool has_several_places(const Model& model) { return model.contacts() + model.description().frictions.size() > 1; }
+
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event) {
     const Model& model = *trajectory.model;
-    return model.contacts() > 1 ? joined_names(model, event.contacts) : "";
+    return has_several_places(model) ? joined_names(model, event.contacts) : "";
+}
+
+// ---- slips ----
+
+namespace {
+
+// The coefficient of a slip on the rate of x, x1, x_a, ... (`letter`): 0 if there is none, or if there are several.
+double coefficient_on(char letter, const Vector& d, const SystemDescription& system) {
+    double found = 0.0;
+    for (std::size_t i = 0; i < system.coordinates.size(); ++i) {
+        const std::string& name = system.coordinates[i].name;
+        const double here = d[static_cast<Eigen::Index>(i)];
+        if (here == 0.0 || name[0] != letter || (name.size() > 1 && std::isalpha(static_cast<unsigned char>(name[1]))))
+            continue;
+        if (found != 0.0) return 0.0;
+        found = here;
+    }
+    return found;
+}
+
+}  // namespace
+
+std::string Slips::direction(std::size_t which, int sign, const State& state) {
+    const Vector d = cache_.slip(which, state).d;
+    const SystemDescription& system = model_.description();
+    const double x = coefficient_on('x', d, system) * sign, y = coefficient_on('y', d, system) * sign;
+    if (x != 0.0 && std::abs(x) >= std::abs(y)) return x > 0.0 ? "to the right" : "to the left";
+    if (y != 0.0) return y > 0.0 ? "up" : "down";
+    return sign > 0 ? "with slip > 0" : "with slip < 0";
+}
+
+std::string Slips::verb(std::size_t which, Mode mode, const State& state) {
+    const int sign = slip_sign(mode.state(which));
+    return sign == 0 ? "sticks" : "slides " + direction(which, sign, state);
+}
+
+double Slips::heat_of_impact(const Event& impact) {
+    double heat = 0.0;
+    if (impact.friction == nullptr) return heat;
+    for (const auto& [contact, impulse] : impact.friction->tangential) {
+        const double before = cache_.slip(contact, {impact.q, impact.v_before, impact.t}).u,
+                     after = cache_.slip(contact, {impact.q, impact.v_after, impact.t}).u;
+        heat -= 0.5 * impulse * (before + after);
+    }
+    return heat;
 }
 
 Impulses::Impulses(const Trajectory& trajectory)

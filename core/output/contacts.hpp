@@ -21,6 +21,8 @@ std::string joined_names(const Model& model, ContactSet contacts, std::string_vi
 std::string_view state_word(ContactState state);
 // The contacts and joints with friction that are not open in this mode.
 ContactSet rough_in(const Model& model, Mode mode);
+// Whether contacts, and joints with friction, need their names: there is more than one.
+bool has_several_places(const Model& model);
 // The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event);
 
@@ -35,6 +37,25 @@ class Impulses {
  private:
     const Trajectory& trajectory_;
     ContactCache surfaces_;
+};
+
+// Slips of contacts and joints at instants of a run with dry friction.
+class Slips {
+ public:
+    explicit Slips(const Trajectory& trajectory) : model_(*trajectory.model), cache_(model_, trajectory.run) {}
+    // The direction in which a slip of this sign moves the contact or joint: "to the left", "to the right", "up" or
+    // "down" by its largest rate among those of the coordinates x and y (also x1, x_a, ...; x points to the right). If
+    // its slip has neither, or rates of two bodies: "with slip > 0".
+    std::string direction(std::size_t which, int sign, const State& state);
+    // "sticks", or "slides to the left".
+    std::string verb(std::size_t which, Mode mode, const State& state);
+    // The energy that friction turns into heat at an impact, sum -1/2 p_T (u- + u+) (theory-friction.md 5). It is
+    // negative where the impulse of friction does work.
+    double heat_of_impact(const Event& impact);
+
+ private:
+    const Model& model_;
+    ContactCache cache_;
 };
 
 // The bounds on the other contacts, as parts of a sentence.

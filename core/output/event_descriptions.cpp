@@ -39,7 +39,8 @@ std::optional<double> proved_time(const Event& event) {
 EventDescriptions::EventDescriptions(const Trajectory& trajectory, const ErrorEstimate* estimate, Angles angles)
     : trajectory_(trajectory), precision_(trajectory, estimate) {
     const Model& model = *trajectory.model;
-    is_of_several_ = model.contacts() > 1;
+    is_of_several_ = has_several_places(model);
+    if (model.has_friction()) slips_ = std::make_shared<Slips>(trajectory);
     energy_unit_ = unit_of_expression(model.description(), "energy");
     for (const std::string& rate : output_names(model.description(), "gap'")) {
         RateUnit unit{unit_of_expression(model.description(), rate), 1.0};
@@ -96,20 +97,53 @@ std::string EventDescriptions::of(std::size_t event) const {
     return impact(event);
 }
 
-// "foot sticks", "foot starts to slide (slip+)", "foot slides the other way (slip-)".
+// "sticks", "starts to slide to the left", "reverses and slides to the left"; of several, each with its name.
 std::string EventDescriptions::friction(const Event& event) const {
+    const State after{event.q, event.v_after, event.t};
     std::string text;
     for (const std::size_t i : event.contacts) {
-        const std::string name = contact_names(*trajectory_.model, ContactSet::of(i)).front();
-        text += (text.empty() ? "" : ", ") + name;
-        if (event.kind == Event::Kind::stick)
-            text += " sticks";
+        text += text.empty() ? "" : ", ";
+        if (is_of_several_) text += joined_names(*trajectory_.model, ContactSet::of(i)) + " ";
+        const int sign = slip_sign(event.mode.state(i));
+        if (sign == 0)
+            text += "sticks";
+        else if (event.kind == Event::Kind::slip)
+            text += "starts to slide " + slips_->direction(i, sign, after);
         else
-            text +=
-                fmt::format(" {} ({})", event.kind == Event::Kind::slip ? "starts to slide" : "slides the other way",
-                            state_word(event.mode.state(i)));
+            text += "reverses and " + slips_->verb(i, event.mode, after);
     }
     return text;
+}
+
+// "sticking", "sliding to the left".
+std::string EventDescriptions::participle(std::size_t which, Mode mode, const State& at) const {
+    const int sign = slip_sign(mode.state(which));
+    return sign == 0 ? "sticking" : "sliding " + slips_->direction(which, sign, at);
+}
+
+// "left sticks, stop is held, right slides to the left", for contacts and joints that are not open.
+std::string EventDescriptions::verbs(ContactSet which, Mode mode, const State& at) const {
+    const ContactSet rough = rough_in(*trajectory_.model, mode);
+    std::string text;
+    for (const std::size_t i : which)
+        text += fmt::format("{}{} {}", text.empty() ? "" : ", ", joined_names(*trajectory_.model, ContactSet::of(i)),
+                            rough.contains(i) ? slips_->verb(i, mode, at) : "is held");
+    return text;
+}
+
+// What friction does after an impact or a Zeno point: ", sticking", or of several "; left sticks". Only for contacts
+// that the event puts into another state.
+std::string EventDescriptions::friction_after(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    if (slips_ == nullptr) return "";
+    const Mode before = mode_before(trajectory_, index);
+    ContactSet changed;
+    for (const std::size_t i : rough_in(*trajectory_.model, event.mode))
+        if (before.state(i) != event.mode.state(i)) changed = changed.with(i);
+    if (changed.empty()) return "";
+    const State after{event.q, event.v_after, event.t};
+    if (!is_of_several_) return ", " + participle(*changed.begin(), event.mode, after);
+    return "; " + verbs(changed, event.mode, after);
 }
 
 std::string EventDescriptions::impact(std::size_t index) const {
@@ -129,12 +163,16 @@ std::string EventDescriptions::impact(std::size_t index) const {
     const std::string loss = lost(energy_lost(trajectory_, index), event);
     text += loss;
     if (is_cut && !loss.empty()) text += " by it and the restart";
+    if (event.friction != nullptr) {
+        const std::string heat = energy(slips_->heat_of_impact(event), event);
+        if (!heat.empty()) text += ", heat of friction " + heat;
+    }
     if (!event.opened.empty()) text += "; it opens " + joined_names(*trajectory_.model, event.opened, " and ");
     if (event.joint && event.joint->order_matters)
         text += "; order-dependent outcome: resolved together by Moreau's law";
     if (event.joint && event.joint->is_nonunique) text += "; impulses not unique";
     if (is_cut) text += "; the impact sequence is cut here";
-    return text;
+    return text + friction_after(index);
 }
 
 // The words of the file for the start of this contact, else "contact begins" or "knee is held".
@@ -149,8 +187,8 @@ std::string EventDescriptions::beginning(const Event& event) const {
 std::string EventDescriptions::change(std::size_t index) const {
     const Event& event = trajectory_.events[index];
     if (event.is_impact())
-        return fmt::format("impact of {} opens {}", joined_names(*trajectory_.model, event.contacts, " and "),
-                           joined_names(*trajectory_.model, event.opened, " and "));
+        return fmt::format("impact of {} opens {}{}", joined_names(*trajectory_.model, event.contacts, " and "),
+                           joined_names(*trajectory_.model, event.opened, " and "), friction_after(index));
     if (event.is_friction()) return friction(event);
     if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
@@ -160,9 +198,9 @@ std::string EventDescriptions::change(std::size_t index) const {
                    ? "force of " + joined_names(*trajectory_.model, event.contacts, " and ") + " reached zero"
                    : "contact force reached zero";
     }
-    if (is_plastic_landing(event)) return beginning(event) + "; plastic impact";
+    if (is_plastic_landing(event)) return beginning(event) + friction_after(index) + "; plastic impact";
     const BounceSequence pile = bounce_sequence_of(trajectory_, index);
-    std::string text = beginning(event);
+    std::string text = beginning(event) + friction_after(index);
     if (pile.impacts == 0) return text;
     text += fmt::format("; impacts since {} s",
                         known_digits(trajectory_.events[pile.first].t, precision_.of_event(pile.first), 4));
@@ -171,20 +209,40 @@ std::string EventDescriptions::change(std::size_t index) const {
     return text + (energy_unit_.empty() ? " dissipated the energy " : " dissipated ") + loss;
 }
 
-std::string EventDescriptions::holding(Mode mode, const char* flight) const {
-    if (mode.is_free()) return flight;
-    return is_of_several_ ? "held by " + joined_names(*trajectory_.model, mode.held(), " and ") : "in contact";
+std::string EventDescriptions::holding(Mode mode, const State& at, const char* flight) const {
+    const Model& model = *trajectory_.model;
+    const ContactSet rough = rough_in(model, mode), joints = mode.joints();
+    if (!is_of_several_) {
+        if (rough.empty()) return mode.is_free() ? flight : "in contact";
+        const std::string text = participle(*rough.begin(), mode, at);
+        return mode.is_free() ? text : "in contact and " + text;
+    }
+    std::string text;
+    for (const std::size_t i : mode.held()) {
+        text += text.empty() ? "held by " : " and ";
+        text += joined_names(model, ContactSet::of(i));
+        if (rough.contains(i)) text += " (" + slips_->verb(i, mode, at) + ")";
+    }
+    if (mode.is_free() && (joints.empty() || model.contacts() > 0)) text = flight;
+    if (joints.empty()) return text;
+    return text + (text.empty() ? "" : ", ") + verbs(joints, mode, at);
+}
+
+Mode EventDescriptions::start_mode() const {
+    return trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode;
 }
 
 std::string EventDescriptions::state_at_start() const {
-    return holding(trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode, "free flight");
+    return holding(start_mode(), trajectory_.run.start(), "free flight");
 }
 
-std::string EventDescriptions::state_at_end() const { return holding(trajectory_.end_mode, "in flight"); }
+std::string EventDescriptions::state_at_end() const {
+    return holding(trajectory_.end_mode, trajectory_.end, "in flight");
+}
 
 std::string EventDescriptions::zeno(std::size_t index) const {
     const Event& event = trajectory_.events[index];
-    const std::string begins = beginning(event);
+    const std::string begins = beginning(event) + friction_after(index);
     // The loss is in the sentence of its impact.
     if (is_plastic_landing(event)) return begins + ": plastic impact";
     const BounceSequence pile = bounce_sequence_of(trajectory_, index);
@@ -221,20 +279,27 @@ std::string EventDescriptions::release(const Event& event) const {
            (is_one ? " is released: its force reaches zero" : " are released: their forces reach zero");
 }
 
-std::string EventDescriptions::state(Mode mode) const {
-    if (mode.is_free()) return "in free flight";
-    if (!is_of_several_) return "in contact";
-    return joined_names(*trajectory_.model, mode.held(), " and ") +
-           (mode.held().count() == 1 ? " is held" : " are held");
+std::string EventDescriptions::state(Mode mode, const State& at) const {
+    if (!is_of_several_) return holding(mode, at, "in free flight");
+    if (slips_ == nullptr) {
+        if (mode.is_free()) return "in free flight";
+        return joined_names(*trajectory_.model, mode.held(), " and ") +
+               (mode.held().count() == 1 ? " is held" : " are held");
+    }
+    const ContactSet all = mode.held().with(mode.joints());
+    if (mode.is_free() && trajectory_.model->contacts() > 0)
+        return all.empty() ? "in free flight" : "in free flight, " + verbs(all, mode, at);
+    return verbs(all, mode, at);
 }
 
 std::string EventDescriptions::start() const {
-    const Mode mode = trajectory_.phases.empty() ? trajectory_.end_mode : trajectory_.phases.front().mode;
-    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0), state(mode));
+    return fmt::format("start at {}: {}", seconds(trajectory_.run.options.start_time, 0.0),
+                       state(start_mode(), trajectory_.run.start()));
 }
 
 std::string EventDescriptions::end() const {
-    std::string text = fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_mode));
+    std::string text =
+        fmt::format("end at {}: {}", seconds(trajectory_.end_time, 0.0), state(trajectory_.end_mode, trajectory_.end));
     if (trajectory_.outcome.kind != Outcome::Kind::end_time)
         text += fmt::format("; the run ends early: {}", to_text(trajectory_.outcome.kind));
     return text;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "output/contacts.hpp"
 #include "output/precision.hpp"
 #include "run/trajectory.hpp"
 #include "system/description.hpp"
@@ -33,10 +35,13 @@ class EventDescriptions {
     std::string end() const;
     // A change of the contact state in short, for a table: "contact begins; impacts since 1.694 s dissipated 0.301 J".
     std::string change(std::size_t event) const;
-    // "free flight", "in contact", "held by left and right".
+    // "free flight", "in contact", "held by left and right"; with friction "in contact and sliding to the left", "held
+    // by left (sticks) and right".
     std::string state_at_start() const;
     // The same for the end, with "in flight".
     std::string state_at_end() const;
+    // The state in a mode in other words: "in free flight", "in contact", "left sticks, stop is held".
+    std::string state(Mode mode, const State& at) const;
     // "24 impacts before the cuts", for the whole run.
     std::string impacts() const;
     // "2.13 J" for an energy with this error; empty if it is only rounding.
@@ -49,8 +54,11 @@ class EventDescriptions {
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
     std::string friction(const Event& event) const;
-    std::string state(Mode mode) const;
-    std::string holding(Mode mode, const char* flight) const;
+    std::string friction_after(std::size_t index) const;
+    std::string participle(std::size_t which, Mode mode, const State& at) const;
+    std::string verbs(ContactSet which, Mode mode, const State& at) const;
+    Mode start_mode() const;
+    std::string holding(Mode mode, const State& at, const char* flight) const;
     std::string beginning(const Event& event) const;
     std::string energy(double value, const Event& event) const;
     std::string lost(double energy, const Event& event) const;
@@ -64,7 +72,8 @@ class EventDescriptions {
 
     const Trajectory& trajectory_;
     Precision precision_;
-    bool is_of_several_ = false;
+    std::shared_ptr<Slips> slips_;  // null without friction
+    bool is_of_several_ = false;    // contacts, and joints with friction
     std::string energy_unit_;
     std::vector<RateUnit> rate_units_;  // by contact, of its gap's rate
     double energy_scale_ = 0.0;

@@ -45,9 +45,12 @@ std::string indented(std::string sentence) {
     return margin + sentence + "\n";
 }
 
-// "in flight", "in contact", or for a system with several contacts "in contact with knee".
-std::string contact_state(const Trajectory& trajectory, Mode mode) {
+// "in flight", "in contact", or for a system with several contacts "in contact with knee". With friction as the
+// sentences of events: "left sticks, right slides up".
+std::string contact_state(const EventDescriptions& sentences, const Trajectory& trajectory, Mode mode,
+                          const State& at) {
     const Model& model = *trajectory.model;
+    if (model.has_friction()) return sentences.state(mode, at);
     if (mode.is_free()) return "in flight";
     return model.contacts() > 1 ? "in contact with " + joined_names(model, mode.held()) : "in contact";
 }
@@ -79,13 +82,17 @@ class RunTimeline {
     }
 
  private:
-    bool is_of_several() const { return model_.contacts() > 1; }
+    bool is_of_several() const { return has_several_places(model_); }
     std::string names(ContactSet contacts) const { return joined_names(model_, contacts); }
     std::string time(double t) const { return known_digits(t, precision_.of_time(t), 10); }
 
     std::string phase_line(const Phase& phase) const {
-        return fmt::format("{}, t = {} to {} s{}\n", contact_state(trajectory_, phase.mode), time(phase.start),
-                           time(phase.end), phase.is_nonunique() ? ", forces not unique" : "");
+        const bool has_piece = phase.first_piece < trajectory_.pieces.size();
+        const State at = has_piece ? state_in(trajectory_.pieces[phase.first_piece], trajectory_.coefficients,
+                                              trajectory_.run.q.size(), phase.start)
+                                   : trajectory_.end;
+        return fmt::format("{}, t = {} to {} s{}\n", contact_state(sentences_, trajectory_, phase.mode, at),
+                           time(phase.start), time(phase.end), phase.is_nonunique() ? ", forces not unique" : "");
     }
 
     std::string chatter_line(const ChatterPhases& chatter) const {
@@ -189,9 +196,12 @@ std::string balance(const Trajectory& trajectory, const Precision& precision) {
     end.t = trajectory.end_time;
     end.state = trajectory.end;
     const double error = precision.of_energy(end);
-    return fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts\n",
-                       known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",
-                       known_digits(trajectory.loss, error, 9), unit);
+    std::string text = fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts",
+                                   known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",
+                                   known_digits(trajectory.loss, error, 9), unit);
+    if (trajectory.model->has_friction())
+        text += fmt::format(", heat of friction {}{}", known_digits(trajectory.heat, error, 9), unit);
+    return text + "\n";
 }
 
 std::string conventions(int count) {
@@ -286,9 +296,10 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     text += RunTimeline(trajectory, estimate).text();
     const Statistics& s = trajectory.statistics;
     const auto n = static_cast<std::size_t>(model.dof());
-    text += fmt::format("\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,
-                        contact_state(trajectory, trajectory.end_mode), named(model, 0, trajectory.end.q, errors.q),
-                        named(model, n, trajectory.end.v, errors.v));
+    text += fmt::format(
+        "\nend at t = {:.10g} s, {}: {}; {}", trajectory.end_time,
+        contact_state(EventDescriptions(trajectory, &estimate), trajectory, trajectory.end_mode, trajectory.end),
+        named(model, 0, trajectory.end.q, errors.q), named(model, n, trajectory.end.v, errors.v));
     text += "\n" + sentence(trajectory, estimate);
     text += fmt::format("\noutcome: {} ({})\n", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     const bool has_power = model.equations().has_power();
@@ -297,7 +308,7 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     if (model.contacts() > 0)
         text += ", least gap " + least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff());
     text += "\n";
-    if (has_power || model.contacts() > 1) text += balance(trajectory, precision);
+    if (has_power || model.contacts() > 1 || model.has_friction()) text += balance(trajectory, precision);
     if (trajectory.ambiguous_impacts > 0) text += conventions(trajectory.ambiguous_impacts);
     if (s.impacts > 0) text += "Gap speed is |hdot|, the rate at which the gap closes, not the speed of a body.\n";
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
