@@ -229,13 +229,13 @@ void legend_entry(const std::string& text, const std::function<void(ImDrawList*,
     ImGui::PopStyleColor();
 }
 
-constexpr Phase::Kind phases[] = {Phase::Kind::hybrid, Phase::Kind::constrained};
-
 std::vector<Markers> legend_markers(const Session& session) {
     std::vector<Markers> events;
+    const std::size_t contacts = session.model()->contacts();
     for (const EventNames& names : possible_events(session.model()->has_friction()))
-        events.push_back(event_markers(session.theme(), names.kind));
-    if (session.model()->contacts() > 1) events.push_back(opened_markers(session.theme()));
+        if (contacts > 0 || EventBase{names.kind}.is_friction())
+            events.push_back(event_markers(session.theme(), names.kind));
+    if (contacts > 1) events.push_back(opened_markers(session.theme()));
     return events;
 }
 
@@ -246,7 +246,7 @@ float legend_width(const Session& session) {
     const auto add = [&](const std::string& text) {
         width += ImGui::CalcTextSize(text.c_str()).x + units(18.0F) + legend_gap();
     };
-    for (const Phase::Kind kind : phases) add(legend_text(kind));
+    for (const PhaseLook look : possible_looks(*session.model())) add(legend_text(look));
     for (const Markers& markers : legend_markers(session)) add(markers.label);
     if (session.proof() != nullptr) add(proof_tube(session.theme()).label);
     return width;
@@ -260,10 +260,10 @@ void show_legend(const Session& session) {
     ImGui::SameLine();
     if (ImGui::GetContentRegionAvail().x < width + units(edge)) return ImGui::NewLine();
     ImGui::SetCursorPosX(content_right() - units(edge) - width + between);
-    for (const Phase::Kind kind : phases) {
-        legend_entry(legend_text(kind), [&](ImDrawList* list, ImVec2 c) {
+    for (const PhaseLook look : possible_looks(*session.model())) {
+        legend_entry(legend_text(look), [&](ImDrawList* list, ImVec2 c) {
             list->AddRectFilled({c.x - units(6.0F), c.y - units(3.0F)}, {c.x + units(6.0F), c.y + units(3.0F)},
-                                packed(phase_color(session.theme(), kind), 0.85F));
+                                packed(phase_color(session.theme(), look), 0.85F));
         });
         ImGui::SameLine(0.0F, between);
     }

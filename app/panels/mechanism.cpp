@@ -242,7 +242,7 @@ void add_ghosts(const Session& session, Drawing& drawing) {
         const Sample then = session.now_of(pinned);
         Color color = run_color(session.theme(), pinned.place);
         Drawing ghost = session.mechanism().draw(then.t, then.state, pinned.trajectory->run.parameters, drawing,
-                                                 session.theme(), then.mode.held());
+                                                 session.theme(), then.mode);
         pinned.touch->rest(ghost, then.t, then.state);
         for (DrawnShape& shape : ghost.shapes) {
             const auto is_there = [&](const DrawnShape& other) { return is_same(shape, other); };
@@ -268,7 +268,9 @@ void paint_arrows(const Session& session, const MechanismDrag& held, Picture& pi
     const bool is_seen = center.x >= a.x && center.x <= a.x + a.width && center.y >= a.y && center.y <= a.y + a.height;
     picture.tip = {center.x + picture.scale * v.x, center.y - picture.scale * v.y};
     if (!is_seen) return;
-    if (session.scene().shows("force") && session.now().contact && !holds_start(held)) {
+    // With friction the forces are drawn at the contacts.
+    const bool has_arrow = !session.mechanism_scene().has_friction_marks();
+    if (session.scene().shows("force") && has_arrow && session.now().contact && !holds_start(held)) {
         const double scale = arrow_scale(picture.area, strongest);
         if (const auto F = body.force(contact_force(session.trajectory(), session.now())))
             arrow(center, inside(center, {center.x + scale * F->x, center.y - scale * F->y}, picture.area),
@@ -288,8 +290,8 @@ Picture paint_picture(const Session& session, const Rectangle& area, const Mecha
     Drawing seen = seen_world(session, area);
     if (held.what == DragTarget::body || held.what == DragTarget::arrow) stand_still(seen, held.placement, area);
     const Scene& scene = session.scene();
-    Drawing drawing =
-        session.mechanism_scene().draw(now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe")});
+    Drawing drawing = session.mechanism_scene().draw(
+        now, seen, session.theme(), {scene.shows("trail"), scene.shows("strobe"), scene.shows("force")});
     add_ghosts(session, drawing);
     ImDrawList* list = ImGui::GetWindowDrawList();
     Picture picture{area, paint(drawing, list, area, units(1.0F)), {}, {}, {}, 0.0};

@@ -26,8 +26,11 @@ namespace {
 constexpr double click = 4.0;  // click tolerance, pixels
 
 Color color_of(const Session& session, std::size_t plot, std::size_t curve) {
-    const std::vector<Curve>& curves = session.plots()[plot].curves;
-    return curves.size() == 2 ? phase_color(session.theme(), session.now().phase) : curves[2 * curve].stroke.color;
+    const Panel& panel = session.plots()[plot];
+    const Sample now = session.now();
+    return panel.curves.size() == panel.courses
+               ? phase_color(session.theme(), look_of(*session.model(), now.phase, now.mode))
+               : panel.curves[panel.courses * curve].stroke.color;
 }
 
 struct PlotPlace {

@@ -79,7 +79,7 @@ void show_state(const Session& session, const Rectangle& panel) {
     const bool narrow = is_narrow(width);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
-    const PhaseLabel phase = phase_label(session.now());
+    const PhaseLabel phase = phase_label(*session.model(), session.now());
     const Color color = phase_color(session.theme(), phase.color);
     list->AddRectFilled({at.x, at.y + 0.25F * size}, {at.x + units(10.0F), at.y + 0.25F * size + units(10.0F)},
                         packed(color), units(2.0F));
@@ -98,7 +98,8 @@ void show_state(const Session& session, const Rectangle& panel) {
 }
 
 // The energy panel between results and player: current energies as a bar and in numbers, and their history on the time
-// axis of the player. Kinetic energy has the color of the velocity arrow, impact losses that of the impact markers.
+// axis of the player. Kinetic energy has the color of the velocity arrow, impact losses that of the impact markers, and
+// heat that of phases that slip.
 
 // The energies along the run that is shown, computed once per run.
 class EnergyCourse {
@@ -127,15 +128,16 @@ class EnergyCourse {
         return after == course_.begin() ? after->second : std::prev(after)->second;
     }
     bool empty() const { return course_.empty(); }
-    // Upper ends of the stacked parts: kinetic energy, potential energy above its minimum, impact losses, work of
-    // forces.
-    using Stack = std::array<double, 4>;
+    // Upper ends of the stacked parts: kinetic energy, potential energy above its minimum, impact losses, heat of
+    // friction, work of forces.
+    using Stack = std::array<double, 5>;
     Stack stack(const Energies& now) const {
         Stack ends{};
         ends[0] = now.kinetic;
         ends[1] = ends[0] + now.potential - lowest_;
         ends[2] = ends[1] + now.loss;
-        ends[3] = ends[2] + (now.work < 0.0 ? -now.work : 0.0);
+        ends[3] = ends[2] + now.heat;
+        ends[4] = ends[3] + (now.work < 0.0 ? -now.work : 0.0);
         return ends;
     }
     double full() const { return full_; }
@@ -160,13 +162,15 @@ struct EnergyPart {
     float alpha;
 };
 // The last part is striped, to distinguish its gray from the other.
-constexpr std::size_t striped = 3;
+constexpr std::size_t striped = 4;
 
-std::array<EnergyPart, 4> parts(const Theme& theme) {
+std::array<EnergyPart, 5> parts(const Theme& theme) {
     return {{{"kinetic", "kinetic energy", theme.ink, 0.85F},
              {"potential", "potential energy; the bar shows the part above the minimum of this run", theme.ink, 0.3F},
              {"impact loss", "energy lost in all impacts and in the restarts at Zeno points",
               phase_color(theme, Phase::Kind::hybrid), 0.75F},
+             {"friction heat", "heat of dry friction, in contact and at impacts", phase_color(theme, PhaseLook::slip),
+              0.85F},
              {"work done",
               "work of forces and of moving surfaces: energy removed is part of the bar, energy added extends beyond "
               "the line, which marks the initial energy",
@@ -191,17 +195,26 @@ std::string valued(const Session& session, double value, double error) {
 
 bool has_forces(const Session& session) { return session.model()->equations().has_power(); }
 
-std::array<double, 4> values(const Energies& now) { return {now.kinetic, now.potential, now.loss, now.work}; }
+std::array<double, 5> values(const Energies& now) { return {now.kinetic, now.potential, now.loss, now.heat, now.work}; }
+
+// The parts that a system has: heat with friction, work with forces.
+std::vector<std::size_t> shown_parts(const Session& session) {
+    std::vector<std::size_t> shown{0, 1, 2};
+    if (session.model()->has_friction()) shown.push_back(3);
+    if (has_forces(session)) shown.push_back(4);
+    return shown;
+}
 
 // Each name above its value, in columns.
 void show_numbers(const Session& session, const Energies& now, const Rectangle& area) {
-    const std::size_t count = has_forces(session) ? 4 : 3;
-    const float width = area.width / static_cast<float>(count), line = ImGui::GetTextLineHeight();
+    const std::vector<std::size_t> shown = shown_parts(session);
+    const float width = area.width / static_cast<float>(shown.size()), line = ImGui::GetTextLineHeight();
     const auto all = parts(session.theme());
     const auto its = values(now);
     const double error = session.precision().of_energy(session.now());
-    for (std::size_t i = 0; i < count; ++i) {
-        const ImVec2 at{area.x + static_cast<float>(i) * width, area.y};
+    for (std::size_t k = 0; k < shown.size(); ++k) {
+        const std::size_t i = shown[k];
+        const ImVec2 at{area.x + static_cast<float>(k) * width, area.y};
         const float sign = units(9.0F), words = units(14.0F);
         const float top = std::floor(at.y + 0.5F * (line - sign));
         fill(all[i], i == striped, {at.x, top}, {at.x + sign, top + sign});
@@ -244,7 +257,7 @@ void paint_course(const Session& session, const EnergyCourse& course, const Rect
     const auto left = area.x, width = area.width;
     const auto top = area.y, height = area.height, bottom = top + height;
     const double reached = session.trajectory().end_time;
-    std::array<ImU32, 4> colors{};
+    std::array<ImU32, 5> colors{};
     for (std::size_t i = 0; i < all.size(); ++i) colors[i] = packed(all[i].color, all[i].alpha);
     const float stripe = std::max(2.0F, std::floor(units(2.0F)));
     const ImU32 between = packed(all[striped].color, 0.15F);
@@ -272,7 +285,7 @@ std::string energy_tooltip(const Session& session, const EnergyCourse& course, d
     const auto all = parts(session.theme());
     std::string text = fmt::format("t = {:.6g} s", t);
     const double error = session.precision().of_energy(session.at(t));
-    for (std::size_t i = 0; i < (has_forces(session) ? 4U : 3U); ++i)
+    for (const std::size_t i : shown_parts(session))
         text += fmt::format("\n{} {}", all[i].name, valued(session, its[i], error));
     const auto& events = session.trajectory().events;
     const auto after =

@@ -28,9 +28,9 @@ struct Track {
 void paint_phases(const Session& session, const Track& track, ImDrawList* list) {
     const float top = track.top + units(marks), bottom = top + units(band);
     for (const Phase& phase : session.trajectory().phases)
-        list->AddRectFilled({track.x(phase.start), top},
-                            {std::max(track.x(phase.end), track.x(phase.start) + 1.0F), bottom},
-                            packed(phase_color(session.theme(), phase.kind), 0.85F));
+        list->AddRectFilled(
+            {track.x(phase.start), top}, {std::max(track.x(phase.end), track.x(phase.start) + 1.0F), bottom},
+            packed(phase_color(session.theme(), look_of(*session.model(), phase.kind, phase.mode)), 0.85F));
     // The part after an early stop.
     const float done = track.x(session.trajectory().end_time);
     list->AddRect({done, top}, {track.left + track.width, bottom}, ImGui::GetColorU32(ImGuiCol_Border));

@@ -142,7 +142,8 @@ std::string bytes_of(const Session& session, const command::Export& what) {
 // the phase.
 void name_runs(Figure& figure, const Session& session, const std::vector<const PinnedRun*>& pinned) {
     const Theme theme = light_theme();
-    const std::vector<std::string> phases{legend_text(Phase::Kind::hybrid), legend_text(Phase::Kind::constrained)};
+    std::vector<std::string> phases;
+    for (const PhaseLook look : phase_looks) phases.push_back(legend_text(look));
     for (Key& key : figure.keys)
         if (auto* const stroke = std::get_if<Stroke>(&key.sign);
             stroke != nullptr && std::any_of(phases.begin(), phases.end(),
@@ -188,7 +189,8 @@ Drawing mechanism_of(const Session& session, const Theme& theme) {
     } else {
         seen = session.mechanism_scene().camera().at(scene.camera(), now, {width, width / shape});
     }
-    return session.mechanism_scene().draw(now, seen, theme, {scene.shows("trail"), scene.shows("strobe")});
+    return session.mechanism_scene().draw(now, seen, theme,
+                                          {scene.shows("trail"), scene.shows("strobe"), scene.shows("force")});
 }
 
 Figure figure_of(const Session& session, const PublicationStyle& style) {

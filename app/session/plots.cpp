@@ -251,7 +251,7 @@ std::vector<Panel> Plots::compose(const Trajectory& trajectory, std::span<const 
 Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framing& framing, const Theme& theme) {
     if (pinned.empty()) return panel;
     constexpr double gap = std::numeric_limits<double>::quiet_NaN();
-    if (panel.curves.size() == 2)
+    if (panel.curves.size() == panel.courses)
         for (std::vector<Curve>* const curves : {&panel.curves, &panel.beyond.curves})
             for (Curve& curve : *curves) {
                 const std::uint8_t alpha = curve.stroke.color.a;

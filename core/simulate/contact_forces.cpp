@@ -95,6 +95,12 @@ Vector ContactForces::generalized_force() {
         const double lambda = force(i);
         const auto& terms = surface(i);
         for (Eigen::Index k = 0; k < Q.size(); ++k) Q[k] += lambda * terms.gradient(static_cast<std::size_t>(k));
+        if (!model_->equations().friction.contains(i)) continue;
+        auto slip = model_->evaluator(model_->slip_terms(i), parameters_);
+        set_state(slip, state_);
+        slip.run();
+        const double tau = friction_force(i);
+        for (Eigen::Index k = 0; k < Q.size(); ++k) Q[k] += tau * slip.d(static_cast<std::size_t>(k));
     }
     return Q;
 }

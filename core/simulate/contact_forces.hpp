@@ -31,7 +31,7 @@ class ContactForces {
     double friction_force(std::size_t which);
     // hddot_i of an open contact; 0 if it is held.
     double acceleration(std::size_t contact);
-    // sum lambda_i g_i', the generalized contact force.
+    // sum lambda_i g_i' + tau_i d_i', the generalized contact force. The friction of joints is not part of it.
     Vector generalized_force();
 
     // Sets the inputs of a view's program from a sample, and runs it. `reads` marks, by slot, the inputs that the

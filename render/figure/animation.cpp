@@ -214,7 +214,7 @@ AnimationFrame Animation::at(double t) {
         TextRun{width - text, 0.5F * text, 1.0F, clock + (has_units(description) ? " s" : ""), theme.ink, text});
     // To the left of the longest clock text.
     const float clock_room = text * (6.5F + 0.65F * static_cast<float>(decimals_));
-    const PhaseLabel phase = phase_label(now);
+    const PhaseLabel phase = phase_label(*trajectory_.model, now);
     still.heading.emplace_back(
         TextRun{width - text - clock_room, 0.5F * text, 1.0F, phase.text, phase_color(theme, phase.color), text});
     return still;

@@ -162,10 +162,11 @@ std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double t
         values[0] = at.x, values[1] = at.y;
     });
     std::vector<WayPoint> way;
-    for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
-        const PhaseCurve& course = traced.courses[kind == Phase::Kind::hybrid ? 0 : 1];
-        if (!way.empty() && !course.points.empty()) way.push_back({to, kind, break_of_curve});
-        for (std::size_t i = 0; i < course.points.size(); ++i) way.push_back({course.times[i], kind, course.points[i]});
+    for (std::size_t k = 0; k < traced.courses.size(); ++k) {
+        const PhaseCurve& course = traced.courses[k];
+        const PhaseLook look = phase_looks[k];
+        if (!way.empty() && !course.points.empty()) way.push_back({to, look, break_of_curve});
+        for (std::size_t i = 0; i < course.points.size(); ++i) way.push_back({course.times[i], look, course.points[i]});
     }
     return way;
 }
@@ -174,7 +175,7 @@ void add_present(std::vector<WayPoint>& way, const WayPoint& now) {
     const auto is_there = [](const WayPoint& point) { return std::isfinite(point.at.x) && std::isfinite(point.at.y); };
     for (std::size_t i = 1; i < way.size(); ++i) {
         const WayPoint &a = way[i - 1], &b = way[i];
-        if (b.phase != now.phase || !is_there(a) || !is_there(b) || !(a.t < now.t && now.t < b.t)) continue;
+        if (b.look != now.look || !is_there(a) || !is_there(b) || !(a.t < now.t && now.t < b.t)) continue;
         way.insert(way.begin() + static_cast<std::ptrdiff_t>(i), now);
         return;
     }
@@ -219,13 +220,13 @@ void add_body_trail(std::vector<DrawnShape>& shapes, std::span<const WayPoint> w
             before = nullptr;
             continue;
         }
-        if (before == nullptr || here.phase != before->phase || is_passed != (before->t <= t)) {
+        if (before == nullptr || here.look != before->look || is_passed != (before->t <= t)) {
             DrawnShape& line = lines.emplace_back();
-            line.stroke = phase_stroke(theme, here.phase, 0, 1);
-            const bool in_contact = here.phase == Phase::Kind::constrained;
+            line.stroke = phase_stroke(theme, here.look, 0, 1);
+            const bool in_contact = here.look != PhaseLook::flight;
             // In contact it lies on the line of the surface, which must not shine through.
             line.stroke.color.a = !is_passed ? to_come : in_contact ? 255 : passed;
-            if (in_contact) line.stroke.width = 3.0;
+            if (in_contact) line.stroke.width = 3.0, line.stroke.dash.clear();
             if (before != nullptr) line.points.push_back(before->at);
         }
         lines.back().points.push_back(here.at);

@@ -54,13 +54,13 @@ std::optional<Vector> held_at(AnchorPoint& grip, double t, const State& state, c
 // A point of the trail. A point that is not finite breaks the trail.
 struct WayPoint {
     double t = 0.0;
-    Phase::Kind phase = Phase::Kind::hybrid;
+    PhaseLook look = PhaseLook::flight;
     Point at;
 };
 // Position of a sample in a plane.
 using PlaceOf = std::function<Point(const Sample&)>;
-// Trail of a place during [from, to] (s), as fine as the picture `seen` needs (trace.hpp). The hybrid phases come
-// first, then the constrained ones, each in order of time.
+// Trail of a place during [from, to] (s), as fine as the picture `seen` needs (trace.hpp). The phases of each look come
+// together, in order of time.
 std::vector<WayPoint> way_of(const Trajectory& trajectory, double from, double to, const Drawing& seen,
                              const PlaceOf& place);
 
@@ -85,8 +85,8 @@ void add_present(std::vector<WayPoint>& way, const WayPoint& now);
 // over the static shapes, whose lines would hide motion in contact, and under the moving ones.
 void add_body_trail(std::vector<DrawnShape>& shapes, std::span<const WayPoint> way, double t, const Theme& theme);
 
-// Contact force of a sample as a generalized force: sum of lambda_i times the gap gradient over the held contacts; zero
-// in free flight.
+// Contact force of a sample as a generalized force: sum of lambda_i times the gap gradient over the held contacts, with
+// their friction; zero in free flight.
 Vector contact_force(const Trajectory& trajectory, const Sample& sample);
 
 }  // namespace achilles

@@ -12,6 +12,7 @@
 #include "figure/plane.hpp"
 #include "figure/trace.hpp"
 #include "model/model.hpp"
+#include "output/contacts.hpp"
 #include "output/precision.hpp"
 #include "simulate/sampler.hpp"
 #include "system/units.hpp"
@@ -39,6 +40,7 @@ Sample sample_at(const Trajectory& trajectory, const Event& event) {
     sample.state = {event.q, event.v_after, event.t};
     sample.work = event.work;
     sample.loss = event.loss;
+    sample.heat = event.heat;
     sample.mode = event.mode;
     sample.contact = !event.mode.is_free();
     sample.load_bearing = load_bearing_contacts(trajectory, event.mode, event.t);
@@ -77,19 +79,20 @@ std::vector<double> errors_at(const Trajectory& trajectory, const Sample& sample
 
 namespace {
 
-// Two curves for each quantity: hybrid phases and constrained phases.
-void add_curves(Panel& panel, const PreparedView& view, const Theme& theme) {
+// A curve for each quantity and each look of a phase.
+void add_curves(Panel& panel, const Model& model, const PreparedView& view, const Theme& theme) {
     const auto& quantities = view.quantities();
     const std::size_t curves = quantities.size() - 1;
+    panel.courses = look_count(model);
     for (std::size_t i = 0; i < curves; ++i) {
-        for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
+        for (const PhaseLook look : std::span(phase_looks).first(panel.courses)) {
             Curve& curve = panel.curves.emplace_back();
-            curve.stroke = phase_stroke(theme, kind, i, curves);
-            const bool first = kind == Phase::Kind::hybrid;
+            curve.stroke = phase_stroke(theme, look, i, curves);
+            const bool first = look == PhaseLook::flight;
             // If units differ, the legend is the only place for them.
             const std::string name =
                 with_unit(quantities[i + 1].label, view.unit().empty() ? quantities[i + 1].unit : "");
-            curve.label = curves == 1 ? legend_text(kind) : first ? name : "";
+            curve.label = curves == 1 ? legend_text(look) : first ? name : "";
         }
     }
 }
@@ -128,7 +131,7 @@ void include(std::span<const Sample> samples, Values& values, std::size_t curves
 // Adds the markers of these events.
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
-    const std::size_t curves = panel.curves.size() / 2;
+    const std::size_t curves = panel.curves.size() / panel.courses;
     for (const EventNames& row : possible_events(trajectory.model->has_friction())) {
         const Event::Kind kind = row.kind;
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
@@ -153,19 +156,21 @@ void add_opened(Panel& panel, const Trajectory& trajectory, std::span<const Even
     for (const Event& event : events) {
         if (event.opened.empty()) continue;
         values.set(sample_at(trajectory, event));
-        for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
+        for (std::size_t i = 0; i * panel.courses < panel.curves.size(); ++i) {
             const Point point = point_of(values[0], values[i + 1]);
             if (!framing.hidden.contains(i) && !std::isnan(point.x)) markers.points.push_back(point);
         }
     }
 }
 
-// Gives the name of each of several curves to the part that is drawn: a curve in contact at all times is not dashed in
-// the legend.
+// Gives the name of each of several curves to the first part that is drawn: a curve in contact at all times is not
+// dashed in the legend.
 void name_drawn(Panel& panel) {
-    for (std::size_t i = 0; i + 1 < panel.curves.size(); i += 2)
-        if (panel.curves[i].points.empty() && panel.curves[i + 1].label.empty())
-            std::swap(panel.curves[i].label, panel.curves[i + 1].label);
+    for (std::size_t i = 0; i < panel.curves.size(); i += panel.courses) {
+        const std::span<Curve> parts = std::span(panel.curves).subspan(i, panel.courses);
+        const auto drawn = std::find_if(parts.begin(), parts.end(), [](const Curve& c) { return !c.points.empty(); });
+        std::swap(parts.front().label, (drawn == parts.end() ? parts.back() : *drawn).label);
+    }
 }
 
 // Error of the quantities due to the rounding of coordinates and rates, relative to their ranges. A quantity that
@@ -310,7 +315,7 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
 // the time of each point of each curve (s).
 std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& trajectory, const ShownInterval& extent,
                                              const PreparedView& view, Values& values, const Framing& framing) {
-    const std::size_t curves = panel.curves.size() / 2;
+    const std::size_t curves = panel.curves.size() / panel.courses;
     DataRange x_range, y_range;
     x_range.positive = framing.log_x;
     y_range.positive = framing.log_y;
@@ -411,9 +416,9 @@ Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, con
     Values values(view, trajectory);
     panel.x.logarithmic = framing.log_x;
     panel.y.logarithmic = framing.log_y;
-    add_curves(panel, view, theme);
+    add_curves(panel, *trajectory.model, view, theme);
     Panel pale = panel;  // the part after the horizon
-    const bool several = trajectory.model->contacts() > 1 && !samples.empty();
+    const bool several = has_several_places(*trajectory.model) && !samples.empty();
     const bool has_beyond = horizon && !samples.empty() && *horizon < samples.back().t;
     const auto mark = [&](Panel& marked, std::span<const Event> events) {
         add_markers(marked, trajectory, events, values, framing, theme);
@@ -561,38 +566,6 @@ PreparedView::ViewQuantity PreparedView::quantity(const SystemDescription& descr
     result.unit = shown.text;
     result.factor = shown.factor;
     return result;
-}
-
-std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme) {
-    constexpr double parts = 4000.0;  // distinguishable positions on an axis
-    const double near = (time.high - time.low) / parts;
-    const Color held = phase_color(theme, Phase::Kind::constrained), impact = phase_color(theme, Phase::Kind::hybrid);
-    const auto& constraints = trajectory.model->description().constraints;
-    std::vector<TimeBar> bars(constraints.size());
-    for (std::size_t contact = 0; contact < bars.size(); ++contact) {
-        bars[contact].label = typeset_name(constraints[contact].name);
-        std::vector<TimeBar::TimeMark>& marks = bars[contact].marks;
-        const auto is_seen = [&](double low, double high) {
-            return high >= time.low && low <= time.high && low <= end;
-        };
-        for (const Phase& phase : trajectory.phases) {
-            if (!phase.mode.is_held(contact) || !is_seen(phase.start, phase.end)) continue;
-            const double until = std::min(phase.end, end);
-            if (!marks.empty() && phase.start - marks.back().high < near)
-                marks.back().high = until;
-            else if (until > phase.start)
-                marks.push_back({phase.start, until, held});
-        }
-        double last = -std::numeric_limits<double>::infinity();
-        for (const Event& event : trajectory.events) {
-            if (!event.is_impact() || !event.contacts.contains(contact) || !is_seen(event.t, event.t) ||
-                event.t - last < near)
-                continue;
-            marks.push_back({event.t, event.t, impact});
-            last = event.t;
-        }
-    }
-    return bars;
 }
 
 }  // namespace achilles

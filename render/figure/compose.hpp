@@ -76,8 +76,9 @@ struct Framing {
 };
 
 // The panel of one view up to the last sample: hybrid phases dashed, constrained ones solid, squares at impacts,
-// markers at Zeno points and releases. Plots over time of a system with several contacts have a bar for each. Whatever
-// lies after the horizon of the run (s), if that comes before its end, is pale.
+// markers at Zeno points, releases and events of friction. Plots over time of a system with several contacts, or joints
+// with friction, have a bar for each. Whatever lies after the horizon of the run (s), if that comes before its end, is
+// pale.
 Panel compose(const Trajectory& trajectory, std::span<const Sample> samples, const PreparedView& view,
               const Theme& theme, const Framing& framing = {}, std::optional<double> horizon = {});
 
@@ -122,8 +123,9 @@ class Values {
     ContactForces forces_;
 };
 
-// A bar for each contact of a run up to the time `end` (s): filled in the color of constrained phases while the contact
-// is held, with ticks at its impacts. Marks closer than the resolution of this axis are merged.
+// A bar for each contact, then for each joint with friction, of a run up to the time `end` (s): filled in the color of
+// its phase (phase_color) while the contact is held, with ticks at its impacts. Marks of one color that are closer than
+// the resolution of this axis are merged.
 std::vector<TimeBar> contact_bars(const Trajectory& trajectory, double end, const Axis& time, const Theme& theme);
 
 }  // namespace achilles

@@ -296,8 +296,7 @@ const ContactGeometry::CachedGround& ContactGeometry::cached_ground(std::size_t 
     return *seen;
 }
 
-void ContactGeometry::add_ground(Drawing& drawing, double t, const State& state, ContactSet held,
-                                 const Theme& theme) const {
+void ContactGeometry::add_ground(Drawing& drawing, double t, const State& state, Mode mode, const Theme& theme) const {
     std::vector<DrawnShape> ground, lit;
     for (std::size_t i = 0; i < solids_.size(); ++i) {
         const CachedGround& seen = cached_ground(i, drawing, t, state);
@@ -306,10 +305,10 @@ void ContactGeometry::add_ground(Drawing& drawing, double t, const State& state,
         shape.fill_color = theme.ground;
         shape.points = seen.area;
         const std::size_t contact = solids_[i].contact;
-        if (!held.contains(contact) || drawn_.contains(contact)) continue;
+        if (!mode.is_held(contact) || drawn_.contains(contact)) continue;
         DrawnShape& line = lit.emplace_back();
         line.points = seen.line;
-        line.stroke.color = phase_color(theme, Phase::Kind::constrained);
+        line.stroke.color = phase_color(theme, look_of(*model_, ContactSet::of(contact), mode));
         line.stroke.width = 2.75;
     }
     drawing.shapes.insert(drawing.shapes.begin(), ground.begin(), ground.end());

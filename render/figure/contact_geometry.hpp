@@ -36,7 +36,7 @@ class ContactGeometry {
 
     // Inserts the solid ground behind the shapes, over the limits of the drawing. If no drawing belongs to a held
     // contact, the line of its gap is highlighted.
-    void add_ground(Drawing& drawing, double t, const State& state, ContactSet held, const Theme& theme) const;
+    void add_ground(Drawing& drawing, double t, const State& state, Mode mode, const Theme& theme) const;
     // Moves the discs of a drawing (DrawnShape::item) to where they rest.
     void rest(Drawing& drawing, double t, const State& state) const;
     // As nearness(), but for what is drawn: the position where the point, or a disc around it, touches the ground.

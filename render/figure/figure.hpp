@@ -155,6 +155,8 @@ struct Panel {
     Curve boundary;  // drawn behind the curves: the boundary h = 0
     HorizonTail beyond;
     std::vector<Curve> curves;
+    std::size_t courses =
+        2;  // of a view: number of curves of each quantity, one for each look of a phase (palette.hpp)
     std::vector<Markers> markers;
     std::vector<TimeBar> time_bars;  // top to bottom
     bool legend = false;

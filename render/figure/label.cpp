@@ -96,8 +96,21 @@ std::size_t bar_of(const Name& name) {
     return letters(display_letter(name.word.substr(0, bar))).size() == 1 ? bar : 0;
 }
 
+// Quantities of dry friction in views (system/description.hpp, sliding_names): of one contact or joint, and before the
+// name of one of several, which becomes a subscript.
+struct FrictionWord {
+    std::string_view name, alone, of_several;
+};
+constexpr std::array<FrictionWord, 2> friction_words{
+    {{"friction_force", "friction force", "friction"}, {"slip", "slip", "slip"}}};
+
 // A name as a label.
 std::string variable(std::string_view text) {
+    for (const FrictionWord& word : friction_words) {
+        if (text == word.name) return std::string(word.alone);
+        if (text.starts_with(word.name) && text.substr(word.name.size()).starts_with('_'))
+            return std::string(word.of_several) + "_{" + std::string(text.substr(word.name.size() + 1)) + "}";
+    }
     const Name name(text);
     const std::size_t bar = bar_of(name);
     if (bar == 0) return italic(display_letter(name.word)) + dots_of(name) + index_of(name.digits);

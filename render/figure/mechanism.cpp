@@ -164,10 +164,10 @@ void include_nearest(BoundingBox& all, const BoundingBox& motion, const Evaluate
     if (least <= reach) all.include(nearest, std::max(0.0, placed.radius));
 }
 
-// Highlights a surface while a contact is held on it: lines get the color of constrained phases and become bolder.
-// Filled shapes keep their color and get such an outline.
-void light(DrawnShape& shape, const Theme& theme) {
-    shape.stroke.color = phase_color(theme, Phase::Kind::constrained);
+// Highlights a surface while a contact is held on it: lines get the color of the phase and become bolder. Filled shapes
+// keep their color and get such an outline.
+void light(DrawnShape& shape, const Color& color) {
+    shape.stroke.color = color;
     if (shape.stroke.width > 0.0) shape.stroke.width += shape.fill ? 1.5 : 0.75;
 }
 
@@ -442,11 +442,11 @@ void Mechanism::add_plane(Drawing& drawing, double t, const State& state, std::s
 }
 
 Drawing Mechanism::draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                        const Theme& theme, ContactSet held, DrawnPart part) const {
+                        const Theme& theme, Mode mode, DrawnPart part) const {
     Drawing drawing = limits;
     drawing.shapes.clear();
     const bool all = part == DrawnPart::all;
-    ContactSet of_body = held;
+    ContactSet of_body = mode.held();
     for (const Item& item : items_)
         if (item.description.contact) of_body = of_body.without(*item.description.contact);
     for (const Item& item : items_) {
@@ -460,7 +460,9 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
                                       : d.shape == DrawingShape::text ? DrawnShape::Kind::text
                                                                       : DrawnShape::Kind::polyline;
         const bool is_part = d.shape == DrawingShape::spring || d.shape == DrawingShape::damper;
-        const bool is_lit = d.contact ? held.contains(*d.contact) : !of_body.empty() && &item == body();
+        const bool is_lit = d.contact ? mode.is_held(*d.contact) : !of_body.empty() && &item == body();
+        const ContactSet lit = d.contact ? ContactSet::of(*d.contact) : of_body;
+        const Color light_color = phase_color(theme, look_of(model_, lit, mode));
         if (d.shape == DrawingShape::ground) {
             DrawnShape& earth = add(drawing, DrawnShape::Kind::area, theme.ground, 0.0);
             earth.points = strip_right_of(
@@ -470,7 +472,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
             DrawnShape& hatches = add(drawing, kind, color, 0.5 * placed.width);
             hatches.points = line_between(item, run, placed, limits.size);
             hatches.moves = item.moves;
-            if (is_lit) light(hatches, theme);
+            if (is_lit) light(hatches, light_color);
         }
         if (is_part) placed.points = line_between(item, run, placed, limits.size);
         DrawnShape& shape = add(drawing, kind, color, placed.width);
@@ -479,7 +481,7 @@ Drawing Mechanism::draw(double t, const State& state, std::span<const double> pa
         shape.points = std::move(placed.points);
         shape.fill = d.fill;
         shape.closed = d.shape == DrawingShape::box || (d.fill && d.shape == DrawingShape::polyline);
-        if (is_lit) light(shape, theme);
+        if (is_lit) light(shape, light_color);
         shape.text = d.text;
         shape.radius = placed.radius;
     }

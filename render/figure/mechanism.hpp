@@ -49,10 +49,11 @@ class Mechanism {
     explicit Mechanism(const Model& model);
 
     // The shapes at a time and a state. Curves are smooth within `limits`, the visible part (see limits()). Shapes that
-    // belong to a held contact are highlighted; if none belongs to it, the body (grip()) is highlighted.
+    // belong to a held contact are highlighted in its color (phase_color); if none belongs to it, the body (grip()) is
+    // highlighted.
     enum class DrawnPart { all, moving };
     Drawing draw(double t, const State& state, std::span<const double> parameters, const Drawing& limits,
-                 const Theme& theme, ContactSet held = {}, DrawnPart part = DrawnPart::all) const;
+                 const Theme& theme, Mode mode = {}, DrawnPart part = DrawnPart::all) const;
 
     // The part of the world that a whole run needs, so that the picture need not move. Only the limits of the drawing
     // are set.

@@ -52,6 +52,7 @@ MechanismScene::MechanismScene(const Mechanism& mechanism, const Trajectory& tra
       touch_(mechanism, trajectory, limits_.size),
       camera_(mechanism, touch_, trajectory, samples, trail_, limits_),
       unit_(length_unit(trajectory.model->description())) {
+    if (trajectory.model->has_friction()) friction_.emplace(mechanism, trajectory, touch_, samples);
     find_poses();
 }
 
@@ -106,22 +107,23 @@ std::vector<WayPoint> MechanismScene::way(const Sample& now, const Drawing& seen
             if (is_near) all.back().at = break_of_curve;
         }
         for (const auto& [from, to] : {std::pair{low, now.t}, std::pair{now.t, high}}) {
-            all.push_back({from, Phase::Kind::hybrid, break_of_curve});
+            all.push_back({from, PhaseLook::flight, break_of_curve});
             const std::vector<WayPoint> fine = way_of(trajectory_, from, to, seen, place);
             all.insert(all.end(), fine.begin(), fine.end());
         }
     } else {
         all = trail_.way;
-        add_present(all, {now.t, now.phase, grip->at(now.t, now.state).at});
+        add_present(all, {now.t, look_of(*trajectory_.model, now.phase, now.mode), grip->at(now.t, now.state).at});
     }
     const Point aside = rest_below(now, seen, *grip, body);
     for (WayPoint& point : all) point.at = {point.at.x + aside.x, point.at.y + aside.y};
     return all;
 }
 
-PhaseLabel phase_label(const Sample& now) {
-    if (now.contact && now.phase == Phase::Kind::hybrid) return {Phase::Kind::constrained, "cut, in contact"};
-    return {now.phase, legend_text(now.phase)};
+PhaseLabel phase_label(const Model& model, const Sample& now) {
+    const bool is_cut = now.contact && now.phase == Phase::Kind::hybrid;
+    const PhaseLook look = look_of(model, is_cut ? Phase::Kind::constrained : now.phase, now.mode);
+    return {look, (is_cut ? "cut, " : "") + legend_text(look)};
 }
 
 // Time interval around the present in which the visible part is much smaller than the world that the run needs, limited
@@ -162,10 +164,10 @@ Point MechanismScene::rest_below(const Sample& now, const Drawing& seen, AnchorP
 
 Drawing MechanismScene::draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers) {
     const auto& parameters = trajectory_.run.parameters;
-    Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.mode.held());
+    Drawing drawing = mechanism_.draw(now.t, now.state, parameters, seen, theme, now.mode);
     touch_.rest(drawing, now.t, now.state);
     thin_out_large(drawing.shapes, seen);
-    touch_.add_ground(drawing, now.t, now.state, now.mode.held(), theme);
+    touch_.add_ground(drawing, now.t, now.state, now.mode, theme);
     if (layers.way) add_body_trail(drawing.shapes, way(now, seen), now.t, theme);
     if (layers.strobe)
         for (const Sample& then : poses_)
@@ -175,6 +177,7 @@ Drawing MechanismScene::draw(const Sample& now, const Drawing& seen, const Theme
                 touch_.rest(there, then.t, then.state);
                 put_under_what_moves(drawing.shapes, paled(std::move(there.shapes), pose));
             }
+    if (layers.friction && friction_) friction_->add(drawing, now, theme);
     return drawing;
 }
 
@@ -262,7 +265,8 @@ Drawing TwoViews::draw(std::size_t side, const Sample& now, const Drawing& seen,
         DrawnShape& line = drawing.shapes.emplace_back();
         line.points = field.zero_line();
         const bool is_held = now.mode.is_held(contact);
-        line.stroke.color = is_held ? phase_color(theme, Phase::Kind::constrained) : theme.surface;
+        line.stroke.color =
+            is_held ? phase_color(theme, look_of(model, ContactSet::of(contact), now.mode)) : theme.surface;
         line.stroke.width = is_held ? 2.75 : 2.0;
         const Point out = away(gap, here, 1e-6 * seen.size);
         rests.x += radius * out.x, rests.y += radius * out.y;
@@ -283,8 +287,9 @@ Drawing TwoViews::draw(std::size_t side, const Sample& now, const Drawing& seen,
         way = way_of(trajectory_, trajectory_.run.options.start_time, trajectory_.end_time, seen,
                      [&](const Sample& sample) { return projected(sample.state, pair); });
     else
-        for (const Sample& sample : samples_) way.push_back({sample.t, sample.phase, projected(sample.state, pair)});
-    add_present(way, {now.t, now.phase, here});
+        for (const Sample& sample : samples_)
+            way.push_back({sample.t, look_of(model, sample.phase, sample.mode), projected(sample.state, pair)});
+    add_present(way, {now.t, look_of(model, now.phase, now.mode), here});
     add_body_trail(drawing.shapes, way, now.t, theme);
     return drawing;
 }

@@ -13,22 +13,24 @@
 #include "figure/camera.hpp"
 #include "figure/contact_geometry.hpp"
 #include "figure/field.hpp"
+#include "figure/friction_marks.hpp"
 
 namespace achilles {
 
 // What is drawn besides the mechanism.
 struct Layers {
-    bool way = true;      // trail of the body: past, and faintly future
-    bool strobe = false;  // poses at past events, as far as they can be distinguished
+    bool way = true;       // trail of the body: past, and faintly future
+    bool strobe = false;   // poses at past events, as far as they can be distinguished
+    bool friction = true;  // with dry friction: contact forces in their friction cones
 };
 
 // Color and text of the phase at an instant, for a line beside the picture. Between a cut and its Zeno point the hybrid
 // phase continues, but the motion is the restarted one in contact, and the picture shows that.
 struct PhaseLabel {
-    Phase::Kind color = Phase::Kind::hybrid;
+    PhaseLook color = PhaseLook::flight;
     std::string text;
 };
-PhaseLabel phase_label(const Sample& now);
+PhaseLabel phase_label(const Model& model, const Sample& now);
 
 class MechanismScene {
  public:
@@ -43,6 +45,8 @@ class MechanismScene {
     const Camera& camera() const { return camera_; }
     const ContactGeometry& touch() const { return touch_; }
     const std::string& unit() const { return unit_; }  // of length
+    // Whether it draws contact forces, in their friction cones.
+    bool has_friction_marks() const { return friction_ && friction_->strongest() > 0.0; }
 
     // The mechanism at an instant of the run with the requested layers, in the visible part of the world.
     Drawing draw(const Sample& now, const Drawing& seen, const Theme& theme, const Layers& layers);
@@ -63,6 +67,7 @@ class MechanismScene {
     Trail trail_;
     ContactGeometry touch_;
     Camera camera_;
+    std::optional<FrictionMarks> friction_;  // only with friction
     std::vector<Sample> poses_;
     std::string unit_;
 };

@@ -4,6 +4,10 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "model/model.hpp"
+#include "output/contacts.hpp"
 
 namespace achilles {
 
@@ -18,6 +22,8 @@ constexpr Color wine{136, 34, 85, 255}, olive{130, 135, 0, 255}, slate{95, 102, 
 constexpr Color blush{255, 130, 150, 255}, straw{220, 220, 110, 255}, silver{185, 192, 200, 255},
     lime{119, 225, 52, 255}, violet{144, 49, 243, 255}, grass{64, 162, 88, 255}, brick{171, 89, 103, 255},
     steel{111, 123, 169, 255};
+// Phases with dry friction: warm as contact, darker where it sticks and lighter where it slips.
+constexpr Color brown{148, 44, 0, 255}, ocher{182, 136, 0, 255}, coral{236, 112, 66, 255}, cream{250, 228, 130, 255};
 
 }  // namespace
 
@@ -104,31 +110,73 @@ struct EventSign {
     Markers::MarkerShape shape;
     double size;
     Color light, dark;
+    bool is_hollow = false;
 };
 constexpr std::array<EventSign, event_names.size()> event_signs{{
     {Event::Kind::impact, Markers::MarkerShape::square, 6.0, blue, sky},
     {Event::Kind::zeno, Markers::MarkerShape::diamond, 11.0, purple, pink},
     {Event::Kind::release, Markers::MarkerShape::triangle, 10.0, green, mint},
     {Event::Kind::stick, Markers::MarkerShape::circle, 9.0, wine, blush},
-    {Event::Kind::slip, Markers::MarkerShape::triangle, 8.0, wine, blush},
-    {Event::Kind::reversal, Markers::MarkerShape::square, 8.0, wine, blush},
+    {Event::Kind::slip, Markers::MarkerShape::circle, 9.0, wine, blush, true},
+    {Event::Kind::reversal, Markers::MarkerShape::diamond, 10.0, wine, blush, true},
 }};
 static_assert(has_all_event_kinds(event_signs));
 
 }  // namespace
 
-Color phase_color(const Theme& theme, Phase::Kind kind) {
-    if (kind == Phase::Kind::hybrid) return theme.dark ? sky : blue;
-    return theme.dark ? orange : vermilion;
+PhaseLook look_of(const Model& model, ContactSet which, Mode mode) {
+    if (!model.has_friction()) return PhaseLook::contact;
+    const ContactSet rough = which.within(rough_in(model, mode));
+    if (rough.empty()) return PhaseLook::contact;
+    return rough.within(mode.slipping()).empty() ? PhaseLook::stick : PhaseLook::slip;
 }
 
-Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves) {
+PhaseLook look_of(const Model& model, Phase::Kind kind, Mode mode) {
+    // Between a cut and its Zeno point the phase is still one of flight, but its mode is the next one.
+    const bool is_cut = kind == Phase::Kind::hybrid && !mode.is_free();
+    if (!model.has_friction() || is_cut || rough_in(model, mode).empty()) return look_of(kind);
+    return look_of(model, mode.held().with(mode.joints()), mode);
+}
+
+std::size_t look_count(const Model& model) { return model.has_friction() ? phase_looks.size() : 2; }
+
+std::vector<PhaseLook> possible_looks(const Model& model) {
+    const auto& friction = model.equations().friction;
+    if (friction.empty()) return {PhaseLook::flight, PhaseLook::contact};
+    const auto is_rough = [&](std::size_t contact) { return friction.contains(contact); };
+    std::size_t smooth = 0;
+    for (std::size_t i = 0; i < model.contacts(); ++i) smooth += is_rough(i) ? 0 : 1;
+    // Joints with friction never fly.
+    const bool has_joints = is_joint(friction.rbegin()->first);
+    std::vector<PhaseLook> looks;
+    if (!has_joints) looks.push_back(PhaseLook::flight);
+    if (!has_joints && smooth > 0) looks.push_back(PhaseLook::contact);
+    looks.insert(looks.end(), {PhaseLook::stick, PhaseLook::slip});
+    return looks;
+}
+
+Color phase_color(const Theme& theme, PhaseLook look) {
+    switch (look) {
+        case PhaseLook::flight:
+            return theme.dark ? sky : blue;
+        case PhaseLook::contact:
+            return theme.dark ? orange : vermilion;
+        case PhaseLook::stick:
+            return theme.dark ? coral : brown;
+        case PhaseLook::slip:
+            break;
+    }
+    return theme.dark ? cream : ocher;
+}
+
+Stroke phase_stroke(const Theme& theme, PhaseLook look, std::size_t curve, std::size_t curves) {
     const std::array<Color, 8> light{wine, olive, slate, rose, forest, lilac, navy, leaf},
         dark{blush, straw, silver, lime, violet, grass, brick, steel};
     Stroke stroke;
-    stroke.color = curves == 1 ? phase_color(theme, kind) : (theme.dark ? dark : light)[curve % light.size()];
-    stroke.width = kind == Phase::Kind::hybrid ? 1.6 : 2.0;
-    if (kind == Phase::Kind::hybrid) stroke.dash = {6.0, 3.5};
+    stroke.color = curves == 1 ? phase_color(theme, look) : (theme.dark ? dark : light)[curve % light.size()];
+    stroke.width = look == PhaseLook::flight ? 1.6 : 2.0;
+    if (look == PhaseLook::flight) stroke.dash = {6.0, 3.5};
+    if (look == PhaseLook::slip) stroke.dash = {7.0, 2.5, 1.5, 2.5};
     return stroke;
 }
 
@@ -163,6 +211,7 @@ Markers event_markers(const Theme& theme, Event::Kind kind) {
     markers.shape = sign.shape;
     markers.fill = theme.dark ? sign.dark : sign.light;
     markers.edge = theme.background;
+    if (sign.is_hollow) std::swap(markers.fill, markers.edge);
     markers.size = sign.size;
     return markers;
 }
@@ -176,7 +225,10 @@ Markers opened_markers(const Theme& theme) {
     return markers;
 }
 
-std::string legend_text(Phase::Kind kind) { return kind == Phase::Kind::hybrid ? "in flight" : "in contact"; }
+std::string legend_text(PhaseLook look) {
+    constexpr std::array<const char*, phase_looks.size()> texts{"in flight", "in contact", "sticking", "sliding"};
+    return texts[static_cast<std::size_t>(look)];
+}
 
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind) {
     std::string names;

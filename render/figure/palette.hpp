@@ -2,7 +2,9 @@
 // Ito); dashes and shapes repeat the distinction for print.
 #pragma once
 
+#include <array>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "figure/figure.hpp"
@@ -34,10 +36,32 @@ double contrast(const Color& a, const Color& b);
 // A color that a file chose for white paper, changed to the same contrast with the theme's background.
 Color on_theme(const Color& color, const Theme& theme);
 
-// Stroke of a curve: hybrid phases are dashed, constrained ones solid. A single curve of a panel has the color of the
-// phase. One of several has its own hue (repeated after eight), and the dash shows the phase.
-Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves);
-Color phase_color(const Theme& theme, Phase::Kind kind);
+// How a phase is drawn. With dry friction it slips if any contact or joint slips, else it sticks; it is in contact if
+// no held contact has friction.
+enum class PhaseLook { flight, contact, stick, slip };
+inline constexpr std::array<PhaseLook, 4> phase_looks{PhaseLook::flight, PhaseLook::contact, PhaseLook::stick,
+                                                      PhaseLook::slip};
+constexpr PhaseLook look_of(Phase::Kind kind) {
+    return kind == Phase::Kind::hybrid ? PhaseLook::flight : PhaseLook::contact;
+}
+// The look of a phase of this kind and mode; of a sample too.
+PhaseLook look_of(const Model& model, Phase::Kind kind, Mode mode);
+// The look of contacts and joints that are not open in this mode.
+PhaseLook look_of(const Model& model, ContactSet which, Mode mode);
+// The number of looks of a system's phases, the first ones: 2, or 4 with friction. A panel has so many curves for each
+// quantity.
+std::size_t look_count(const Model& model);
+// The looks that phases of a system may have.
+std::vector<PhaseLook> possible_looks(const Model& model);
+
+// Stroke of a curve: dashed in flight, dash-dotted while something slips, else solid. A single curve of a panel has the
+// color of the phase. One of several has its own hue (repeated after eight), and the dash shows the phase.
+Stroke phase_stroke(const Theme& theme, PhaseLook look, std::size_t curve, std::size_t curves);
+Color phase_color(const Theme& theme, PhaseLook look);
+inline Stroke phase_stroke(const Theme& theme, Phase::Kind kind, std::size_t curve, std::size_t curves) {
+    return phase_stroke(theme, look_of(kind), curve, curves);
+}
+inline Color phase_color(const Theme& theme, Phase::Kind kind) { return phase_color(theme, look_of(kind)); }
 // Color of a run in a comparison, by its place from 1 to max_pinned. In a comparison the present run is drawn in ink,
 // and only stroke and dash show its phases.
 inline constexpr int max_pinned = 6;
@@ -45,12 +69,14 @@ Color run_color(const Theme& theme, int place);
 // Stroke of a compared run that lies below `above` others and the present one. It is wide enough to be visible where
 // they coincide.
 Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above);
-// Filled squares at impacts, diamonds at Zeno points, triangles at releases. The markers have no points yet.
+// Filled squares at impacts, diamonds at Zeno points, triangles at releases. Events of friction: a disc where it
+// sticks, a circle where a slip starts, a hollow diamond where it is reversed. The markers have no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
 // Hollow triangles above the squares of impacts that open a held contact. The markers have no points yet.
 Markers opened_markers(const Theme& theme);
 // Legend text of a phase.
-std::string legend_text(Phase::Kind kind);
+std::string legend_text(PhaseLook look);
+inline std::string legend_text(Phase::Kind kind) { return legend_text(look_of(kind)); }
 // Legend text of the events of a kind in these runs. It has two names if Zeno points have different names in these
 // runs.
 std::string events_name(std::span<const Trajectory* const> runs, Event::Kind kind);

@@ -130,11 +130,11 @@ std::vector<EnclosedSample> known_of(const Trajectory& run, const Proof& proof, 
     return known;
 }
 
-// Points of one quantity in a panel over time, in both kinds of phases.
+// Points of one quantity in a panel over time, in phases of every look.
 std::vector<Point> course_of(const Panel& panel, std::size_t quantity) {
     std::vector<Point> course;
-    for (const std::size_t curve : {2 * quantity, 2 * quantity + 1})
-        for (const Point& point : panel.curves[curve].points)
+    for (const Curve& curve : std::span(panel.curves).subspan(quantity * panel.courses, panel.courses))
+        for (const Point& point : curve.points)
             if (std::isfinite(point.x + point.y) && is_within(panel.x, point.x)) course.push_back(point);
     std::stable_sort(course.begin(), course.end(), [](const Point& a, const Point& b) { return a.x < b.x; });
     return course;

@@ -12,6 +12,7 @@
 #include "figure/grid.hpp"
 #include "figure/label.hpp"
 #include "figure/layout.hpp"
+#include "output/contacts.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {
@@ -39,24 +40,31 @@ Markers for_print(Markers markers) {
     return markers;
 }
 
-// Whether a phase or an event of this kind occurs in any of the runs.
-template <class Thing>
-bool any_of(std::span<const Trajectory* const> runs, std::vector<Thing> Trajectory::*things,
-            typename Thing::Kind kind) {
+// Whether a phase of this look, or an event of this kind, occurs in any of the runs.
+bool has_phase(std::span<const Trajectory* const> runs, PhaseLook look) {
     return std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
-        return std::any_of((run->*things).begin(), (run->*things).end(),
-                           [&](const Thing& thing) { return thing.kind == kind; });
+        return std::any_of(run->phases.begin(), run->phases.end(),
+                           [&](const Phase& phase) { return look_of(*run->model, phase.kind, phase.mode) == look; });
     });
 }
 
-// Legend text about the contacts in a phase, for systems with several contacts. Time bars show which of them are held.
-std::string about_contacts(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels,
-                           Phase::Kind kind) {
-    if (std::none_of(runs.begin(), runs.end(), [](const Trajectory* run) { return run->model->contacts() > 1; }))
+bool has_event(std::span<const Trajectory* const> runs, Event::Kind kind) {
+    return std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
+        return std::any_of(run->events.begin(), run->events.end(),
+                           [&](const Event& event) { return event.kind == kind; });
+    });
+}
+
+// Legend text about the contacts in a phase, for systems with several contacts, or joints with friction. Time bars show
+// which of them are held, and which slide.
+std::string about_contacts(std::span<const Trajectory* const> runs, const std::vector<Panel>& panels, PhaseLook look) {
+    if (std::none_of(runs.begin(), runs.end(), [](const Trajectory* run) { return has_several_places(*run->model); }))
         return "";
-    if (kind == Phase::Kind::hybrid) return ": no contact held";
+    if (look == PhaseLook::flight) return ": no contact held";
+    if (look == PhaseLook::stick) return ": nothing slides";
     const bool has_bars =
         std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return !panel.time_bars.empty(); });
+    if (look == PhaseLook::slip) return has_bars ? ": the bars name what slides" : ": something slides";
     return has_bars ? ": the bars name the contacts held" : ": some are held";
 }
 
@@ -66,18 +74,18 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
     std::vector<Key> keys;
     // Panels with several curves have their own hues; only the dash shows the phase there.
     const bool hues = std::any_of(panels.begin(), panels.end(), [](const Panel& panel) { return panel.legend; });
-    for (const Phase::Kind kind : {Phase::Kind::hybrid, Phase::Kind::constrained}) {
-        if (!any_of(runs, &Trajectory::phases, kind)) continue;
-        Stroke stroke = phase_stroke(theme, kind, 0, 1);
+    for (const PhaseLook look : phase_looks) {
+        if (!has_phase(runs, look)) continue;
+        Stroke stroke = phase_stroke(theme, look, 0, 1);
         if (hues) stroke.color = theme.ink;
-        keys.push_back({legend_text(kind) + about_contacts(runs, panels, kind), stroke});
+        keys.push_back({legend_text(look) + about_contacts(runs, panels, look), stroke});
     }
     const auto bounded = [](const Panel& panel) { return !panel.boundary.points.empty(); };
     if (const auto one = std::find_if(panels.begin(), panels.end(), bounded); one != panels.end())
         keys.push_back({typeset("gap") + " = 0", one->boundary.stroke});
     const std::string_view zeno = names_of(Event::Kind::zeno).name;
     for (const EventNames& names : event_names) {
-        if (!any_of(runs, &Trajectory::events, names.kind)) continue;
+        if (!has_event(runs, names.kind)) continue;
         std::string name = events_name(runs, names.kind);
         if (const std::size_t at = name.find(zeno); at != std::string::npos)
             name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");

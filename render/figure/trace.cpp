@@ -11,6 +11,9 @@
 #include <optional>
 #include <unordered_map>
 
+#include "figure/palette.hpp"
+#include "model/model.hpp"
+
 namespace achilles {
 
 namespace {
@@ -202,7 +205,7 @@ class PathThinner : public Thinner {
 // Quantities at an instant.
 struct TraceNode {
     double t = 0.0;
-    Phase::Kind phase = Phase::Kind::hybrid;
+    PhaseLook look = PhaseLook::flight;
     std::vector<double> values;  // x, then each y
     std::vector<Point> pixels;   // of each y
 };
@@ -225,8 +228,13 @@ double overshoot(const Point& p, const Point& a, const Point& b, double share) {
 class Tracer {
  public:
     Tracer(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read)
-        : request_(request), read_(read), sampler_(trajectory), levels_(max_halvings + 1) {
-        for (std::size_t i = 0; i < 2 * request.quantities; ++i) {
+        : request_(request),
+          read_(read),
+          model_(*trajectory.model),
+          looks_(look_count(model_)),
+          sampler_(trajectory),
+          levels_(max_halvings + 1) {
+        for (std::size_t i = 0; i < looks_ * request.quantities; ++i) {
             if (request.over_time)
                 thinners_.push_back(std::make_unique<ColumnThinner>());
             else
@@ -265,7 +273,7 @@ class Tracer {
 
     void read_node(const Sample& sample, TraceNode& node) {
         node.t = sample.t;
-        node.phase = sample.phase;
+        node.look = look_of(model_, sample.phase, sample.mode);
         node.values.resize(request_.quantities + 1);
         node.pixels.resize(request_.quantities);
         read_(sample, node.values);
@@ -284,9 +292,9 @@ class Tracer {
     }
     void read_at(const DenseSegment& piece, double t, TraceNode& node) {
         Sample sample = sampler_.in(piece, t, request_.with_work);
-        sample.phase = next_.phase;
         ++samples_of_step_;
         read_node(sample, node);
+        node.look = next_.look;
     }
 
     // Largest deviation of the curves at m from the chord between a and b, relative to the tolerance.
@@ -343,7 +351,7 @@ class Tracer {
                 low = std::min(low, node->pixels[i].y), high = std::max(high, node->pixels[i].y);
             }
             const double more = beyond * tolerances_[i];
-            return thinner(i, next_.phase)
+            return thinner(i, next_.look)
                 .covers((*nodes.begin())->pixels[i].x, (*std::prev(nodes.end()))->pixels[i].x, low - more, high + more);
         });
     }
@@ -369,19 +377,19 @@ class Tracer {
         refine(piece, middle, b, off, halvings + 1);
     }
 
-    Thinner& thinner(std::size_t quantity, Phase::Kind phase) const {
-        return *thinners_[2 * quantity + (phase == Phase::Kind::hybrid ? 0 : 1)];
+    Thinner& thinner(std::size_t quantity, PhaseLook look) const {
+        return *thinners_[looks_ * quantity + static_cast<std::size_t>(look)];
     }
     // Interrupts the curves: a break is correct, but a chord across many reversals is not.
     void leave_out(const TraceNode& node) {
-        for (const std::size_t i : request_.shown) thinner(i, node.phase).lift();
+        for (const std::size_t i : request_.shown) thinner(i, node.look).lift();
         take(node);
     }
     // Adds a node. Where the phase changes, one curve ends and the other starts at the same point.
     void take(const TraceNode& node) {
-        const bool changed = !has_taken_ || taken_.phase != node.phase;
+        const bool changed = !has_taken_ || taken_.look != node.look;
         for (const std::size_t i : request_.shown) {
-            Thinner& curve = thinner(i, node.phase);
+            Thinner& curve = thinner(i, node.look);
             if (changed) curve.lift();
             if (changed && has_taken_) put(curve, taken_, i);
             put(curve, node, i);
@@ -399,6 +407,8 @@ class Tracer {
 
     const TraceRequest& request_;
     const ReadQuantities& read_;
+    const Model& model_;
+    std::size_t looks_;
     Sampler sampler_;
     std::vector<std::unique_ptr<Thinner>> thinners_;
     std::vector<double> tolerances_;  // pixels, of each y

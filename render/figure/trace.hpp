@@ -20,7 +20,7 @@ struct Resolution {
 // Evaluates the drawn quantities at a sample: x first, then each y, in the units of the map.
 using ReadQuantities = std::function<void(const Sample& sample, std::span<double> values)>;
 
-// A curve of one quantity in all phases of one kind. A NaN point breaks it.
+// A curve of one quantity in all phases of one look (palette.hpp). A NaN point breaks it.
 struct PhaseCurve {
     std::vector<Point> points;
     std::vector<double> times;  // s, of each point
@@ -32,14 +32,14 @@ struct TraceRequest {
     std::vector<std::size_t> shown;  // y quantities, counted from 0
     std::size_t quantities = 1;      // number of y quantities
     bool over_time = true;           // x is time; false: a path in a plane
-    bool with_work = false;          // the quantities depend on the work
+    bool with_work = false;          // the quantities depend on the work or the heat
     std::vector<double> noise{};     // rounding error of each quantity, x first; empty: 0
     Resolution size{};               // of the plot area that `map` fills, its upper left corner at (0, 0)
     const PanelMap* map = nullptr;
 };
 
 struct Trace {
-    std::vector<PhaseCurve> courses;  // for each y two: hybrid phases, constrained phases
+    std::vector<PhaseCurve> courses;  // for each y one for each look of a phase, look_count() of them
     // Minimum and maximum of each quantity over the values that its axis can show, x first; low > high if there are
     // none.
     std::vector<std::array<double, 2>> ranges;

@@ -363,8 +363,8 @@ TEST(Session, SaysAtACutWhatThePictureShows) {
     ASSERT_LT(cut, zeno.t);
     for (const double t : {0.0, 0.5 * cut, cut, 0.5 * (cut + zeno.t), zeno.t, zeno.t + 0.1}) {
         const Sample now = session.at(t);
-        const PhaseLabel label = phase_label(now);
-        EXPECT_EQ(label.color == Phase::Kind::constrained, now.contact) << t;
+        const PhaseLabel label = phase_label(*session.model(), now);
+        EXPECT_EQ(label.color == PhaseLook::contact, now.contact) << t;
         EXPECT_EQ(label.text, t < cut ? "in flight" : t < zeno.t ? "cut, in contact" : "in contact") << t;
     }
 }

@@ -127,7 +127,7 @@ struct Machine {
           limits(mechanism.limits(run, plot_samples(run))) {}
     Drawing at(double t) const {
         const Sample sample = Sampler(run).at(t);
-        return mechanism.draw(sample.t, sample.state, run.run.parameters, limits, light_theme(), sample.mode.held());
+        return mechanism.draw(sample.t, sample.state, run.run.parameters, limits, light_theme(), sample.mode);
     }
     std::shared_ptr<const Model> model;
     Trajectory run;

@@ -107,7 +107,7 @@ radius = "0.04"
     const auto& way = stage.trail().way;
     for (std::size_t i = 1; i < way.size(); ++i) {
         const Point &a = way[i - 1].at, &b = way[i].at;
-        if (way[i].phase != Phase::Kind::constrained || !drawn::is_there(a) || !drawn::is_there(b)) continue;
+        if (way[i].look != PhaseLook::contact || !drawn::is_there(a) || !drawn::is_there(b)) continue;
         EXPECT_NEAR(std::hypot(0.5 * (a.x + b.x), 0.5 * (a.y + b.y)), 0.6, 0.3 * unit);
         ++chords;
     }
