@@ -14,6 +14,8 @@
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
+#include "simulate/contact_cache.hpp"
+#include "simulate/contact_forces.hpp"
 #include "simulate/explain.hpp"
 #include "surface/imgui_version.hpp"
 #include "system/units.hpp"
@@ -201,6 +203,55 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
         "The contact force \u03bb falls through zero: from here on the surface would have to pull. The gap and its "
         "first two derivatives are zero and the third, h\u2034, is positive, so the body leaves the surface.",
         words - units(16.0F), text_color());
+}
+
+namespace {
+
+// The friction force of a contact or joint in a mode, and its largest value: mu lambda, or the level. Static while it
+// sticks.
+struct FrictionShare {
+    double force = 0.0, limit = 0.0;
+};
+
+FrictionShare friction_share(const Trajectory& run, std::size_t which, Mode mode, const State& state) {
+    ContactForces forces(*run.model, run.run.parameters);
+    forces.set(state, mode);
+    const Slip slip = ContactCache(*run.model, run.run).slip(which, state);
+    const double pressing = is_joint(which) ? 1.0 : forces.force(which);
+    return {forces.friction_force(which),
+            pressing * (slip_sign(mode.state(which)) == 0 ? slip.static_coefficient : slip.coefficient)};
+}
+
+}  // namespace
+
+void show_friction(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Trajectory& run = session.trajectory();
+    const Event& event = run.events[index];
+    const char* const kind = event.kind == Event::Kind::stick  ? "Stick"
+                             : event.kind == Event::Kind::slip ? "Start of slip"
+                                                               : "Reversal of slip";
+    if (show_card_title(title(kind, session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    const SystemDescription& description = session.description();
+    const std::vector<SlidingPlace> places = sliding_places(description);
+    const std::vector<std::string> names = sliding_names(description, "friction_force");
+    const Mode before = mode_before(run, index);
+    row("", "before", "after");
+    for (std::size_t i = 0; i < places.size(); ++i) {
+        const std::size_t which = places[i].number;
+        if (!event.contacts.contains(which)) continue;
+        const FrictionShare first = friction_share(run, which, before, {event.q, event.v_before, event.t}),
+                            then = friction_share(run, which, event.mode, {event.q, event.v_after, event.t});
+        const double size = std::max(first.limit, then.limit);
+        const auto shown = [&](double value) { return number(flush_noise_to_zero(value, size), "{:.5g}"); };
+        const std::string unit = typeset_unit(unit_of_expression(description, names[i]));
+        row(with_unit(places.size() > 1 ? "friction of " + places[i].name : "friction force", unit), shown(first.force),
+            shown(then.force));
+        if (!places[i].never_slides) row(with_unit("its limit", unit), shown(first.limit), shown(then.limit));
+    }
+    const std::string words = session.sentences().of(index);
+    paragraph(has_several_places(*session.model()) ? words + "." : "It " + words + ".", remaining().width,
+              text_color());
 }
 
 // ---- Zeno points: the certificate, and the margin of each inequality ----

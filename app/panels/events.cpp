@@ -44,7 +44,7 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
         case Event::Kind::stick:
         case Event::Kind::slip:
         case Event::Kind::reversal:
-            return;  // the list says all of it
+            return show_friction(session, event, state, commands);
     }
 }
 

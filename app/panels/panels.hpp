@@ -353,8 +353,8 @@ bool derives_equations(const PanelState& state);
 std::vector<std::string> certificate_lines(const Event& event);
 void show_certificate(const Event& event);
 // Cards beside the event list, about one event: the certificate of a Zeno point; the loss of an impact and why the
-// sequence was not cut there; the reason for a release. Another card compares the runs; comparison_width() is its
-// preferred width. show_card_title() returns true if the user closes the card.
+// sequence was not cut there; the reason for a release; the forces of friction. Another card compares the runs;
+// comparison_width() is its preferred width. show_card_title() returns true if the user closes the card.
 bool show_card_title(const std::string& title, const std::string& more, PanelState& state, float margin = 0.0F);
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 // The Zeno lens replaces the plots while a Zeno point is selected.
@@ -362,6 +362,7 @@ bool lens_is_open(const Session& session);
 void show_lens(const Session& session, PanelState& state, Commands& commands);
 void show_impact(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_friction(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_comparison(const Session& session, PanelState& state, Commands& commands);
 float comparison_width(const Session& session);
 // Below the sliders: the pinned runs, if any.
