@@ -329,7 +329,7 @@ std::vector<std::vector<double>> add_courses(Panel& panel, const Trajectory& tra
         if (!framing.hidden.contains(i)) request.shown.push_back(i);
     request.over_time = view.quantities()[0].is_time;
     const Layout& layout = trajectory.model->layout();
-    request.with_work = values.reads(layout.work()) || values.reads(layout.heat());
+    request.with_work = values.reads(layout.work()) || (layout.frictions > 0 && values.reads(layout.heat()));
     request.noise.assign(curves + 1, noise.y);
     request.noise[0] = noise.x;
     request.size = framing.size;
