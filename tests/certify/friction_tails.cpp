@@ -209,9 +209,9 @@ Vector rounded(const Triple& x) {
 }
 
 // One random collision: the certificate, and its comparison with the true bouncing.
-class Trial {
+class FrictionTrial {
  public:
-    Trial(bool sticks, std::mt19937& random) : sticks_(sticks) {
+    FrictionTrial(bool sticks, std::mt19937& random) : sticks_(sticks) {
         const auto between = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
         body_ = {between(0.1, 1.0),
                  between(0.0, 1.0) < 0.3 ? 0.0 : 0.5,
@@ -291,7 +291,7 @@ FrictionTails check_friction_tails(bool sticks, int trials, std::uint32_t seed) 
     std::mt19937 random(seed);
     FrictionTails result;
     for (; result.trials < trials; ++result.trials) {
-        const auto failure = Trial(sticks, random).check(result.closest);
+        const auto failure = FrictionTrial(sticks, random).check(result.closest);
         if (!failure) continue;
         ++result.proved;
         if (failure->empty()) continue;

@@ -135,8 +135,8 @@ TEST(PhaseLooks, DifferInLightnessForAnyColorVision) {
 // The three events of friction differ in shape or filling, for print, and from those of contacts.
 TEST(FrictionMarkers, DifferWithoutColor) {
     std::vector<std::pair<Markers::MarkerShape, bool>> signs;
-    for (const EventNames& names : event_names) {
-        const Markers markers = event_markers(light_theme(), names.kind);
+    for (const EventNames& event : event_names) {
+        const Markers markers = event_markers(light_theme(), event.kind);
         signs.emplace_back(markers.shape, markers.fill == light_theme().background);
     }
     for (std::size_t i = 0; i < signs.size(); ++i)

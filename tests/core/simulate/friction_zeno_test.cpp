@@ -204,7 +204,7 @@ double first_time(const Trajectory& trajectory, Event::Kind kind) {
     return -1.0;
 }
 
-double balance(const Trajectory& trajectory) {
+double energy_balance_of(const Trajectory& trajectory) {
     auto energy = trajectory.model->evaluator(trajectory.model->energy(), trajectory.run.parameters);
     const auto at = [&](const State& state) {
         set_state(energy, state);
@@ -231,7 +231,7 @@ TEST_P(FrictionZeno, PointOnASlopeSticksThroughItsZenoPoint) {
     EXPECT_EQ(run.end.v[0], 0.0);
     EXPECT_NEAR(run.loss, 0.5, accuracy());
     EXPECT_NEAR(run.heat, 0.105, accuracy());
-    EXPECT_NEAR(balance(run), 0.0, 1e-12);
+    EXPECT_NEAR(energy_balance_of(run), 0.0, 1e-12);
 }
 
 // Bouncing slides although resting sticks.
@@ -248,7 +248,7 @@ TEST_P(FrictionZeno, PointOnASlopeSlidesThroughAndStopsLater) {
     EXPECT_NEAR(run.loss, 0.5, accuracy());
     EXPECT_NEAR(run.heat, 0.3825, accuracy());
     EXPECT_NEAR(run.heat - zeno->heat, 0.1125, accuracy());
-    EXPECT_NEAR(balance(run), 0.0, 1e-12);
+    EXPECT_NEAR(energy_balance_of(run), 0.0, 1e-12);
 }
 
 TEST_P(FrictionZeno, BallSlidesThrough) {
@@ -287,7 +287,7 @@ constraint = [{{gap = "y", restitution = {}, slip = "x'", friction = 0.4}}]
     const double at_zeno = 0.5 * alpha + 2.0 * alpha * e * e / (1.0 - e * e), udot = alpha + 0.2 / 0.76;
     EXPECT_NEAR(zeno->q[0], at_zeno, accuracy());
     EXPECT_NEAR(run.end.q[0], at_zeno + 0.5 * udot * 1.5 * 1.5, accuracy());
-    EXPECT_NEAR(balance(run), 0.0, 1e-12);
+    EXPECT_NEAR(energy_balance_of(run), 0.0, 1e-12);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, FrictionZeno, testing::Values(Method::taylor, Method::dopri5));
@@ -309,7 +309,7 @@ TEST_P(FrictionTail, AgreesWithTheReference) {
         EXPECT_NEAR(run.end.v[i], tail.v_end[i], 1e-9);
     }
     EXPECT_NEAR(run.heat + run.loss, tail.heat_and_loss, 1e-9);
-    EXPECT_NEAR(balance(run), 0.0, 1e-12);
+    EXPECT_NEAR(energy_balance_of(run), 0.0, 1e-12);
 }
 
 // The error of the completed motion is of third order in the impact speed w of the cut: the slope of its logarithm over
@@ -370,7 +370,7 @@ TEST(FrictionCompletion, CompletesBesideJointsThatFeelNoImpulse) {
         EXPECT_EQ(zeno->certificate->tail, Certificate::Tail::none);
         EXPECT_NEAR(zeno->t, 3.0, 1e-12);
         EXPECT_NEAR(run.end.q[0], speed * 5.0 - (speed > 0.0 ? 0.05 * 25.0 : 0.0), 1e-12);
-        EXPECT_NEAR(balance(run), 0.0, 1e-12);
+        EXPECT_NEAR(energy_balance_of(run), 0.0, 1e-12);
     }
 }
 
