@@ -196,12 +196,12 @@ std::string balance(const Trajectory& trajectory, const Precision& precision) {
     end.t = trajectory.end_time;
     end.state = trajectory.end;
     const double error = precision.of_energy(end);
-    std::string text = fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts",
-                                   known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",
-                                   known_digits(trajectory.loss, error, 9), unit);
-    if (trajectory.model->has_friction())
-        text += fmt::format(", heat of friction {}{}", known_digits(trajectory.heat, error, 9), unit);
-    return text + "\n";
+    const std::string heat = trajectory.model->has_friction()
+                                 ? fmt::format(", heat {}{} by friction", known_digits(trajectory.heat, error, 9), unit)
+                                 : "";
+    return fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts{}\n",
+                       known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",
+                       known_digits(trajectory.loss, error, 9), unit, heat);
 }
 
 std::string conventions(int count) {

@@ -44,6 +44,14 @@ TEST(FrictionOutput, JsonNamesModesEventsAndHeat) {
     EXPECT_TRUE(has(json, "dry friction"));  // why there is no error estimate
 }
 
+// The block goes up to t = 1/(0.5 + 0.3 + 0.01) against friction, and comes back.
+TEST(FrictionOutput, TheSummaryTellsHeatFromLosses) {
+    const Trajectory run = sliding_block();
+    const std::string text = summary(run);
+    EXPECT_TRUE(has(text, "loss 0 at impacts, heat 0.")) << text;
+    EXPECT_TRUE(has(text, " by friction\n")) << text;
+}
+
 TEST(FrictionOutput, CsvHasSlipForceModesAndHeat) {
     const std::string csv = to_csv(sliding_block());
     const std::string heading = csv.substr(0, csv.find('\n'));
