@@ -45,10 +45,16 @@ inline std::shared_ptr<const Model> load(const std::string& name) {
     return std::make_shared<const Model>(read_system(path));
 }
 
-// The gallery's systems with one gap.
-inline std::vector<std::string> systems_of_one_gap() {
+inline std::vector<std::string> systems_without_friction() {
     std::vector<std::string> names = all_systems();
-    std::erase_if(names, [](const std::string& name) { return load(name)->contacts() > 1; });
+    std::erase_if(names, [](const std::string& name) { return load(name)->has_friction(); });
+    return names;
+}
+
+// The gallery's systems with one gap and no friction.
+inline std::vector<std::string> systems_of_one_gap() {
+    std::vector<std::string> names = systems_without_friction();
+    std::erase_if(names, [](const std::string& name) { return load(name)->contacts() != 1; });
     return names;
 }
 

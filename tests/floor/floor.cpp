@@ -127,10 +127,13 @@ std::string below_the_floor(const Trajectory& trajectory) {
 }
 
 std::string fault(const Trajectory& trajectory, double between) {
-    // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6).
-    const bool may_be_undecided = trajectory.model->contacts() > 1;
-    if (trajectory.outcome.kind != Outcome::Kind::end_time &&
-        !(may_be_undecided && trajectory.outcome.kind == Outcome::Kind::undecided))
+    using enum Outcome::Kind;
+    const Outcome::Kind kind = trajectory.outcome.kind;
+    // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6), and one with friction
+    // at a Zeno point, at Painleve's paradox, or with forces that are not unique.
+    const bool rough = trajectory.model->has_friction(), may_be_undecided = rough || trajectory.model->contacts() > 1;
+    if (kind != end_time && !(may_be_undecided && kind == undecided) &&
+        !(rough && (kind == painleve || kind == redundant_contacts)))
         return fmt::format("{}: {}", to_text(trajectory.outcome.kind), trajectory.outcome.message);
     if (!(trajectory.statistics.least_gap >= -1e-12))
         return fmt::format("least gap {} at the end of a step", trajectory.statistics.least_gap);
@@ -150,7 +153,7 @@ std::string fault(const Trajectory& trajectory, double between) {
 }
 
 std::string broken_law(const Trajectory& trajectory) {
-    for (const auto law : {energy, gap, phases, contact_force})
+    for (const auto law : {energy, gap, phases, contact_force, friction})
         if (const Violations violations = law(trajectory); !violations.empty()) return violations.front();
     return {};
 }

@@ -177,6 +177,72 @@ struct Blow {
     Eigen::VectorXd rates, rates_after, p;
 };
 
+// The same with friction, from the recorded impulses: gaps and slips are rows, and the rates before and after are theirs.
+struct RoughBlow {
+    RoughBlow(Probe& probe, const Event& event)
+        : rows(probe.surfaces.rows(before(event), struck(event), struck(event).within(probe.surfaces.rough()), {})),
+          p(Eigen::VectorXd::Zero(rows.size())),
+          rates(p),
+          rates_after(p) {
+        for (const auto& [contact, impulse] : event.joint->impulses) p[rows.gap_of(contact)] = impulse;
+        for (const auto& [contact, impulse] : event.friction->tangential) p[rows.slip_of(contact)] = impulse;
+        const ContactRows next = probe.surfaces.rows(after(event), struck(event), all_slips(), {});
+        for (Eigen::Index k = 0; k < rows.size(); ++k) {
+            rates[k] = row(k).rate;
+            rates_after[k] = next.rows[static_cast<std::size_t>(k)].rate;
+        }
+    }
+    const ContactRows::Row& row(Eigen::Index k) const { return rows.rows[static_cast<std::size_t>(k)]; }
+    ContactSet all_slips() const {
+        ContactSet set;
+        for (const auto& [contact, slip] : rows.slips) set = set.with(contact);
+        return set;
+    }
+
+    ContactRows rows;
+    Eigen::VectorXd p, rates, rates_after;
+};
+
+// The exchange of energy in an impact by its impulses.
+Exchange exchange_of(Probe& probe, const Event& event) {
+    Exchange sum;
+    if (event.friction) {
+        const RoughBlow blow(probe, event);
+        for (Eigen::Index k = 0; k < blow.rows.size(); ++k) {
+            sum.work -= blow.p[k] * blow.row(k).drift;
+            (blow.row(k).is_slip ? sum.heat : sum.loss) -= 0.5 * blow.p[k] * (blow.rates[k] + blow.rates_after[k]);
+        }
+        return sum;
+    }
+    const Blow blow(probe, event);
+    for (std::size_t i = 0; i < blow.contacts.which.size(); ++i) {
+        const auto k = static_cast<Eigen::Index>(i);
+        sum.work -= blow.p[k] * blow.contacts.contacts[i].gap_t;
+        sum.loss -= 0.5 * blow.p[k] * (1.0 - probe.restitution[blow.contacts.which[i]]) * blow.rates[k];
+    }
+    return sum;
+}
+
+// Coulomb's law of an impact: |p_T| <= mu p, and where the slip goes on, p_T = -mu p against it. Coefficients that vary
+// are those of another state.
+void coulomb(Violations& violations, Probe& probe, const Event& event, double rounding) {
+    const RoughBlow blow(probe, event);
+    const auto check = [&](bool holds, const char* what) {
+        complain(violations, holds, fmt::format("{} at t = {:.17g}", what, event.t));
+    };
+    check(largest(event.v_after - blow.rows.after(event.v_before, blow.p)) <= rounding,
+          "an impact with friction is not along impulses");
+    for (const auto& [contact, slip] : blow.rows.slips) {
+        const Eigen::Index gap = blow.rows.gap_of(contact), k = blow.rows.slip_of(contact);
+        if (probe.surfaces.varying().contains(contact) || probe.surfaces.never_slides(contact)) continue;
+        const double most = slip.coefficient * blow.p[gap], off = 1e-9 * std::abs(most) + rounding / blow.rows.W(k, k);
+        check(std::abs(blow.p[k]) <= most + off, "an impulse of friction leaves its cone");
+        if (std::abs(blow.rates_after[k]) > 1e-9 * (1.0 + largest(event.v_before)))
+            check(std::abs(blow.p[k] + std::copysign(most, blow.rates_after[k])) <= off,
+                  "an impulse of friction is not against the slip");
+    }
+}
+
 // Moreau's law (theory-gaps.md 2.1), with one closed contact Newton's. Velocities jump by impulses p >= 0 of impacting
 // or held contacts, and hdot+ = -e hdot- where p > 0.
 void moreau(Violations& violations, Probe& probe, const Event& event) {
@@ -185,12 +251,17 @@ void moreau(Violations& violations, Probe& probe, const Event& event) {
     const auto check = [&](bool holds, const char* what) {
         complain(violations, holds, fmt::format("{} at t = {:.17g}", what, event.t));
     };
-    check(largest(event.v_after - blow.contacts.after(event.v_before, blow.p)) <= rounding,
-          "an impact is not along impulses");
+    if (event.friction)
+        coulomb(violations, probe, event, 10.0 * rounding);
+    else
+        check(largest(event.v_after - blow.contacts.after(event.v_before, blow.p)) <= rounding,
+              "an impact is not along impulses");
     for (std::size_t i = 0; i < blow.contacts.which.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         const std::size_t contact = blow.contacts.which[i];
-        const double left = blow.rates_after[k] + probe.restitution[contact] * blow.rates[k];
+        const bool is_capped = event.friction && event.friction->capped.contains(contact);
+        const double e = probe.restitution[contact] * (is_capped ? *event.friction->energy_cap : 1.0);
+        const double left = blow.rates_after[k] + e * blow.rates[k];
         const double allowed = rounding * (1.0 + blow.contacts.contacts[i].g.norm());
         // The change of the contact's own hdot by its impulse. For a contact that is closed only nearly it is rounding
         // error.
@@ -210,43 +281,38 @@ Violations energy(const Trajectory& trajectory) {
     const std::vector<Sample> samples = Sampler(trajectory).all();
     double scale = 1e-300;
     for (const Sample& sample : samples)
-        scale = std::max({scale, probe.energy_scale(sample.state), std::abs(sample.work), sample.loss});
+        scale = std::max({scale, probe.energy_scale(sample.state), std::abs(sample.work), sample.loss + sample.heat});
     // Local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth segment.
     const double allowed = 100.0 * trajectory.run.options.tolerance * scale;
-    const auto balance = [&](const State& state, double work, double loss) {
-        return probe.energy(state) - work + loss;
+    const auto balance = [&](const State& state, const auto& booked) {
+        return probe.energy(state) - booked.work + booked.loss + booked.heat;
     };
-    const double start = balance(samples.front().state, samples.front().work, samples.front().loss);
+    const double start = balance(samples.front().state, samples.front());
     const auto check = [&](double found, double t) {
         complain(violations, std::abs(found - start) <= allowed,
-                 fmt::format("energy less work and loss drifts by {:.3g} up to t = {:.9g}", found - start, t));
+                 fmt::format("energy less work, loss and heat drifts by {:.3g} up to t = {:.9g}", found - start, t));
     };
-    for (const Sample& sample : samples) check(balance(sample.state, sample.work, sample.loss), sample.t);
+    for (const Sample& sample : samples) check(balance(sample.state, sample), sample.t);
     double lost = 0.0;
     for (const Event& event : trajectory.events) {
         // The loss of the restart is recorded with the impact. A pair also restarts from other coordinates.
         const Event* const cut = event.kind == Event::Kind::impact ? cut_at(trajectory, event) : nullptr;
         const bool restarts = cut || ends_cut(trajectory, event);
         const State next = cut ? State{cut->truncation->q, cut->truncation->v, event.t} : after(event);
-        if (cut ? cut->contacts.count() == 1 : !restarts) check(balance(next, event.work, event.loss), event.t);
+        if (cut ? cut->contacts.count() == 1 : !restarts) check(balance(next, event), event.t);
         const double jump = probe.energy(after(event)) - probe.energy(before(event));
         const double terms = std::max(probe.terms_scale(before(event)), probe.terms_scale(after(event)));
         const double rounding = 1e-14 * std::max(scale, terms);
-        double work = 0.0, loss = 0.0;
+        Exchange booked;
         if (event.kind == Event::Kind::impact) {
-            const Blow blow(probe, event);
-            for (std::size_t i = 0; i < blow.contacts.which.size(); ++i) {
-                const auto k = static_cast<Eigen::Index>(i);
-                const double e = probe.restitution[blow.contacts.which[i]];
-                work -= blow.p[k] * blow.contacts.contacts[i].gap_t;
-                loss -= 0.5 * blow.p[k] * (1.0 - e) * blow.rates[k];
-            }
-            complain(violations, restarts || std::abs(event.loss - lost - loss) <= rounding,
-                     fmt::format("{:.17g} is lost and not {:.17g} at t = {:.9g}", event.loss - lost, loss, event.t));
+            booked = exchange_of(probe, event);
+            complain(
+                violations, restarts || std::abs(event.loss - lost - booked.loss) <= rounding,
+                fmt::format("{:.17g} is lost and not {:.17g} at t = {:.9g}", event.loss - lost, booked.loss, event.t));
         }
-        complain(
-            violations, std::abs(jump - work + loss) <= rounding,
-            fmt::format("the energy jumps by {:.17g} and not by {:.17g} at t = {:.9g}", jump, work - loss, event.t));
+        const double change = booked.work - booked.loss - booked.heat;
+        complain(violations, std::abs(jump - change) <= rounding,
+                 fmt::format("the energy jumps by {:.17g} and not by {:.17g} at t = {:.9g}", jump, change, event.t));
         // The Euclidean restart may increase the energy.
         complain(violations, restarts || event.loss >= lost - rounding,
                  fmt::format("energy is found at t = {:.9g}", event.t));
@@ -292,9 +358,11 @@ class PhaseCheck {
             case Event::Kind::stick:
             case Event::Kind::slip:
             case Event::Kind::reversal:
-                break;  // accelerations alone may jump
+                friction(event, phase);
+                break;
         }
-        if (event.mode.held() != phase.mode.held()) next(event);
+        const bool is_rough = probe_.surfaces.has_friction();
+        if (is_rough ? !(event.mode == phase.mode) : event.mode.held() != phase.mode.held()) next(event);
     }
     void finish() {
         const Phase& last = trajectory_.phases.back();
@@ -316,6 +384,8 @@ class PhaseCheck {
         check(trajectory_.phases[at_].start == event.t, "phases do not abut", event.t);
         check(trajectory_.phases[at_].mode.held() == event.mode.held(),
               "a phase holds other contacts than its event says", event.t);
+        check(!probe_.surfaces.has_friction() || trajectory_.phases[at_].mode == event.mode,
+              "a phase sticks or slips otherwise than its event says", event.t);
     }
     void impact(const Event& event, const Phase& phase) {
         ++impacts_;
@@ -352,7 +422,8 @@ class PhaseCheck {
         check(event.mode.held() == phase.mode.held().with(event.contacts) && event.mode.held() != phase.mode.held(),
               "a Zeno point holds", event.t);
         const ClosedContacts held = probe_.surfaces.at(after(event), event.mode.held());
-        check(probe_.forces(after(event), held).minCoeff() >= 0.0, "a force pulls at a Zeno point", event.t);
+        check(probe_.surfaces.has_friction() || probe_.forces(after(event), held).minCoeff() >= 0.0,
+              "a force pulls at a Zeno point", event.t);
         check(event.impacts == impacts_, "a Zeno point counts other impacts", event.t);
         if (is_plastic_landing(event)) return;
         if (!event.certificate || !event.certificate->certified || !event.truncation)
@@ -362,10 +433,26 @@ class PhaseCheck {
         check(event.certificate->zeno_low <= event.t && event.t <= event.certificate->zeno_high,
               "the Zeno time is outside its interval", event.t);
     }
+    // Accelerations alone may jump.
+    void friction(const Event& event, const Phase& phase) {
+        still(event, event.mode.held());
+        for (const std::size_t i : event.contacts) {
+            const bool sticks = slip_sign(event.mode.state(i)) == 0;
+            check(event.mode.is_held(i) && sticks == (event.kind == Event::Kind::stick),
+                  "an event of friction leaves another state", event.t);
+            // Of several events at one instant, the first one ends the phase.
+            if (event.mode == phase.mode) continue;
+            const int was = slip_sign(phase.mode.state(i));
+            check((was == 0) == (event.kind == Event::Kind::slip), "an event of friction has another state before",
+                  event.t);
+        }
+    }
     void release(const Event& event, const Phase& phase) {
         still(event, phase.mode.held());
-        check(!event.contacts.empty() && event.mode.held() == phase.mode.held().without(event.contacts),
-              "a release holds", event.t);
+        // With friction, a release may follow another event of the same instant.
+        const bool has_ended = probe_.surfaces.has_friction() && event.mode == phase.mode;
+        const ContactSet held = has_ended ? event.mode.held() : phase.mode.held().without(event.contacts);
+        check(!event.contacts.empty() && event.mode.held() == held, "a release holds", event.t);
     }
 
     const Trajectory& trajectory_;
@@ -402,6 +489,7 @@ Violations phases(const Trajectory& trajectory) {
 }
 
 Violations contact_force(const Trajectory& trajectory) {
+    if (trajectory.model->has_friction()) return rough_contact_force(trajectory);
     Violations violations;
     Probe probe(trajectory);
     ContactForces told(probe.model, trajectory.run.parameters);

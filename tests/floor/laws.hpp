@@ -11,8 +11,8 @@ namespace achilles::test {
 
 using Violations = std::vector<std::string>;
 
-// E - work + loss is constant over the whole run. In an impact with impulses p the loss is sum p (1 - e) |hdot|/2, and
-// moving constraints do the work -sum p dh/dt.
+// E - work + loss + heat is constant over the whole run. In an impact with impulses p the loss is sum p (1 - e) |hdot|/2,
+// and moving constraints do the work -sum p dh/dt.
 Violations energy(const Trajectory& trajectory);
 // Every gap is >= -1e-12 max(1, |q|) at all times.
 Violations gap(const Trajectory& trajectory);
@@ -22,5 +22,10 @@ Violations gap(const Trajectory& trajectory);
 Violations phases(const Trajectory& trajectory);
 // The force of every held contact is positive inside constrained phases. At a release it is 0 and h''' > 0.
 Violations contact_force(const Trajectory& trajectory);
+// With friction: what sticks has the slip 0 and its friction force inside its cone; what slides has the sign of its
+// mode; heat never falls but at impacts whose friction does work. Without friction there is nothing to violate.
+Violations friction(const Trajectory& trajectory);
+// contact_force() for systems with friction, where forces depend on the mode.
+Violations rough_contact_force(const Trajectory& trajectory);
 
 }  // namespace achilles::test

@@ -18,6 +18,7 @@ template <class F>
 void on_every_run(const Case& one, F law) {
     for (const Conditions conditions : {Conditions::sharp, Conditions::paper}) {
         for (const Reinitialization kind : {Reinitialization::kinetic, Reinitialization::euclidean}) {
+            if (kind == Reinitialization::euclidean && model_of(one.system)->has_friction()) continue;  // refused
             SCOPED_TRACE(std::string(to_text(conditions)) + ", " + std::string(to_text(kind)));
             auto run = run_of(one);
             run.options.truncation.conditions = conditions;
@@ -34,6 +35,7 @@ TEST_P(Law, EnergyIsWorkLessLoss) { on_every_run(GetParam(), energy); }
 TEST_P(Law, TheGapIsNeverNegative) { on_every_run(GetParam(), gap); }
 TEST_P(Law, PhasesAbutAndHoldWhatTheirEventsSay) { on_every_run(GetParam(), phases); }
 TEST_P(Law, TheContactForcePressesUntilTheRelease) { on_every_run(GetParam(), contact_force); }
+TEST_P(Law, FrictionSticksAndSlidesAsItsModesSay) { on_every_run(GetParam(), friction); }
 
 // Random initial values and parameters near those of the file, in the ranges of its sliders.
 TEST_P(Law, AllHoldFromOtherStarts) {
@@ -63,11 +65,15 @@ TEST_P(Law, AllHoldFromOtherStarts) {
             continue;  // a start with a negative gap
         }
         ++done;
-        // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6).
-        if (model->contacts() == 1 || trajectory.outcome.kind != Outcome::Kind::undecided) {
-            EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+        // A run in which several contacts chatter together may end as undecided (theory-gaps.md 2.6), and one with
+        // friction at a Zeno point or at Painleve's paradox.
+        using enum Outcome::Kind;
+        const bool rough = model->has_friction();
+        if (!((model->contacts() > 1 || rough) && trajectory.outcome.kind == undecided) &&
+            !(rough && (trajectory.outcome.kind == painleve || trajectory.outcome.kind == redundant_contacts))) {
+            EXPECT_EQ(trajectory.outcome.kind, end_time) << trajectory.outcome.message;
         }
-        for (const auto law : {energy, gap, phases, contact_force}) {
+        for (const auto law : {energy, gap, phases, contact_force, friction}) {
             const Violations violations = law(trajectory);
             EXPECT_TRUE(violations.empty()) << listed(violations);
         }

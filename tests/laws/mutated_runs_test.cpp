@@ -151,5 +151,48 @@ TEST(MutatedRuns, TwoStops) {
     });
 }
 
+// ---- dry friction ----
+
+Trajectory truth_of_friction() {
+    const auto model = model_of("block_on_incline");  // sticks at 0.42
+    return simulate(model, model->default_run());
+}
+
+TEST(MutatedRuns, TheTruthOfFrictionViolatesNothing) {
+    const Trajectory trajectory = truth_of_friction();
+    EXPECT_EQ(trajectory.phases.size(), 2u);
+    for (const auto& law : {energy, gap, phases, contact_force, friction}) EXPECT_TRUE(law(trajectory).empty());
+}
+
+TEST(MutatedRuns, Friction) {
+    const auto lie = [](const char* name, Violations (*law)(const Trajectory&), void (*change)(Trajectory&)) {
+        Trajectory trajectory = truth_of_friction();
+        change(trajectory);
+        EXPECT_FALSE(law(trajectory).empty()) << name;
+    };
+    lie("it slides on where it sticks", phases, [](Trajectory& t) { t.events.clear(); });
+    lie("it is said to start to slide", phases, [](Trajectory& t) { t.events[0].kind = Event::Kind::slip; });
+    lie("it stops with a jump", phases, [](Trajectory& t) { t.events[0].v_before[0] = 1e-12; });
+    lie("it is said to stick where it slides", friction, [](Trajectory& t) {
+        for (DenseSegment& piece : t.pieces) piece.mode = Mode::holding(ContactSet::of(0));
+        t.phases[0].mode = Mode::holding(ContactSet::of(0));
+    });
+    lie("it is said to slide to the other side", friction, [](Trajectory& t) {
+        const Mode other = Mode().with(0, ContactState::slip_plus);
+        for (DenseSegment& piece : t.pieces)
+            if (piece.start < t.phases[0].end) piece.mode = other;
+        t.phases[0].mode = other;
+    });
+    lie("it sticks outside the cone", friction, [](Trajectory& t) { t.run.parameters[2] = 0.4; });  // mu < tan 25 deg
+    lie("heat is taken back", friction, [](Trajectory& t) {
+        for (DenseSegment& piece : t.pieces)
+            if (piece.start > 0.4) piece.heat -= 1.0;
+    });
+    lie("heat that was none", energy, [](Trajectory& t) {
+        for (DenseSegment& piece : t.pieces)
+            if (piece.start > 0.4) piece.heat += 1e-6;
+    });
+}
+
 }  // namespace
 }  // namespace achilles::test
