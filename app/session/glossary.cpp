@@ -45,6 +45,14 @@ constexpr std::array terms{
     GlossaryTerm{"release", "lambda = 0", "The contact force has fallen to zero, and the gap opens.", "paper, Def. 5"},
     GlossaryTerm{"completion", "", "The whole run past its Zeno points: hybrid and constrained phases in turn.",
                  "paper, Defs. 4, 5"},
+    GlossaryTerm{"stick", "slip = 0, |friction_force| <= mu_s*lambda",
+                 "Friction keeps the sliding velocity at exactly 0, as long as its force is inside the friction cone.",
+                 ""},
+    GlossaryTerm{"slip", "friction_force = -mu*lambda*sign(slip)",
+                 "A contact or bearing slides: slip+ forward, slip- backward. At a reversal the sign changes.", ""},
+    GlossaryTerm{"heat", "energy = energy(0) + work - loss - heat",
+                 "The work against dry friction, in contact and at impacts. Losses are those of the normal impulses.",
+                 ""},
     GlossaryTerm{"work and loss", "energy = energy(0) + work - loss",
                  "Work is done by forces, dampers (negative) and moving contacts; loss is what impacts dissipate.", ""},
     GlossaryTerm{"undecided", "",
@@ -111,7 +119,10 @@ std::span<const GalleryGroup> gallery() {
           "driven_double_pendulum", "ball_in_gusts", "bouncing_wheel", "slider_crank", "kapitza_pendulum"}},
         {"several contacts",
          {"double_pendulum_two_stops", "ball_in_sloped_box", "ball_round_post", "ball_in_v", "box_dropped_flat",
-          "cart_between_walls", "backlash", "newtons_cradle", "seesaw", "table_on_legs"}}};
+          "cart_between_walls", "backlash", "newtons_cradle", "seesaw", "table_on_legs"}},
+        {"dry friction",
+         {"block_on_incline", "stick_slip_belt", "spun_disc", "bead_on_rough_sine", "rough_pendulum", "rocking_block",
+          "ladder", "spinning_ball_between_walls", "painleve_rod"}}};
     return groups;
 }
 

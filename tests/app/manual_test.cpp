@@ -309,8 +309,9 @@ TEST(Schema, HoldsForEverySystemOfTheGallery) {
     const Folder folder;
     for (const std::string& system : system_names())
         for (const char* conditions : {"sharp", "paper"}) {
-            const Answer answer =
-                folder.run("simulate " + system + " --end 4 --eps 1e-3 --conditions " + conditions + " --json -");
+            const char* const end = system == "painleve_rod" ? "0.1" : "4";  // longer runs stop at the paradox
+            const Answer answer = folder.run("simulate " + system + " --end " + end + " --eps 1e-3 --conditions " +
+                                             conditions + " --json -");
             EXPECT_EQ(answer.status, 0) << answer.err;
             EXPECT_EQ(faults_of(json::parse(answer.out)), std::vector<std::string>()) << system;
         }
