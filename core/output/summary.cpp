@@ -197,7 +197,7 @@ std::string balance(const Trajectory& trajectory, const Precision& precision) {
     end.state = trajectory.end;
     const double error = precision.of_energy(end);
     const std::string heat = trajectory.model->has_friction()
-                                 ? fmt::format(", heat {}{} by friction", known_digits(trajectory.heat, error, 9), unit)
+                                 ? fmt::format(", heat of friction {}{}", known_digits(trajectory.heat, error, 9), unit)
                                  : "";
     return fmt::format("work {}{} by forces{} and moving surfaces, loss {}{} at impacts{}\n",
                        known_digits(trajectory.work, error, 9), unit, damped ? ", dissipation" : "",

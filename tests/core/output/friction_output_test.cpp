@@ -49,7 +49,7 @@ TEST(FrictionOutput, TheSummaryTellsHeatFromLosses) {
     const Trajectory run = sliding_block();
     const std::string text = summary(run);
     EXPECT_TRUE(has(text, "loss 0 at impacts, heat 0.")) << text;
-    EXPECT_TRUE(has(text, " by friction\n")) << text;
+    EXPECT_TRUE(has(text, ", heat of friction ")) << text;
 }
 
 TEST(FrictionOutput, CsvHasSlipForceModesAndHeat) {
