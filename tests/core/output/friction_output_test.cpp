@@ -48,8 +48,7 @@ TEST(FrictionOutput, JsonNamesModesEventsAndHeat) {
 TEST(FrictionOutput, TheSummaryTellsHeatFromLosses) {
     const Trajectory run = sliding_block();
     const std::string text = summary(run);
-    EXPECT_TRUE(has(text, "loss 0 at impacts, heat 0.")) << text;
-    EXPECT_TRUE(has(text, ", heat of friction ")) << text;
+    EXPECT_TRUE(has(text, "loss 0 at impacts, heat of friction 0.")) << text;
 }
 
 TEST(FrictionOutput, CsvHasSlipForceModesAndHeat) {
