@@ -40,6 +40,8 @@ struct Body {
         return {(force[0] - coupling * force[1]) / det, (force[1] - coupling * force[0]) / det, force[2] / inertia};
     }
     Triple free() const { return by_mass({0, -1, 0}); }
+    // The acceleration in contact: slip with this sign, or stick (0).
+    Triple in_contact(int sign, const Triple& q, const Triple& v) const;
 };
 
 // The rows of a body at one state, and what follows from them.
@@ -74,6 +76,12 @@ struct Rows {
         return p * to_g + p_T * to_d;
     }
 };
+
+Triple Body::in_contact(int sign, const Triple& q, const Triple& v) const {
+    const Rows rows(*this, q, v);
+    if (sign == 0) return free() + rows.change(-rows.hddot, -rows.udot);
+    return free() - rows.hddot * rows.sliding(sign, mu(sign * rows.u));
+}
 
 // The impact law: the sign of the slip, or 0 if it stops; and v+.
 struct Branch {
@@ -125,8 +133,9 @@ Bouncing bounce(const Body& body, Triple q, Triple v) {
             const Quad rest = 2 * rows.hdot / (-rows.hddot * (1 - Quad(body.e)));
             result.zeno_time = t + rest;
             result.q = q + rest * v;
-            result.v = v - rows.hdot *
-                               (branch.sign == 0 ? rows.change(1, 0) : rows.sliding(branch.sign, body.mu(abs(rows.u))));
+            const Triple s = v - rows.hdot * (branch.sign == 0 ? rows.change(1, 0)
+                                                               : rows.sliding(branch.sign, body.mu(abs(rows.u))));
+            result.v = s + rest * body.in_contact(branch.sign, q, s);
             return result;
         }
         const auto at = [&](const Quad& time) { return q + time * v + (time * time / 2) * f; };
@@ -138,7 +147,7 @@ Bouncing bounce(const Body& body, Triple q, Triple v) {
             flight -= step;
             if (abs(step) < 1e-30 * (flight + 1e-3)) break;
         }
-        if (result.heights.size() < 6) result.heights.push_back({t + flight / 2, at(flight / 2)});
+        if (result.heights.size() < 3) result.heights.push_back({t + flight / 2, at(flight / 2)});
         q = at(flight);
         v = v + flight * f;
         t += flight;
@@ -150,11 +159,7 @@ struct State3 {
     Triple q, v;
 };
 State3 in_contact(const Body& body, int sign, State3 state, const Quad& duration) {
-    const auto acceleration = [&](const State3& x) {
-        const Rows rows(body, x.q, x.v);
-        if (sign == 0) return body.free() + rows.change(-rows.hddot, -rows.udot);
-        return body.free() - rows.hddot * rows.sliding(sign, body.mu(sign * rows.u));
-    };
+    const auto acceleration = [&](const State3& x) { return body.in_contact(sign, x.q, x.v); };
     const auto midpoint = [&](const State3& from, const Quad& H, int n) {
         const Quad h = H / n;
         State3 before = from, now{from.q + h * from.v, from.v + h * acceleration(from)};
@@ -166,7 +171,8 @@ State3 in_contact(const Body& body, int sign, State3 state, const Quad& duration
         const Triple a = acceleration(now);
         return State3{Quad(0.5) * (now.q + before.q + h * now.v), Quad(0.5) * (now.v + before.v + h * a)};
     };
-    constexpr int parts = 4, columns = 7;
+    constexpr int columns = 7;
+    const int parts = duration < 0.05 ? 1 : static_cast<int>(duration / 0.05) + 1;
     for (int part = 0; part < parts; ++part) {
         std::array<State3, columns> row;
         for (int k = 0; k < columns; ++k) {

@@ -17,8 +17,8 @@ void expect_true(const FrictionTails& tails) {
 
 }  // namespace
 
-TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 400, 1)); }
-TEST(FrictionTruth, CertificatesOfStickingHold) { expect_true(check_friction_tails(true, 600, 2)); }
+TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 250, 1)); }
+TEST(FrictionTruth, CertificatesOfStickingHold) { expect_true(check_friction_tails(true, 300, 2)); }
 // 2 000 certificates of each kind; takes minutes.
 TEST(FrictionTruth, DISABLED_ManyCertificatesHold) {
     for (const bool sticks : {false, true}) {
