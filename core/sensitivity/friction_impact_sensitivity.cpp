@@ -17,7 +17,7 @@ using Eigen::Index, Eigen::MatrixXd, Eigen::RowVectorXd, Eigen::VectorXd;
 
 namespace {
 
-constexpr double strictly = 1e-10;  // relative to the size of an impact; below it a branch may change
+constexpr double branch_tolerance = 1e-10;  // relative to the size of an impact; below it a branch may change
 
 double impulse_of(const std::vector<std::pair<std::size_t, double>>& impulses, std::size_t contact) {
     for (const auto& [which, impulse] : impulses)
@@ -130,8 +130,9 @@ bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
             break_off("a contact that is closed without a force takes part in an impact");
             return false;
         }
-        if (!lands && !(impulse > strictly * scale)) {
-            if (surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot > strictly * now.impact_speed) continue;
+        if (!lands && !(impulse > branch_tolerance * scale)) {
+            if (surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot > branch_tolerance * now.impact_speed)
+                continue;
             break_off("an impact neither loads a held contact nor opens it");
             return false;
         }
@@ -179,7 +180,7 @@ bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) 
     ImpactRows::Row row = impact.rows.back();
     const double normal = row.impulse, e = row.e, before = surfaces_.slip(contact, state_).u;
     double after = surfaces_.slip(contact, {now.q, now.v_after, now.t}).u;
-    if (std::abs(after) <= strictly * (std::abs(before) + now.impact_speed)) after = 0.0;
+    if (std::abs(after) <= branch_tolerance * (std::abs(before) + now.impact_speed)) after = 0.0;
     const double speed = std::abs(after + e * before) / (1.0 + e);
     SlipGradient& slip = this->slip(contact);
     slip.at(state_, speed);
@@ -196,7 +197,7 @@ bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) 
     }
     row.sign = after > 0.0 ? 1 : after < 0.0 ? -1 : 0;
     if (row.sign == 0 && !surfaces_.never_slides(contact) &&
-        !(std::abs(row.impulse) < (1.0 - strictly) * slip.coefficient() * normal)) {
+        !(std::abs(row.impulse) < (1.0 - branch_tolerance) * slip.coefficient() * normal)) {
         break_off(
             "an impact is at the limit between sticking and sliding: the derivatives depend on the direction of "
             "the perturbation");

@@ -47,8 +47,8 @@ TEST(FrictionOrbit, OfTheBeltWithAFallingCoefficient) {
     EXPECT_EQ(found.orbit->zero_multipliers, 1u);
 }
 
-// Glocker's woodpecker falls by 0.0194 m in each period. Contact 2 sticks, which forgets three directions. Of the others
-// one is the flow, and one is a shift along the pole, which changes nothing.
+// Glocker's woodpecker falls by 0.0194 m in each period. Contact 2 sticks, which forgets three directions. Of the
+// others one is the flow, and one is a shift along the pole, which changes nothing.
 TEST(FrictionOrbit, OfTheWoodpecker) {
     const auto model = typed(R"toml(coordinate = [{name = "y", rate = -0.01}, {name = "pM", start = "-0.0006/0.0058"},
               {name = "pS", start = -0.205, rate = 17.57}]
