@@ -70,7 +70,8 @@ std::shared_ptr<const Model> many_functions_of_time() {
 
 std::vector<std::pair<std::string, std::shared_ptr<const Model>>> models() {
     std::vector<std::pair<std::string, std::shared_ptr<const Model>>> all;
-    for (const std::string& name : test::all_systems())  // only runs with one contact are stepped in lanes
+    // Only runs with one contact, and without friction, are stepped in lanes.
+    for (const std::string& name : test::systems_without_friction())
         if (const auto model = test::load(name); model->contacts() == 1) all.emplace_back(name, model);
     for (const std::string name : test::timed_systems) all.emplace_back(name, test::load(name));
     all.emplace_back("many functions", many_functions());
