@@ -142,7 +142,8 @@ Bouncing bounce(const Body& body, Triple q, Triple v) {
         Quad flight = 2 * rows.hdot / -rows.hddot;
         for (int round = 0; round < 60; ++round) {
             const Triple now = at(flight);
-            const Quad h = now[1] - body.A * sin(now[0]), hdot = Rows(body, now, v + flight * f).hdot;
+            const Triple rate = v + flight * f;
+            const Quad h = now[1] - body.A * sin(now[0]), hdot = rate[1] - body.A * cos(now[0]) * rate[0];
             const Quad step = h / hdot;
             flight -= step;
             if (abs(step) < 1e-30 * (flight + 1e-3)) break;
@@ -172,7 +173,7 @@ State3 in_contact(const Body& body, int sign, State3 state, const Quad& duration
         return State3{Quad(0.5) * (now.q + before.q + h * now.v), Quad(0.5) * (now.v + before.v + h * a)};
     };
     constexpr int columns = 7;
-    const int parts = duration < 0.05 ? 1 : static_cast<int>(duration / 0.05) + 1;
+    const int parts = duration < 0.05 ? 1 : 4;
     for (int part = 0; part < parts; ++part) {
         std::array<State3, columns> row;
         for (int k = 0; k < columns; ++k) {
@@ -246,6 +247,7 @@ class FrictionTrial {
             truncation_conditions(*model, run, Interval(body_.e), BouncingKey{0, Mode(), state}, ContactSet());
         const Triple s = sticks_ ? v_ + rows.change(-rows.hdot, -rows.u)
                                  : (1 / (1 + Quad(body_.e))) * (first.after + Quad(body_.e) * v_);
+        s_ = s;
         Collision collision{
             {rounded(q_), rounded(v_), 0.0}, static_cast<double>(-rows.hdot), rounded(s), rounded(s), {}};
         if (sticks_) {
@@ -267,8 +269,8 @@ class FrictionTrial {
         for (const int each : truth.signs)
             if (each != sign) return "the branch";
         if (truth.zeno_time < c.zeno_low || truth.zeno_time > c.zeno_high) return "the Zeno time";
-        State3 state{collision.position.size() > 0 ? triple(collision.position) : triple(collision.before.q),
-                     triple(collision.restart)};
+        // A bound is for the motion from the exact state of the impact: doubles hold y = A sin x to rounding only.
+        State3 state{sticks_ ? triple(collision.position) : q_, sticks_ ? triple(collision.restart) : s_};
         if (size(truth.q - state.q) > c.position_bound) return "the position bound";
         if (size(truth.v - state.v) > c.velocity_bound) return "the velocity bound";
         Quad t = 0;
@@ -288,7 +290,7 @@ class FrictionTrial {
 
     bool sticks_;
     Body body_{};
-    Triple q_, v_;
+    Triple q_, v_, s_{};
 };
 
 }  // namespace

@@ -17,7 +17,7 @@ void expect_true(const FrictionTails& tails) {
 
 }  // namespace
 
-TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 250, 1)); }
+TEST(FrictionTruth, CertificatesOfSlidingHold) { expect_true(check_friction_tails(false, 300, 1)); }
 TEST(FrictionTruth, CertificatesOfStickingHold) { expect_true(check_friction_tails(true, 300, 2)); }
 // 2 000 certificates of each kind; takes minutes.
 TEST(FrictionTruth, DISABLED_ManyCertificatesHold) {
