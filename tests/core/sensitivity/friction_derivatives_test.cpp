@@ -3,11 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
-#include <numbers>
 
 #include "core/systems.hpp"
 #include "sensitivity/derivatives.hpp"
+#include "sensitivity/error_estimate.hpp"
 
 namespace achilles::test {
 namespace {
@@ -207,6 +206,48 @@ slip = "x' - A*x^3*y'"
 friction = "mu"
 )toml",
                        3.0, "impact zeno release ");
+}
+
+// The sentence that says why there are no derivatives at the end of a run.
+std::string reason_of(const std::string& text, double end) {
+    const auto model = typed(text);
+    const Trajectory run = simulate(model, tight_run(*model, end));
+    const Derivatives d = differentiate(run);
+    EXPECT_FALSE(d.end);
+    EXPECT_EQ(estimate_error(run).no_estimate_reason, d.broken);
+    return d.broken;
+}
+TEST(FrictionDerivatives, SayWhereThereAreNone) {
+    EXPECT_EQ(reason_of(R"toml(coordinate = [{name = "x", rate = 1}, {name = "y", rate = 1}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "0"
+friction = [{name = "a", slip = "x'", level = 1}, {name = "b", slip = "y'", level = 1}]
+)toml",
+                        2.0),
+              "the friction of several contacts changes at the same time: which is first depends on the direction of "
+              "the perturbation");
+    const std::string kane = R"toml(coordinate = [{name = "x", rate = 0.5}, {name = "y", start = 0.72, rate = -1},
+              {name = "phi", start = "pi/4"}]
+lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2/3)/2"
+lagrangian.potential = "y"
+[[constraint]]
+name = "tip"
+gap = "y - sin(phi)"
+restitution = 0.9
+slip = "x' + sin(phi)*phi'"
+friction = 1
+)toml";
+    EXPECT_EQ(reason_of(kane, 0.1),
+              "an impact would gain energy, and its restitution is reduced: derivatives are not computed past it");
+    EXPECT_NE(reason_of(R"toml(coordinate = [{name = "x", rate = -20},
+              {name = "y", start = "sin(0.6)", rate = "0.5*cos(0.6)"}, {name = "phi", start = 0.6, rate = 0.5}]
+lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2/3)/2"
+lagrangian.potential = "y"
+constraint = [{name = "tip", gap = "y - sin(phi)", restitution = 0, slip = "x' + sin(phi)*phi'", friction = "5/3"}]
+)toml",
+                        10.0)
+                  .find("the run stops where its motion is not determined: 'tip' slides"),
+              std::string::npos);
 }
 
 }  // namespace
