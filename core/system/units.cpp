@@ -126,24 +126,28 @@ class SymbolUnits {
             add(d.name, d.unit.empty() ? of(d.definition.text) : read(d.unit));
         constexpr const char* energies[] = {"energy", "work", "loss", "power", "lambda", "heat", "friction_force"};
         const bool has_energy = std::any_of(std::begin(energies), std::end(energies), names);
-        const bool has_gap = has_energy || names("gap");
+        const bool has_slip = names("slip") || names("friction_force");
+        const bool has_gap = has_energy || has_slip || names("gap");
         MaybeUnit energy = has_energy ? of(description.kinetic.text) : std::nullopt;
         if (has_energy && !energy) energy = of(description.potential.text);
         for (const char* name : {"energy", "work", "loss"}) add(name, energy);
         add("power", product(energy, second, -1.0));
+        std::vector<MaybeUnit> gap_rates;
         for (std::size_t i = 0; i < description.constraints.size(); ++i) {
             const MaybeUnit gap = has_gap ? of(description.constraints[i].gap.text) : std::nullopt;
             add(output_names(description, "gap")[i], gap);
-            add(output_names(description, "gap'")[i], product(gap, second, -1.0));
+            gap_rates.push_back(product(gap, second, -1.0));
+            add(output_names(description, "gap'")[i], gap_rates.back());
             add(output_names(description, "gap''")[i], product(gap, second, -2.0));
             add(output_names(description, "lambda")[i], product(energy, gap, -1.0));
         }
         if (!description.has_friction()) return;
         add("heat", energy);
         const std::vector<SlidingPlace> places = sliding_places(description);
-        const bool has_slip = names("slip") || names("friction_force");
         for (std::size_t i = 0; i < places.size(); ++i) {  // the friction force times the slip is a power
-            const MaybeUnit slip = has_slip ? of(places[i].slip->text) : std::nullopt;
+            MaybeUnit slip = has_slip ? of(places[i].slip->text) : std::nullopt;
+            // The slip of a contact is scaled like its gap; as written it may add lengths times angles to lengths.
+            if (!slip && !is_joint(places[i].number)) slip = gap_rates[places[i].number];
             const MaybeUnit force = product(product(energy, second, -1.0), slip, -1.0);
             add(sliding_names(description, "friction_force")[i], force);
             add(sliding_names(description, "slip")[i], slip);

@@ -10,6 +10,7 @@
 #include "output/output.hpp"
 #include "sensitivity/error_estimate.hpp"
 #include "simulate/simulate.hpp"
+#include "system/units.hpp"
 
 namespace achilles {
 namespace {
@@ -150,6 +151,23 @@ constraint = [{gap = "y", restitution = 0.5, slip = "x'", friction = 0.5}]
     EXPECT_NEAR(trajectory.heat, 0.46875, 1e-12);
     const std::string sentence = EventDescriptions(trajectory).of(0);
     EXPECT_TRUE(has(sentence, ", 0.375 J lost, heat of friction 0.469 J")) << sentence;
+}
+
+// The slip of a rolling disc adds a length times an angle to a length: its unit is that of its gap per time.
+TEST(FrictionSentences, ARollingDiscHasUnits) {
+    const Trajectory trajectory = run_of(R"-(coordinate = [
+    {name = "x", rate = 1, unit = "m"}, {name = "y", start = 0.5, unit = "m"}, {name = "phi", unit = "rad"},
+]
+parameter = [{name = "m", value = 1, unit = "kg"}, {name = "R", value = 0.5, unit = "m"}]
+lagrangian.kinetic = "m*(x'^2 + y'^2 + R^2*phi'^2/2)/2"
+lagrangian.potential = "9.81*m*y"
+constraint = [{gap = "y - R", restitution = 0.5, slip = "x' + R*phi'", friction = 0.5}]
+)-",
+                                         0.1);
+    const SystemDescription& description = trajectory.model->description();
+    EXPECT_EQ(unit_of_expression(description, "slip"), "m/s");
+    EXPECT_EQ(unit_of_expression(description, "friction_force"), unit_of_expression(description, "lambda"));
+    EXPECT_NE(unit_of_expression(description, "friction_force"), "");
 }
 
 // A plastic impact of a block that slides on: the sentence tells what friction does next.
