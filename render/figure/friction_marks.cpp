@@ -15,8 +15,7 @@ Point moved(const Point& from, double way, const Point& along) {
 }
 
 // A color mixed with the background, nearly opaque: on a body the force in it remains visible.
-Color tinted(const Color& color, const Color& background) {
-    constexpr double share = 0.3;
+Color tinted(const Color& color, const Color& background, double share) {
     const auto mixed = [&](std::uint8_t a, std::uint8_t b) {
         return static_cast<std::uint8_t>(std::lround(share * a + (1.0 - share) * b));
     };
@@ -149,8 +148,8 @@ void FrictionMarks::add(Drawing& drawing, const Sample& now, const Theme& theme)
             if (!is_joint(mark.which)) cone.points.push_back(mark.at);
             cone.fill = cone.closed = !is_joint(mark.which);
             cone.stroke = {color, is_joint(mark.which) ? 5.0 : 1.0, {}};
-            cone.fill_color = tinted(color, theme.background);
-            if (is_joint(mark.which)) cone.stroke.color = tinted(color, theme.background);
+            cone.fill_color = tinted(color, theme.background, 0.3);
+            if (is_joint(mark.which)) cone.stroke.color = tinted(color, theme.background, 0.5);
             cone.moves = true;
         }
         const bool has_friction = std::abs(mark.friction) > least * strongest_;
