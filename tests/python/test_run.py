@@ -127,6 +127,8 @@ def test_events_are_objects_and_dicts():
 def test_every_entry_of_a_record_is_annotated(name, conditions):
     if name not in achilles.gallery():
         name = "ball_in_bowl"
+    if name == "rocking_block" and conditions == "paper":
+        pytest.skip("the conditions of the paper do not go with friction")
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         run = achilles.simulate(name, conditions=conditions)

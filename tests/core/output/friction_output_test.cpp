@@ -42,7 +42,6 @@ TEST(FrictionOutput, JsonNamesModesEventsAndHeat) {
     EXPECT_TRUE(has(json, R"("foot": "slip+")"));
     EXPECT_TRUE(has(json, R"("air": "slip+")"));
     EXPECT_TRUE(has(json, R"("heat": )"));
-    EXPECT_TRUE(has(json, "dry friction"));  // why there is no error estimate
 }
 
 // The block goes up to t = 1/(0.5 + 0.3 + 0.01) against friction, and comes back.
