@@ -165,19 +165,22 @@ TEST(Ground, IsTheSideOfTheGapAndSmoothAtAnyZoom) {
 }
 
 TEST(Contact, IsLitWhileItIsHeldInEverySystemThatDraws) {
-    const Color lit = phase_color(light_theme(), Phase::Kind::constrained);
     for (const std::string& name : test::all_systems()) {
         SceneFixture staged(name);
         if (staged.mechanism.is_empty()) continue;
-        const auto count = [&](const ContactSet& held) {
+        const auto count = [&](const ContactSet& held, const Color& lit) {
             Sample sample = staged.at(staged.run.run.options.start_time);
             sample.mode = Mode::holding(held);
             const Drawing drawing = staged.stage.draw(sample, staged.stage.limits(), light_theme(), {false, false});
             return std::count_if(drawing.shapes.begin(), drawing.shapes.end(),
                                  [&](const DrawnShape& shape) { return shape.stroke.color == lit; });
         };
-        EXPECT_EQ(count({}), 0) << name;
-        for (std::size_t i = 0; i < staged.model->contacts(); ++i) EXPECT_GE(count(ContactSet::of(i)), 1) << name << i;
+        for (std::size_t i = 0; i < staged.model->contacts(); ++i) {
+            const ContactSet held = ContactSet::of(i);
+            const Color lit = phase_color(light_theme(), look_of(*staged.model, held, Mode::holding(held)));
+            EXPECT_EQ(count({}, lit), 0) << name;
+            EXPECT_GE(count(held, lit), 1) << name << i;
+        }
     }
 }
 

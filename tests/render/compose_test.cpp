@@ -296,21 +296,6 @@ TEST(FigureComposition, ALegendShowsTheCurveAsItIs) {
     for (const Curve& curve : panel.curves) EXPECT_EQ(curve.label.empty(), curve.points.empty());
 }
 
-// A view that shows no work shows the heat of friction all the same.
-TEST(FigureComposition, HeatRisesWhileABlockSlides) {
-    const auto model = test::load("block_on_incline");
-    ViewDescription view;
-    view.x.text = "t";
-    view.y.emplace_back().text = "heat";
-    const Trajectory run = simulate(model, model->default_run());
-    const Panel panel = compose(run, plot_samples(run), PreparedView(*model, view), light_theme());
-    double most = 0.0;
-    for (const Point& p : panel.curves[1].points)
-        if (!std::isnan(p.y)) most = std::max(most, p.y);
-    EXPECT_GT(run.heat, 1.0);
-    EXPECT_NEAR(most, run.heat, 1e-9);
-}
-
 TEST(FigureComposition, ContactForceIsZeroInFlightAndPositiveInContact) {
     const auto model = test::load("ball_on_sine");
     const Trajectory trajectory = simulate(model, model->default_run());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -110,6 +111,11 @@ class Columns {
     std::vector<double> low_, high_;
 };
 
+// The curves of a quantity, one for each look of a phase.
+inline std::span<const Curve> curves_of(const Panel& panel, std::size_t quantity) {
+    return std::span(panel.curves).subspan(panel.courses * quantity, panel.courses);
+}
+
 // Maximum over all quantities and columns of pixels of the difference, in pixels, between the drawn extremes and those
 // of the run. The run is sampled at 50 instants per column, at the ends of its steps and at its events. A curve may
 // cross the edge of a column by a quarter of a pixel.
@@ -120,16 +126,16 @@ inline double worst_over_time(const Trajectory& run, const Picture& picture) {
     const PanelMap map = picture.map();
     Truth truth(run, picture);
     double worst = 0.0;
-    for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
+    for (std::size_t i = 0; panel.courses * i < panel.curves.size(); ++i) {
         Columns drawn(picture.plot, 0.0), drawn_wide(picture.plot, edge), real(picture.plot, 0.0),
             real_wide(picture.plot, edge);
         std::vector<double> corners;
-        for (const Curve* curve : {&panel.curves[2 * i], &panel.curves[2 * i + 1]})
-            for (std::size_t k = 0; k < curve->points.size(); ++k) {
-                const Point p = map(curve->points[k]);
+        for (const Curve& curve : curves_of(panel, i))
+            for (std::size_t k = 0; k < curve.points.size(); ++k) {
+                const Point p = map(curve.points[k]);
                 if (!is_there(p)) continue;
-                corners.push_back(curve->points[k].x);
-                const Point before = k > 0 ? map(curve->points[k - 1]) : p;
+                corners.push_back(curve.points[k].x);
+                const Point before = k > 0 ? map(curve.points[k - 1]) : p;
                 for (Columns* columns : {&drawn, &drawn_wide}) columns->add(is_there(before) ? before : p, p);
             }
         std::sort(corners.begin(), corners.end());
@@ -242,7 +248,7 @@ inline double worst_in_plane(const Trajectory& run, const Picture& picture, int 
     Truth truth(run, picture);
     constexpr double reach = 3.0;
     double worst = 0.0;
-    for (std::size_t i = 0; 2 * i < panel.curves.size(); ++i) {
+    for (std::size_t i = 0; panel.courses * i < panel.curves.size(); ++i) {
         Segments drawn(picture.plot, reach), real(picture.plot, reach);
         std::vector<Point> of_drawn, of_real;
         const auto add = [](Segments& segments, std::vector<Point>& points, const Point& a, const Point& b) {
@@ -250,9 +256,9 @@ inline double worst_in_plane(const Trajectory& run, const Picture& picture, int 
             points.push_back(b);
             points.push_back({0.5 * (a.x + b.x), 0.5 * (a.y + b.y)});
         };
-        for (const Curve* curve : {&panel.curves[2 * i], &panel.curves[2 * i + 1]})
-            for (std::size_t k = 1; k < curve->points.size(); ++k) {
-                const Point a = map(curve->points[k - 1]), b = map(curve->points[k]);
+        for (const Curve& curve : curves_of(panel, i))
+            for (std::size_t k = 1; k < curve.points.size(); ++k) {
+                const Point a = map(curve.points[k - 1]), b = map(curve.points[k]);
                 if (is_there(a) && is_there(b)) add(drawn, of_drawn, a, b);
             }
         for (const DenseSegment& piece : run.pieces) {
