@@ -352,9 +352,21 @@ WatchedFriction ContactModes::watched_friction(const ModeEquations& motion) {
         motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(motion.mode.without(i)); });
 }
 
-FrictionPower ContactModes::friction_power(const ModeEquations& motion) {
-    return achilles::friction_power(motion, friction_, layout_,
-                                    [&](std::size_t i) -> const ModeEquations& { return of(motion.mode.without(i)); });
+Expressions ContactModes::powers(Mode mode, Expression work) {
+    const ModeEquations& motion = of(mode);
+    for (const std::size_t i : contacts_keeping(mode, Constraint::gap)) {
+        const Expression gap_t = motion.contacts[i].gap_t;
+        if (friction_.empty()) {
+            work = work - motion.contacts[i].lambda * gap_t;
+        } else if (!gap_t.is_zero()) {
+            const FrictionForce force = force_of(i, mode);
+            work = work - force.lambda / force.scale * gap_t;
+        }
+    }
+    if (friction_.empty()) return {work};
+    const FrictionPower friction = friction_power(
+        motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(mode.without(i)); });
+    return {work + friction.work, friction.heat};
 }
 
 FrictionForce ContactModes::force_of(std::size_t which, Mode mode) {
@@ -434,9 +446,12 @@ ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const 
         event_functions.push_back(function);
         rates.push_back(rate_of(function, motion.f, layout));
     }
-    SeriesProgram series = series_of(motion, event_functions, pivots, layout);
+    Expressions powers;
+    if (!motion.slips.empty()) powers = modes.powers(motion.mode, graph.adopt(e.power));
+    if (std::all_of(powers.begin(), powers.end(), [](Expression power) { return power.is_zero(); })) powers.clear();
+    SeriesProgram series = series_of(motion, joined({event_functions, powers}), pivots, layout);
     return {motion.mode, TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
-            std::move(series), std::move(friction.events)};
+            std::move(series), std::move(friction.events), powers.size()};
 }
 
 }  // namespace achilles

@@ -114,7 +114,9 @@ class ContactModes {
 
     // Of a mode with friction (model/friction.hpp).
     WatchedFriction watched_friction(const ModeEquations& motion);
-    FrictionPower friction_power(const ModeEquations& motion);
+    // The work per time that a motion takes up from forces and moving surfaces; with friction, followed by its heat per
+    // time. `work` is that of free flight.
+    Expressions powers(Mode mode, Expression work);
     FrictionForce force_of(std::size_t which, Mode mode);
     // hddot of a held contact, or with friction its negative force up to a positive factor.
     Expression watched_force(std::size_t contact, Mode mode);
@@ -137,12 +139,14 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 // In a mode, every contact has an event function, the function that its law watches (contacts/contact_law.hpp). It is
 // the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W). The event
-// functions of friction follow.
+// functions of friction follow. In the series, the powers() of a mode with friction are its last event functions: they
+// are integrated along a step, not watched.
 struct ModeDynamics {
     Mode mode;
     TypedProgram<MotionTerms> program;
     SeriesProgram series;                 // MotionSeries
     std::vector<FrictionEvent> friction;  // event function contacts + k is friction[k]
+    std::size_t powers = 0;               // how many powers follow in the series: none, or work and heat
 };
 
 // Compiles a mode. `equations` belongs to the graph of `motion`, or to the graph that it was copied from. Throws

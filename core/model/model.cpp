@@ -156,21 +156,8 @@ const Model::ContactPrograms& Model::programs_of(std::size_t contact, Mode mode)
 
 const Program& Model::power(Mode mode) const {
     return derived(powers_, mode, [&] {
-        const ModeEquations& motion = contact_modes().of(mode);
-        Expression power = contact_modes().graph().adopt(equations_.power);
-        for (const std::size_t i : contacts_keeping(mode, Constraint::gap)) {
-            const Expression gap_t = motion.contacts[i].gap_t;
-            if (!has_friction()) {
-                power = power - motion.contacts[i].lambda * gap_t;
-            } else if (!gap_t.is_zero()) {
-                const FrictionForce force = contact_modes().force_of(i, mode);
-                power = power - force.lambda / force.scale * gap_t;
-            }
-        }
-        if (!has_friction()) return Program(std::span(&power, 1), layout_.slots());
-        const FrictionPower friction = contact_modes().friction_power(motion);
-        const Expressions both{power + friction.work, friction.heat};
-        return Program(both, layout_.slots());
+        ContactModes& modes = contact_modes();
+        return Program(modes.powers(mode, modes.graph().adopt(equations_.power)), layout_.slots());
     });
 }
 

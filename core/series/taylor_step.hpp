@@ -59,10 +59,12 @@ class TaylorStep {
     std::size_t dof() const { return dof_; }
     // Number of event functions.
     std::size_t contacts() const { return contacts_; }
-    // Changes it for a mode that watches this many more functions than it has contacts.
-    void set_further_events(std::size_t further) {
-        if (contacts_ == gaps_end_ + further) return;
-        contacts_ = gaps_end_ + further;
+    // Changes it for a mode that watches this many more functions than it has contacts, and expands this many powers
+    // after them. Powers do not limit the step.
+    void set_further_events(std::size_t watched, std::size_t powers) {
+        powers_ = powers;
+        if (contacts_ == gaps_end_ + watched + powers) return;
+        contacts_ = gaps_end_ + watched + powers;
         width_ = 2 * dof_ + contacts_;
         rows_.assign((highest_order + 1) * width_, Number(0.0));
         units_.assign(width_, Number(0.0));
@@ -153,6 +155,7 @@ class TaylorStep {
     const Number& unit(std::size_t contact) const { return units_[2 * dof_ + contact]; }
 
     std::size_t dof_, contacts_, gaps_end_, width_;  // gaps_end_: number of contacts
+    std::size_t powers_ = 0;                         // the last event functions
     double tolerance_;
     std::vector<Number> rows_, units_;
     std::vector<GapOver<Number>> gaps_;  // at the start of the step
@@ -179,6 +182,7 @@ auto TaylorStep<Number>::begin(Series& series) -> Start {
         events[i] = watches_gap(i) ? gaps_[i].h : series.start(dof_ + i);
         set_unit(2 * dof_ + i, gap_units_[i] + abs(events[i]));
     }
+    for (std::size_t i = width_ - powers_; i < width_; ++i) units_[i] = 0.0;
     Number* const first = row(1);
     for (std::size_t i = 0; i < dof_; ++i) {
         first[i] = c[dof_ + i];

@@ -54,6 +54,8 @@ class Flow {
     bool is_expansion() const { return stepper_->is_expansion(); }
     double remainder(std::size_t contact, const Polynomial& p) const { return stepper_->remainder(contact, p); }
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const { stepper_->add_error(contact, p, end); }
+    // The work and heat of the last step if the stepper knows them (Stepper).
+    std::optional<EnergyFlow> energy_flow() const { return stepper_->energy_flow(); }
     // The last step as dense output; coefficients are appended. Its ends are exactly those of the step.
     DenseSegment piece(std::vector<double>& coefficients) const;
 
@@ -78,11 +80,6 @@ class Flow {
 };
 
 // ---- the work along a run: E(t) - E(0) = work - loss - heat (theory-gaps.md 1, theory-friction.md 5) ----
-
-// The energy that a motion takes up from forces and moving surfaces, and what friction turns into heat.
-struct EnergyFlow {
-    double work = 0.0, heat = 0.0;
-};
 
 // Integrates the power along steps: v'Q + dV/dt - lambda dh/dt of held contacts; and the heat of friction.
 class WorkIntegrator {

@@ -116,7 +116,8 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     piece.loss = trajectory_.loss;
     piece.heat = trajectory_.heat;
     if (work_.any()) {
-        const EnergyFlow done = work_.along(piece, trajectory_.coefficients, piece.end);
+        const auto expanded = flow.energy_flow();
+        const EnergyFlow done = expanded ? *expanded : work_.along(piece, trajectory_.coefficients, piece.end);
         trajectory_.work += done.work;
         trajectory_.heat += done.heat;
     }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -17,6 +18,11 @@
 #include "series/gap.hpp"
 
 namespace achilles {
+
+// The energy that a motion takes up from forces and moving surfaces, and what friction turns into heat.
+struct EnergyFlow {
+    double work = 0.0, heat = 0.0;
+};
 
 // Why a step could not be made.
 enum class StepFailure { none, left_the_domain, not_a_number, step_too_small };
@@ -49,6 +55,9 @@ class Stepper {
     virtual double remainder(std::size_t contact, const Polynomial& event_function) const = 0;
     // Adds the errors of this step to the error bounds of a contact's gap at its end.
     virtual void add_error(std::size_t contact, const Polynomial& event_function, Gap& end) const = 0;
+    // The integrals of the mode's powers (ModeDynamics) along the last step, in units of energy. nullopt if the stepper
+    // does not expand them, or if the last terms are not small: a power may vary much faster than the motion.
+    virtual std::optional<EnergyFlow> energy_flow() const { return std::nullopt; }
     // True if a step is a series expansion about its start. Any part of it is then as accurate as the whole, event
     // functions start at the values of the state itself, and no first step is guessed. False if a step is integrated to
     // its end. An event function may then differ from its value at (q, v) within the tolerance, and is interpolated

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace achilles {
 
@@ -39,12 +40,14 @@ void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Ga
             const SeriesProgram& series = motion.series;
             known =
                 motions_
-                    .emplace(mode, MotionExpansion{{series, parameters_}, {series, tolerance_}, motion.friction.size()})
+                    .emplace(mode,
+                             MotionExpansion{
+                                 {series, parameters_}, {series, tolerance_}, motion.friction.size(), motion.powers})
                     .first;
         }
         motion_ = &known->second;
         mode_ = mode;
-        step_.set_further_events(motion_->further_events);
+        step_.set_further_events(motion_->watched, motion_->powers);
     }
     const std::vector<double>& units = gap_units_.at(state);
     for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
@@ -110,6 +113,25 @@ void TaylorStepper::evaluate_far(double duration) {
         to_.q.data()[i] = sum(i);
         to_.v.data()[i] = sum(dof_ + i);
     }
+}
+
+// As accurate as the motion: terms decrease at least by half, so those left out are below the last two.
+std::optional<EnergyFlow> TaylorStepper::energy_flow() const {
+    if (motion_->powers == 0 || span_ > longest_near) return std::nullopt;
+    std::array<double, 2> flow{};
+    const int order = step_.order();
+    for (std::size_t i = 0; i < motion_->powers; ++i) {
+        const std::size_t event = step_.contacts() - motion_->powers + i;
+        double power = span_, size = 0.0, last = 0.0, before = 0.0;
+        for (int k = 0; k <= order; ++k, power *= span_) {
+            const double term = step_.event(event, k) * power / (k + 1);
+            flow[i] += term;
+            before = std::exchange(last, std::abs(term));
+            size += last;
+        }
+        if (last + before > 0.5 * tolerance_ * size) return std::nullopt;
+    }
+    return EnergyFlow{flow[0], flow[1]};
 }
 
 // Limits the length of a very long step, which only a nearly straight motion has, so that the state stays in the range

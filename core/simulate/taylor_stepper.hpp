@@ -26,6 +26,7 @@ class TaylorStepper : public Stepper {
     bool stays_negative(std::size_t contact) const override;
     double remainder(std::size_t contact, const Polynomial& p) const override;
     void add_error(std::size_t contact, const Polynomial& p, Gap& end) const override;
+    std::optional<EnergyFlow> energy_flow() const override;
     bool is_expansion() const override { return true; }
     long evaluations() const override { return evaluations_; }
 
@@ -34,7 +35,7 @@ class TaylorStepper : public Stepper {
     struct MotionExpansion {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
-        std::size_t further_events = 0;
+        std::size_t watched = 0, powers = 0;  // further event functions
     };
     StepFailure expand(double longest);
     double far_term(int k, std::size_t component, double t) const;

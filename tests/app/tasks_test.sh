@@ -75,7 +75,7 @@ actions=0 elsewhere=0
 # One plot as a figure.
 click plot
 click save
-sleep 0.2
+settle  # the dialog is open
 act key Return
 recorded '^export ball_on_sine-.*\.svg plot 2$' "one plot is not exported"
 figure=$(sed -n 's/^export \(.*\) plot 2$/\1/p' "$folder/record")
