@@ -16,6 +16,17 @@ constexpr int lowest = 8;
 constexpr int highest = SeriesEvaluator<double>::highest_order;
 static_assert(highest < Polynomial::capacity);
 
+// A part of [0, 1], from 0, in which p stays positive as at 0: each term after the first takes at most an equal share of
+// the first.
+double positive_part(const Polynomial& p) {
+    double theta = 1.0;
+    for (int k = 1; k <= p.degree; ++k) {
+        const double part = p.c[0] / (p.degree * std::abs(p.c[static_cast<std::size_t>(k)]));
+        if (part < 1.0) theta = std::min(theta, std::pow(part, 1.0 / k));
+    }
+    return theta;
+}
+
 // Sum of the absolute values of the last terms.
 double tail(const Polynomial& p) {
     double sum = 0.0;
@@ -73,8 +84,8 @@ double DomainMonitor::safe_part(Polynomial& distance) const {
     const double start = distance.c[0], allowed = 0x1p-6 * start;
     if (!(start > 0.0)) return 0.0;
     // The series is accurate as far as its last terms are small. If the step is far too long, the last terms may have
-    // overflowed; they are dropped.
-    while (distance.degree > lowest && !std::isfinite(tail(distance))) --distance.degree;
+    // overflowed, or `allowed` divided by them underflows; they are dropped.
+    while (distance.degree > lowest && !(allowed / tail(distance) > 0.0)) --distance.degree;
     double known = 1.0;
     for (int k = distance.degree; k > distance.degree - counted; --k) {
         const double c = std::abs(distance.c[static_cast<std::size_t>(k)]);
@@ -88,7 +99,7 @@ double DomainMonitor::safe_part(Polynomial& distance) const {
     distance.c[0] -= 0.125 * start + tail(distance);
     const FirstCrossing descent = first_descent(distance, 0, 0.0);
     if (descent.kind == FirstCrossing::Kind::none) return known;
-    return known * (descent.theta > 0.0 ? descent.theta : 0.5);
+    return known * (descent.theta > 0.0 ? descent.theta : positive_part(distance));
 }
 
 namespace {
