@@ -108,7 +108,7 @@ DenseSegment Flow::piece(std::vector<double>& coefficients) const {
 WorkIntegrator::WorkIntegrator(const Model& model, const Run& run)
     : any_(model.equations().has_power() || model.has_friction()),
       dof_(model.dof()),
-      tolerance_(run.options.tolerance),
+      accurate_(model.has_friction() ? std::max(0x1p-42, run.options.tolerance / 2.0) : 0x1p-42),
       model_(&model),
       parameters_(run.parameters) {}
 
@@ -130,10 +130,8 @@ EnergyFlow WorkIntegrator::along(const DenseSegment& piece, std::span<const doub
 
 std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                                     std::span<const double> coefficients, double to) const {
-    // Terms decrease at least by half, so those left out are below a fifteenth of the last four. The work is as accurate
-    // as the polynomials.
+    // Terms decrease at least by half, so those left out are below a fifteenth of the last four.
     constexpr double rounding = 0x1p-53;
-    const double accurate = std::max(0x1p-42, tolerance_ / 2.0);
     const double span = piece.end - piece.start, theta = std::min(1.0, (to - piece.start) / span);
     constexpr std::array<double, 2 * max_coordinates> zeros{};
     const std::size_t width = 2 * static_cast<std::size_t>(dof_), outputs = model_->has_friction() ? 2 : 1;
@@ -165,7 +163,7 @@ std::optional<EnergyFlow> WorkIntegrator::by_series(SeriesEvaluator<double>& pow
         }
         if (k >= fewest && are_below(rounding)) break;
     }
-    if (!are_below(accurate)) return std::nullopt;
+    if (!are_below(accurate_)) return std::nullopt;
     return EnergyFlow{sums[0].sum * span, sums[1].sum * span};
 }
 

@@ -89,7 +89,8 @@ class WorkIntegrator {
     // Whether there is any work or heat. False if there is no friction, all forces have a potential, and neither it nor
     // the gaps depend on time.
     bool any() const { return any_; }
-    // The work and heat from the start of a step to the time `to` (s) in it, in units of energy, accurate to rounding.
+    // The work and heat from the start of a step to the time `to` (s) in it, in units of energy. Without friction they
+    // are accurate to rounding, with friction as accurate as the motion.
     EnergyFlow along(const DenseSegment& piece, std::span<const double> coefficients, double to);
 
  private:
@@ -99,14 +100,13 @@ class WorkIntegrator {
     };
     Power* power_in(Mode mode);
     // The integral of the series of the power along the polynomials of the step. nullopt if its last terms are not
-    // small compared with the tolerance: a power that depends on time may vary much faster than the motion. Gauss
-    // quadrature then evaluates it.
+    // small: a power that depends on time may vary much faster than the motion. Gauss quadrature then evaluates it.
     std::optional<EnergyFlow> by_series(SeriesEvaluator<double>& power, const DenseSegment& piece,
                                         std::span<const double> coefficients, double to) const;
 
     bool any_;
     Eigen::Index dof_;
-    double tolerance_;  // of the motion
+    double accurate_;  // largest part of the sum of a series that its last terms may have
     const Model* model_;
     std::vector<double> parameters_;
     std::map<Mode, std::optional<Power>> powers_;  // by mode, created at first use; nullopt if it is always 0

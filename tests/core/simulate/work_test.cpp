@@ -1,4 +1,4 @@
-// The work of forces along a run, against quadrature of the power with far more points.
+// The work of forces and the heat of friction along a run, against quadrature of their rates with far more points.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,8 +17,8 @@ struct WorkAndSize {
     double work = 0.0, size = 0.0;  // integrals of the power and of its absolute value
 };
 
-// Twice 30 points.
-WorkAndSize reference_work(const Trajectory& trajectory, const DenseSegment& piece, double to) {
+// The work, or with output 1 the heat of friction, by twice 30 points.
+WorkAndSize reference_work(const Trajectory& trajectory, const DenseSegment& piece, double to, std::size_t output) {
     const Model& model = *trajectory.model;
     Evaluator<double> power = model.evaluator(model.power(piece.motion()), trajectory.run.parameters);
     WorkAndSize sum;
@@ -27,7 +27,7 @@ WorkAndSize reference_work(const Trajectory& trajectory, const DenseSegment& pie
         const auto power_at = [&](double t) {
             set_state(power, state_in(piece, trajectory.coefficients, model.dof(), t));
             power.run();
-            return power.output(0);
+            return power.output(output);
         };
         using boost::math::quadrature::gauss;
         const double until = from + 0.5 * (to - piece.start);
@@ -37,12 +37,41 @@ WorkAndSize reference_work(const Trajectory& trajectory, const DenseSegment& pie
     return sum;
 }
 
+// Without friction the work is accurate to rounding: 1e-13 of the largest step's integral of the absolute value; 4e-14
+// when written. With friction work and heat are as accurate as the motion: terms that are left out are below a
+// thirtieth of the tolerance.
+double accuracy(const Model& model, double tolerance) {
+    return model.has_friction() ? std::max(1e-13, tolerance / 30.0) : 1e-13;
+}
+
+// Expects that the work, or with output 1 the heat, of every step of a run is the integral. Returns that of the largest
+// step.
+double expect_integrals(const Trajectory& trajectory, std::size_t output) {
+    const Model& model = *trajectory.model;
+    const double tolerance = trajectory.run.options.tolerance;
+    WorkIntegrator integrator(model, trajectory.run);
+    double largest = 0.0;
+    for (const DenseSegment& piece : trajectory.pieces)
+        largest = std::max(largest, reference_work(trajectory, piece, piece.end, output).size);
+    for (const DenseSegment& piece : trajectory.pieces)
+        for (const double part : {0.3, 1.0}) {
+            const double to = piece.start + part * (piece.end - piece.start);
+            const WorkAndSize expected = reference_work(trajectory, piece, to, output);
+            const double of_time = 0x1p-50 * std::abs(to) / (to - piece.start);  // rounding of time in the step
+            const EnergyFlow found = integrator.along(piece, trajectory.coefficients, to);
+            EXPECT_NEAR(output == 0 ? found.work : found.heat, expected.work,
+                        accuracy(model, tolerance) * largest + of_time * expected.size)
+                << model.description().title << ", output " << output << ", " << to_text(trajectory.run.options.method)
+                << ", " << tolerance << ", t = " << to;
+        }
+    return largest;
+}
+
 TEST(Work, IsTheIntegralOfThePower) {
-    constexpr double accuracy = 1e-13;  // of the largest step's integral of the absolute value; 4e-14 when written
-    int systems = 0;
+    int systems = 0, heated = 0;
     for (const std::string& name : test::all_systems()) {
         const auto model = test::load(name);
-        if (!model->equations().has_power()) continue;
+        if (!model->equations().has_power() && !model->has_friction()) continue;
         ++systems;
         for (const auto& [method, tolerance] : {std::pair(Method::taylor, 1e-4), std::pair(Method::taylor, 1e-10),
                                                 std::pair(Method::taylor, 1e-15), std::pair(Method::dopri5, 1e-7)}) {
@@ -50,23 +79,13 @@ TEST(Work, IsTheIntegralOfThePower) {
             run.options.method = method;
             run.options.tolerance = tolerance;
             const Trajectory trajectory = simulate(model, run);
-            WorkIntegrator work(*model, run);
-            double largest = 0.0;  // a step's
-            for (const DenseSegment& piece : trajectory.pieces)
-                largest = std::max(largest, reference_work(trajectory, piece, piece.end).size);
-            EXPECT_GT(largest, 0.0) << name;
-            for (const DenseSegment& piece : trajectory.pieces)
-                for (const double part : {0.3, 1.0}) {
-                    const double to = piece.start + part * (piece.end - piece.start);
-                    const WorkAndSize expected = reference_work(trajectory, piece, to);
-                    const double of_time = 0x1p-50 * std::abs(to) / (to - piece.start);  // rounding of time in the step
-                    EXPECT_NEAR(work.along(piece, trajectory.coefficients, to).work, expected.work,
-                                accuracy * largest + of_time * expected.size)
-                        << name << ", " << to_text(method) << ", " << tolerance << ", t = " << to;
-                }
+            const double work = expect_integrals(trajectory, 0);
+            EXPECT_TRUE(work > 0.0 || !model->equations().has_power()) << name;
+            if (model->has_friction() && expect_integrals(trajectory, 1) > 0.0) ++heated;
         }
     }
-    EXPECT_GT(systems, 8);
+    EXPECT_GT(systems, 16);
+    EXPECT_EQ(heated, 4 * 7);  // the ball between walls and the rocking block slip only at impacts
 }
 
 // The mass is at rest on the floor, so a single step covers the run, in which the potential energy oscillates: its
