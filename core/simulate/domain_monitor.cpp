@@ -16,8 +16,8 @@ constexpr int lowest = 8;
 constexpr int highest = SeriesEvaluator<double>::highest_order;
 static_assert(highest < Polynomial::capacity);
 
-// A part of [0, 1], from 0, in which p stays positive as at 0: each term after the first takes at most an equal share of
-// the first.
+// A part of [0, 1], from 0, in which p stays positive as at 0: each further term takes at most an equal share of the
+// first one.
 double positive_part(const Polynomial& p) {
     double theta = 1.0;
     for (int k = 1; k <= p.degree; ++k) {

@@ -301,8 +301,8 @@ TEST_P(Derivatives, TheBouncingIsThatOfTheTangentialVelocity) {
     }
 }
 
-// A contact that sticks at its impacts, in (q, s): v = s + N sigma with sigma = (hdot, u), s' = A + B sigma + D sigma^2,
-// and their derivatives (theory-friction.md 4.2).
+// A contact that sticks at its impacts, in (q, s): v = s + N sigma with sigma = (hdot, u), s' = A + B sigma + D sigma^2
+// and derivatives of them (theory-friction.md 4.2).
 TEST_P(Derivatives, TheStickingBouncingIsThatOfTheTangentialVelocity) {
     if (!has_contact() || !is_rough(0)) return;
     const BouncingModel& bouncing = model_->bouncing();

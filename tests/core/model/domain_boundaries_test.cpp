@@ -71,8 +71,8 @@ TEST_P(Kinks, EndTheRun) {
     }
 }
 
-// Regressions: near the kink a ratio of the series of its distance underflowed, and runs ended up to 2e-10 s early; steps
-// over it were longer than 2^45 times the distance, and half of such a step was made without a check.
+// Regressions: near the kink a ratio of the series of its distance underflowed, and runs ended up to 2e-10 s early. A
+// step over it was longer than 2^45 times the distance, and half of such a step was made without a check.
 TEST(QuarticKink, EndsTheRunAtEveryTolerance) {
     const auto model = ball(plain, "y", "y - (x^4)^(1/4)");
     for (const Method method : test::both_methods)
