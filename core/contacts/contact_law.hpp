@@ -40,6 +40,7 @@ enum class FrictionFunction : std::uint8_t {
 struct FrictionEvent {
     std::size_t contact;  // or joint
     FrictionFunction watched;
+    int power;  // the function has the unit of the contact's gap to this power, if gap and slip have one unit; 0: joint
 };
 
 enum class Transition : std::uint8_t { impact, release };

@@ -192,8 +192,8 @@ ContactSet sharing_with(Mode mode, std::size_t contact, const FrictionLaws& laws
 WatchedFriction watched_friction(const ModeEquations& motion, const FrictionLaws& laws, const Layout& layout,
                                  const EquationsWithout& without) {
     WatchedFriction result;
-    const auto watch = [&](std::size_t which, FrictionFunction watched, Expression function) {
-        result.events.push_back({which, watched});
+    const auto watch = [&](std::size_t which, FrictionFunction watched, int power, Expression function) {
+        result.events.push_back({which, watched, is_joint(which) ? 0 : power});
         result.functions.push_back(function);
     };
     const ContactSet slipping = motion.mode.slipping();
@@ -202,13 +202,16 @@ WatchedFriction watched_friction(const ModeEquations& motion, const FrictionLaws
         const int sign = slip_sign(motion.mode.state(i));
         const bool has_law = law != laws.end();
         if (has_law && sign != 0) {
-            watch(i, FrictionFunction::slip, law->second.slip.graph().number(sign) * law->second.slip);
+            watch(i, FrictionFunction::slip, 1, law->second.slip.graph().number(sign) * law->second.slip);
         } else if (has_law && !law->second.never_slides && !motion.mode.implied().contains(i)) {
             FrictionForce force = friction_force(without(i), i, motion.mode, laws, layout);
             Expression most = law->second.static_level * force.lambda;
+            // lambda and tau have the power -1, their common factor det W the power 4.
+            int power = 3;
             // Contacts with an implied slip share the friction force, up to the sum of what each can bear.
             const ContactSet sharing = sharing_with(motion.mode, i, laws);
             if (!sharing.empty()) {
+                power = -1;
                 most = most / force.scale;
                 force.tau = force.tau / force.scale;
             }
@@ -216,12 +219,13 @@ WatchedFriction watched_friction(const ModeEquations& motion, const FrictionLaws
                 const FrictionForce other = friction_force(without(k), k, motion.mode, laws, layout);
                 most = most + laws.at(k).static_level * other.lambda / other.scale;
             }
-            watch(i, FrictionFunction::upper_limit, most - force.tau);
-            watch(i, FrictionFunction::lower_limit, most + force.tau);
+            watch(i, FrictionFunction::upper_limit, power, most - force.tau);
+            watch(i, FrictionFunction::lower_limit, power, most + force.tau);
         }
         if (is_joint(i) || (sign == 0 && slipping.within(motion.mode.held()).without(i).empty())) continue;
         const Expression pivot = friction_force(without(i), i, motion.mode, laws, layout).scale;
-        if (varies(pivot, layout)) watch(i, FrictionFunction::pivot, pivot);
+        const bool is_determinant = has_law && sign == 0 && !motion.mode.implied().contains(i);
+        if (varies(pivot, layout)) watch(i, FrictionFunction::pivot, is_determinant ? 4 : 2, pivot);
     }
     return result;
 }

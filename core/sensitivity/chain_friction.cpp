@@ -150,7 +150,8 @@ std::optional<std::size_t> Chain::vanishing_function(std::size_t event) {
     const std::vector<FrictionEvent>& friction = model_->motion(mode_).friction;
     std::vector<std::pair<double, std::size_t>> candidates;  // how far from its zero (s), and the function
     for (std::size_t k = 0; k < friction.size() && (!ended.empty() || !started.empty()); ++k) {
-        const auto [which, watched] = friction[k];
+        const std::size_t which = friction[k].contact;
+        const FrictionFunction watched = friction[k].watched;
         const bool is_slip = watched == FrictionFunction::slip;
         if (watched == FrictionFunction::pivot || is_slip == ended.empty()) continue;
         if (!(is_slip ? ended : started).contains(which)) continue;

@@ -309,6 +309,10 @@ void GapUnits::find(const State& state) {
     }
 }
 
+double GapUnits::operator[](const FrictionEvent& event) const {
+    return event.power == 0 ? 1.0 : std::pow(units_[event.contact], event.power);  // exact: a power of 256
+}
+
 const std::vector<double>& GapUnits::at(const State& state) {
     constexpr double far = 1.0;
     if ((state.q - place_).cwiseAbs().maxCoeff() > far) find(state);

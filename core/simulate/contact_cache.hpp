@@ -159,6 +159,8 @@ class GapUnits {
     // The units at a state. They are recomputed if a coordinate has changed by more than 1, for gaps such as exp(x) y.
     const std::vector<double>& at(const State& state);
     double operator[](std::size_t contact) const { return units_[contact]; }
+    // The unit of what friction watches. The slip of a contact has the unit of its gap (theory-friction.md 1).
+    double operator[](const FrictionEvent& event) const;
 
  private:
     void find(const State& state);

@@ -116,7 +116,7 @@ struct CoordinateOutputs {
 struct EventRate {
     const double* output = nullptr;
     bool is_of_gap = true;
-    double per_unit = 1.0;  // exact: units are powers of two
+    double unit = 1.0, per_unit = 1.0;  // exact: units are powers of two
 };
 
 class Dopri5 : public Stepper {
@@ -159,7 +159,7 @@ class Dopri5 : public Stepper {
     bool watches_gap(std::size_t contact) const {
         return contact < contacts_ && law_of(mode_.state(contact)).watched == WatchedFunction::gap;
     }
-    double unit(std::size_t contact) const { return contact < contacts_ ? units_[contact] : 1.0; }
+    double unit(std::size_t contact) const { return event_rates_[contact].unit; }
     std::size_t event(std::size_t contact) const { return 2 * dof_ + 2 * contact; }  // index of its event function
     std::size_t width() const { return event(gaps_.size()); }
 
@@ -174,7 +174,8 @@ class Dopri5 : public Stepper {
     bool is_evaluated_ = false;                         // motion_ has outputs for its inputs
     std::vector<CoordinateOutputs> coordinates_;
     std::size_t contacts_;
-    std::vector<EventRate> event_rates_;  // for each event function
+    std::span<const FrictionEvent> friction_;  // the event functions after those of the contacts
+    std::vector<EventRate> event_rates_;       // for each event function
     double span_ = 0.0;
     double natural_ = 0.0;   // length of the next step by the error control; 0: unknown
     double next_ = 0.0;      // the same after the last step, if its length is by the error control
@@ -197,11 +198,12 @@ void Dopri5::choose_mode(Mode mode, std::size_t functions) {
         method_ = ControlledDopri5(ErrorChecker(tolerance_));  // its buffers have the size of the first state
     }
     motion_ = &model_->lazily(motions_, mode, parameters_);
+    if (functions > contacts_) friction_ = model_->motion(mode).friction;
     is_evaluated_ = false;
     for (std::size_t i = 0; i < dof_; ++i) coordinates_[i] = {&motion_->acceleration(i), &motion_->pivot(i)};
     for (std::size_t contact = 0, forces = 0; contact < gaps_.size(); ++contact)
-        event_rates_[contact] = watches_gap(contact) ? EventRate{&motion_->hddot(contact), true, 1.0}
-                                                     : EventRate{&motion_->jerk(forces++), false, 1.0};
+        event_rates_[contact] = watches_gap(contact) ? EventRate{&motion_->hddot(contact), true}
+                                                     : EventRate{&motion_->jerk(forces++), false};
 }
 
 void Dopri5::evaluate_motion(const Values& y, double time) {
@@ -238,9 +240,12 @@ void Dopri5::set_rates(const Values& y, Values& dydt) const {
 void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps) {
     if (motion_ == nullptr || mode != mode_) choose_mode(mode, gaps.size());
     end_ = state;
-    const std::vector<double>& units = units_.at(state);
-    for (std::size_t contact = 0; contact < units.size(); ++contact)
-        event_rates_[contact].per_unit = 1.0 / units[contact];
+    units_.at(state);
+    for (std::size_t contact = 0; contact < event_rates_.size(); ++contact) {
+        EventRate& rate = event_rates_[contact];
+        rate.unit = contact < contacts_ ? units_[contact] : units_[friction_[contact - contacts_]];
+        rate.per_unit = 1.0 / rate.unit;
+    }
     gaps_.assign(gaps.begin(), gaps.end());
     is_continued_ = false;
 }

@@ -35,7 +35,8 @@ class TaylorStepper : public Stepper {
     struct MotionExpansion {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
-        std::size_t watched = 0, powers = 0;  // further event functions
+        std::span<const FrictionEvent> friction;  // the event functions after those of the contacts
+        std::size_t powers = 0;                   // the last ones
     };
     StepFailure expand(double longest);
     double far_term(int k, std::size_t component, double t) const;

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <map>
 #include <ostream>
+#include <regex>
 
 #include "core/systems.hpp"
 #include "laws/laws.hpp"
@@ -40,6 +41,10 @@ Trajectory simulated(const Case& one, const Run& run) {
     Trajectory trajectory = simulate(model_of(one.system), run);
     EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
     return trajectory;
+}
+
+std::string with_slip(const std::string& text, const std::string& value) {
+    return std::regex_replace(text, std::regex("\\bslip\\b"), "(" + value + ")");
 }
 
 double distance(const State& a, const State& b) {

@@ -33,6 +33,9 @@ Trajectory simulated(const Case& one, const Run& run);
 // The largest difference of a coordinate or rate; relative where the values are large.
 double distance(const State& a, const State& b);
 
+// A friction coefficient or level with the sliding speed `slip` in it replaced by this expression.
+std::string with_slip(const std::string& text, const std::string& value);
+
 class Law : public testing::TestWithParam<Case> {};
 
 }  // namespace achilles::test

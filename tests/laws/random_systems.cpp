@@ -7,6 +7,7 @@
 #include <random>
 
 #include "core/systems.hpp"
+#include "laws/laws.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles::test {
@@ -56,26 +57,40 @@ Trajectory run_of(const SystemDescription& system) {
     return simulate(model, model->default_run());
 }
 
-std::string of(const Event& event) {
+// `sign` of the slips is taken for +.
+std::string of(const Event& event, int sign) {
     std::string text(names_of(event.kind).word);
-    for (const auto& [what, set] :
-         {std::pair("of", event.contacts), {"held", event.mode.held()}, {"opened", event.opened}}) {
+    for (const auto& [what, set] : {std::pair("of", event.contacts),
+                                    {"held", event.mode.held()},
+                                    {"with friction at joints", event.mode.joints()},
+                                    {"opened", event.opened}}) {
         text += fmt::format(" {}", what);
-        for (std::size_t i = 0; i < max_contacts; ++i)
-            if (set.contains(i)) text += fmt::format(" {}", i);
+        for (const std::size_t i : set) text += fmt::format(" {}", i);
     }
+    text += " slipping";
+    for (const std::size_t i : event.mode.slipping())
+        text += fmt::format(" {}{}", sign * slip_sign(event.mode.state(i)) > 0 ? '+' : '-', i);
     return text;
+}
+
+// The system with every gap multiplied by `factor`, the slip at a contact by sign*factor, and that of a joint by sign.
+SystemDescription scaled_system(SystemDescription system, double factor, int sign) {
+    for (ConstraintDescription& constraint : system.constraints) {
+        constraint.gap.text = fmt::format("{:.17g}*({})", factor, constraint.gap.text);
+        if (!constraint.has_friction()) continue;
+        constraint.slip.text = fmt::format("{:.17g}*({})", sign * factor, constraint.slip.text);
+        constraint.friction.text = with_slip(constraint.friction.text, fmt::format("slip/{:.17g}", factor));
+    }
+    for (FrictionDescription& joint : system.frictions) joint.slip.text = fmt::format("{}*({})", sign, joint.slip.text);
+    return system;
 }
 
 }  // namespace
 
-std::string difference_by_scaling(const SystemDescription& system, double factor) {
-    SystemDescription scaled = system;
-    for (ConstraintDescription& constraint : scaled.constraints)
-        constraint.gap.text = fmt::format("{:.17g}*({})", factor, constraint.gap.text);
+std::string difference_by_scaling(const SystemDescription& system, double factor, int sign) {
     const Trajectory one = run_of(system);
     if (one.outcome.kind == Outcome::Kind::undecided) return "undecided";
-    const Trajectory two = run_of(scaled);
+    const Trajectory two = run_of(scaled_system(system, factor, sign));
     if (one.outcome.kind != two.outcome.kind)
         return fmt::format("'{}' at {} and '{}' at {}", one.outcome.message, one.end_time, two.outcome.message,
                            two.end_time);
@@ -83,8 +98,8 @@ std::string difference_by_scaling(const SystemDescription& system, double factor
         if (i >= one.events.size() || i >= two.events.size())
             return fmt::format("{} and {} events", one.events.size(), two.events.size());
         const Event &a = one.events[i], &b = two.events[i];
-        if (of(a) != of(b) || !(std::abs(a.t - b.t) <= 1e-7))
-            return fmt::format("event {}: {} at {} and {} at {}", i, of(a), a.t, of(b), b.t);
+        if (of(a, 1) != of(b, sign) || !(std::abs(a.t - b.t) <= 1e-7))
+            return fmt::format("event {}: {} at {} and {} at {}", i, of(a, 1), a.t, of(b, sign), b.t);
     }
     return "";
 }
