@@ -1,6 +1,6 @@
 // Invariance of the motion under a constant added to the potential, other units of energy, time and coordinates, and a
-// gap multiplied by a positive function. The texts of the system are rewritten, so everything is derived and certified
-// again.
+// gap multiplied by a positive function; with friction, the slip and the friction of joints change with them. The texts
+// of the system are rewritten, so everything is derived and certified again.
 #include <algorithm>
 #include <cctype>
 
@@ -80,10 +80,24 @@ std::string rescaled(const SystemDescription& system, const std::string& text, c
 std::vector<Text*> texts_of(SystemDescription& system) {
     std::vector<Text*> texts{&system.kinetic, &system.potential, &system.dissipation};
     for (CoordinateDescription& coordinate : system.coordinates) texts.push_back(&coordinate.force);
-    for (ConstraintDescription& constraint : system.constraints) texts.push_back(&constraint.gap);
+    for (ConstraintDescription& constraint : system.constraints) {
+        for (Text* text : {&constraint.gap, &constraint.slip, &constraint.friction}) texts.push_back(text);
+        if (constraint.static_friction) texts.push_back(&*constraint.static_friction);
+    }
+    for (FrictionDescription& joint : system.frictions) {
+        for (Text* text : {&joint.slip, &joint.level}) texts.push_back(text);
+        if (joint.static_level) texts.push_back(&*joint.static_level);
+    }
     texts.erase(std::remove_if(texts.begin(), texts.end(), [](const Text* text) { return text->text.empty(); }),
                 texts.end());
     return texts;
+}
+
+// Multiplies the slip of a contact or joint, and divides it again in the coefficient or level.
+void multiply_slip(Text& slip, Text& level, const std::string& factor) {
+    if (level.text.empty()) return;
+    wrap(slip, factor + "*(", ")");
+    level.text = with_slip(level.text, "slip/" + factor);
 }
 
 // Multiplies energies, dissipation and forces by factors.
@@ -93,6 +107,14 @@ void strengthen(SystemDescription& system, const std::string& energy, const std:
     if (!system.dissipation.text.empty()) wrap(system.dissipation, dissipation + "*(", ")");
     for (CoordinateDescription& coordinate : system.coordinates)
         if (!coordinate.force.text.empty()) wrap(coordinate.force, force + "*(", ")");
+}
+
+// Multiplies the friction forces of joints.
+void strengthen_joints(SystemDescription& system, const std::string& factor) {
+    for (FrictionDescription& joint : system.frictions) {
+        wrap(joint.level, factor + "*(", ")");
+        if (joint.static_level) wrap(*joint.static_level, factor + "*(", ")");
+    }
 }
 
 TEST_P(Invariance, AnotherZeroOfThePotential) {
@@ -105,7 +127,9 @@ TEST_P(Invariance, LInOtherUnitsOfEnergy) {
     SystemDescription changed = description();
     wrap(changed.kinetic, "1000*(", ")");
     strengthen(changed, "1000", "1000", "1000");
+    strengthen_joints(changed, "1000");
     expect_same(rewritten(changed), rewritten(description()));
+    if (changed.constraints.empty()) return;
     // The contact force scales with the unit of energy.
     const auto force = [&](const SystemDescription& system) {
         const Model model(system);
@@ -124,20 +148,28 @@ TEST_P(Invariance, OtherUnitsOfTime) {
     for (Text* text : texts_of(changed))
         if (text != &changed.kinetic) text->text = rescaled(changed, text->text, {"1", "1/60", "60"});
     strengthen(changed, "3600", "216000", "3600");
+    strengthen_joints(changed, "3600");
+    for (ConstraintDescription& constraint : changed.constraints)
+        multiply_slip(constraint.slip, constraint.friction, "60");
+    for (FrictionDescription& joint : changed.frictions) multiply_slip(joint.slip, joint.level, "60");
     expect_same(rewritten(changed, 60.0), rewritten(description()));
 }
 
-// Coordinates, including angles, in units that are smaller by a factor of 100.
+// Coordinates, including angles, in units that are smaller by a factor of 100. Gaps and slips keep their values, and so
+// do the friction forces of joints.
 TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     SystemDescription changed = description();
     for (Text* text : texts_of(changed)) text->text = rescaled(changed, text->text, {"0.01", "0.01", "1"});
     strengthen(changed, "1", "1", "0.01");
-    ASSERT_NE(changed.constraints[0].gap.text, description().constraints[0].gap.text);
+    const auto changing = [](const SystemDescription& system) {
+        return system.constraints.empty() ? system.frictions[0].slip.text : system.constraints[0].gap.text;
+    };
+    ASSERT_NE(changing(changed), changing(description()));
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
 }
 
 // A gap times a positive function of the coordinates has the same zero set. Its gradient differs, but impacts, Zeno
-// points and releases are the same.
+// points and releases are the same. With friction the slip is multiplied by the same function (theory-friction.md 1).
 TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     const auto events = [&](const SystemDescription& system) {
         auto run = run_of(GetParam());
@@ -154,7 +186,10 @@ TEST_P(Invariance, TheGapTimesAPositiveFunction) {
     const std::string q = description().coordinates[0].name;
     for (const std::string& factor : {"(2 + sin(" + q + "))", "exp(" + q + ")"}) {
         SystemDescription changed = description();
-        for (ConstraintDescription& constraint : changed.constraints) wrap(constraint.gap, factor + "*(", ")");
+        for (ConstraintDescription& constraint : changed.constraints) {
+            wrap(constraint.gap, factor + "*(", ")");
+            multiply_slip(constraint.slip, constraint.friction, factor);
+        }
         const std::vector<Event> found = events(changed);
         ASSERT_EQ(found.size(), expected.size()) << factor;
         for (std::size_t i = 0; i < found.size(); ++i) {
