@@ -36,7 +36,7 @@ class TaylorStepper : public Stepper {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
         std::span<const FrictionEvent> friction;  // the event functions after those of the contacts
-        std::size_t powers = 0;                   // the last ones
+        std::size_t powers = 0;                   // how many powers follow
     };
     StepFailure expand(double longest);
     double far_term(int k, std::size_t component, double t) const;
