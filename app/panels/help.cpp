@@ -19,8 +19,8 @@ namespace achilles {
 namespace {
 
 constexpr const char* help_title = "Keys and words";
-constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, widest_help = 1120.0F,
-                highest_help = 860.0F;
+constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, narrow_indent = 16.0F,
+                widest_help = 1240.0F, highest_help = 940.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
@@ -54,13 +54,23 @@ std::string formula_label(std::string_view formula) {
     return replaced(replaced(typeset(formula), ">=", "\u2265"), "<=", "\u2264");
 }
 
-// A term with its formula, its meaning and its source. The source is at the right end of the first line or, without
-// room, below.
-void show_term(const GlossaryTerm& term) {
-    const float size = ImGui::GetFontSize(), column = ImGui::GetCursorPosX() + units(word_column);
+// Whether there is room for every formula beside the words.
+bool has_word_column() {
+    float widest = 0.0F;
+    for (const GlossaryTerm& term : glossary())
+        widest = std::max(widest, label_width(formula_label(term.formula), ImGui::GetFontSize()));
+    return units(word_column) + widest <= ImGui::GetContentRegionAvail().x;
+}
+
+// A term with its formula, its meaning and its source: beside the word or, in a narrow card, below it. The source is at
+// the right end of the first line or, without room, below.
+void show_term(const GlossaryTerm& term, bool is_beside) {
+    const float size = ImGui::GetFontSize();
+    const float column = ImGui::GetCursorPosX() + units(is_beside ? word_column : narrow_indent);
     const std::string formula = formula_label(term.formula), source(term.source);
     ImGui::TextUnformatted(term.word.data(), term.word.data() + term.word.size());
-    ImGui::SameLine(column);
+    if (is_beside) ImGui::SameLine();
+    ImGui::SetCursorPosX(column);
     const Rectangle beside = remaining();
     const float space = units(16.0F), source_width = ImGui::CalcTextSize(source.c_str()).x;
     ImDrawList* list = ImGui::GetWindowDrawList();
@@ -78,12 +88,13 @@ void show_term(const GlossaryTerm& term) {
         ImGui::SetCursorPosX(column);
         paragraph(source, beside.width, faint_color());
     }
-    ImGui::Dummy({0.0F, units(4.0F)});
+    ImGui::Dummy({0.0F, units(1.0F)});
 }
 
 void show_words() {
     heading("Words");
-    for (const GlossaryTerm& term : glossary()) show_term(term);
+    const bool is_beside = has_word_column();
+    for (const GlossaryTerm& term : glossary()) show_term(term, is_beside);
 }
 
 // A scrollable part of the card.
