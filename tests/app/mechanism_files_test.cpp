@@ -112,7 +112,7 @@ run = {end_time = 1}
         EXPECT_NEAR(slope, length * std::cos(0.5), 1e-9);
     }
     for (const auto& [print, message] :
-         {std::pair{"am.end.x", "--print am.end.x:1: unknown body or ground 'am'; did you mean 'arm'?"},
+         {std::pair{"am.end.x", "--print am.end.x: unknown body or ground 'am'; did you mean 'arm'?"},
           {"arm.tip.x", "unknown point 'tip' of 'arm'"},
           {"arm", "'arm' is a body, and a number is needed here"},
           {"arm.end", "write arm.end.x or arm.end.y"},
