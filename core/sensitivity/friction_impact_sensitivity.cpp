@@ -221,9 +221,10 @@ void Chain::land_with_friction(std::size_t event) {
         return break_off(
             "an impact would gain energy, and its restitution is reduced: derivatives are not computed past it");
     const auto& events = trajectory_->events;
-    const bool rests = event + 1 < events.size() && events[event + 1].is_zeno() && events[event + 1].t == now.t;
-    if (rests && !is_plastic_landing(events[event + 1]))
-        return break_off("derivatives of impact sequences with friction that end at a Zeno point are not computed");
+    const Event* const next = event + 1 < events.size() ? &events[event + 1] : nullptr;
+    if (next != nullptr && is_zeno_point(*next) && next->truncation && next->truncation->t == now.t)
+        return break_off("derivatives through a Zeno point are not computed in systems with friction");
+    const bool rests = next != nullptr && is_plastic_landing(*next) && next->t == now.t;
     const std::size_t i = now.contacts.only();
     set_gaps();
     h_[i] = 0.0;
@@ -238,7 +239,7 @@ void Chain::land_with_friction(std::size_t event) {
     RowMatrix& J = link.J;
     move_onto(J, mode_.held().with(i));  // the rows of q leave it by the omitted terms of steps
     J.row(tangent_.h(i)).setZero();
-    complete_landing(now, rests ? &events[event + 1] : nullptr, impact, link);
+    complete_landing(now, rests ? next : nullptr, impact, link);
     settle(J, mode_);
     for (std::size_t k = 0; k < tangent_.contacts; ++k) {
         if (mode_.is_held(k) || k == i) continue;
