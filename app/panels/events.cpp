@@ -150,16 +150,19 @@ void show_spreads(PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// Button at x that starts, stops or removes the proof of the current run.
+// Button at x that starts, stops or removes the proof of the current run. A system with friction has no proofs.
 void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
+    const bool has_friction = session.model()->has_friction();
+    const std::string refusal = "achilles proves no run with dry friction; the estimated error is in the status line";
     const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
+    ImGui::BeginDisabled(has_friction);
     ImGui::SameLine(x + width + units(2.0F));
     if (ImGui::Button("##spread", {arrow, 0.0F})) ImGui::OpenPopup("spreads");
     remember(state, "prove more");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     paint_menu_arrow(low.x + 0.5F * (high.x - low.x) - units(4.0F), 0.5F * (low.y + high.y), ImGui::IsItemHovered());
-    tooltip("prove more than the present run: all starts in a box around its start");
+    tooltip(has_friction ? refusal : "prove more than the present run: all starts in a box around its start");
     show_spreads(state, commands);
     ImGui::SameLine(x);
     if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word, {width, 0.0F})) {
@@ -169,10 +172,12 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
             commands.emplace_back(command::Prove{});
     }
     remember(state, "prove");
-    tooltip(is_under_way ? "stop the proof"
-            : is_there   ? "remove the proof from the plots and the events"
-                         : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "
-                           "integration and rounding errors");
+    ImGui::EndDisabled();
+    tooltip(has_friction   ? refusal
+            : is_under_way ? "stop the proof"
+            : is_there     ? "remove the proof from the plots and the events"
+                           : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "
+                             "integration and rounding errors");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {

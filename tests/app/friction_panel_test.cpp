@@ -100,5 +100,23 @@ TEST(FrictionPanels, TheSliderOfMuActsAtOnce) {
     EXPECT_TRUE(ramp.hands.says("reverses and slides to the right"));
 }
 
+// The button of proofs is disabled and says why; the command is refused as on the command line.
+TEST(FrictionPanels, NoProofIsOffered) {
+    RoughHands ramp(block_on_ramp);
+    const std::string refusal = "achilles proves no run with dry friction";
+    for (const char* button : {"prove", "prove more"}) {
+        ramp.hands.click(button);
+        EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr) << button;
+        EXPECT_EQ(ramp.hands.session.error(), "") << button;
+        EXPECT_FALSE(ramp.hands.says("for all starts within")) << button;
+        ramp.hands.point(button);
+        ramp.hands.rest(40);
+        EXPECT_TRUE(ramp.hands.says(refusal)) << button;
+    }
+    ramp.hands.session.apply(parse_command("prove"));
+    EXPECT_NE(ramp.hands.session.error().find("a proof does not cover friction"), std::string::npos);
+    EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr);
+}
+
 }  // namespace
 }  // namespace achilles
