@@ -58,6 +58,7 @@ class Certificate(Record):
     a_min: float | None
     a_max: float | None
     decisive: str
+    tail: str
     inequalities: list[Record]
     e1: float
     e2: float
@@ -78,7 +79,9 @@ class Event(Record):
     """An impact, a Zeno point or a release; with friction, a stick, a slip or a reversal.
 
     An impact has v_before and v_after, the others have v. A Zeno point has a certificate, the start of a slip and a
-    reversal a direction (1 or -1), and an impact with friction has tangential_impulses."""
+    reversal a direction (1 or -1, or one for each contact by name where they differ), and an impact with friction has
+    tangential_impulses. A Zeno point at which friction stops every slip has sticks_from, the number of the first such
+    impact, and its certificate a tail: "slip", "stick" or "stick then slip"."""
 
     kind: str
     t: float
@@ -100,7 +103,8 @@ class Event(Record):
     not_unique: bool
     rounded_zero: bool
     alternatives: list[Record]
-    direction: int
+    direction: int | Record
+    sticks_from: int
     modes: Record
     tangential_impulses: Record
     energy_capped: Record
