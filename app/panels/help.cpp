@@ -88,7 +88,7 @@ void show_term(const GlossaryTerm& term, bool is_beside) {
         ImGui::SetCursorPosX(column);
         paragraph(source, beside.width, faint_color());
     }
-    ImGui::Dummy({0.0F, units(1.0F)});
+    ImGui::Dummy({0.0F, units(3.0F)});
 }
 
 void show_words() {
