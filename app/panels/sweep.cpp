@@ -15,6 +15,7 @@
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
 #include "figure/sweep_figure.hpp"
+#include "output/contacts.hpp"
 #include "paint/paint.hpp"
 #include "panels/slider.hpp"
 #include "panels/widgets.hpp"
@@ -417,6 +418,8 @@ std::string row_text(const SweepData& data, std::size_t row) {
             value = std::isfinite(x) ? quantity_text(x, shown_unit(column.unit)) : "no value";
         } else if (column.kind == RunMeasures::Column::Kind::outcome) {
             value = data.rows.ends[row].text();
+        } else if (column.kind == RunMeasures::Column::Kind::modes) {
+            value = modes_text(data.sliding, data.rows.modes[row]);
         } else {
             for (std::size_t i = 0; i < data.contacts.size(); ++i)
                 if (data.rows.held[row].contains(i)) value += (value.empty() ? "" : ", ") + data.contacts[i];

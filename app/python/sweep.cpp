@@ -36,8 +36,8 @@ class StringCodes {
 struct SweepColumnData {
     std::vector<std::uint64_t> points;
     std::vector<double> numbers, times;
-    std::vector<std::uint32_t> held, contacts, ends;
-    StringCodes words;  // strings of the three columns above
+    std::vector<std::uint32_t> held, contacts, ends, modes;
+    StringCodes words;  // strings of the four columns above
 };
 
 void append(SweepColumnData& columns, const SweepTable& table, const Rows& rows) {
@@ -48,6 +48,7 @@ void append(SweepColumnData& columns, const SweepTable& table, const Rows& rows)
     const auto names = [&](ContactSet set) { return columns.words.code(joined_names(table.model(), set, "+")); };
     for (const ContactSet held : rows.held) columns.held.push_back(names(held));
     for (const ContactSet contacts : rows.contacts) columns.contacts.push_back(names(contacts));
+    for (const Mode mode : rows.modes) columns.modes.push_back(columns.words.code(modes_text(table.model(), mode)));
     for (const RunEnd end : rows.ends) columns.ends.push_back(columns.words.code(std::string(end.text())));
 }
 
@@ -80,7 +81,7 @@ py::list axes_of(const SweepTable& table, const SweepColumnData& columns) {
 }
 
 py::dict as_dict(const PythonSystem& system, const SweepTable& table, SweepColumnData columns) {
-    constexpr std::array<const char*, 3> kinds{"number", "held", "outcome"};
+    constexpr std::array<const char*, 4> kinds{"number", "held", "outcome", "modes"};
     py::list prints;
     for (const RunMeasures::Column& column : table.measures().columns())
         prints.append(py::make_tuple(kinds[static_cast<std::size_t>(column.kind)], column.name, column.unit));
@@ -92,6 +93,7 @@ py::dict as_dict(const PythonSystem& system, const SweepTable& table, SweepColum
     result["numbers"] = owned(std::move(columns.numbers), static_cast<py::ssize_t>(table.measures().numbers()));
     result["times"] = array_of(columns.times);
     result["held"] = array_of(columns.held);
+    result["modes"] = array_of(columns.modes);
     result["contacts"] = array_of(columns.contacts);
     result["ends"] = array_of(columns.ends);
     result["words"] = columns.words.words();

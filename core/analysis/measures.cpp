@@ -86,7 +86,7 @@ void check_quantity(const SystemDescription& description, const std::string& pri
                             "differences of first derivatives approximate them");
     for (const std::string& name : names_in(request.quantity)) {
         if (is_settable(description, name)) continue;
-        if (name == "held" || name == "outcome")
+        if (name == "held" || name == "outcome" || name == "modes")
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips")
@@ -147,7 +147,20 @@ Program section_program(const Model& model, const std::string& zero) {
     }
 }
 
+// Words are not numbers, unless the system gives them another meaning.
+RunMeasures::Column::Kind kind_of(const Model& model, const std::string& print) {
+    using enum RunMeasures::Column::Kind;
+    if (is_settable(model.description(), print)) return number;
+    if (print == "modes" && model.has_friction()) return modes;
+    return print == "held" ? held : print == "outcome" ? outcome : number;
+}
+
 }  // namespace
+
+bool RunMeasures::prints_modes() const {
+    return std::any_of(columns_.begin(), columns_.end(),
+                       [](const Column& column) { return column.kind == Column::Kind::modes; });
+}
 
 RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sweep) : model_(std::move(model)) {
     refuse_late(sweep);
@@ -159,10 +172,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
             add_slope(sweep, print, request->quantity, request->name, quantities);
             continue;
         }
-        const bool is_word = (print == "held" || print == "outcome") && !is_settable(description, print);
-        const Column::Kind kind = !is_word          ? Column::Kind::number
-                                  : print == "held" ? Column::Kind::held
-                                                    : Column::Kind::outcome;
+        const Column::Kind kind = kind_of(*model_, print);
         columns_.push_back({kind, print, kind == Column::Kind::number ? unit_of_print(description, print) : ""});
         if (kind != Column::Kind::number) continue;
         slopes_.emplace_back();

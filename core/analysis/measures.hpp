@@ -1,5 +1,5 @@
-// The quantities printed for each of many runs: expressions, and the words `held` and `outcome`, at the end or at a
-// section.
+// The quantities printed for each of many runs: expressions, and the words `held`, `modes` and `outcome`, at the end or
+// at a section.
 #pragma once
 
 #include <cstdint>
@@ -22,8 +22,8 @@ namespace achilles {
 // The compiled prints of a sweep. An expression may contain the names of a view (t, coordinates, rates, parameters,
 // gaps, lambda, energy, power, work, loss). It may also contain zeno_time(k), impact_time(k), impact_speed(k) and
 // release_time(k), with k from 1 (without (k): the last one), zeno_points, impacts, releases, and least_gap. With
-// friction it may contain slips, friction forces and heat, stick_time(k), slip_time(k), sticks and slips. A quantity that
-// does not exist is NaN.
+// friction it may contain slips, friction forces and heat, stick_time(k), slip_time(k), sticks and slips. A quantity
+// that does not exist is NaN.
 //
 // d(QUANTITY, NAME) is the derivative of such a quantity by an initial coordinate x, an initial rate x' or a parameter,
 // through all impacts and Zeno points (theory-derivatives.md 7). At the end, time is fixed; at an event, the derivative
@@ -34,7 +34,7 @@ class RunMeasures {
     RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sweep);
 
     struct Column {
-        enum class Kind { number, held, outcome };
+        enum class Kind { number, held, outcome, modes };
         Kind kind;
         std::string name;              // as typed
         std::string unit;              // "" if unknown
@@ -47,6 +47,8 @@ class RunMeasures {
     // they cannot be computed otherwise.
     bool needs_everything() const { return needs_everything_; }
     bool needs_least_gap() const { return needs_least_gap_; }
+    // Whether the modes of friction are printed.
+    bool prints_modes() const;
 
  private:
     friend class MeasureEvaluator;

@@ -64,6 +64,7 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count, 
     rows.points.resize(n);
     rows.numbers.assign(n * width, std::numeric_limits<double>::quiet_NaN());
     rows.held.resize(n);
+    if (measures_.prints_modes()) rows.modes.resize(n);
     rows.ends.resize(n);
     rows.signatures.assign(n, signature_of_nothing);
     std::vector<double> numbers;
@@ -75,6 +76,7 @@ Rows SweepTable::ends(Worker& worker, std::uint64_t first, std::uint64_t count, 
         worker.measuring.at_end(*trajectory, numbers);
         std::copy(numbers.begin(), numbers.end(), rows.numbers.begin() + static_cast<std::ptrdiff_t>(i * width));
         rows.held[i] = trajectory->end_mode.held();
+        if (measures_.prints_modes()) rows.modes[i] = trajectory->end_mode;
         rows.ends[i] = RunEnd(trajectory->outcome.kind);
         rows.signatures[i] = signature_of(*trajectory);
     };
@@ -86,6 +88,7 @@ void SweepTable::add_nothing(std::uint64_t point, RunEnd end, std::uint64_t sign
     rows.points.push_back(point);
     rows.numbers.insert(rows.numbers.end(), measures_.numbers(), std::numeric_limits<double>::quiet_NaN());
     rows.held.emplace_back();
+    if (measures_.prints_modes()) rows.modes.emplace_back();
     rows.ends.push_back(end);
     rows.signatures.push_back(signature);
     if (!is_section()) return;
@@ -103,6 +106,7 @@ void SweepTable::add_sections(MeasureEvaluator& measuring, const Trajectory& tra
         rows.points.push_back(point);
         measuring.at(trajectory, moment, rows.numbers);
         rows.held.push_back(moment.sample.mode.held());
+        if (measures_.prints_modes()) rows.modes.push_back(moment.sample.mode);
         rows.ends.push_back(end);
         rows.signatures.push_back(signature);
         rows.times.push_back(moment.sample.t);
@@ -128,6 +132,7 @@ Rows SweepTable::one_by_one(Worker& worker, std::uint64_t first, std::uint64_t c
         rows.points.push_back(point);
         worker.measuring.at_end(*trajectory, rows.numbers);
         rows.held.push_back(trajectory->end_mode.held());
+        if (measures_.prints_modes()) rows.modes.push_back(trajectory->end_mode);
         rows.ends.emplace_back(trajectory->outcome.kind);
         rows.signatures.push_back(signature_of(*trajectory));
     }
@@ -145,6 +150,7 @@ SweepData::SweepData(const SweepTable& table)
         units.push_back(unit_of_axis(description, axis.name));
     }
     for (const auto& constraint : description.constraints) contacts.push_back(constraint.name);
+    for (const SlidingPlace& place : sliding_places(description)) sliding.emplace_back(place.number, place.name);
 }
 
 void SweepData::add(const Rows& more) {
@@ -152,6 +158,7 @@ void SweepData::add(const Rows& more) {
     append(rows.points, more.points);
     append(rows.numbers, more.numbers);
     append(rows.held, more.held);
+    append(rows.modes, more.modes);
     append(rows.ends, more.ends);
     append(rows.signatures, more.signatures);
     append(rows.times, more.times);
@@ -163,6 +170,7 @@ void SweepData::add(const Rows& more, std::size_t row) {
     const auto number = more.numbers.begin() + static_cast<std::ptrdiff_t>(row * numbers);
     rows.numbers.insert(rows.numbers.end(), number, number + static_cast<std::ptrdiff_t>(numbers));
     rows.held.push_back(more.held[row]);
+    if (!more.modes.empty()) rows.modes.push_back(more.modes[row]);
     rows.ends.push_back(more.ends[row]);
     rows.signatures.push_back(more.signatures[row]);
     if (!is_section()) return;

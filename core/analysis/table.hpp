@@ -4,6 +4,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "analysis/measures.hpp"
@@ -20,6 +21,7 @@ struct Rows {
     std::vector<std::uint64_t> signatures;  // of the whole run, repeated in each of its rows (signature_of)
     std::vector<double> times;              // for a section; NaN in an empty row
     std::vector<ContactSet> contacts;       // for a section: those of the event
+    std::vector<Mode> modes;                // empty unless they are printed
     std::size_t count() const { return points.size(); }
     friend bool operator==(const Rows&, const Rows&) = default;
 };
@@ -81,6 +83,7 @@ struct SweepData {
     std::vector<RunMeasures::Column> columns;
     std::size_t numbers = 0;  // number of columns with numbers
     std::vector<std::string> contacts;
+    std::vector<std::pair<std::size_t, std::string>> sliding;  // with friction: number in a Mode, and name
     Rows rows;
 };
 

@@ -314,7 +314,8 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         if (quantity.kind != time && quantity.kind != speed) continue;
         scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });
     }
-    for (const char* word : {"held", "outcome"})
+    if (layout.frictions == 0) scope.forbidden.emplace("modes", "'modes' is of friction, and this system has none");
+    for (const char* word : {"held", "outcome", "modes"})
         scope.forbidden.emplace(word, fmt::format("'{}' is text: use it alone, not in an expression", word));
     return scope;
 }

@@ -31,6 +31,21 @@ ContactSet rough_in(const Model& model, Mode mode) {
     return rough;
 }
 
+std::string modes_text(const std::vector<std::pair<std::size_t, std::string>>& names, Mode mode) {
+    std::string text;
+    for (const auto& [which, name] : names)
+        if (mode.is_held(which))
+            text += fmt::format("{}{}:{}", text.empty() ? "" : "+", name, state_word(mode.state(which)));
+    return text;
+}
+
+std::string modes_text(const Model& model, Mode mode) {
+    std::vector<std::pair<std::size_t, std::string>> names;
+    for (const std::size_t i : rough_in(model, mode))
+        names.emplace_back(i, contact_names(model, ContactSet::of(i)).front());
+    return modes_text(names, mode);
+}
+
 std::string joined_names(const Model& model, ContactSet contacts, std::string_view between) {
     return fmt::format("{}", fmt::join(contact_names(model, contacts), between));
 }

@@ -21,6 +21,9 @@ std::string joined_names(const Model& model, ContactSet contacts, std::string_vi
 std::string_view state_word(ContactState state);
 // The contacts and joints with friction that are not open in this mode.
 ContactSet rough_in(const Model& model, Mode mode);
+// Their states: "foot:stick+bearing:slip-". The names are those of contacts and joints by their number in a mode.
+std::string modes_text(const std::vector<std::pair<std::size_t, std::string>>& names, Mode mode);
+std::string modes_text(const Model& model, Mode mode);
 // Whether contacts, and joints with friction, need their names: there is more than one.
 bool has_several_places(const Model& model);
 // The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.

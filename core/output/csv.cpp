@@ -60,15 +60,6 @@ bool has_work(const Model& model) {
 // With one gap and no joints, the columns of contacts and friction have no names of contacts.
 bool has_named_columns(const Model& model) { return is_of_several(model) || !model.description().frictions.empty(); }
 
-// "foot:stick+bearing:slip-"
-std::string modes_text(const Model& model, Mode mode) {
-    std::string text;
-    for (const std::size_t i : rough_in(model, mode))
-        text += fmt::format("{}{}:{}", text.empty() ? "" : "+", contact_names(model, ContactSet::of(i)).front(),
-                            state_word(mode.state(i)));
-    return text;
-}
-
 // The names of the columns and, if requested, their units.
 std::string heading(const Model& model, const CsvStyle& style) {
     std::vector<std::string> columns{"t", "phase"}, units{"s", ""};

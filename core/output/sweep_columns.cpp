@@ -42,6 +42,7 @@ void append(const SweepTable& table, const Rows& rows, std::size_t row, std::vec
     for (const RunMeasures::Column& column : table.measures().columns()) {
         if (column.kind == Kind::number) number(rows.numbers[measure++]);
         if (column.kind == Kind::held) names(rows.held[row]);
+        if (column.kind == Kind::modes) columns[next++].words.push_back(modes_text(table.model(), rows.modes[row]));
     }
     columns[next].words.emplace_back(rows.ends[row].text());
 }
@@ -151,6 +152,7 @@ std::string sweep_csv(const SweepTable& table, const Rows& rows) {
             if (column.kind == Column::Kind::number) append_number(text, rows.numbers[next++]);
             if (column.kind == Column::Kind::held && !rows.held[row].empty())
                 text += joined_names(table.model(), rows.held[row], "+");
+            if (column.kind == Column::Kind::modes) text += modes_text(table.model(), rows.modes[row]);
         }
         text += ',';
         text += rows.ends[row].text();
@@ -188,6 +190,7 @@ std::string to_bytes(const Rows& rows) {
     put(bytes, rows.points);
     put(bytes, rows.numbers);
     put(bytes, rows.held);
+    put(bytes, rows.modes);
     put(bytes, rows.ends);
     put(bytes, rows.signatures);
     put(bytes, rows.times);
@@ -205,6 +208,7 @@ Rows rows_from(std::string_view bytes, const SweepTable& table) {
     take(bytes, rows.points, count);
     take(bytes, rows.numbers, count * table.measures().numbers());
     take(bytes, rows.held, count);
+    if (table.measures().prints_modes()) take(bytes, rows.modes, count);
     take(bytes, rows.ends, count);
     take(bytes, rows.signatures, count);
     if (table.is_section()) {

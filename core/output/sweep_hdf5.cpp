@@ -266,7 +266,7 @@ class ColumnArray {
 // The number of rows, and the maximum lengths of their texts.
 struct TableExtent {
     hsize_t rows = 0;
-    std::size_t held = 0, contacts = 0, ends = 0;
+    std::size_t held = 0, contacts = 0, ends = 0, modes = 0;
 };
 
 TableExtent extent_of(const SweepTable& table, const RowReader& each_rows) {
@@ -278,6 +278,8 @@ TableExtent extent_of(const SweepTable& table, const RowReader& each_rows) {
         };
         for (const ContactSet set : rows.held) widen(extent.held, set);
         for (const ContactSet set : rows.contacts) widen(extent.contacts, set);
+        for (const Mode mode : rows.modes)
+            extent.modes = std::max(extent.modes, modes_text(table.model(), mode).size());
         for (const RunEnd end : rows.ends) extent.ends = std::max(extent.ends, end.text().size());
     });
     return extent;
@@ -357,6 +359,10 @@ class SweepHdf5Writer {
                 });
             } else if (column.kind == Column::Kind::held) {
                 add_sets(path, extent_.held, &Rows::held);
+            } else if (column.kind == Column::Kind::modes) {
+                columns_.emplace_back(file_, path, shape_, extent_.modes, [this](const Rows& rows, std::size_t row) {
+                    return modes_text(table_.model(), rows.modes[row]);
+                });
             }
         }
         columns_.emplace_back(file_, "/values/outcome", shape_, extent_.ends,

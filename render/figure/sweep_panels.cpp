@@ -10,6 +10,7 @@
 
 #include "figure/axes.hpp"
 #include "figure/label.hpp"
+#include "output/contacts.hpp"
 
 namespace achilles {
 
@@ -20,7 +21,20 @@ ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data)
     }
     using ColumnKind = RunMeasures::Column::Kind;
     const RunMeasures::Column& one = data.columns[column];
-    kind_ = one.kind == ColumnKind::number ? Kind::number : one.kind == ColumnKind::held ? Kind::held : Kind::outcome;
+    switch (one.kind) {
+        case ColumnKind::number:
+            kind_ = Kind::number;
+            break;
+        case ColumnKind::held:
+            kind_ = Kind::held;
+            break;
+        case ColumnKind::outcome:
+            kind_ = Kind::outcome;
+            break;
+        case ColumnKind::modes:
+            kind_ = Kind::modes;
+            break;
+    }
     name_ = one.name;
     unit_ = shown_unit(one.unit);
     quantity_ = one.quantity;
@@ -31,7 +45,9 @@ ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data)
         data.columns.begin(), before, [](const auto& other) { return other.kind == ColumnKind::number; }));
 }
 
-bool ColumnView::is_count() const { return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases"; }
+bool ColumnView::is_count() const {
+    return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases" || name_ == "sticks" || name_ == "slips";
+}
 
 std::string ColumnView::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }
 
@@ -79,6 +95,7 @@ std::optional<std::uint64_t> ColumnView::code(std::size_t row) const {
     const RunEnd end = data_->rows.ends[row];
     if (kind_ == Kind::outcome) return end.code();
     if (end == RunEnd()) return std::nullopt;  // the row has no run
+    if (kind_ == Kind::modes) return std::bit_cast<std::uint64_t>(data_->rows.modes[row]);
     return kind_ == Kind::held ? std::bit_cast<std::uint32_t>(data_->rows.held[row]) : data_->rows.signatures[row];
 }
 
@@ -90,7 +107,8 @@ std::string ColumnView::class_name(std::uint64_t code, std::size_t place, double
     if (kind_ == Kind::outcome) return std::string(RunEnd::from(static_cast<std::uint8_t>(code)).text());
     if (kind_ == Kind::sequence) return fmt::format("{}. ({:.{}f} %)", place + 1, 100.0 * share, share < 0.095 ? 1 : 0);
     std::string names;
-    for (std::size_t i = 0; i < data_->contacts.size(); ++i)
+    if (kind_ == Kind::modes) names = modes_text(data_->sliding, std::bit_cast<Mode>(code));
+    for (std::size_t i = 0; i < data_->contacts.size() && kind_ == Kind::held; ++i)
         if ((code >> i & 1u) != 0) names += (names.empty() ? "" : " + ") + data_->contacts[i];
     return names.empty() ? "no contact" : names;
 }

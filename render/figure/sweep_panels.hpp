@@ -42,7 +42,7 @@ class ColumnView {
     std::vector<std::pair<std::uint64_t, std::string>> classes() const;
 
  private:
-    enum class Kind { number, held, outcome, sequence };
+    enum class Kind { number, held, outcome, modes, sequence };
     std::string class_name(std::uint64_t code, std::size_t place, double share) const;
     const SweepData* data_;
     Kind kind_;

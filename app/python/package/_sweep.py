@@ -51,8 +51,8 @@ class Sweep(Mapping):
         for kind, name, unit in told["prints"]:
             if kind == "number":
                 self._values[name] = next(numbers).reshape(self.shape)
-            elif kind == "held":
-                self._values[name] = words[told["held"]].reshape(self.shape)
+            elif kind in ("held", "modes"):
+                self._values[name] = words[told[kind]].reshape(self.shape)
             if unit:
                 self.units[name] = unit
         self._values["outcome"] = words[told["ends"]].reshape(self.shape)
@@ -101,8 +101,9 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
     `over` has the axes: {"e": (0, 0.95, 200)}, {"e": ("log", 1e-3, 0.9, 100)}, an array of equidistant values, or strings as on
     the command line, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N and seed=S, give {"x": (-1, 1)},
     and N random points are drawn. `print` has the quantities to tabulate: expressions at the end of the run, zeno_time(k),
-    impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; or the derivative
-    of one of these numbers with respect to an initial coordinate, rate or parameter, "d(zeno_time(1), e)". With `at` they are
+    impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; with friction also heat, sticks,
+    slips, stick_time(k), slip_time(k), modes; or the derivative of one of these numbers with respect to an initial coordinate,
+    rate or parameter, "d(zeno_time(1), e)". With `at` they are
     tabulated at every "impact", "zeno" or "release", or where an expression crosses zero upward, from time `after` on. A failed
     run is a point with its outcome, and a warning gives the number of such runs.
 

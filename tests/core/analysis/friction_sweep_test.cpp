@@ -6,7 +6,9 @@
 
 #include "analysis/measures.hpp"
 #include "analysis/sweep.hpp"
+#include "analysis/table.hpp"
 #include "core/systems.hpp"
+#include "output/sweep_files.hpp"
 #include "simulate/simulate.hpp"
 #include "system/input_error.hpp"
 
@@ -16,7 +18,7 @@ namespace {
 std::vector<double> printed(const std::string& text, const std::vector<std::string>& prints) {
     const auto model = typed(text);
     const SystemDescription& system = model->description();
-    Run run = default_run(system);
+    auto run = default_run(system);
     run.options.tolerance = 1e-15;
     run.options.end_time = 5.0;
     const RunMeasures measures(model, make_sweep({.over = {"F=4:5:2"}, .prints = prints}, run, system));
@@ -47,6 +49,25 @@ friction = [{name = "joint", slip = "x'", level = "F"}]
     EXPECT_NEAR(found[7], 3.0 - 14.0 / A, 1e-12);
     EXPECT_NEAR(found[8], 14.0 / 205.0, 1e-13);
     EXPECT_NEAR(found[9], -14.0 / A, 1e-12);
+}
+
+// The text of the modes in the CSV, which other processes send as bytes.
+TEST(FrictionSweep, PrintsModes) {
+    const auto model = typed(R"toml(parameter = [{name = "mu", value = 0.3}]
+coordinate = [{name = "x", rate = 1}, {name = "y"}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y"
+constraint = [{name = "foot", gap = "y", restitution = 0, slip = "x'", friction = "mu"}]
+friction = [{name = "belt", slip = "x' - 2", level = 0.01}]
+)toml");
+    const SystemDescription& system = model->description();
+    auto run = default_run(system);
+    run.options.end_time = 2.0;
+    const SweepTable table(model, make_sweep({.over = {"mu=0.2:1:2"}, .prints = {"modes", "sticks"}}, run, system));
+    const Rows rows = table.rows(0, 2);
+    EXPECT_EQ(sweep_csv_heading(table, false) + sweep_csv(table, rows),
+              "mu,modes,sticks,outcome\n0.2,foot:slip++belt:slip-,0,end time\n1,foot:stick+belt:slip-,1,end time\n");
+    EXPECT_EQ(rows_from(to_bytes(rows), table), rows);
 }
 
 TEST(FrictionSweep, HasNoSticksWithoutFriction) {
