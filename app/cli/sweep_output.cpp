@@ -325,7 +325,8 @@ std::string SweepSummary::text() const {
             text += fmt::format("does not exist in any of the {} runs\n", totals_.runs);
             continue;
         }
-        const std::string low = fmt::format("{:.6g}", column.low), high = fmt::format("{:.6g}", column.high);
+        const std::string low = fmt::format("{:.6g}", column.low + 0.0),
+                          high = fmt::format("{:.6g}", column.high + 0.0);
         text += low == high ? low : fmt::format("{} to {}", low, high);
         text += fmt::format("{} in {} {}", unit_of(i), column.count, things);
         if (column.missing > 0 && !is_section)

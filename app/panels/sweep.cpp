@@ -33,7 +33,7 @@ constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
 
 // Quantities offered in the menu, and the derivative of the first with respect to the x axis.
 std::vector<std::string> offered_prints(const SystemDescription& description, const SweepSpec& sweep) {
-    const bool is_section = sweep.at.has_value();
+    const bool is_section = sweep.at.has_value(), has_friction = !sliding_places(description).empty();
     std::vector<std::string> prints;
     if (!is_section) prints = {"zeno_time(1)", "zeno_time(2)", "zeno_points", "impacts", "releases", "least_gap"};
     for (const CoordinateDescription& coordinate : description.coordinates) {
@@ -41,6 +41,9 @@ std::vector<std::string> offered_prints(const SystemDescription& description, co
         prints.push_back(coordinate.name + "'");
     }
     prints.emplace_back("energy");
+    if (has_friction) prints.insert(prints.end(), {"heat", "modes"});
+    if (has_friction && !is_section)
+        prints.insert(prints.end(), {"stick_time(1)", "slip_time(1)", "sticks", "slips", "reversals"});
     if (!is_section) prints.insert(prints.end(), {"held", "outcome"});
     Run run = default_run(description);
     const bool has_slope = !sweep.axes.empty() && find_value(description, run, sweep.axes.front().name) != nullptr &&

@@ -33,7 +33,8 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     const bool several = description.constraints.size() > 1;
     if (is_settable(description, print)) return unit_of(description, print);
     if (word == "zeno_time" || word == "impact_time" || word == "release_time") return "s";
-    if ((word == "stick_time" || word == "slip_time") && !sliding_places(description).empty()) return "s";
+    const bool is_of_friction = word == "stick_time" || word == "slip_time" || word == "reversal_time";
+    if (is_of_friction && !sliding_places(description).empty()) return "s";
     if (word == "impact_speed") return several ? "" : unit_of_expression(description, "gap'");
     if (word == "least_gap") return several ? "" : unit_of_expression(description, "gap");
     return unit_of_expression(description, print);
@@ -89,7 +90,8 @@ void check_quantity(const SystemDescription& description, const std::string& pri
         if (name == "held" || name == "outcome" || name == "modes")
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
-        if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips")
+        if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips" ||
+            name == "reversals")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "least_gap" || name == "work" || name == "loss" || name == "heat")
@@ -138,12 +140,17 @@ Program section_program(const Model& model, const std::string& zero) {
     try {
         return compile_option("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
     } catch (const InputError&) {
-        std::vector<std::string> events;
-        for (const EventNames& names : event_names) events.emplace_back(names.word);
-        const std::string best = nearest(zero, events);
+        std::vector<std::string> events, written;
+        for (const EventNames& names : possible_events(model.has_friction())) {
+            events.emplace_back(names.word);
+            written.push_back("--at " + events.back());
+        }
+        const std::string best = nearest(zero, events), last = written.back();
+        written.pop_back();
         if (best.empty() && zero.find("event") == zero.npos) throw;
-        throw InputError("--at " + shown(zero), {}, "unknown event",
-                         best.empty() ? "write --at impact, --at zeno or --at release" : "write --at " + best);
+        throw InputError(
+            "--at " + shown(zero), {}, "unknown event",
+            best.empty() ? fmt::format("write {} or {}", fmt::join(written, ", "), last) : "write --at " + best);
     }
 }
 
@@ -164,6 +171,9 @@ bool RunMeasures::prints_modes() const {
 
 RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sweep) : model_(std::move(model)) {
     refuse_late(sweep);
+    if (sweep.at && sweep.at->event && EventBase{*sweep.at->event}.is_friction() && !model_->has_friction())
+        throw InputError(fmt::format("--at {}", names_of(*sweep.at->event).word), {},
+                         "this is an event of friction, and this system has none");
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
     std::vector<std::string> names, quantities;

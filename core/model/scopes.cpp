@@ -299,10 +299,9 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         {"zeno_time", {time, zeno}},       {"impact_time", {time, impact}}, {"impact_speed", {speed, impact}},
         {"release_time", {time, release}}, {"zeno_points", {count, zeno}},  {"impacts", {count, impact}},
         {"releases", {count, release}},    {"least_gap", {least_gap, {}}}};
-    const std::pair<const char*, RunQuantity> of_friction[] = {{"stick_time", {time, stick}},
-                                                               {"slip_time", {time, Event::Kind::slip}},
-                                                               {"sticks", {count, stick}},
-                                                               {"slips", {count, Event::Kind::slip}}};
+    const std::pair<const char*, RunQuantity> of_friction[] = {
+        {"stick_time", {time, stick}}, {"slip_time", {time, Event::Kind::slip}}, {"reversal_time", {time, reversal}},
+        {"sticks", {count, stick}},    {"slips", {count, Event::Kind::slip}},    {"reversals", {count, reversal}}};
     if (layout.frictions > 0) {
         named.insert(named.end(), std::begin(of_friction), std::end(of_friction));
     } else {

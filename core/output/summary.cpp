@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "model/model.hpp"
@@ -364,12 +365,12 @@ std::string margins(const DerivativeMargins& m) {
 std::string summary(const Trajectory& trajectory, const Dependence& dependence) {
     const Derivatives& d = dependence.derivatives;
     std::string text = "\nderivatives of event times, and of the state at the fixed end time:\n";
-    int zeno = 0, releases = 0;
+    std::array<int, event_names.size()> counts{};
     for (std::size_t i = 0; i < d.events.size(); ++i) {
         const Event& event = trajectory.events[i];
+        const int k = ++counts[static_cast<std::size_t>(event.kind)];
         if (event.is_impact()) continue;
-        text += fmt::format("  {}_time({}): {}\n", names_of(event.kind).word, event.is_zeno() ? ++zeno : ++releases,
-                            row(d, d.events[i].t));
+        text += fmt::format("  {}_time({}): {}\n", names_of(event.kind).word, k, row(d, d.events[i].t));
     }
     const auto& coordinates = trajectory.model->description().coordinates;
     for (std::size_t i = 0; d.end && i < coordinates.size(); ++i) {

@@ -46,7 +46,8 @@ ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data)
 }
 
 bool ColumnView::is_count() const {
-    return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases" || name_ == "sticks" || name_ == "slips";
+    return name_ == "impacts" || name_ == "zeno_points" || name_ == "releases" || name_ == "sticks" ||
+           name_ == "slips" || name_ == "reversals";
 }
 
 std::string ColumnView::label() const { return kind_ == Kind::number ? with_unit(name(), unit_.text) : name(); }

@@ -34,13 +34,43 @@ TEST(FrictionCommands, CheckPrintsTheFriction) {
     EXPECT_NE(expanded.out.find("friction = \"mu\""), std::string::npos) << expanded.out;
 }
 
-// Until runs have friction.
 TEST(FrictionCommands, ProofsAreRefused) {
     const Folder folder;
     folder.put("block.toml", rough_block);
     const Answer answer = folder.run("prove ./block.toml");
     EXPECT_EQ(answer.status, 2);
     EXPECT_NE(answer.err.find("a proof does not cover friction"), std::string::npos) << answer.err;
+}
+
+// Events are numbered as in sweeps, those of one kind from 1 on.
+TEST(FrictionCommands, DerivativesNumberEventsByKind) {
+    const Folder folder;
+    const Answer run = folder.run("simulate stick_slip_belt --end 15 --derivatives");
+    EXPECT_EQ(run.status, 0) << run.err;
+    for (const char* name : {"  slip_time(1): ", "  stick_time(1): ", "  slip_time(2): "})
+        EXPECT_NE(run.out.find(name), std::string::npos) << name << run.out;
+    EXPECT_EQ(run.out.find("slip_time(3)"), std::string::npos) << run.out;
+    const Answer sweep = folder.run("sweep stick_slip_belt --over k=1:2:2 --end 15 --csv - --at stick --print x");
+    EXPECT_EQ(sweep.status, 0) << sweep.err;
+    EXPECT_EQ(sweep.out.substr(0, 22), "k,t,contact,x,outcome\n") << sweep.out;
+    const Answer wrong = folder.run("sweep stick_slip_belt --over k=1:2:2 --csv - --at some_event --print t");
+    EXPECT_EQ(wrong.status, 2);
+    const Answer smooth = folder.run("sweep ball_on_sine --over e=0:0.5:2 --csv - --at stick --print t");
+    EXPECT_EQ(smooth.status, 2);
+    EXPECT_EQ(smooth.err, "--at stick: this is an event of friction, and this system has none\n");
+    EXPECT_NE(wrong.err.find("write --at impact, --at zeno, --at release, --at stick, --at slip or --at reversal"),
+              std::string::npos)
+        << wrong.err;
+}
+
+TEST(FrictionCommands, SweepsPrintNoNegativeZero) {
+    const Folder folder;
+    folder.put("block.toml", rough_block);
+    const Answer answer = folder.run(
+        "sweep ./block.toml --over mu=0:0.1:2 --end 0.5 --print friction_force_floor "
+        "--csv f.csv");
+    EXPECT_EQ(answer.status, 0) << answer.err;
+    EXPECT_NE(answer.out.find("-0.1 to 0 in 2 runs"), std::string::npos) << answer.out;
 }
 
 TEST(FrictionCommands, TheEuclideanRestartIsRefused) {

@@ -49,6 +49,13 @@ def test_a_map_has_the_shape_of_the_grid(program):
         assert all(other[name].tobytes() == many[name].tobytes() for name in many)
 
 
+def test_modes_of_friction_are_the_programs(program):
+    many = achilles.sweep("block_on_incline", {"mu": (0.2, 1, 5)}, ["modes", "sticks"])
+    table = frame(program("sweep", "block_on_incline", "--over", "mu=0.2:1:5", "--print", "modes", "--print", "sticks"))
+    assert many["modes"].tolist() == table["modes"].tolist() and set(many["modes"]) == {"incline:slip+", "incline:stick"}
+    assert same(many["sticks"], table["sticks"])
+
+
 def test_the_hdf5_of_the_program_has_the_same_arrays(program, tmp_path):
     h5py = pytest.importorskip("h5py")
     path = tmp_path / "map.h5"

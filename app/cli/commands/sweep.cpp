@@ -163,8 +163,9 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     add_texts(
         *command, "--print", typed.prints, "WHAT",
         "quantity to tabulate: an expression at the end of the run, zeno_time(k), impact_time(k), impact_speed(k), "
-        "release_time(k), zeno_points, impacts, releases, least_gap, their derivatives such as d(zeno_time(1), e), "
-        "held or outcome; repeatable");
+        "release_time(k), zeno_points, impacts, releases, least_gap; with friction also heat, stick_time(k), "
+        "slip_time(k), reversal_time(k), sticks, slips, reversals; derivatives such as d(zeno_time(1), e); held, "
+        "outcome, with friction modes; repeatable");
     const auto text_option = [&](const char* flag, std::optional<std::string>& place, const char* type,
                                  const char* about) {
         command
@@ -174,7 +175,8 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
     };
     text_option(
         "--at", typed.at, "impact|zeno|release|EXPRESSION",
-        "tabulate at every event of this kind, or where the expression crosses zero upward, instead of at the end");
+        "tabulate at every event of this kind (with friction also stick, slip or reversal), or where the expression "
+        "crosses zero upward, instead of at the end");
     text_option("--after", typed.after, "T", "with --at: tabulate from this time on, s (default: the start)");
     text_option("--random", typed.random, "N",
                 "number of random points instead of a grid; --over then takes NAME=LOW:HIGH");
