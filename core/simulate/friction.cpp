@@ -219,9 +219,8 @@ void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
 void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) {
     if (contacts.empty() || outcome_) return;
     if (kind != Event::Kind::release && ++friction_events_ > run_.options.max_events)
-        return stop(Outcome::Kind::too_many_events,
-                    fmt::format("{} sticks, slips and reversals by t = {:.9g}; try a larger --max-events",
-                                run_.options.max_events, next_.state.t));
+        return stop(Outcome::Kind::too_many_events, fmt::format("{} sticks, slips and reversals by t = {:.9g}",
+                                                                run_.options.max_events, next_.state.t));
     Event event;
     event.kind = kind;
     event.contacts = contacts;
@@ -346,7 +345,12 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         std::string names;
         for (const FrictionProblem::Element& each : problem.elements)
             names += (names.empty() ? "" : ", ") + name_of(each.which);
-        if (!chosen.is_unique)
+        if (!chosen.is_unique && problem.elements.size() == 1 && !is_joint(problem.elements.front().which))
+            stop(Outcome::Kind::redundant_contacts,
+                 fmt::format("the slip of {} is a multiple of its gap rate, so that its forces are not unique while it "
+                             "sticks, at {}",
+                             names, where(next_.state)));
+        else if (!chosen.is_unique)
             stop(Outcome::Kind::redundant_contacts,
                  fmt::format("the forces of {} are not unique while they stick, at {}", names, where(next_.state)));
         else

@@ -250,6 +250,9 @@ void read_friction(const Fields& fields, ConstraintDescription& constraint) {
                          "add slip, scaled like the gap: for gap = \"y - r\" it is \"x' + r*phi'\", or \"x'\" for a "
                          "point; with 'between' in place of 'gap' it is derived"});
     constraint.never_slides = is_infinite(*friction);
+    if (const std::string_view word = friction->text.text; word == "Inf" || word == "INF" || word == "infinity")
+        throw Mistake{friction->text.at, fmt::format("unknown name '{}'", word),
+                      "write friction = \"inf\" for a contact that never slides"};
     if (constraint.never_slides && static_friction != nullptr)
         throw Mistake{static_friction->at, "'static_friction' besides friction = \"inf\"",
                       "leave it out: a contact that never slides has no limit"};

@@ -82,7 +82,19 @@ friction = [{name = "belt", slip = "x' - 0.2", level = 0.4, static_level = 1}]
     expect_outcome(run, Ending::too_many_events, "3 sticks, slips and reversals");
     EXPECT_EQ(run.events.size(), 3u);
     EXPECT_EQ(to_text(run.outcome.kind), "too many events");
+    EXPECT_EQ(run.outcome.message.find("try a larger"), std::string::npos) << "said once, by the summary";
     EXPECT_EQ(simulate_text(belt, 100.0).outcome.kind, Ending::end_time);
+}
+
+// A slip typed along the normal: pressing and sticking are one force.
+TEST(FrictionLimits, ASlipAlongTheNormalIsNamed) {
+    const std::string text = R"(coordinate = [{name = "x", rate = 1}, {name = "y"}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y"
+constraint = [{name = "floor", gap = "y", slip = "2*y'", restitution = 0, friction = 0.3}]
+)";
+    expect_outcome(simulate_text(text, 1.0), Ending::redundant_contacts,
+                   "the slip of 'floor' is a multiple of its gap rate");
 }
 
 // Kane's paradox: T rises from 0.5 to 0.6328125 (theory-friction.md 3).

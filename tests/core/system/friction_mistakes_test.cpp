@@ -43,6 +43,9 @@ TEST_P(FrictionMistakes, AreToldWithTheirPlace) {
 }
 
 const FrictionMistake friction_mistakes[] = {
+    {"AnotherWordForInf", "friction = \"mu\"\nstatic_friction = 0.4", "friction = \"infinity\"",
+     "f.toml:8:13: unknown name 'infinity'\n    friction = \"infinity\"\n                ^\nwrite friction = \"inf\" "
+     "for a contact that never slides"},
     {"WithoutSlip", "slip = \"x' + R*phi'\"\n", "",
      "f.toml:7:12: friction needs the sliding velocity: 'slip' is missing\n    friction = \"mu\"\n               "
      "^\nadd slip, scaled like the gap: for gap = \"y - r\" it is \"x' + r*phi'\", or \"x'\" for a point; with "
