@@ -165,15 +165,20 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
     const double error = session.precision().of_energy(sample_at(session.trajectory(), event));
     row(with_unit("energy", typeset_unit(unit_of_expression(description, "energy"))),
         number(reason.energy_before, error, 6), number(reason.energy_after, error, 6));
-    row("energy lost",
-        with(number(flush_noise_to_zero(reason.energy_before - reason.energy_after, std::abs(reason.energy_before)),
-                    error, 6),
-             "energy"));
-    const bool several = session.model()->contacts() > 1;
+    const auto energy_row = [&](const char* name, double value) {
+        row(name, with(number(flush_noise_to_zero(value, std::abs(reason.energy_before)), error, 6), "energy"));
+    };
+    const bool several = session.model()->contacts() > 1, has_friction = session.model()->has_friction();
+    const double heat = has_friction ? Slips(session.trajectory()).heat_of_impact(event) : 0.0;
+    energy_row("energy lost", reason.energy_before - reason.energy_after - heat);
+    if (has_friction) energy_row("heat of friction", heat);
     show_proved(session, index);
     std::string words =
-        why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr,
-                    shown_unit(unit_of_expression(description, output_names(description, "gap''")[first])));
+        has_friction && !reason.cut
+            ? "Not cut: with friction a cut needs a proof that all further impacts slide, or that all stick, and "
+              "errors within the tolerances."
+            : why_not_cut(reason, reason.attempt ? &*reason.attempt : nullptr, several, event.joint != nullptr,
+                          shown_unit(unit_of_expression(description, output_names(description, "gap''")[first])));
     if (several) {
         for (const auto& [contact, impulse] : Impulses(session.trajectory()).of(index))
             row("impulse on " + description.constraints[contact].name,

@@ -108,9 +108,11 @@ float button_width(const char* text) { return ImGui::CalcTextSize(text).x + 2.0F
 float comparing_width() { return button_width(both_ways) + units(button_gap) + button_width("unpin"); }
 
 // Buttons from x on: pin the current run, and compare the two sets of truncation conditions.
-void show_comparing(float x, PanelState& state, Commands& commands) {
+void show_comparing(float x, const Session& session, PanelState& state, Commands& commands) {
     const float pin_width = button_width("unpin");
+    const bool has_friction = session.model()->has_friction();
     ImGui::SameLine(x + pin_width + units(button_gap));
+    ImGui::BeginDisabled(has_friction);
     if (ImGui::Button(both_ways)) {
         using namespace command;
         commands.insert(commands.end(),
@@ -118,9 +120,10 @@ void show_comparing(float x, PanelState& state, Commands& commands) {
                          Pin{}, SetConditions{Conditions::sharp}, SetReinitialization{Reinitialization::kinetic}});
     }
     remember(state, "compare");
-    tooltip(
-        "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with the kinetic "
-        "restart");
+    ImGui::EndDisabled();
+    tooltip(has_friction ? "the paper's conditions and the Euclidean restart do not go with dry friction"
+                         : "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with "
+                           "the kinetic restart");
     ImGui::SameLine(x);
     if (ImGui::Button("pin", {pin_width, 0.0F})) commands.emplace_back(command::Pin{});
     remember(state, "pin");
@@ -206,7 +209,7 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
     if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
     remember(state, "copy events");
     tooltip("copy the selected event, or all events, as a table with all digits, for a spreadsheet (Ctrl+C)");
-    show_comparing(buttons, state, commands);
+    show_comparing(buttons, session, state, commands);
 }
 
 // Aligns decimal points, whatever digits the error leaves.

@@ -83,6 +83,23 @@ TEST(FrictionPanels, TheCardOfAnEventTellsTheForces) {
     EXPECT_EQ(ramp.hands.session.selected(), 0);
 }
 
+// It falls from 1/2 m, to w = 1 m/s and the slip 1.5 m/s: p = 1.5, p_T = -0.9, loss p w/4, heat 0.9*(1.5 + 0.6)/2.
+TEST(FrictionPanels, TheCardOfAnImpactTellsHeatFromLoss) {
+    std::string text = block_on_ramp;
+    const auto replace = [&](const std::string& from, const std::string& to) {
+        text.replace(text.find(from), from.size(), to);
+    };
+    replace("{name = \"y\",", "{name = \"y\", start = 0.5,");
+    replace("rate = -1,", "rate = 1,");
+    RoughHands ramp(text);
+    ASSERT_TRUE(ramp.hands.session.trajectory().events.at(0).is_impact());
+    ramp.hands.session.apply(command::Select{1});
+    ramp.hands.rest(2);
+    for (const char* words : {"energy lost0.375", "heat of friction0.945", "Not cut: with friction a cut needs a proof"})
+        EXPECT_TRUE(ramp.hands.says(words)) << words << "\n" << ramp.hands.letters();
+    EXPECT_FALSE(ramp.hands.says("several contacts take part"));
+}
+
 // Below tan(angle) = 0.5 it does not stay: the run and its sentences change while the slider moves.
 TEST(FrictionPanels, TheSliderOfMuActsAtOnce) {
     RoughHands ramp(block_on_ramp);
@@ -113,6 +130,9 @@ TEST(FrictionPanels, NoProofIsOffered) {
         ramp.hands.rest(40);
         EXPECT_TRUE(ramp.hands.says(refusal)) << button;
     }
+    ramp.hands.click("compare");
+    EXPECT_EQ(ramp.hands.session.error(), "");
+    EXPECT_TRUE(ramp.hands.session.pinned().empty());
     ramp.hands.session.apply(parse_command("prove"));
     EXPECT_NE(ramp.hands.session.error().find("a proof does not cover friction"), std::string::npos);
     EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr);
