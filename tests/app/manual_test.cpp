@@ -326,6 +326,30 @@ TEST(Schema, HoldsForEverySystemOfTheGallery) {
     EXPECT_GE(rough, 9);
 }
 
+// Bouncing that slides to the Zeno point, and bouncing that sticks.
+TEST(Schema, HoldsForZenoPointsWithFriction) {
+    const Folder folder;
+    folder.put("point.toml", R"toml(title = "a point on a slope"
+coordinate = [{name = "x"}, {name = "y", start = 0.5}]
+parameter = [{name = "a", value = 0.3}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y - a*x"
+constraint = [{name = "slope", gap = "y", restitution = 0.5, slip = "x'", friction = 0.5}]
+)toml");
+    for (const char* a : {"0.3", "0.45"}) {
+        const Answer answer = folder.run(std::string("simulate ./point.toml --end 4 --json - --set a=") + a);
+        EXPECT_EQ(answer.status, 0) << answer.err;
+        const json run = json::parse(answer.out);
+        EXPECT_EQ(faults_of(run), std::vector<std::string>()) << a;
+        const auto zeno = std::find_if(run["events"].begin(), run["events"].end(),
+                                       [](const json& event) { return event["kind"] == "zeno"; });
+        ASSERT_NE(zeno, run["events"].end());
+        const bool sticks = std::string(a) == "0.3";
+        EXPECT_EQ(zeno->at("certificate").at("tail"), sticks ? "stick" : "slip");
+        EXPECT_EQ(zeno->contains("sticks_from"), sticks);
+    }
+}
+
 TEST(Schema, HoldsForForcesMovingAndSeveralGaps) {
     const Folder folder;
     int systems = 0;

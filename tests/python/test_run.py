@@ -136,6 +136,23 @@ def test_every_entry_of_a_record_is_annotated(name, conditions):
         assert set(record) <= set(type(record).__annotations__), type(record)
 
 
+@pytest.mark.parametrize("a, tail", [(0.3, "stick"), (0.45, "slip")])
+def test_a_zeno_point_with_friction(a, tail):
+    point = achilles.System("""title = "a point on a slope"
+coordinate = [{name = "x"}, {name = "y", start = 0.5}]
+parameter = [{name = "a", value = 0.3}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y - a*x"
+constraint = [{name = "slope", gap = "y", restitution = 0.5, slip = "x'", friction = 0.5}]
+""")
+    run = achilles.simulate(point, a=a, end=4)
+    zeno = next(event for event in run.events if event.kind == "zeno")
+    assert zeno.certificate.tail == tail and ("sticks_from" in zeno) == (tail == "stick")
+    assert zeno.modes == {"slope": "stick" if tail == "stick" else "slip+"}
+    for record in [*run.events, *run.certificates, *run.phases]:
+        assert set(record) <= set(type(record).__annotations__), type(record)
+
+
 def test_the_same_bytes_twice():
     one, other = (achilles.simulate("driven_double_pendulum", e=0.4) for _ in range(2))
     assert one.to_json() == other.to_json() and one.q.tobytes() == other.q.tobytes()
