@@ -15,6 +15,16 @@ namespace {
 // At most this many contacts and joints with friction are decided together.
 constexpr int max_rough = 4;
 
+// Whether the only contact has a slip that is a multiple of its gap rate.
+bool slides_along_normal(const FrictionProblem& problem) {
+    if (problem.elements.size() != 1) return false;
+    const Eigen::Index gap = problem.elements.front().gap, slip = problem.elements.front().slip;
+    if (gap < 0 || slip < 0) return false;
+    const double both = problem.W(gap, gap) * problem.W(slip, slip), mixed = problem.W(gap, slip);
+    constexpr double rounding = 1e-12;
+    return both - mixed * mixed <= rounding * both;
+}
+
 }  // namespace
 
 std::string ExecutionAutomaton::name_of(std::size_t which) const {
@@ -345,7 +355,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         std::string names;
         for (const FrictionProblem::Element& each : problem.elements)
             names += (names.empty() ? "" : ", ") + name_of(each.which);
-        if (!chosen.is_unique && problem.elements.size() == 1 && !is_joint(problem.elements.front().which))
+        if (slides_along_normal(problem))
             stop(Outcome::Kind::redundant_contacts,
                  fmt::format("the slip of {} is a multiple of its gap rate, so that its forces are not unique while it "
                              "sticks, at {}",

@@ -70,7 +70,7 @@ TEST(FrictionCommands, SweepsPrintNoNegativeZero) {
         "sweep ./block.toml --over mu=0:0.1:2 --end 0.5 --print friction_force_floor "
         "--csv f.csv");
     EXPECT_EQ(answer.status, 0) << answer.err;
-    EXPECT_NE(answer.out.find("-0.1 to 0 in 2 runs"), std::string::npos) << answer.out;
+    EXPECT_NE(answer.err.find("-0.1 to 0 in 2 runs"), std::string::npos) << answer.err;
 }
 
 TEST(FrictionCommands, TheEuclideanRestartIsRefused) {
