@@ -95,7 +95,8 @@ TEST(FrictionPanels, TheCardOfAnImpactTellsHeatFromLoss) {
     ASSERT_TRUE(ramp.hands.session.trajectory().events.at(0).is_impact());
     ramp.hands.session.apply(command::Select{1});
     ramp.hands.rest(2);
-    for (const char* words : {"energy lost0.375", "heat of friction0.945", "Not cut: with friction a cut needs a proof"})
+    for (const char* words :
+         {"energy lost0.375", "heat of friction0.945", "Not cut: with friction a cut needs a proof"})
         EXPECT_TRUE(ramp.hands.says(words)) << words << "\n" << ramp.hands.letters();
     EXPECT_FALSE(ramp.hands.says("several contacts take part"));
 }
