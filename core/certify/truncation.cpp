@@ -134,6 +134,7 @@ ConditionsBase::ConditionsBase(const Model& model, const Run& run, const OtherCo
     : dof_(static_cast<std::size_t>(model.dof())),
       truncation_(run.options.truncation),
       variables_(std::move(variables)),
+      is_alone_(model.contacts() == 1),
       unpressed_(unpressed),
       other_contact_terms_(others) {
     if (other_contact_terms_ != nullptr)
@@ -147,7 +148,7 @@ bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
     other_contact_program_.run();
     proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
     if (!proved) return false;
-    if (proved->held.empty() && !proved->least_gap) proved.reset();  // there is no other contact
+    if (is_alone_) proved.reset();
     return true;
 }
 

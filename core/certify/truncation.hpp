@@ -137,6 +137,7 @@ class ConditionsBase {
 
  private:
     std::vector<std::uint32_t> variables_;
+    bool is_alone_;  // there is no other contact, but joints may be there
     ContactSet unpressed_;
     const OtherContactTerms* other_contact_terms_;
     Evaluator<Interval> other_contact_program_;

@@ -79,6 +79,21 @@ TEST(SeveralContacts, AnImpactThatOpensAnotherIsToldInJson) {
     EXPECT_EQ(json["end"]["loss"], trajectory.loss);
 }
 
+// Both corners bounce together, so that there is no third contact: the certificate says so.
+TEST(SeveralContacts, ACertificateOfAPairHasTheBoundsOnTheOthers) {
+    const auto model = test::load("box_dropped_flat");
+    const Json json = Json::parse(to_json(simulate(model, model->default_run())));
+    int pairs = 0;
+    for (const Json& event : json["events"]) {
+        if (event["kind"] != "zeno") continue;
+        ++pairs;
+        EXPECT_EQ(event["certificate"]["transmission"], Json::object());
+        EXPECT_EQ(event["certificate"]["least_force"], Json::object());
+        ASSERT_TRUE(event["certificate"].contains("least_other_gap"));
+    }
+    EXPECT_EQ(pairs, 1);
+}
+
 TEST(SeveralContacts, WhatIsPassedOnToHeldOnesIsToldInJson) {
     const Trajectory trajectory = test::run_gaps("bowl_and_post");
     const Json json = Json::parse(to_json(trajectory));
