@@ -102,6 +102,24 @@ std::string multiplier_text(const std::complex<double>& mu, int digits) {
                        digits);
 }
 
+// The largest size of a multiplier, but for that of a shift in time.
+double largest_multiplier(const OrbitPoint& point) {
+    const std::size_t first = point.is_autonomous ? 1 : 0;
+    return point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
+}
+
+// Whether the largest multiplier has size 1 within its accuracy, as where the equations do not depend on a coordinate
+// that the motion shifts.
+bool is_neutral(const OrbitPoint& point) {
+    constexpr double accuracy = 1e-6;
+    return !point.stable && largest_multiplier(point) <= 1.0 + accuracy;
+}
+
+const char* stability_word(const OrbitPoint& point) {
+    if (point.stable) return "stable";
+    return is_neutral(point) ? "neutral" : "unstable";
+}
+
 }  // namespace
 
 std::string multipliers_text(const OrbitPoint& point, int digits) {
@@ -117,11 +135,11 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
 }
 
 std::string stability_text(const OrbitPoint& point) {
-    const std::size_t first = point.is_autonomous ? 1 : 0;
-    const double most = point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
-    if (!point.stable) return fmt::format("unstable: perturbations grow by a factor {:.4g} per period", most);
-    if (most == 0.0) return "stable: perturbations vanish within a period";
-    return fmt::format("stable: perturbations shrink to {:.4g} of their size per period", most);
+    const double most = largest_multiplier(point);
+    if (point.stable && most == 0.0) return "stable: perturbations vanish within a period";
+    if (point.stable) return fmt::format("stable: perturbations shrink to {:.4g} of their size per period", most);
+    if (is_neutral(point)) return "neutral: no perturbation grows, but some do not shrink (multipliers of size 1)";
+    return fmt::format("unstable: perturbations grow by a factor {:.4g} per period", most);
 }
 
 std::string margins_text(const OrbitPoint& point) {
@@ -246,7 +264,7 @@ std::string branch_answer(const Branch& branch, const SystemDescription& descrip
 std::string orbit_answer(const Orbit& orbit, const Branch* branch) {
     const SystemDescription& description = orbit.run.model->description();
     std::string text = fmt::format("{}: {} periodic orbit, period {:.14g} s\n\n", description.title,
-                                   orbit.stable ? "stable" : "unstable", orbit.period);
+                                   stability_word(orbit), orbit.period);
     text += fmt::format("  {}\n", stability_text(orbit));
     text += fmt::format("  multipliers   {}\n", multipliers_text(orbit, 8));
     text += fmt::format("  one period    {}\n", period_line(orbit));

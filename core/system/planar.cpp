@@ -11,15 +11,15 @@ PlanarVector::PlanarVector(const ProductSum& angle, const ProductSum& x, const P
 
 PlanarVector operator+(const PlanarVector& a, const PlanarVector& b) {
     PlanarVector result = a;
-    for (const auto& [angle, x, y] : b.terms) {
+    for (const RotatedVector& added : b.terms) {
         const auto like = std::find_if(result.terms.begin(), result.terms.end(),
-                                       [&](const RotatedVector& term) { return term.angle == angle; });
+                                       [&](const RotatedVector& term) { return term.angle == added.angle; });
         if (like == result.terms.end()) {
-            result.terms.push_back({angle, x, y});
+            result.terms.push_back(added);
             continue;
         }
-        like->x = like->x + x;
-        like->y = like->y + y;
+        like->x = like->x + added.x;
+        like->y = like->y + added.y;
         if (like->x.is_zero() && like->y.is_zero()) result.terms.erase(like);
     }
     return result;

@@ -192,9 +192,10 @@ void read_lagrangian(FileReader& reading, const Fields& root) {
     Fields fields(*root.find("lagrangian"), "[lagrangian]");
     fields.allow(keys_of("[lagrangian]"), reading.mistakes);
     const bool is_derived = reading.expansion.has_failed;  // then a missing energy follows from other mistakes
-    for (const auto& [key, text] :
+    for (const auto& energy :
          {std::pair("kinetic", &reading.system.kinetic), std::pair("potential", &reading.system.potential)})
-        if (!is_derived || fields.find(key)) reading.mistakes.attempt([&] { *text = fields.expression(key); });
+        if (!is_derived || fields.find(energy.first))
+            reading.mistakes.attempt([&] { *energy.second = fields.expression(energy.first); });
     reading.mistakes.attempt([&] { reading.system.dissipation = fields.expression_or_none("dissipation"); });
 }
 

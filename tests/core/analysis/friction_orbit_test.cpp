@@ -7,6 +7,7 @@
 
 #include "analysis/orbit.hpp"
 #include "core/systems.hpp"
+#include "output/output.hpp"
 
 namespace achilles::test {
 namespace {
@@ -86,6 +87,9 @@ friction = 0.3
     EXPECT_NEAR(found.orbit->multipliers[1].real(), 1.0, 1e-8);
     EXPECT_NEAR(found.orbit->multipliers[2].real(), -0.8391556530475859, 1e-8);
     EXPECT_EQ(found.orbit->multipliers[2].imag(), 0.0);
+    EXPECT_EQ(stability_text(*found.orbit),
+              "neutral: no perturbation grows, but some do not shrink (multipliers of size 1)");
+    EXPECT_NE(orbit_answer(*found.orbit, nullptr).find("neutral periodic orbit"), std::string::npos);
 }
 
 }  // namespace
