@@ -122,7 +122,7 @@ std::span<const GalleryGroup> gallery() {
           "cart_between_walls", "backlash", "newtons_cradle", "seesaw", "table_on_legs"}},
         {"dry friction",
          {"block_on_incline", "stick_slip_belt", "spun_disc", "bead_on_rough_sine", "rough_pendulum", "rocking_block",
-          "ladder", "spinning_ball_between_walls", "painleve_rod"}}};
+          "woodpecker", "ladder", "spinning_ball_between_walls", "painleve_rod"}}};
     return groups;
 }
 

@@ -51,35 +51,9 @@ TEST(FrictionOrbit, OfTheBeltWithAFallingCoefficient) {
 // Glocker's woodpecker falls by 0.0194 m in each period. Contact 2 sticks, which forgets three directions. Of the
 // others one is the flow, and one is a shift along the pole, which changes nothing.
 TEST(FrictionOrbit, OfTheWoodpecker) {
-    const auto model = typed(R"toml(coordinate = [{name = "y", rate = -0.01}, {name = "pM", start = "-0.0006/0.0058"},
-              {name = "pS", start = -0.205, rate = 17.57}]
-parameter = [{name = "mM", value = 3e-4}, {name = "JM", value = 5e-9}, {name = "mS", value = 4.5e-3},
-             {name = "JS", value = 7e-7}, {name = "lM", value = 0.01}, {name = "lG", value = 0.015},
-             {name = "c", value = 5.6e-3}, {name = "g", value = 9.81}]
-lagrangian.kinetic = """(mS + mM)*y'^2/2 + mS*y'*(lM*pM' + lG*pS') + (JM + mS*lM^2)*pM'^2/2 + mS*lM*lG*pM'*pS'
-    + (JS + mS*lG^2)*pS'^2/2"""
-lagrangian.potential = "g*((mS + mM)*y + mS*(lM*pM + lG*pS)) + c/2*(pM - pS)^2"
-[[constraint]]
-name = "beak"
-gap = "0.0024 - 0.02*pS"
-restitution = 0.5
-slip = "y' + lM*pM' + (lG - 0.0201)*pS'"
-friction = 0.3
-[[constraint]]
-name = "low"
-gap = "0.0006 + 0.0058*pM"
-restitution = 0
-slip = "y' + 0.0031*pM'"
-friction = 0.3
-[[constraint]]
-name = "up"
-gap = "0.0006 - 0.0058*pM"
-restitution = 0
-slip = "y' + 0.0031*pM'"
-friction = 0.3
-)toml");
     const OrbitSearchResult found =
-        search(model, 1.0, {{"0.14597606514375182", {}}, {{"-0.019445379284716526658", {}}, {"0", {}}, {"0", {}}}});
+        search(load("woodpecker"), 1.0,
+               {{"0.14597606514375182", {}}, {{"-0.019445379284716526658", {}}, {"0", {}}, {"0", {}}}});
     ASSERT_TRUE(found.orbit) << found.reason;
     EXPECT_NEAR(found.orbit->period, 0.14597606514375182352691686, 1e-12);
     EXPECT_EQ(found.orbit->zero_multipliers, 3u);
