@@ -115,6 +115,10 @@ std::vector<std::complex<double>> free_multipliers(const ReturnMap& map, const S
     std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
         return std::abs(a) != std::abs(b) ? std::abs(a) > std::abs(b) : a.imag() > b.imag();
     });
+    // A change of a free coordinate stays as it is: a multiplier that is exactly 1.
+    for (std::size_t i = 0; i < map.free_coordinates().size() && !all.empty(); ++i)
+        all.erase(std::min_element(all.begin(), all.end(),
+                                   [](const auto& a, const auto& b) { return std::abs(a - 1.0) < std::abs(b - 1.0); }));
     return all;
 }
 
@@ -129,9 +133,9 @@ void set_section(const ReturnMap& map, const ConvergedOrbit& closed, Orbit& orbi
     const ShootingPoint& lap = closed.lap;
     // (dx, dT)/dp of the start; without a drive, perpendicular to the flow.
     MatrixXd A = MatrixXd::Zero(2 * n + 1, 2 * n + 1), r = MatrixXd::Zero(2 * n + 1, P);
-    A.topLeftCorner(2 * n, 2 * n) = shot.M - MatrixXd::Identity(2 * n, 2 * n);
-    A.topRightCorner(2 * n, 1) = shot.F1;
-    r.topRows(2 * n) = -shot.P;
+    A.topLeftCorner(2 * n, 2 * n) = map.return_matrix(shot);
+    A.topRightCorner(2 * n, 1) = map.without_free(shot.F1);
+    r.topRows(2 * n) = -map.without_free(shot.P);
     if (map.is_driven()) {
         A(2 * n, 2 * n) = 1.0;
         if (P > 0) r.row(2 * n) = map.period(lap.parameters).slope;
@@ -145,11 +149,12 @@ void set_section(const ReturnMap& map, const ConvergedOrbit& closed, Orbit& orbi
     const double start_time = map.run().options.start_time;
     const Event* const last = shot.run.events.empty() ? nullptr : &shot.run.events.back();
     const auto unshift = [&] {
-        for (Index i = 0; i < n; ++i) {
-            const auto shift = map.shift(static_cast<std::size_t>(i), lap.parameters);
-            orbit.state.q[i] -= shift.value;
-            if (P > 0) orbit.parameter_derivatives.row(i) -= shift.slope;
-        }
+        orbit.state.q -= shot.shift;
+        for (Index i = 0; i < n && P > 0; ++i)
+            orbit.parameter_derivatives.row(i) -=
+                map.is_free(i)
+                    ? shot.M.row(i) * by.topRows(2 * n) - by.row(i) + shot.F1[i] * by.row(2 * n) + shot.P.row(i)
+                    : map.shift(static_cast<std::size_t>(i), lap.parameters).slope;
     };
     if (!map.is_driven() && last != nullptr && last->is_release()) {
         orbit.is_at_release = true;
@@ -190,7 +195,10 @@ Orbit orbit_of(const ReturnMap& map, const ConvergedOrbit& closed) {
     constexpr double rounding = 1e-9;
     orbit.stable = std::all_of(orbit.multipliers.begin(), orbit.multipliers.end(),
                                [](const auto& mu) { return std::abs(mu) < 1.0 - rounding; });
-    if (orbit.is_autonomous) orbit.multipliers.insert(orbit.multipliers.begin(), 1.0);
+    for (const std::size_t i : map.free_coordinates())
+        orbit.free.emplace_back(map.model()->description().coordinates[i].name,
+                                closed.shot.shift[static_cast<Index>(i)]);
+    orbit.multipliers.insert(orbit.multipliers.begin(), orbit.shifts(), 1.0);
     orbit.multipliers.resize(static_cast<std::size_t>(2 * map.dof()));
     orbit.margins = closed.shot.derivatives.margins;
     set_psi(*map.model(), closed.shot.run, orbit);
@@ -208,7 +216,7 @@ double shifts_from_start(const ReturnMap& map, const ConvergedOrbit& closed) {
     const auto& events = closed.shot.run.events;
     const bool at_release = !map.is_driven() && !events.empty() && events.back().is_release();
     for (Index i = 0; i < map.dof(); ++i) {
-        const double shift = map.shift(static_cast<std::size_t>(i), closed.lap.parameters).value;
+        const double shift = closed.shot.shift[i];
         const double begins = at_release ? events.back().q[i] - shift : closed.lap.x[i];
         along += (begins - map.run().q[i]) * shift;
         square += shift * shift;
@@ -229,8 +237,7 @@ ConvergedOrbit put_in_place(const ReturnMap& map, const ShootingSolver& newton, 
     if (!map.is_driven() && any && !last_is_release()) closed = newton.close(rebased(map, closed.lap, true));
     ShootingPoint lap = closed.lap;
     const double shifts = shifts_from_start(map, closed);
-    for (Index i = 0; i < map.dof(); ++i)
-        lap.x[i] -= shifts * map.shift(static_cast<std::size_t>(i), lap.parameters).value;
+    lap.x.head(map.dof()) -= shifts * closed.shot.shift;
     if (!map.is_driven())
         lap.start_time = map.run().options.start_time +
                          (last_is_release() ? lap.period - (closed.shot.run.events.back().t - lap.start_time) : 0.0);

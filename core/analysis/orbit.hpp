@@ -36,7 +36,7 @@ struct OrbitMonitor {
 // The condition of return: the period, and the shift of the coordinates. Expressions in the parameters.
 struct ReturnCondition {
     Text period;              // of the drive; a guess without a drive; empty: unknown
-    std::vector<Text> shift;  // by coordinate; empty entries are 0; may be empty
+    std::vector<Text> shift;  // by coordinate; empty entries are 0, free_shift: any; may be empty
 };
 
 // Default options for orbit searches: the tightest tolerances that double precision supports.
@@ -57,13 +57,18 @@ struct OrbitPoint {
     // time.
     State state;
     State flight;  // the state in the middle of a flight, where a run can start
-    // The 2n eigenvalues of the monodromy matrix, in decreasing size, with the flow's 1 first.
+    // Coordinates whose shift is free (ReturnMap), and their shift over a period.
+    std::vector<std::pair<std::string, double>> free;
+    // The 2n eigenvalues of the monodromy matrix, in decreasing size, after the flow's 1 and that of each free
+    // coordinate.
     std::vector<std::complex<double>> multipliers;
     // Number of multipliers that are exactly 0: two for every contact held at one time, one for every contact or joint
     // that sticks at one time, by the rank of the monodromy matrix.
     std::size_t zero_multipliers = 0;
     bool is_autonomous = false;  // without a drive: one multiplier, that of a shift in time, is exactly 1
-    bool stable = false;         // all others are less than 1 in size
+    // How many multipliers belong to shifts in time and of free coordinates.
+    std::size_t shifts() const { return free.size() + (is_autonomous ? 1 : 0); }
+    bool stable = false;  // all others are less than 1 in size
     DerivativeMargins margins;
     // a_inf^(1/kappa(e)), the smallest over the Zeno points; linear in a parameter near the loss of a Zeno point.
     std::optional<double> psi;

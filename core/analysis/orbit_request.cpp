@@ -11,6 +11,7 @@
 #include "expression/name_suggestions.hpp"
 #include "expression/parse.hpp"
 #include "model/option_expressions.hpp"
+#include "model/read_expressions.hpp"
 #include "sensitivity/chain.hpp"
 #include "simulate/simulate.hpp"
 
@@ -98,7 +99,7 @@ void read_closing(const OrbitOptions& typed, const Model& model, ReturnCondition
         const std::string where = "--shift " + shown(shift);
         const auto [name, text] = named(where, shift, "write --shift x=2*pi");
         const std::size_t place = place_of(where, name, model.description().coordinates, "coordinate");
-        check("--shift", text);
+        if (text != free_shift) check("--shift", text);
         closing.shift[place] = {text, {}};
     }
 }

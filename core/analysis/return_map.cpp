@@ -7,6 +7,7 @@
 
 #include "analysis/measures.hpp"
 #include "analysis/orbit.hpp"
+#include "model/read_expressions.hpp"
 #include "number/dense.hpp"
 #include "sensitivity/gradient.hpp"
 #include "simulate/sampler.hpp"
@@ -30,8 +31,10 @@ ReturnMap::ReturnMap(std::shared_ptr<const Model> model, const Run& run, const R
     std::vector<Text> texts{closing.period};
     texts.insert(texts.end(), closing.shift.begin(), closing.shift.end());
     texts.resize(1 + static_cast<std::size_t>(model_->dof()));
+    for (std::size_t i = 1; i < texts.size(); ++i)
+        if (texts[i].text == free_shift) free_.push_back(i - 1);
     for (Text& text : texts)
-        if (text.text.empty()) text.text = "0";
+        if (text.text.empty() || text.text == free_shift) text.text = "0";
     closing_ = model_->compile_of_parameters(texts);
     const double T = period(run.parameters).value;
     if (closing.period.text.empty()) {
@@ -80,6 +83,21 @@ ReturnMap::Value ReturnMap::value(std::size_t output, const std::vector<double>&
     value.value = gradient.value(output);
     value.slope = gradient.row(output).middleCols(tangent.p(0), static_cast<Index>(parameters.size()));
     return value;
+}
+
+bool ReturnMap::is_free(Index coordinate) const {
+    return std::find(free_.begin(), free_.end(), static_cast<std::size_t>(coordinate)) != free_.end();
+}
+
+MatrixXd ReturnMap::without_free(MatrixXd rows) const {
+    for (const std::size_t i : free_) rows.row(static_cast<Index>(i)).setZero();
+    return rows;
+}
+
+MatrixXd ReturnMap::return_matrix(const ShootingResult& shot) const {
+    MatrixXd A = without_free(shot.M - MatrixXd::Identity(shot.M.rows(), shot.M.cols()));
+    for (const std::size_t i : free_) A(static_cast<Index>(i), static_cast<Index>(i)) = 1.0;
+    return A;
 }
 
 VectorXd ReturnMap::rate(const std::vector<double>& parameters, const State& state, Mode mode) const {
@@ -148,8 +166,18 @@ ShootingResult ReturnMap::shoot(const ShootingPoint& lap, std::optional<std::siz
     VectorXd end(2 * n);
     end << shot.run.end.q, shot.run.end.v;
     shot.defect = end - lap.x;
+    shot.shift = shot.defect.head(n);
     for (Index i = 0; i < n; ++i) {
+        if (is_free(i)) {
+            constexpr double accuracy = 1e-6;
+            if (!((shot.M.col(i) - VectorXd::Unit(2 * n, i)).norm() <= accuracy))
+                throw OrbitNotFound(fmt::format("the motion depends on {}, so its shift cannot be free",
+                                                model_->description().coordinates[static_cast<std::size_t>(i)].name));
+            shot.defect[i] = 0.0;
+            continue;
+        }
         const Value shift = this->shift(static_cast<std::size_t>(i), lap.parameters);
+        shot.shift[i] = shift.value;
         shot.defect[i] -= shift.value;
         shot.P.row(i) -= shift.slope;
     }
@@ -182,9 +210,9 @@ MatrixXd ShootingSolver::matrix(const ShootingResult& shot, const ShootingPoint&
     const Index m = lap.x.size();
     const auto p = static_cast<Index>(parameter_);
     MatrixXd A = MatrixXd::Zero(m + 2, m + 2);
-    A.topLeftCorner(m, m) = shot.M - MatrixXd::Identity(m, m);
-    A.block(0, m, m, 1) = shot.F1;
-    if (shot.P.cols() > 0) A.block(0, m + 1, m, 1) = shot.P.col(p);
+    A.topLeftCorner(m, m) = map_.return_matrix(shot);
+    A.block(0, m, m, 1) = map_.without_free(shot.F1);
+    if (shot.P.cols() > 0) A.block(0, m + 1, m, 1) = map_.without_free(shot.P.col(p));
     if (map_.is_driven()) {
         A(m, m) = 1.0;
         if (shot.P.cols() > 0) A(m, m + 1) = -map_.period(lap.parameters).slope[p];
@@ -340,10 +368,12 @@ double return_distance(const ReturnMap& map, const State& scale, const State& a,
     double sum = 0.0;
     const double q = std::max(scale.q.maxCoeff(), 1e-300), v = std::max(scale.v.maxCoeff(), 1e-300);
     for (Index i = 0; i < a.q.size(); ++i) {
+        sum += std::pow((b.v[i] - a.v[i]) / v, 2);
+        if (map.is_free(i)) continue;
         const double shift = map.shift(static_cast<std::size_t>(i), map.run().parameters).value;
         // A shifted coordinate is measured by its shift.
         const double size = shift != 0.0 ? std::abs(shift) : q;
-        sum += std::pow((b.q[i] - a.q[i] - shift) / size, 2) + std::pow((b.v[i] - a.v[i]) / v, 2);
+        sum += std::pow((b.q[i] - a.q[i] - shift) / size, 2);
     }
     return std::sqrt(sum);
 }

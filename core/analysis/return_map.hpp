@@ -35,6 +35,7 @@ struct ShootingPoint {
 struct ShootingResult {
     Trajectory run;
     Eigen::VectorXd defect;  // x(T) - x(0) - shift
+    Eigen::VectorXd shift;   // of the coordinates; a free one is what the run makes of it
     Eigen::MatrixXd M;       // derivative of x(T) by x(0): the monodromy matrix if the defect is 0
     Eigen::MatrixXd P;       // derivative of x(T) - shift by the parameters, at fixed T
     Eigen::VectorXd F0, F1;  // dx/dt at the start and at the end
@@ -63,6 +64,13 @@ class ReturnMap {
     Value shift(std::size_t coordinate, const std::vector<double>& parameters) const {
         return value(1 + coordinate, parameters);
     }
+    // The coordinates on which nothing depends and whose shift is what the motion makes of it. Their start is kept.
+    const std::vector<std::size_t>& free_coordinates() const { return free_; }
+    bool is_free(Eigen::Index coordinate) const;
+    // dx(T)/dx(0) - 1 for the equations of return: a row that keeps its start for each free coordinate.
+    Eigen::MatrixXd return_matrix(const ShootingResult& shot) const;
+    // Sets the rows of free coordinates to zero.
+    Eigen::MatrixXd without_free(Eigen::MatrixXd rows) const;
 
     // Simulates one period and differentiates it by all parameters, or by only one. Throws OrbitNotFound if the run
     // stops early, starts in contact, or has no derivative.
@@ -77,7 +85,8 @@ class ReturnMap {
 
     std::shared_ptr<const Model> model_;
     Run run_;
-    Program closing_;  // the period, then the shift by coordinate
+    Program closing_;                // the period, then the shift by coordinate
+    std::vector<std::size_t> free_;  // their shift in closing_ is 0
     OrbitMonitor* watch_;
 };
 

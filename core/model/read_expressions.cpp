@@ -213,7 +213,8 @@ void read_rest(const SystemDescription& system, const Layout& layout, Graph& gra
     if (!system.orbit) return;
     Scope in_orbit = closing_scope(system, layout, graph);
     reader.read(system.orbit->period, in_orbit);
-    for (const Text& text : system.orbit->shift) reader.read(text, in_orbit);
+    for (const Text& text : system.orbit->shift)
+        if (text.text != free_shift) reader.read(text, in_orbit);
 }
 
 }  // namespace

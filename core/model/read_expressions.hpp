@@ -10,6 +10,9 @@
 
 namespace achilles {
 
+// In place of the shift of a coordinate over a period: whatever the motion makes of it.
+inline constexpr std::string_view free_shift = "free";
+
 // Sets the given terms, kinetic, potential, Q, gaps, restitutions, frictions and M of the equations, in whose graph it
 // works. Adds the mistakes in these expressions and in the definitions of parameters, including those in T (kinetic_energy.hpp).
 // Missing texts are skipped. An unknown name is reported once per file, at its first place;

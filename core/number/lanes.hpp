@@ -39,7 +39,7 @@ struct alignas(Double8) Mask {
 
     Mask() = default;
     Mask(const Mask& x) { *this = x; }
-    Mask& operator=(const Mask& x) {
+    Mask& operator=(const Mask& x) {  // NOLINT(bugprone-unhandled-self-assignment)
         EACH_PART part[p] = x.part[p];
         return *this;
     }
@@ -72,7 +72,7 @@ struct alignas(Double8) Lanes {
 
     Lanes() = default;
     Lanes(const Lanes& x) { *this = x; }
-    Lanes& operator=(const Lanes& x) {
+    Lanes& operator=(const Lanes& x) {  // NOLINT(bugprone-unhandled-self-assignment)
         EACH_PART part[p] = x.part[p];
         return *this;
     }

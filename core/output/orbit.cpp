@@ -29,6 +29,8 @@ void add_point(Json& json, const OrbitPoint& point) {
     Json& multipliers = json["multipliers"] = Json::array();
     for (const auto& mu : point.multipliers) multipliers.push_back({number_json(mu.real()), number_json(mu.imag())});
     json["zero_multipliers"] = point.zero_multipliers;
+    Json& shifts = json["shift"] = Json::object();
+    for (const auto& [name, shift] : point.free) shifts[name] = number_json(shift);
     json["stable"] = point.stable;
     json["margins"] = {{"grazing_speed", number_json(point.margins.grazing_speed)},
                        {"gap_minimum", number_json(point.margins.gap_minimum)},
@@ -102,14 +104,12 @@ std::string multiplier_text(const std::complex<double>& mu, int digits) {
                        digits);
 }
 
-// The largest size of a multiplier, but for that of a shift in time.
+// The largest size of a multiplier, but for those of shifts in time and of free coordinates.
 double largest_multiplier(const OrbitPoint& point) {
-    const std::size_t first = point.is_autonomous ? 1 : 0;
-    return point.multipliers.size() > first ? std::abs(point.multipliers[first]) : 0.0;
+    return point.multipliers.size() > point.shifts() ? std::abs(point.multipliers[point.shifts()]) : 0.0;
 }
 
-// Whether the largest multiplier has size 1 within its accuracy, as where the equations do not depend on a coordinate
-// that the motion shifts.
+// Whether the largest multiplier has size 1 within its accuracy, as where nothing depends on a coordinate.
 bool is_neutral(const OrbitPoint& point) {
     constexpr double accuracy = 1e-6;
     return !point.stable && largest_multiplier(point) <= 1.0 + accuracy;
@@ -127,7 +127,9 @@ std::string multipliers_text(const OrbitPoint& point, int digits) {
     const std::size_t rest = point.multipliers.size() - point.zero_multipliers;
     for (std::size_t i = 0; i < point.multipliers.size(); ++i) {
         text += fmt::format("{}{}", i > 0 ? ", " : "", multiplier_text(point.multipliers[i], digits));
-        if (i == 0 && point.is_autonomous) text += " (along the motion)";
+        const std::size_t first = point.is_autonomous ? 1 : 0;
+        if (i < first) text += " (along the motion)";
+        if (i >= first && i < point.shifts()) text += fmt::format(" (along {})", point.free[i - first].first);
         if (i + 1 == point.multipliers.size() && i >= rest)
             text += fmt::format(" (the last {} exactly)", point.zero_multipliers);
     }
@@ -242,6 +244,14 @@ std::string period_line(const Orbit& orbit) {
     return text.empty() ? "no events" : text;
 }
 
+// The shifts of free coordinates over a period: "y = -0.0194453793 m".
+std::string shifts_text(const OrbitPoint& point) {
+    std::string text;
+    for (const auto& [name, shift] : point.free)
+        text += fmt::format("{}{} = {:.12g}", text.empty() ? "" : ", ", name, shift);
+    return text;
+}
+
 std::string branch_answer(const Branch& branch, const SystemDescription& description) {
     const std::string& name = description.parameters[branch.parameter].name;
     std::string text =
@@ -268,6 +278,7 @@ std::string orbit_answer(const Orbit& orbit, const Branch* branch) {
     text += fmt::format("  {}\n", stability_text(orbit));
     text += fmt::format("  multipliers   {}\n", multipliers_text(orbit, 8));
     text += fmt::format("  one period    {}\n", period_line(orbit));
+    if (!orbit.free.empty()) text += fmt::format("  shift         {}\n", shifts_text(orbit));
     text += fmt::format("  start         {}, {}\n", named(description, orbit.state.q, ""),
                         named(description, orbit.state.v, "'"));
     if (branch != nullptr) text += branch_answer(*branch, description);

@@ -29,7 +29,7 @@ class Mode {
     static constexpr Mode holding(ContactSet contacts) { return Mode().with(contacts, ContactState::held); }
 
     constexpr ContactState state(std::size_t contact) const {
-        return static_cast<ContactState>((bits_ >> contact & 1u) | (bits_ >> (high + contact) & 1u) << 1);
+        return static_cast<ContactState>((bits_ >> contact & 1u) | (bits_ >> high >> contact & 1u) << 1);
     }
     // True for a contact that is closed and kept closed, whether it sticks or slips; for a joint with friction.
     constexpr bool is_held(std::size_t contact) const { return state(contact) != ContactState::open; }
@@ -83,7 +83,7 @@ class Mode {
                                    all = (1u << (max_contacts + max_joints)) - 1u;
     static constexpr std::uint32_t first_flag = 24;  // eight flags in each half
     static constexpr std::uint64_t flag(std::size_t contact) {
-        return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8));
+        return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8 % 2));
     }
     static constexpr std::uint64_t low_bits(std::uint64_t set, ContactState state) {
         return (static_cast<std::uint32_t>(state) & 1u) != 0 ? set : 0u;

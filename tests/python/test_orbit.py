@@ -36,7 +36,7 @@ def test_it_says_what_the_program_says(program):
     text = program(*words, "--json", "-")
     assert found.to_json() == text and str(found) == program(*words)
     told = json.loads(text)
-    for name in ("period", "zero_multipliers", "stable", "margins", "psi", "section", "newton", "options"):
+    for name in ("period", "zero_multipliers", "shift", "stable", "margins", "psi", "section", "newton", "options"):
         assert getattr(found, name) == told[name], name
     assert found.parameters == told["system"]["parameters"] and found.parameters["e"] == 0.3
     assert found.options.tolerance == 1e-13 and found.options.eps_q == 1e-11

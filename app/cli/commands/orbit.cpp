@@ -99,8 +99,9 @@ void add_orbit(CLI::App& program, int& status, PictureJob& job) {
     add("--period", arguments->typed.period, "EXPRESSION",
         "period in s, an expression in the parameters such as 2*pi/om: of the drive, or a guess if there is no drive");
     command
-        ->add_option("--shift", arguments->typed.shifts,
-                     "shift of a coordinate after one period, such as x=2*pi; repeatable")
+        ->add_option(
+            "--shift", arguments->typed.shifts,
+            "shift of a coordinate after one period, such as x=2*pi, or x=free if nothing depends on it; repeatable")
         ->type_name("NAME=EXPRESSION")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);

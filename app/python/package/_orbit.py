@@ -103,7 +103,9 @@ class Orbit(_Result):
         multiplier 1 of a shift in time comes before all others. The last `zero_multipliers` are exactly 0.""")
     zero_multipliers: int = entry(
         "zero_multipliers", "The number of multipliers that are exactly 0: a Zeno point removes two directions.")
-    stable: bool = entry("stable", "Whether all multipliers, except that of a shift in time, are less than 1 in size.")
+    shift: dict[str, float] = entry("shift", "How far the coordinates with a free shift move in a period.")
+    stable: bool = entry(
+        "stable", "Whether all multipliers, except those of shifts in time and of free coordinates, are less than 1 in size.")
     margins: Record = entry(
         "margins", "How close the run is to a point without derivatives: grazing_speed, gap_minimum, a_inf, release_jerk.")
     psi: float | None = entry("psi", "a_inf^(1/kappa(e)), linear in a parameter where a Zeno point is lost.")

@@ -130,6 +130,7 @@ class OrbitPoint(Record):
     state: Record
     multipliers: np.ndarray
     zero_multipliers: int
+    shift: dict[str, float]
     stable: bool
     margins: Record
     psi: float | None

@@ -66,5 +66,50 @@ TEST(FrictionOrbit, OfTheWoodpecker) {
     EXPECT_NE(orbit_answer(*found.orbit, nullptr).find("neutral periodic orbit"), std::string::npos);
 }
 
+// Nothing depends on the height of the woodpecker: how far it falls in a period is found, and is no instability.
+TEST(FreeShift, OfTheWoodpeckerIsFoundWithItsOrbit) {
+    const auto model = load("woodpecker");
+    const ReturnCondition closing{{"0.14597606514375182", {}}, {{"free", {}}, {"0", {}}, {"0", {}}}};
+    const OrbitSearchResult found = search(model, 1.0, closing);
+    ASSERT_TRUE(found.orbit) << found.reason;
+    const Orbit& orbit = *found.orbit;
+    EXPECT_NEAR(orbit.period, 0.14597606514375182352691686, 1e-12);
+    ASSERT_EQ(orbit.free.size(), 1u);
+    EXPECT_EQ(orbit.free[0].first, "y");
+    EXPECT_NEAR(orbit.free[0].second, -0.019445379284716526658, 1e-12);
+    EXPECT_EQ(orbit.multipliers[1], 1.0);
+    EXPECT_NEAR(orbit.multipliers[2].real(), -0.8391556530475859, 1e-8);
+    EXPECT_TRUE(orbit.stable);
+    EXPECT_EQ(multipliers_text(orbit, 4), "1 (along the motion), 1 (along y), -0.8392, 0, 0, 0 (the last 3 exactly)");
+    // The derivatives of period and state by the restitution of the beak.
+    const auto& parameters = model->description().parameters;
+    const Eigen::Index e = std::find_if(parameters.begin(), parameters.end(),
+                                        [](const auto& parameter) { return parameter.name == "e"; }) -
+                           parameters.begin();
+    constexpr double step = 1e-5;
+    const auto at = [&](double change) {
+        OrbitProblem problem;
+        problem.run = model->default_run();
+        problem.run.options.tolerance = tightest_options().tolerance;
+        problem.run.parameters[static_cast<std::size_t>(e)] += change;
+        problem.closing = closing;
+        return find_orbit(model, problem).orbit.value();
+    };
+    const Orbit more = at(step), less = at(-step);
+    EXPECT_NEAR(orbit.parameter_derivatives(6, e), (more.period - less.period) / (2.0 * step), 1e-8);
+    for (const Eigen::Index i : {1, 2})
+        EXPECT_NEAR(orbit.parameter_derivatives(i, e), (more.state.q[i] - less.state.q[i]) / (2.0 * step), 1e-7) << i;
+    for (Eigen::Index i = 0; i < 3; ++i)
+        EXPECT_NEAR(orbit.parameter_derivatives(3 + i, e), (more.state.v[i] - less.state.v[i]) / (2.0 * step), 1e-5)
+            << i;
+}
+
+TEST(FreeShift, IsRefusedWhereTheMotionDependsOnTheCoordinate) {
+    const OrbitSearchResult found =
+        search(load("woodpecker"), 1.0, {{"0.146", {}}, {{"free", {}}, {"free", {}}, {"0", {}}}});
+    ASSERT_FALSE(found.orbit);
+    EXPECT_EQ(found.reason, "the motion depends on theta, so its shift cannot be free");
+}
+
 }  // namespace
 }  // namespace achilles::test

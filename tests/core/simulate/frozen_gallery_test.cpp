@@ -70,12 +70,12 @@ TEST_P(RewrittenGallery, HasTheEventsOfItsEnergies) {
         bool is_tightest;
         double allowed;  // s
     };
-    for (const auto& [is_tightest, allowed] : {Accuracy{false, 1e-8}, Accuracy{true, 1e-11}}) {
+    for (const Accuracy& accuracy : {Accuracy{false, 1e-8}, Accuracy{true, 1e-11}}) {
         const auto run_in = [&](const std::string& folder) {
             const auto model =
                 std::make_shared<const Model>(read_system(test::source_file(folder + GetParam() + ".toml")));
             achilles::Run run = model->default_run();
-            if (is_tightest) {
+            if (accuracy.is_tightest) {
                 run.options.tolerance = 1e-14;
                 run.options.truncation.eps_q = run.options.truncation.eps_v = run.options.truncation.eps_t = 1e-12;
             }
@@ -87,7 +87,7 @@ TEST_P(RewrittenGallery, HasTheEventsOfItsEnergies) {
         for (std::size_t i = 0; i < typed.events.size(); ++i) {
             EXPECT_EQ(bodies.events[i].kind, typed.events[i].kind) << "event " << i;
             EXPECT_EQ(bodies.events[i].contacts, typed.events[i].contacts) << "event " << i;
-            EXPECT_NEAR(bodies.events[i].t, typed.events[i].t, allowed) << "event " << i;
+            EXPECT_NEAR(bodies.events[i].t, typed.events[i].t, accuracy.allowed) << "event " << i;
         }
     }
 }
