@@ -124,6 +124,17 @@ bool is_finite(const ErrorEstimate::FinalError& end) {
     return end.q.allFinite() && end.v.allFinite() && std::isfinite(end.reach());
 }
 
+// Why the truncation error of a step at time t (s) is infinite.
+std::string reason_of_overflow(const Trajectory& trajectory, double t) {
+    constexpr double near = 1e-6;  // s
+    if (trajectory.outcome.kind == Outcome::Kind::painleve && trajectory.end_time - t <= near)
+        return "the contact force grows without bound where the run stops";
+    return fmt::format(
+        "at t = {:.6g} s a function overflows in the truncation error of a step, as cosh(u)^2 does beyond u = 355; "
+        "write 1 - tanh(u)^2 for 1/cosh(u)^2",
+        t);
+}
+
 ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop) {
     const Options& options = trajectory.run.options;
     if (options.method != Method::taylor)
@@ -146,11 +157,7 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
     std::size_t steps = 0;
     while (const ChainLink* link = chain.next()) {
         if (stop.stop_requested()) return none("the estimate was cancelled");
-        if (!is_known(*link))
-            return none(
-                fmt::format("at t = {:.6g} s a function overflows in the truncation error of a step, as cosh(u)^2 does "
-                            "beyond u = 355; write 1 - tanh(u)^2 for 1/cosh(u)^2",
-                            chain.state().t));
+        if (!is_known(*link)) return none(reason_of_overflow(trajectory, chain.state().t));
         carried.follow(*link);
         if (link->kind == ChainLink::Kind::crossing) continue;
         if (link->kind == ChainLink::Kind::step || link->event) carried.round(chain.state(), tangent);

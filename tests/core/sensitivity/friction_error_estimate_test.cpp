@@ -76,5 +76,18 @@ constraint = [{name = "tip", gap = "y - sin(phi)", restitution = 0.5, slip = "x'
     }
 }
 
+// W falls to 0 at 45 degrees (theory-friction.md 2).
+TEST(FrictionErrorEstimate, NamesTheForceThatGrowsWithoutBound) {
+    const auto model = typed(R"toml(coordinate = [{name = "x", rate = -8},
+              {name = "y", start = "sin(pi/6)", rate = "1.5*cos(pi/6)"}, {name = "phi", start = "pi/6", rate = 1.5}]
+lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2/3)/2"
+lagrangian.potential = "9.81*y"
+constraint = [{name = "tip", gap = "y - sin(phi)", restitution = 0, slip = "x' + sin(phi)*phi'", friction = "5/3"}]
+)toml");
+    const Trajectory run = simulate(model, run_at(*model, 0.2, 1e-10));
+    ASSERT_EQ(run.outcome.kind, Outcome::Kind::painleve) << run.outcome.message;
+    EXPECT_EQ(estimate_error(run).no_estimate_reason, "the contact force grows without bound where the run stops");
+}
+
 }  // namespace
 }  // namespace achilles::test
