@@ -121,7 +121,7 @@ void show_comparing(float x, const Session& session, PanelState& state, Commands
     }
     remember(state, "compare");
     ImGui::EndDisabled();
-    tooltip(has_friction ? "the paper's conditions and the Euclidean restart do not go with dry friction"
+    tooltip(has_friction ? "the paper's conditions and the Euclidean restart cannot be used with dry friction"
                          : "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with "
                            "the kinetic restart");
     ImGui::SameLine(x);
@@ -157,7 +157,7 @@ void show_spreads(PanelState& state, Commands& commands) {
 void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
     const bool has_friction = session.model()->has_friction();
-    const std::string refusal = "achilles proves no run with dry friction; the estimated error is in the status line";
+    const std::string refusal = "runs with dry friction cannot be proved; the status line has the estimated error";
     const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
     ImGui::BeginDisabled(has_friction);
     ImGui::SameLine(x + width + units(2.0F));

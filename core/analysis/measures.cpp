@@ -173,7 +173,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
     refuse_late(sweep);
     if (sweep.at && sweep.at->event && EventBase{*sweep.at->event}.is_friction() && !model_->has_friction())
         throw InputError(fmt::format("--at {}", names_of(*sweep.at->event).word), {},
-                         "this is an event of friction, and this system has none");
+                         "only systems with friction have this event");
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
     std::vector<std::string> names, quantities;

@@ -176,8 +176,7 @@ Expression negative_force(const ModeEquations& before, std::size_t contact, Mode
     return W_NT.is_zero() ? c.hddot : c.hddot - s.udot * cancelled(W_NT / s.on_slips.at(contact));
 }
 
-// The contacts with an implied slip that share the friction force of this sticking contact: the next ones of higher
-// number, up to the next one that sticks by itself.
+// These are the next contacts of higher number, up to the next one that sticks by itself.
 ContactSet sharing_with(Mode mode, std::size_t contact, const FrictionLaws& laws) {
     ContactSet sharing;
     if (is_joint(contact)) return sharing;

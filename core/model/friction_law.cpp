@@ -57,7 +57,7 @@ void split_slip(const SystemDescription& system, const Layout& layout, const Tex
     if (std::any_of(law.d.begin(), law.d.end(), [](Expression e) { return !e.is_zero(); })) return;
     throw Mistake{text.at, law.c.is_zero() ? "the slip is 0 everywhere" : "the slip depends on no rate: nothing slides",
                   text.is_written ? fmt::format("a slip is the sliding velocity, as in {}'", system.coordinates[0].name)
-                                  : "what touches moves along the normal only: leave the friction out"};
+                                  : "the touching point moves only along the normal: leave the friction out"};
 }
 
 Expression at_slip_zero(Expression level, const Layout& layout, const Text& text) {

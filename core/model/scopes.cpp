@@ -138,7 +138,7 @@ Scope gap_scope(const SystemDescription& system, const Layout& layout, Graph& gr
 
 namespace {
 
-// Of friction: `why` gives the reason why rates are not allowed.
+// The scope of a coefficient or level of friction. `why` says why rates are not allowed.
 Scope level_scope(const SystemDescription& system, const Layout& layout, Graph& graph, const char* why) {
     Scope scope = position_scope(system, layout, graph, "friction", why);
     std::vector<std::string> forces = output_names(system, "lambda");
@@ -232,7 +232,7 @@ void allow_slips(Scope& scope, const SystemDescription& system, const Layout& la
                  const Equations& equations) {
     if (equations.friction.empty()) {
         for (const char* word : {"slip", "friction_force", "heat"})
-            scope.forbidden.emplace(word, fmt::format("'{}' is of friction, and this system has none", word));
+            scope.forbidden.emplace(word, fmt::format("'{}' needs friction, and this system has none", word));
         return;
     }
     scope.allowed.emplace("heat", graph.symbol(layout.heat()));
@@ -266,7 +266,7 @@ Scope view_scope(const SystemDescription& system, const Layout& layout, Graph& g
         if (names.empty())
             scope.forbidden.emplace(
                 contact_outputs[i],
-                fmt::format("{} is of a [[constraint]], and this system has none", in_quotes(contact_outputs[i])));
+                fmt::format("{} needs a [[constraint]], and this system has none", in_quotes(contact_outputs[i])));
         if (names.size() > 1)
             scope.forbidden.emplace(
                 contact_outputs[i],
@@ -306,14 +306,14 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         named.insert(named.end(), std::begin(of_friction), std::end(of_friction));
     } else {
         for (const auto& [name, quantity] : of_friction)
-            scope.forbidden.emplace(name, fmt::format("'{}' is of friction, and this system has none", name));
+            scope.forbidden.emplace(name, fmt::format("'{}' needs friction, and this system has none", name));
     }
     for (const auto& [name, quantity] : named) {
         scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;
         scope.listed.emplace(name, [input, one = quantity](int k) { return input({one.kind, one.event, k}); });
     }
-    if (layout.frictions == 0) scope.forbidden.emplace("modes", "'modes' is of friction, and this system has none");
+    if (layout.frictions == 0) scope.forbidden.emplace("modes", "'modes' needs friction, and this system has none");
     for (const char* word : {"held", "outcome", "modes"})
         scope.forbidden.emplace(word, fmt::format("'{}' is text: use it alone, not in an expression", word));
     return scope;

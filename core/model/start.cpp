@@ -33,9 +33,9 @@ void Model::check(const Run& run) const {
     };
     if (description_.has_friction() && is_euclidean(run.options))
         refuse(is_euclidean(description_.options) ? description_.reinitialization_at : Location{},
-               "the euclidean reinitialization does not go with friction", "use the default, kinetic");
+               "the euclidean reinitialization cannot be used with friction", "use the default, kinetic");
     if (description_.has_friction() && run.options.truncation.conditions == Conditions::paper)
-        refuse({}, "the conditions of the paper do not go with friction", "use the default, sharp");
+        refuse({}, "the conditions of the paper cannot be used with friction", "use the default, sharp");
     const std::size_t before = mistakes.count();
     for (std::size_t i = 0; i < run.parameters.size(); ++i) {
         const auto& parameter = description_.parameters[i];

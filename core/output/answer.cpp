@@ -228,7 +228,7 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::simultaneous_impacts:
             return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:
-            return "Remove a redundant contact or friction.";
+            return "Remove a redundant contact, or the friction of one.";
         case Outcome::Kind::painleve:
         case Outcome::Kind::impact_not_unique:
             return "Try a smaller friction coefficient, or choose an earlier --end.";

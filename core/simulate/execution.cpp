@@ -261,7 +261,7 @@ std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
     const std::string place = where(next_.state);
     if (result.which >= surfaces_->count())
         return fmt::format(
-            "cannot decide whether {} starts to slide, stops or turns: its slip or its friction force is "
+            "cannot decide whether {} starts to slide, stops or reverses: its slip or its friction force is "
             "within integration error of the limit just after {}",
             name_of(model_->motion(next_.mode).friction[result.which - surfaces_->count()].contact), place);
     if (next_.mode.is_held(result.which))

@@ -116,7 +116,7 @@ void TaylorStepper::evaluate_far(double duration) {
     }
 }
 
-// As accurate as the motion: terms decrease at least by half, so those left out are below the last two.
+// The sums are as accurate as the motion: terms decrease at least by half, so those left out are below the last two.
 std::optional<EnergyFlow> TaylorStepper::energy_flow() const {
     if (motion_->powers == 0 || span_ > longest_near) return std::nullopt;
     std::array<double, 2> flow{};

@@ -15,7 +15,7 @@ std::span<const FileTable> file_tables() {
           {"coordinate", "tables, 1 to 16", "[[coordinate]], in the order of the components of q"},
           {"parameter", "tables", "[[parameter]]"},
           {"lagrangian", "table, needed without bodies", "[lagrangian]"},
-          {"constraint", "tables", "[[constraint]]: at most 16; without any the motion is smooth"},
+          {"constraint", "tables", "[[constraint]]: at most 16, or none"},
           {"friction", "tables", "[[friction]]: dry friction without a gap; at most 8"},
           {"world", "table", "[world]: gravity and fixed points; from here to torque in place of [lagrangian]"},
           {"body", "tables", "[[body]]: the bodies, placed by the coordinates"},

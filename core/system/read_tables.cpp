@@ -255,7 +255,7 @@ void read_friction(const Fields& fields, ConstraintDescription& constraint) {
         throw Mistake{friction->text.at, fmt::format("unknown name '{}'", word),
                       "write friction = \"inf\" for a contact that never slides"};
     if (constraint.never_slides && static_friction != nullptr)
-        throw Mistake{static_friction->at, "'static_friction' besides friction = \"inf\"",
+        throw Mistake{static_friction->at, "'static_friction' together with friction = \"inf\"",
                       "leave it out: a contact that never slides has no limit"};
     if (static_friction != nullptr) constraint.static_friction = fields.expression("static_friction");
     constraint.friction = constraint.never_slides ? friction->text : fields.expression("friction");

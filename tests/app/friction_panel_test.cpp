@@ -121,7 +121,7 @@ TEST(FrictionPanels, TheSliderOfMuActsAtOnce) {
 // The button of proofs is disabled and says why; the command is refused as on the command line.
 TEST(FrictionPanels, NoProofIsOffered) {
     RoughHands ramp(block_on_ramp);
-    const std::string refusal = "achilles proves no run with dry friction";
+    const std::string refusal = "runs with dry friction cannot be proved";
     for (const char* button : {"prove", "prove more"}) {
         ramp.hands.click(button);
         EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr) << button;

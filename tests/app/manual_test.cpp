@@ -315,8 +315,9 @@ TEST(Schema, HoldsForEverySystemOfTheGallery) {
                                              conditions + " --json -");
             if (conditions == "paper" && derive(read_system(find_system(system)))->has_friction()) {
                 EXPECT_EQ(answer.status, 2) << system;
-                EXPECT_EQ(answer.err,
-                          system + ": the conditions of the paper do not go with friction\nuse the default, sharp\n");
+                EXPECT_EQ(
+                    answer.err,
+                    system + ": the conditions of the paper cannot be used with friction\nuse the default, sharp\n");
                 ++rough;
                 continue;
             }

@@ -84,7 +84,7 @@ lagrangian.potential = "F*x^2/2"
                 {"sticks"});
         FAIL() << "it is accepted";
     } catch (const InputError& error) {
-        EXPECT_NE(error.message.find("'sticks' is of friction, and this system has none"), std::string::npos)
+        EXPECT_NE(error.message.find("'sticks' needs friction, and this system has none"), std::string::npos)
             << error.message;
     }
 }

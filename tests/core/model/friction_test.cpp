@@ -164,7 +164,7 @@ TEST(Friction, IsPrintedByCheck) {
         << answer;
 }
 
-// Until runs have it. A proof refuses friction for good.
+// Runs are covered; a proof refuses the file at its first friction.
 TEST(Friction, IsNotCoveredByProofs) {
     const auto model = test::typed(on_waves);
     const auto refusal = [](const auto& start) {

@@ -61,7 +61,7 @@ TEST(SmoothSystem, HasNoGapInItsOutput) {
 
 TEST(SmoothSystem, HasNoGapInItsViews) {
     EXPECT_EQ(test::told_by_reading(smooth_oscillator + "view = [{name = \"v\", x = \"t\", y = [\"gap\"]}]\n"),
-              "f.toml:6:37: 'gap' is of a [[constraint]], and this system has none\n    view = [{name = \"v\", x = "
+              "f.toml:6:37: 'gap' needs a [[constraint]], and this system has none\n    view = [{name = \"v\", x = "
               "\"t\", y = "
               "[\"gap\"]}]\n                                        ^");
 }

@@ -63,7 +63,7 @@ const FileEdit in_keys[] = {
      "f.toml:24:1: missing key 'over' in [[drawing]] of shape curve\n    [[drawing]]\n    ^"},
     {"x = \"x\"\n", "", "f.toml:28:1: missing key 'x' in [[view]]\n    [[view]]\n    ^"},
     {"[[constraint]]\ngap = \"x - sin(theta)/9\"\nrestitution = \"e\"\n", "",
-     "f.toml:28:7: gap' is of a [[constraint]], and this system has none\n    y = [\"gap'\"]\n          ^"},
+     "f.toml:28:7: gap' needs a [[constraint]], and this system has none\n    y = [\"gap'\"]\n          ^"},
 };
 INSTANTIATE_TEST_SUITE_P(Keys, Mistakes, testing::ValuesIn(in_keys));
 
