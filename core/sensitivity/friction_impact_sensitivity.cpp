@@ -30,15 +30,15 @@ double impulse_of(const std::vector<std::pair<std::size_t, double>>& impulses, s
 // The gaps and slips of the loaded contacts, with derivatives by the components before the impact.
 struct Chain::ImpactRows {
     struct Row {
-        double impulse, rate;
+        double impulse = 0.0, rate = 0.0;
         RowVectorXd rate_row;
         VectorXd gradient, direction;             // G and M^-1 G', by coordinate
         RowMatrix gradient_rows, direction_rows;  // their derivatives
-        // Of a gap: its restitution. Of a slip: the row of its gap, and 0 if it sticks, else the sign of the slip.
-        double e;
+        // For a gap, its restitution. For a slip, the row of its gap, and the sign: 0 if it sticks.
+        double e = 0.0;
         RowVectorXd e_row;
-        std::size_t gap;
-        bool is_slip;
+        std::size_t gap = 0;
+        bool is_slip = false;
         int sign = 0;
         double coefficient = 0.0, coefficient_rate = 0.0;  // mu, and its derivative by u_s
         RowVectorXd coefficient_row;                       // at a fixed u_s
@@ -140,21 +140,10 @@ bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
         ContactGradient& gap = surface(contact, {});
         gap.at(state_);
         ImpactRows::Row& row = impact.rows.emplace_back();
-        row = {impulse,
-               lands ? -now.impact_speed : 0.0,
-               RowVectorXd::Zero(tangent_.size()),
-               {},
-               {},
-               {},
-               {},
-               0.0,
-               {},
-               impact.rows.size() - 1,
-               false,
-               0,
-               0.0,
-               0.0,
-               {}};
+        row.impulse = impulse;
+        row.rate = lands ? -now.impact_speed : 0.0;
+        row.rate_row = RowVectorXd::Zero(tangent_.size());
+        row.gap = impact.rows.size() - 1;
         row.rate_row[tangent_.u(contact)] = 1.0;  // a held contact has u' = 0
         row.e = surfaces_.restitution(contact).value;
         row.e_row = restitution(contact).row(0);

@@ -67,7 +67,7 @@ std::span<const FileTable> file_tables() {
           {"friction", "expression, 0",
            "Coulomb coefficient while sliding: a function of coordinates, t, parameters and slip, here the sliding "
            "speed; \"inf\": never slides while pressed"},
-          {"static_friction", "expression, friction at slip 0", "coefficient while sticking, without slip"},
+          {"static_friction", "expression, friction at slip 0", "coefficient while sticking; may not contain slip"},
           {"restitution", "expression, needed", "e, a function of the parameters, from 0 (plastic) to 1 (elastic)"},
           {"begins", "text", "the text printed when contact begins, as in \"knee locks\""},
           {"ends", "text", "the text printed when it ends, as in \"knee opens\""},
@@ -78,7 +78,8 @@ std::span<const FileTable> file_tables() {
           {"level", "expression, needed",
            "friction force while sliding, conjugate to slip: a function of coordinates, t, parameters and slip, here "
            "the sliding speed"},
-          {"static_level", "expression, level at slip 0", "friction force up to which it sticks, without slip"}}},
+          {"static_level", "expression, level at slip 0",
+           "largest friction force while sticking; may not contain slip"}}},
         {"[world]",
          {{"gravity", "[gx, gy], none", "functions of parameters and t"},
           {"points", "{name = [x, y], ...}", "fixed points, as in world.below"}}},

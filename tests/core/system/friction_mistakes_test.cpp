@@ -106,9 +106,8 @@ const FrictionMistake friction_mistakes[] = {
      "f.toml:8:19: 'static_friction' in [[constraint]] goes with 'friction'\n    static_friction = 0.4\n               "
      "       ^\nadd friction, the coefficient while sliding"},
     {"StaticBesidesInf", "friction = \"mu\"", "friction = \"inf\"",
-     "f.toml:9:19: 'static_friction' together with friction = \"inf\"\n    static_friction = 0.4\n                     "
-     " "
-     "^\nleave it out: a contact that never slides has no limit"},
+     "f.toml:9:19: 'static_friction' together with friction = \"inf\"\n    static_friction = 0.4\n"
+     "                      ^\nleave it out: a contact that never slides has no limit"},
     {"InfInAProduct", "friction = \"mu\"", "friction = \"2*inf\"",
      "f.toml:8:15: 'inf' stands alone: friction = \"inf\"\n    friction = \"2*inf\"\n                  ^"},
     {"InfiniteLevel", "level = 0.01", "level = \"inf\"",
@@ -186,9 +185,8 @@ const FrictionMistake friction_mistakes[] = {
      "value = 0.3}, {name =...\n                          ^\nwith friction slip_NAME and friction_force_NAME are "
      "reserved: choose another name"},
     {"Euclidean", "eps_q = 1e-6", "reinitialization = \"euclidean\"",
-     "f.toml:16:20: the euclidean reinitialization cannot be used with friction\n    reinitialization = "
-     "\"euclidean\"\n   "
-     "                    ^\nuse the default, kinetic"},
+     "f.toml:16:20: the euclidean reinitialization cannot be used with friction\n    reinitialization = \"euclidean\"\n"
+     "                       ^\nuse the default, kinetic"},
     {"RowThatVanishes", "slip = \"phi'\"", "slip = \"(x - 0.1)*phi'\"",
      "f.toml:13:9: the slip of 'axle' contains no rate at the start: its factors are 0\n    slip = \"(x - "
      "0.1)*phi'\"\n            ^\nchoose another start: friction cannot act there"},
