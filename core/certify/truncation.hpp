@@ -75,7 +75,7 @@ struct Collision {
     double speed = 0.0;    // w = |hdot| before
     Vector tangential;     // s = v- - n hdot
     Vector restart;        // after reinitialization: s, or v*
-    Vector position = {};  // q at the restart, if it differs from that before: of a contact that sticks at its impacts
+    Vector position = {};  // q at the restart of a contact that sticks at its impacts; else empty
     // The same position and time with another velocity.
     State with(const Vector& v) const { return {before.q, v, before.t}; }
 };
@@ -83,7 +83,7 @@ struct Collision {
 // Whether a proof will probably fail at an impact speed, from earlier proofs and guesses. It never replaces a proof.
 class SpeedGuess {
  public:
-    // The bounds fall with a power of w, so the last proof or guess is extrapolated.
+    // Extrapolates the last proof or guess, because the bounds fall with a power of w.
     bool fails(double speed);
     // A proof or guess at this speed was too wide by a factor that falls with this power of the speed.
     void remember(double speed, double too_wide, int power);
@@ -137,14 +137,14 @@ class ConditionsBase {
 
  private:
     std::vector<std::uint32_t> variables_;
-    bool is_alone_;  // there is no other contact, but joints may be there
+    bool is_alone_;  // there is no other contact; there may be joints
     ContactSet unpressed_;
     const OtherContactTerms* other_contact_terms_;
     Evaluator<Interval> other_contact_program_;
 };
 
-// What a certificate must contain. `decision`: what decides, and what the further motion depends on; the enclosure of
-// the accumulation time may then be wider, because nobody will read it.
+// How much a certificate must contain. `decision`: what decides the truncation, and what the further motion depends on.
+// The enclosure of the accumulation time may then be wider, because no report has it.
 enum class CertificateScope { full, decision };
 
 class TruncationConditions : protected ConditionsBase {
@@ -173,16 +173,12 @@ class TruncationConditions : protected ConditionsBase {
         if (certificate) certificate->cut_at_resolution = true;
         return certificate;
     }
-
- protected:
-    virtual std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) = 0;
-    virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
-
- public:
     // The restart of the motion in contact, before it is projected. A contact that sticks at its impacts drifts.
     virtual State restart_at(const Collision& collision) { return collision.with(collision.restart); }
 
  protected:
+    virtual std::optional<Certificate> do_certify(const Collision& collision, CertificateScope scope) = 0;
+    virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
     // The variation of -hddot at a collision.
     AccelerationTrend trend_at(const Collision& collision);
 

@@ -57,8 +57,8 @@ struct FrictionChoice {
     Kind kind = Kind::none;
     std::vector<FrictionMotion> motions;  // those that obey the laws, the chosen one first; else those in doubt
 };
-// Of several modes, those count in which most contacts and joints stick: a cone may contain the force although sliding
-// obeys the laws as well, if mu_s > mu.
+// If several modes obey the laws, those in which most contacts and joints stick count: with mu_s > mu, the cone of rest
+// may contain the force although sliding obeys the laws, too.
 FrictionChoice choose_mode(const FrictionProblem& problem);
 
 // Newton's impact law in Moreau's form with tangential restitution 0 (theory-friction.md 3), over the closed contacts:
@@ -82,6 +82,7 @@ struct FrictionImpact {
     // The restitutions of coupled contacts were multiplied by this factor, because the impact would gain energy.
     std::vector<std::pair<std::size_t, double>> caps;  // by element
 };
+// Solves the law. Contacts that W does not couple are solved apart.
 FrictionImpact friction_impact(const FrictionImpactProblem& problem);
 
 }  // namespace achilles

@@ -159,7 +159,7 @@ OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactM
 BouncingModel derive_bouncing(const BouncingContact& contact, const Equations& equations, const Layout& layout);
 
 // The terms of v = s + N sigma for two components of sigma: the columns of N, A, the accelerations of sigma in flight
-// at this velocity, and W. If A is `bent`, it is no polynomial of degree 2 in the velocity.
+// at this velocity, and W. If A is `bent`, it is not a polynomial of degree 2 in the velocity.
 TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array<Expressions, 2>& N,
                                           const Expressions& accelerations, const Expressions& delassus, bool bent,
                                           const Layout& layout);

@@ -31,7 +31,7 @@ struct Layout {
     // Acceleration of the gap and force of contact i, if there are several contacts.
     std::uint32_t acceleration(std::size_t i) const { return 2 * dof + p + 7 + static_cast<std::uint32_t>(i); }
     std::uint32_t force(std::size_t i) const { return acceleration(contacts) + static_cast<std::uint32_t>(i); }
-    // Of friction: |u| in a level; the heat so far; the force of friction k, in the order of the laws.
+    // For friction: |u| in a level, the heat so far, and the force of friction k in the order of the laws.
     std::uint32_t sliding_speed() const { return force(contacts); }
     std::uint32_t heat() const { return force(contacts) + 1; }
     std::uint32_t friction_force(std::size_t k) const { return force(contacts) + 2 + static_cast<std::uint32_t>(k); }
@@ -84,9 +84,8 @@ struct Equations {
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive
     bool autonomous = true;          // nothing depends on time
-    bool quadratic_in_rates =
-        true;  // the forces, and therefore f_c, have degree 2 or less in the rates; none depends on a
-               // sliding speed
+    // The forces, and therefore f_c, have degree 2 or less in the rates, and none depends on a sliding speed.
+    bool quadratic_in_rates = true;
 
     bool has_power() const;
     bool has_prescribed_motion() const { return kinetic != given.kinetic; }
@@ -112,11 +111,12 @@ class ContactModes {
     Graph& graph() { return graph_; }
     const FrictionLaws& friction() const { return friction_; }  // in this graph
 
-    // Of a mode with friction (model/friction.hpp).
+    // What friction watches in this mode (model/friction.hpp).
     WatchedFriction watched_friction(const ModeEquations& motion);
     // The work per time that a motion takes up from forces and moving surfaces; with friction, followed by its heat per
     // time. `work` is that of free flight.
     Expressions powers(Mode mode, Expression work);
+    // The forces of a contact or joint that is not open in this mode.
     FrictionForce force_of(std::size_t which, Mode mode);
     // hddot of a held contact, or with friction its negative force up to a positive factor.
     Expression watched_force(std::size_t contact, Mode mode);

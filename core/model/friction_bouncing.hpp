@@ -19,10 +19,10 @@ struct BouncingKey {
 };
 
 // Whether the impacts leave the others in their states: no contact is held, and joints that stick feel no impulse. A
-// joint that sticks and feels the impulses slides and sticks again in every flight, for ever.
+// joint that sticks and feels the impulses slides and sticks again in every flight, forever.
 bool has_bouncing(const BouncingKey& key, ContactModes& modes);
 
-// The programs of such a contact. Its slip may be kept at 0 by its impacts; then `sticking` is set.
+// The programs of such a contact. If it sticks at its impacts, `sticking` is set.
 BouncingModel derive_bouncing(const BouncingKey& key, ContactModes& modes, const Equations& equations,
                               const Layout& layout);
 // The conditions on the others, and on the slip of this contact.

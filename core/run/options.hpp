@@ -77,7 +77,7 @@ struct Option {
     std::string_view help = {};                    // help text
     std::string_view summary_text = {};            // in a line about a run, with {} for the value
     bool omit_if_default = false;                  // such lines omit it if it has the default value
-    bool is_of_friction = false;                   // data files omit it if it has the default value
+    bool is_of_friction = false;                   // only friction uses it; data files omit its default value
     bool is_tolerance = false;                     // values below min_tolerance cause a warning and are raised to it
     bool any_sign = false;                         // numbers only: negative values and 0 are allowed
     std::span<const std::string_view> words = {};  // allowed words; empty for numbers
@@ -99,7 +99,7 @@ std::vector<std::span<const Option>> options_by_command(const Options& from, con
 // tolerances.
 std::vector<const Option*> options_in_report_order(std::initializer_list<std::string_view> first = {});
 
-// True if data files omit the option: it is of friction, and has its default value.
+// True if data files omit the option: only friction uses it, and it has its default value.
 bool is_left_out(const Option& option, const Options& options);
 // True if the option may have this value: a number must be finite and, unless it takes any sign, positive; an integer
 // at least 1; a word one of the option's words.

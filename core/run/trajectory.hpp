@@ -141,13 +141,13 @@ struct Event : EventBase {
     double t = 0.0;
     Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts)
     double impact_speed = 0.0;    // impact: |hdot| before the impact
-    ContactSet contacts;  // those that impact, become held at a Zeno point, or release; contacts or joints of friction
+    ContactSet contacts;  // those that impact, become held at a Zeno point, or release; with friction, also joints
     Mode mode;            // after the event
     ContactSet opened;    // impact: contacts held before and opened by it
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
     double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
-    int sticks_from = 0;                            // zeno: the first of those after which none slides; 0: it slides
+    int sticks_from = 0;                            // zeno: the impact from which on all stick; 0: it slides
     struct TruncationRecord {                       // zeno: the impact at the cut, and the restart
         double t = 0.0;
         Vector q, v_before, v;  // v: after reinitialization

@@ -91,11 +91,11 @@ class ContactCache {
     // The gaps of these contacts and the slips of those among `sliding`, contacts and joints. Accelerations are those
     // of the mode, in which they are all open.
     ContactRows rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode);
-    // Whether a contact or joint has friction, and all of them.
+    // All contacts and joints with friction.
     ContactSet rough() const { return rough_; }
-    // Those whose coefficients depend on the state.
+    // The contacts and joints whose coefficients depend on the state.
     ContactSet varying() const { return varying_; }
-    // Those whose coefficients are 0 with the parameters of this run. They slide, and their slip is not watched: the
+    // Those with coefficients that are 0 for the parameters of this run. They slide, and their slip is not watched: the
     // events are those of a system without this friction.
     ContactSet frictionless() const { return frictionless_; }
     bool never_slides(std::size_t which) const { return model_->equations().friction.at(which).never_slides; }

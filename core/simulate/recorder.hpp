@@ -49,7 +49,7 @@ class Recorder {
     // Records an impact: the state before it, and its work and loss.
     void impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange, ContactSet contacts,
                 std::shared_ptr<const MultiContactInfo> joint = nullptr);
-    // Adds to the last impact what friction did.
+    // Adds the impulses of friction to the last impact.
     void friction_at_impact(std::shared_ptr<const Event::FrictionImpulses> friction);
     // Adds to the last impact the contacts that it opened and the mode after it.
     void after_impact(ContactSet opened, Mode mode);

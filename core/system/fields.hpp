@@ -59,7 +59,7 @@ class Fields {
     std::vector<std::string> misspelt_;  // keys present under a misspelled name
 };
 
-// For a text that is no name. A Greek letter is spelled out in the advice.
+// The mistake that a text is not a name. The advice spells out a Greek letter.
 Mistake no_name(const Text& name);
 
 // Reads the unit of the quantity. Degrees are not allowed, because sines are evaluated in radians; after this mistake

@@ -154,7 +154,7 @@ class PlacedMechanism {
         Fields fields;
         std::unique_ptr<RigidBody> body;  // one of the two
         std::unique_ptr<GroundSurface> ground;
-        bool has_unknown_keys;  // reported: what follows from the lack of the right ones is not
+        bool has_unknown_keys;  // they are reported, and what follows from them is not
         enum class State { unseen, on_the_way, done, failed } state = State::unseen;
         PlacedShape& shape() const { return body ? static_cast<PlacedShape&>(*body) : *ground; }
     };

@@ -27,10 +27,10 @@ class FrictionMarks {
     struct Mark {
         std::size_t which = 0;
         PhaseLook look = PhaseLook::contact;
-        Point at, normal,
-            tangent;            // the contact; unit vectors, `normal` out of the solid, `tangent` along a positive slip
-        double pressing = 0.0;  // normal force N; 0 for a joint
-        double friction = 0.0;  // friction force along `tangent`
+        Point at;                       // the contact
+        Point normal, tangent;          // unit vectors: out of the solid, and along a positive slip
+        double pressing = 0.0;          // normal force N; 0 for a joint
+        double friction = 0.0;          // friction force along `tangent`
         std::optional<double> limit{};  // largest friction force: mu N, or the level; nullopt: no friction, or no limit
         Point tip(double scale) const;  // of the force
     };

@@ -44,11 +44,11 @@ inline constexpr std::array<PhaseLook, 4> phase_looks{PhaseLook::flight, PhaseLo
 constexpr PhaseLook look_of(Phase::Kind kind) {
     return kind == Phase::Kind::hybrid ? PhaseLook::flight : PhaseLook::contact;
 }
-// The look of a phase of this kind and mode; of a sample too.
+// The look of a phase or a sample of this kind and mode.
 PhaseLook look_of(const Model& model, Phase::Kind kind, Mode mode);
 // The look of contacts and joints that are not open in this mode.
 PhaseLook look_of(const Model& model, ContactSet which, Mode mode);
-// The number of looks of a system's phases, the first ones: 2, or 4 with friction. A panel has so many curves for each
+// The number of looks that a system uses, from the first on: 2, or 4 with friction. A panel has so many curves for each
 // quantity.
 std::size_t look_count(const Model& model);
 // The looks that phases of a system may have.
