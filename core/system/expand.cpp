@@ -384,7 +384,8 @@ Text with_body_values(const SystemDescription& system, const Scope& scope, const
     const bool has_value = std::any_of(names.begin(), names.end(), [&](std::string_view name) {
         return name.find('.') != name.npos || is_body(name);
     });
-    if (mechanism.contacts.empty() || !has_value) return typed;
+    const bool has_bodies = !mechanism.bodies.empty() || !mechanism.contacts.empty();
+    if (!has_bodies || !has_value) return typed;
     const TomlValue root = read_toml(system.source_text, system.file);
     Names known;
     for (const auto& [name, symbol] : scope.allowed) known.places.emplace(name, Location{});

@@ -189,9 +189,8 @@ TEST(DrawingsOnBodies, AreTurnedWithTheirParameter) {
     EXPECT_EQ(curve->over_limits[1].text, "x + 1");
 }
 
-// ---- prescribed motion ----
+// ---- names of bodies ----
 
-// In axes that move and turn with time, a free body moves on a straight line of the world, and a free spin stays.
 // Views keep the names of bodies as typed, and every expression that is typed later knows them; a coordinate comes before
 // a body with its name.
 TEST(NamesOfBodies, StayInViewsAndAreKnownLater) {
@@ -232,6 +231,25 @@ view = [{x = "arm.end.x", y = ["2*arm.end.y", "s.y"]}]
     }
 }
 
+// `sweep --print arm.end.x` of a pendulum that touches nothing.
+TEST(NamesOfBodies, AreKnownWithoutAContact) {
+    const Model model(parse_system(R"toml(coordinate = [{name = "theta", start = 0.3, unit = "rad"}]
+body = [{name = "arm", mass = 1, rod = [[0, 0], [2, 0]], angle = "theta"}]
+)toml",
+                                   "f.toml"));
+    const Text typed{"arm.end.x", {}};
+    const Program program = model.compile_view({&typed, 1});
+    const achilles::Run start = model.default_run();
+    auto run = model.evaluator<double>(program, start.parameters);
+    set_state(run, {start.q, start.v});
+    run.run();
+    EXPECT_NEAR(run.output(0), 2.0 * std::cos(0.3), 1e-15);
+    EXPECT_EQ(unit_of_expression(model.description(), "arm.angle"), "rad");
+}
+
+// ---- prescribed motion ----
+
+// In axes that move and turn with time, a free body moves on a straight line of the world, and a free spin stays.
 TEST(PrescribedMotion, LeavesAFreeBodyOnAStraightLine) {
     const auto model = test::typed(
         R"toml(coordinate = [{name = "x", start = 0.4, rate = 0.3}, {name = "y", start = -0.2}, {name = "phi", rate = 2}]
