@@ -274,7 +274,7 @@ void Prover::move() {
     pass(step, Interval(length));
     step.advance(set_, length);
     retract(mode_);
-    if (mode_.is_free()) project(last_);
+    if (mode_.is_free() && z_.contacts > 0) project(last_);
     settle();
 }
 

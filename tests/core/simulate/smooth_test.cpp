@@ -3,6 +3,7 @@
 
 #include "check/check.hpp"
 #include "core/systems.hpp"
+#include "enclose/enclosure.hpp"
 #include "output/output.hpp"
 #include "sensitivity/error_estimate.hpp"
 #include "simulate/sampler.hpp"
@@ -40,6 +41,16 @@ TEST(SmoothSystem, RunsWithoutContacts) {
             EXPECT_LT(error.end->size(), 1e-6);
         }
     }
+}
+
+TEST(SmoothSystem, IsProved) {
+    const auto model = test::typed(smooth_oscillator);
+    const Enclosure proof = prove(model, problem_from_decimals(model->default_run()));
+    ASSERT_TRUE(proof.end) << proof.outcome.message;
+    EXPECT_TRUE(proof.events.empty());
+    EXPECT_NEAR(mid(proof.end->q[0]), std::cos(3.0), 1e-9);
+    EXPECT_NEAR(mid(proof.end->v[1]), 2.0 * std::cos(6.0), 1e-9);
+    EXPECT_LT(rad(proof.end->q[0]), 1e-9);
 }
 
 TEST(SmoothSystem, HasNoGapInItsOutput) {
