@@ -23,6 +23,11 @@
 
 namespace achilles {
 
+// contacts/friction_modes.hpp
+struct FrictionProblem;
+struct FrictionImpactProblem;
+struct FrictionImpact;
+
 // Text of a state, for messages.
 std::string where(const State& state);
 
@@ -171,6 +176,10 @@ class ExecutionAutomaton {
     void start_slip(const SlipStart& start, std::size_t event);
     void release_with_friction(std::size_t which);
     bool decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start = {});
+    FrictionProblem friction_problem(const ContactRows& rows, ContactSet decided, Mode sliding, Mode base,
+                                     const std::optional<SlipStart>& start);
+    void stop_at_paradox(const FrictionProblem& problem, const std::string& slips, bool none);
+    void stop_in_doubt(const FrictionProblem& problem, bool are_forces_unique);
     bool is_proved(Mode mode, ContactSet closed, Mode sliding);
     ContactSet at_zero_slip(ContactSet contacts_and_joints);
     Mode sliding_mode(ContactSet contacts_and_joints);
@@ -179,6 +188,11 @@ class ExecutionAutomaton {
     bool check_friction_levels(ContactSet contacts_and_joints);
     std::string slips_text(const ContactRows& rows, Mode sliding) const;
     void collide_with_friction(ContactSet landing);
+    ContactSet closing_with(ContactSet landing);
+    ContactRows rows_before_impact(ContactSet contacts, ContactSet still);
+    FrictionImpactProblem impact_problem(const ContactRows& rows, ContactSet contacts);
+    bool check_impact(const FrictionImpact& impact, ContactSet landing, ContactSet contacts);
+    std::optional<Mode> mode_after_impact(const ContactRows& rows, const FrictionImpact& impact, ContactSet contacts);
     // An impact with friction, before it is recorded.
     struct ImpactWithFriction {
         ContactSet landing;

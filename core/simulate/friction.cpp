@@ -39,7 +39,7 @@ ContactSet ExecutionAutomaton::all_joints() const {
     return joints;
 }
 
-// Those of the contacts and joints with friction whose slip is 0 within rounding.
+// The contacts and joints with friction, of these, whose slip is 0 within rounding.
 ContactSet ExecutionAutomaton::at_zero_slip(ContactSet contacts_and_joints) {
     constexpr double few = 4.0;
     ContactSet found;
@@ -167,7 +167,7 @@ void ExecutionAutomaton::start_slip(const SlipStart& start, std::size_t event) {
     enter_friction_mode(before);
 }
 
-// As release(): the force vanishes, and with it the friction force of this contact.
+// Like release(), for a contact with friction: its friction force vanishes with its force.
 void ExecutionAutomaton::release_with_friction(std::size_t which) {
     which_ = which;
     const Mode before = next_.mode;
@@ -277,35 +277,18 @@ std::string ExecutionAutomaton::slips_text(const ContactRows& rows, Mode sliding
 
 // ---- decision ----
 
-// Decides the modes of closed contacts and of all joints. In `sliding`, those with u = 0 are held or open, the others
-// slip. With `start`, that one must slip with this sign. Sets the mode and the starts of next_; false if the run ends.
-bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start) {
+// The closed contacts and joints to be decided, with the states that they may take. In `sliding` those with u = 0 are
+// held, the others slip. `base`: the mode of the joints whose forces are known.
+FrictionProblem ExecutionAutomaton::friction_problem(const ContactRows& rows, ContactSet decided, Mode sliding,
+                                                     Mode base, const std::optional<SlipStart>& start) {
     using enum ContactState;
-    forget_held();
-    const ContactSet joints = all_joints(), rough = closed.with(joints).within(surfaces_->rough());
-    if (!check_friction_levels(rough)) return false;
-    Mode base;  // joints that slip: their forces are known
-    ContactSet sliding_joints;
-    for (const std::size_t i : joints)
-        if (slip_sign(sliding.state(i)) != 0) {
-            base = base.with(i, sliding.state(i));
-            sliding_joints = sliding_joints.with(i);
-        }
-    const ContactSet decided = closed.with(joints).without(sliding_joints);
-    if (decided.within(surfaces_->rough()).count() > max_rough || closed.count() > max_closed_contacts) {
-        stop(Outcome::Kind::redundant_contacts,
-             fmt::format("{} contacts and joints with friction are closed or at rest at once, and at most {} can be "
-                         "resolved, at {}",
-                         decided.count(), max_rough, where(next_.state)));
-        return false;
-    }
-    ContactRows rows = surfaces_->rows(next_.state, closed, rough.without(sliding_joints), base);
-    const FrictionLaws& laws = model_->equations().friction;
     FrictionProblem problem;
     problem.W = rows.W;
     problem.accelerations.resize(rows.size());
     for (Eigen::Index k = 0; k < rows.size(); ++k)
         problem.accelerations[k] = rows.rows[static_cast<std::size_t>(k)].acceleration;
+    ContactSet starting;
+    if (start) starting = sharing_with(sliding, start->which, model_->equations().friction).with(start->which);
     for (const std::size_t i : decided) {
         FrictionProblem::Element each{i, rows.gap_of(i), rows.slip_of(i), 0.0, 0.0, false, {}};
         if (!is_joint(i)) each.states.push_back(open);
@@ -322,7 +305,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         if (never) each.resting = std::numeric_limits<double>::infinity();
         if (each.slides) {
             each.states.push_back(sliding.state(i));
-        } else if (start && (start->which == i || sharing_with(sliding, start->which, laws).contains(i))) {
+        } else if (starting.contains(i)) {
             each.states.push_back(slip_state(start->sign));
         } else {
             each.states.push_back(held);
@@ -330,20 +313,66 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         }
         problem.elements.push_back(each);
     }
-    if (problem.elements.empty()) {
+    group_equal_slips(problem);
+    return problem;
+}
+
+// Ends the run where rigid bodies have no motion (`none`), or several.
+void ExecutionAutomaton::stop_at_paradox(const FrictionProblem& problem, const std::string& slips, bool none) {
+    const bool pulls = none && std::any_of(problem.elements.begin(), problem.elements.end(),
+                                           [](const auto& each) { return std::isinf(each.resting); });
+    stop(Outcome::Kind::painleve,
+         fmt::format("{}: rigid bodies with this friction have {} motion from here{}, at {}", slips,
+                     none ? "no" : "more than one", pulls ? ": a foot that never slides would have to pull" : "",
+                     where(next_.state)));
+}
+
+// Ends the run where the forces of the chosen mode are not unique, or else the mode is not proved.
+void ExecutionAutomaton::stop_in_doubt(const FrictionProblem& problem, bool are_forces_unique) {
+    std::string names;
+    for (const FrictionProblem::Element& each : problem.elements)
+        names += (names.empty() ? "" : ", ") + name_of(each.which);
+    if (slides_along_normal(problem))
+        stop(Outcome::Kind::redundant_contacts,
+             fmt::format("the slip of {} is a multiple of its gap rate, so that its forces are not unique while it "
+                         "sticks, at {}",
+                         names, where(next_.state)));
+    else if (!are_forces_unique)
+        stop(Outcome::Kind::redundant_contacts,
+             fmt::format("the forces of {} are not unique while they stick, at {}", names, where(next_.state)));
+    else
+        stop(Outcome::Kind::undecided,
+             fmt::format("a force, or the acceleration of a gap or slip, is zero to within rounding: cannot decide "
+                         "whether {} sticks, slides or leaves, at {}",
+                         names, where(next_.state)));
+}
+
+// Decides the modes of closed contacts and of all joints. In `sliding`, those with u = 0 are held or open, the others
+// slip. With `start`, that one must slip with this sign. Sets the mode and the starts of next_; false if the run ends.
+bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start) {
+    forget_held();
+    const ContactSet joints = all_joints(), rough = closed.with(joints).within(surfaces_->rough());
+    if (!check_friction_levels(rough)) return false;
+    Mode base;  // joints that slip: their forces are known
+    for (const std::size_t i : joints)
+        if (slip_sign(sliding.state(i)) != 0) base = base.with(i, sliding.state(i));
+    const ContactSet decided = closed.with(joints).without(base.slipping());
+    if (decided.within(surfaces_->rough()).count() > max_rough || closed.count() > max_closed_contacts) {
+        stop(Outcome::Kind::redundant_contacts,
+             fmt::format("{} contacts and joints with friction are closed or at rest at once, and at most {} can be "
+                         "resolved, at {}",
+                         decided.count(), max_rough, where(next_.state)));
+        return false;
+    }
+    if (decided.empty()) {
         next_.mode = base;
         return true;
     }
-    group_equal_slips(problem);
+    const ContactRows rows = surfaces_->rows(next_.state, closed, rough.without(base.slipping()), base);
+    const FrictionProblem problem = friction_problem(rows, decided, sliding, base, start);
     const FrictionChoice choice = choose_mode(problem);
     if (choice.kind == FrictionChoice::Kind::none || choice.kind == FrictionChoice::Kind::several) {
-        const bool none = choice.kind == FrictionChoice::Kind::none;
-        const bool pulls = none && std::any_of(problem.elements.begin(), problem.elements.end(),
-                                               [](const auto& each) { return std::isinf(each.resting); });
-        stop(Outcome::Kind::painleve,
-             fmt::format("{}: rigid bodies with this friction have {} motion from here{}, at {}",
-                         slips_text(rows, sliding), none ? "no" : "more than one",
-                         pulls ? ": a foot that never slides would have to pull" : "", where(next_.state)));
+        stop_at_paradox(problem, slips_text(rows, sliding), choice.kind == FrictionChoice::Kind::none);
         return false;
     }
     const FrictionMotion& chosen = choice.motions.front();
@@ -352,22 +381,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         mode = mode.with(each.which, chosen.mode.state(each.which));
     for (const std::size_t i : implied_slips(problem, chosen.mode)) mode = mode.with_implied_slip(i);
     if (choice.kind == FrictionChoice::Kind::undecided || !chosen.is_unique || !is_proved(mode, closed, sliding)) {
-        std::string names;
-        for (const FrictionProblem::Element& each : problem.elements)
-            names += (names.empty() ? "" : ", ") + name_of(each.which);
-        if (slides_along_normal(problem))
-            stop(Outcome::Kind::redundant_contacts,
-                 fmt::format("the slip of {} is a multiple of its gap rate, so that its forces are not unique while it "
-                             "sticks, at {}",
-                             names, where(next_.state)));
-        else if (!chosen.is_unique)
-            stop(Outcome::Kind::redundant_contacts,
-                 fmt::format("the forces of {} are not unique while they stick, at {}", names, where(next_.state)));
-        else
-            stop(Outcome::Kind::undecided,
-                 fmt::format("a force, or the acceleration of a gap or slip, is zero to within rounding: cannot decide "
-                             "whether {} sticks, slides or leaves, at {}",
-                             names, where(next_.state)));
+        stop_in_doubt(problem, chosen.is_unique);
         return false;
     }
     next_.mode = mode;

@@ -21,37 +21,41 @@ Exchange energy_of_impact(const ContactRows& rows, const Eigen::VectorXd& impuls
     return total;
 }
 
-// Contacts that land, with those that are held or touch. Joints take no impulse, because their level is finite.
-void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
-    const ContactSet held = next_.held(), still = held.with(next_.touching);
-    for (std::size_t i = 0; i < surfaces_->count(); ++i) {  // others that close at the same time, within rounding
+// Adds to these contacts others that close at the same time, within rounding.
+ContactSet ExecutionAutomaton::closing_with(ContactSet landing) {
+    const ContactSet still = next_.held().with(next_.touching);
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (still.with(landing).contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         const double rounding = 4.0 * surfaces_->of(i).gap_error(next_.state);
         if (other.hdot < 0.0 && other.h <= rounding - 0x1p-50 * std::abs(next_.state.t) * other.hdot)
             landing = landing.with(i);
     }
-    const ContactSet all = still.with(landing);
-    if (all.count() > max_closed_contacts)
-        return stop(Outcome::Kind::redundant_contacts,
-                    fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
-                                all.count(), max_closed_contacts, names_of(all), where(next_.state)));
-    if (!surfaces_->project(next_.state, all, {})) return fail_projection();
-    if (!check_friction_levels(all)) return;
-    ContactRows rows = surfaces_->rows(next_.state, all, all.within(surfaces_->rough()), {});
+    return landing;
+}
+
+// The gaps and slips of these contacts before an impact. The rate is 0 for a gap that is `still` closed, and for a slip
+// that sticks.
+ContactRows ExecutionAutomaton::rows_before_impact(ContactSet contacts, ContactSet still) {
+    ContactRows rows = surfaces_->rows(next_.state, contacts, contacts.within(surfaces_->rough()), {});
+    for (ContactRows::Row& row : rows.rows) {
+        const bool is_kept =
+            row.is_slip ? next_.mode.state(row.which) == ContactState::held : still.contains(row.which);
+        if (is_kept) row.rate = 0.0;
+    }
+    return rows;
+}
+
+FrictionImpactProblem ExecutionAutomaton::impact_problem(const ContactRows& rows, ContactSet contacts) {
+    using enum ContactState;
     FrictionImpactProblem problem;
     problem.may_gain_energy = run_.options.energy_gain == EnergyGain::stop;
     problem.W = rows.W;
     problem.before.resize(rows.size());
-    for (Eigen::Index k = 0; k < rows.size(); ++k) {
-        ContactRows::Row& row = rows.rows[static_cast<std::size_t>(k)];
-        const bool is_kept =
-            row.is_slip ? next_.mode.state(row.which) == ContactState::held : still.contains(row.which);
-        if (is_kept) row.rate = 0.0;
-        problem.before[k] = row.rate;
-    }
-    for (const std::size_t i : all) {
-        using enum ContactState;
+    for (Eigen::Index k = 0; k < rows.size(); ++k) problem.before[k] = rows.rows[static_cast<std::size_t>(k)].rate;
+    std::vector<std::size_t> numbers;
+    for (const std::size_t i : contacts) {
+        numbers.push_back(i);
         FrictionProblem::Element each{i, rows.gap_of(i), rows.slip_of(i), 0.0, 0.0, false, {open, held}};
         if (surfaces_->frictionless().contains(i)) {
             each.slides = true;  // with either sign, since its friction force is 0
@@ -66,28 +70,79 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
                 problem.is_constant && !depends_on(model_->equations().friction.at(i).level, {&speed, 1});
         }
     }
-    problem.coefficient = [&](std::size_t element, double speed) {
-        const std::size_t i = problem.elements[element].which;
+    problem.coefficient = [this, numbers](std::size_t element, double speed) {
+        const std::size_t i = numbers[element];
         if (surfaces_->never_slides(i)) return std::numeric_limits<double>::infinity();
         return surfaces_->slip(i, next_.state, {}, speed).coefficient;
     };
-    const FrictionImpact impact = friction_impact(problem);
+    return problem;
+}
+
+// Ends the run if no impulses obey the impact law, or several, or if the impact gains energy. False if the run ends.
+bool ExecutionAutomaton::check_impact(const FrictionImpact& impact, ContactSet landing, ContactSet contacts) {
     if (impact.kind != FrictionChoice::Kind::one) {
         const bool none = impact.kind == FrictionChoice::Kind::none;
-        const bool pulls = none && problem.elements.size() == 1 &&
-                           surfaces_->rough().contains(problem.elements[0].which) &&
-                           surfaces_->never_slides(problem.elements[0].which);
-        return stop(pulls ? Outcome::Kind::painleve : Outcome::Kind::impact_not_unique,
-                    pulls ? fmt::format("{} would have to pull: a foot that never slides would have to pull, at {}",
-                                        names_of(all), where(next_.state))
-                          : fmt::format("{} impulses obey the impact law with friction of {}, at {}",
-                                        none ? "no" : "several", names_of(all), where(next_.state)));
+        const bool pulls = none && contacts.has_one() && surfaces_->rough().contains(contacts.only()) &&
+                           surfaces_->never_slides(contacts.only());
+        stop(pulls ? Outcome::Kind::painleve : Outcome::Kind::impact_not_unique,
+             pulls ? fmt::format("the impulse of {} would have to pull: it never slides, at {}", names_of(contacts),
+                                 where(next_.state))
+                   : fmt::format("{} impulses obey the impact law with friction of {}, at {}", none ? "no" : "several",
+                                 names_of(contacts), where(next_.state)));
+        return false;
     }
     if (impact.gains_energy)
-        return stop(Outcome::Kind::energy_gain,
-                    fmt::format("the impact of {} would change the energy by {:.6g}, a gain: skew bodies may gain some "
-                                "where their slip ends within the impact, at {}",
-                                names_of(landing), impact.energy_change, where(next_.state)));
+        stop(Outcome::Kind::energy_gain,
+             fmt::format("the impact of {} would change the energy by {:.6g}, a gain: skew bodies may gain some where "
+                         "their slip ends within the impact, at {}",
+                         names_of(landing), impact.energy_change, where(next_.state)));
+    return !outcome_;
+}
+
+// The mode just after an impact of these contacts, at the present velocity: those with hdot+ > 0 leave at once, and the
+// others stay closed. Sets the starts of next_. nullopt if the run ends.
+std::optional<Mode> ExecutionAutomaton::mode_after_impact(const ContactRows& rows, const FrictionImpact& impact,
+                                                          ContactSet contacts) {
+    Mode mode = sliding_mode(all_joints());
+    for (const std::size_t i : contacts) {
+        const double hdot = impact.after[rows.gap_of(i)];
+        next_.starts[i] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
+        if (hdot > 0.0) {
+            if (!too_short_to_resolve(i, hdot)) continue;
+            stop(Outcome::Kind::undecided,
+                 fmt::format("the flights of {} became shorter than double precision resolves, and bouncing with "
+                             "friction is not completed, at {}",
+                             name_of(i), where(next_.state)));
+            return std::nullopt;
+        }
+        mode = mode.with(i, ContactState::held);
+        if (rows.slip_of(i) < 0) continue;
+        const double u = impact.after[rows.slip_of(i)];
+        const ContactState state = impact.mode.state(i);
+        // Without an impulse of friction the slip is what it was before.
+        if (surfaces_->frictionless().contains(i) || (state == ContactState::open && u != 0.0))
+            mode = mode.with(i, slip_state(u > 0.0 ? 1 : -1));
+        else if (slip_sign(state) != 0)
+            mode = mode.with(i, state);
+    }
+    return mode;
+}
+
+// Contacts that land, with those that are held or touch. Joints take no impulse, because their level is finite.
+void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
+    const ContactSet held = next_.held(), still = held.with(next_.touching);
+    landing = closing_with(landing);
+    const ContactSet all = still.with(landing);
+    if (all.count() > max_closed_contacts)
+        return stop(Outcome::Kind::redundant_contacts,
+                    fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
+                                all.count(), max_closed_contacts, names_of(all), where(next_.state)));
+    if (!surfaces_->project(next_.state, all, {})) return fail_projection();
+    if (!check_friction_levels(all)) return;
+    const ContactRows rows = rows_before_impact(all, still);
+    const FrictionImpactProblem problem = impact_problem(rows, all);
+    const FrictionImpact impact = friction_impact(problem);
+    if (!check_impact(impact, landing, all)) return;
     const Vector v_before = next_.state.v, v_after = rows.after(v_before, impact.impulses);
     double speed = 0.0;
     for (const std::size_t i : landing)
@@ -111,39 +166,11 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         last_sliding_impact_ = record_.impacts_of_phase();
     const State before = next_.state;
     next_.state.v = v_after;
-    // Contacts with hdot+ > 0 leave at once; the others may be held. Those that stick have u+ = 0.
-    ContactSet left;
-    Mode sliding;
-    for (const std::size_t i : all) {
-        const double hdot = impact.after[rows.gap_of(i)];
-        next_.starts[i] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
-        if (hdot > 0.0) {
-            if (too_short_to_resolve(i, hdot))
-                return stop(Outcome::Kind::undecided,
-                            fmt::format("the flights of {} became shorter than double precision resolves, and bouncing "
-                                        "with friction is not completed, at {}",
-                                        name_of(i), where(next_.state)));
-            continue;
-        }
-        left = left.with(i);
-        if (rows.slip_of(i) < 0) continue;
-        const double u = impact.after[rows.slip_of(i)];
-        const int sign = slip_sign(impact.mode.state(i));
-        if (sign != 0) sliding = sliding.with(i, slip_state(sign));
-        // No impulse: the slip is what it was before.
-        const bool has_sign = surfaces_->frictionless().contains(i);
-        if (has_sign || (impact.mode.state(i) == ContactState::open && u != 0.0))
-            sliding = sliding.with(i, slip_state(u > 0.0 ? 1 : -1));
-    }
-    const ContactSet resting_joints = at_zero_slip(all_joints());
-    for (const std::size_t i : all_joints().without(resting_joints))
-        sliding = sliding.with(i, slip_state(surfaces_->slip(i, next_.state).u > 0.0 ? 1 : -1));
-    Mode kept = sliding;
-    for (const std::size_t i : left.with(resting_joints))
-        if (slip_sign(kept.state(i)) == 0) kept = kept.with(i, ContactState::held);
-    if (!surfaces_->settle(next_.state, kept)) return fail_projection();
+    const std::optional<Mode> after = mode_after_impact(rows, impact, all);
+    if (!after) return;
+    if (!surfaces_->settle(next_.state, *after)) return fail_projection();
     change_other_rates(v_before, all);
-    if (!decide_with_friction(left, kept)) return;
+    if (!decide_with_friction(after->held(), *after)) return;
     const ContactSet opened = held.without(next_.held());
     const bool is_plastic = landing.has_one() && restitution(landing.only()) == 0.0 && opened.empty() &&
                             next_.mode.is_held(landing.only()) && still == held;
