@@ -43,14 +43,13 @@ void StickingConditions::evaluate_point(const Collision& collision) {
 }
 
 // I_u to leading order, after evaluate_point().
-double StickingConditions::estimated_slip_integral(double w) const {
-    const double a = -point_.hddot(0), e = mid(e_);
-    return 2.0 * point_.hddot(1) * e * e * w * w / (a * a * (1.0 - e * e));
+double StickingConditions::slip_integral(double w) const {
+    return estimated_slip_integral(-point_.hddot(0), point_.hddot(1), mid(e_), w);
 }
 
 State StickingConditions::restart_at(const Collision& collision) {
     evaluate_point(collision);
-    const double I_u = estimated_slip_integral(collision.speed);
+    const double I_u = slip_integral(collision.speed);
     State state = collision.with(collision.tangential);
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
@@ -66,7 +65,7 @@ bool StickingConditions::fails_at_point(const Collision& collision) {
     evaluate_point(collision);
     const double a = -point_.hddot(0), e = mid(e_), w = collision.speed;
     if (!(a > 0.0) || !(e < 1.0)) return true;
-    const double drift = std::abs(estimated_slip_integral(w)), height = e * w * e * w / (2.0 * a);
+    const double drift = std::abs(slip_integral(w)), height = e * w * e * w / (2.0 * a);
     double uniform = 0.0;
     for (std::size_t i = 0; i < dof_; ++i) {
         const double off = std::abs(point_.N(0, i)) * height + std::abs(point_.N(1, i)) * drift;
@@ -254,12 +253,11 @@ std::optional<Certificate> StickingConditions::certificate_of(const Collision& c
         velocity = velocity + square(Interval(need_s_[i]) + Interval(box_.d_s[i]));
     }
     const AccelerationTrend trend = trend_at(collision);
-    const double e = mid(e_), K = (1.0 + e) / (1.0 - e), a3 = trend.a * trend.a * trend.a;
-    const double by_slip = -trend_.by_slip() * point_.hddot(1) / a3 * (2.0 - 2.0 * K / 3.0);
-    const double ew = e * collision.speed;
+    const double e = mid(e_);
     Certificate c =
         certificate_at(collision.before.t, b.accumulation_time,
-                       estimated_accumulation_time(trend, e, collision.speed) - by_slip * ew * ew / (1.0 - e * e));
+                       estimated_accumulation_time(trend, e, collision.speed) +
+                           estimated_delay_by_slip(trend.a, point_.hddot(1), -trend_.by_slip(), e, collision.speed));
     c.position_bound = sqrt(position).hi();
     c.velocity_bound = sqrt(velocity).hi();
     c.shadowing_position = norm(E_q).hi();

@@ -54,7 +54,7 @@ class StickingConditions : public TruncationConditions {
         explicit StickingBox(std::size_t dof) : CollisionBox(dof), n_T(dof), C(dof), d_q(dof), d_s(dof) {}
     };
     void evaluate_point(const Collision& collision);
-    double estimated_slip_integral(double w) const;
+    double slip_integral(double w) const;
     std::optional<Certificate> prove(const Collision& collision);
     bool begin_box(const Collision& collision);
     std::optional<Bounds> bounds_over_box();

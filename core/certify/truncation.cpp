@@ -72,7 +72,7 @@ Interval third_order_accumulation_time(const AccelerationTrend& trend, const Acc
 std::unique_ptr<TruncationConditions> truncation_conditions(const Model& model, const Run& run, const Interval& e,
                                                             const BouncingKey& key, ContactSet unpressed) {
     const FloatEnvironmentGuard ground;
-    if (model.equations().friction.contains(key.contact) && key.state == ContactState::held)
+    if (sticks_at_impacts(model, key))
         return std::make_unique<StickingConditions>(model, run, e, key, unpressed, ground);
     if (run.options.truncation.conditions == Conditions::paper)
         return std::make_unique<PaperConditions>(model, run, e, key, unpressed, ground);

@@ -39,6 +39,19 @@ Number estimated_accumulation_time(const Number& a, const Number& b, const Numbe
     const Number T0 = 2.0 * e * w / (a * (1.0 - e));
     return T0 - T0 * T0 * (b / (3.0 * a) + c / 6.0);
 }
+// If the contact sticks at its impacts (theory-friction.md 4.2): the integral I_u (m) of its slip over the bouncing, and
+// what the slip adds to the accumulation time (s), both to second order in w. alpha is the acceleration of the slip, and
+// c_u is the derivative of -hddot by the slip.
+template <class Number>
+Number estimated_slip_integral(const Number& a, const Number& alpha, const Number& e, const Number& w) {
+    return 2.0 * alpha * e * e * w * w / (a * a * (1.0 - e * e));
+}
+template <class Number>
+Number estimated_delay_by_slip(const Number& a, const Number& alpha, const Number& c_u, const Number& e,
+                               const Number& w) {
+    const Number K = (1.0 + e) / (1.0 - e), ew = e * w;
+    return c_u * alpha / (a * a * a) * (2.0 * K / 3.0 - 2.0) * ew * ew / (1.0 - e * e);
+}
 
 // Enclosures of the terms of -hddot = G(q, s, sigma) over a box that contains the bouncing motion. P, Phi and Xi are
 // those of model/bouncing.hpp with G in place of hddot.
@@ -67,7 +80,12 @@ Interval third_order_accumulation_time(const AccelerationTrend& trend, const Acc
 Interval third_order_error(const AccelerationTrend& trend, const AccelerationBounds& drift, const Interval& e,
                            const Interval& a_min, const Interval& a_max, const Interval& w, const Interval& latest);
 
-// ---- the truncation conditions: PaperConditions and SharpConditions ----
+// ---- the truncation conditions: PaperConditions, SharpConditions and StickingConditions ----
+
+// Whether a contact sticks at its impacts, rather than sliding or having no friction.
+inline bool sticks_at_impacts(const Model& model, const BouncingKey& key) {
+    return key.state == ContactState::held && model.equations().friction.contains(key.contact);
+}
 
 // A collision, with all quantities that the conditions may use.
 struct Collision {

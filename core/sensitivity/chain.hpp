@@ -40,8 +40,8 @@ struct ChainLink {
 
     RowMatrix J;               // for a step or a jump
     Eigen::Index changed = 0;  // number of leading rows that change; the rows of parameters, at the end, never do
-    Eigen::VectorXd F;         // for a crossing: the rates of all components before the event,
-    Eigen::RowVectorXd G;      // the gradient of the function that vanishes at the event,
+    Eigen::VectorXd F;         // for a crossing or a Zeno point: the rates of all components before the event;
+    Eigen::RowVectorXd G;      // for a crossing: the gradient of the function that vanishes at the event,
     double residual = 0.0;     // and its value
     // Only with Options::errors. For a step, left_out has in the rows of q and v the terms that the run's polynomials
     // omit, (c_{K+1} + c_{K+2} t + ...) t^(K+1). For the crossing at an impact, by_place is the gradient of the gap by
@@ -51,8 +51,8 @@ struct ChainLink {
     Eigen::RowVectorXd by_place;
     // Data of the jump at a truncation.
     struct PendingCompletion {
-        std::size_t contact;
-        Mode others;       // the mode in which the contact is open
+        BouncingKey key;
+        State tangential;  // q and s, without the drift of a contact that sticks
         double speed;      // w
         RowMatrix newton;  // J of the simulated impact, whereas the run continues with J above
     };
@@ -121,7 +121,12 @@ class Chain {
     struct ImpactRows;
     bool add_loaded_contacts(const Event& now, ImpactRows& impact);
     bool add_slip(const Event& now, std::size_t contact, ImpactRows& impact);
-    void complete_landing(const Event& now, const Event* rests, const ImpactRows& impact, ChainLink& link);
+    RowMatrix after_impact(const ImpactRows& impact, const RowMatrix& J) const;
+    void bounce_with_friction(const Event& now, const ImpactRows& impact, RowMatrix& J);
+    void come_to_rest(std::size_t event, const ImpactRows& impact, ChainLink& link);
+    void truncate_with_friction(const BouncingKey& key, double speed, const ImpactRows& impact, ChainLink& link);
+    void add_drift_of_slip(RowMatrix& J, const BouncingKey& key, double speed);
+    ContactState state_of_bouncing(std::size_t event, std::size_t contact) const;
     double coefficient_rate(std::size_t which, double speed);
     void break_off(std::string reason) { broken_ = std::move(reason); }
 
@@ -130,13 +135,14 @@ class Chain {
     void meet_surface(std::size_t contact, Mode others, ChainLink& crossing);
     double residual_before(std::size_t contact);
     void retract(RowMatrix& J, Mode onto);
-    Eigen::RowVectorXd accumulation_time_row(const RowMatrix& J, std::size_t contact, Mode others, double speed);
+    Eigen::RowVectorXd accumulation_time_row(const RowMatrix& J, const BouncingKey& key, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
     void set_gaps();
     void watch_minima(const FlowSensitivity& slope, double span);
 
     ContactGradient& surface(std::size_t contact, Mode mode);
     SlipGradient& slip(std::size_t which);
+    Gradient& sticking(const BouncingKey& key);
     Gradient& event_functions(Mode mode);
     Gradient& restitution(std::size_t contact);
     FlowSensitivity& slope(Mode mode);
@@ -147,7 +153,8 @@ class Chain {
     TangentLayout tangent_;
     ContactCache surfaces_;
     std::map<ContactInMode, std::unique_ptr<ContactGradient>> contacts_;
-    std::map<ContactInMode, std::unique_ptr<Gradient>> trends_, normals_;
+    std::map<ContactInMode, std::unique_ptr<Gradient>> normals_;
+    std::map<BouncingKey, std::unique_ptr<Gradient>> trends_, stickings_;
     std::map<std::size_t, std::unique_ptr<Gradient>> restitutions_;
     std::map<std::size_t, std::unique_ptr<SlipGradient>> slips_;
     std::map<std::size_t, std::pair<Program, std::optional<Evaluator<double>>>> coefficient_rates_;

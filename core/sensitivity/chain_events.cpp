@@ -127,10 +127,11 @@ void Chain::land(std::size_t event) {
     if (completes) {
         RowMatrix drawn = J;
         take_out(newton::removed_rate(e, before), contact, tangent_, drawn);
-        link.completion = ChainLink::PendingCompletion{i, others, -u, std::move(drawn)};
         take_out(before, contact, tangent_, J);
         state_.v = s;
-        J.row(tangent_.accumulation_time()) = accumulation_time_row(J, i, others, -u);
+        const BouncingKey key{i, others};
+        link.completion = ChainLink::PendingCompletion{key, state_, -u, std::move(drawn)};
+        J.row(tangent_.accumulation_time()) = accumulation_time_row(J, key, -u);
         retract(J, others.with(i, ContactState::held));
         waiting_ = true;
     } else {
@@ -174,25 +175,33 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
 }
 
 // The derivatives of the accumulation time T(a, b, c, e, w) of theory-derivatives.md 4 by the components before the
-// jump. J has the rows of q, v, t and p at the restart; state_ must be the restart.
-RowVectorXd Chain::accumulation_time_row(const RowMatrix& J, std::size_t contact, Mode others, double speed) {
-    auto& trend = trends_[{others, contact}];
+// jump, with the delay by the slip of a contact that sticks. J has the rows of q, v, t and p at (q, s), the restart
+// before any drift; so must state_.
+RowVectorXd Chain::accumulation_time_row(const RowMatrix& J, const BouncingKey& key, double speed) {
+    auto& trend = trends_[key];
     if (!trend)
-        trend = std::make_unique<Gradient>(*model_, model_->bouncing(contact, others).trend, tangent_,
-                                           trajectory_->run.parameters);
+        trend = std::make_unique<Gradient>(*model_, model_->bouncing(key).trend, tangent_, trajectory_->run.parameters);
     trend->at(state_);
-    const double e = surfaces_.restitution(contact).value;
-    const auto e_row = restitutions_[contact]->row(0);
+    const double e = surfaces_.restitution(key.contact).value;
+    const auto e_row = restitutions_[key.contact]->row(0);
     if (e == 0.0 && e_row.isZero(0.0)) return RowVectorXd::Zero(J.cols());  // no flight follows
-    if (e == 0.0 && model_->stays_closed_without_force(contact, others))
+    if (e == 0.0 && model_->stays_closed_without_force(key.contact, key.mode))
         break_off("the contact is unloaded: with a restitution above 0 it would bounce off");
-    using Number = Jet<double, 5>;
+    using Number = Jet<double, 7>;
     const auto minus = [&](std::size_t output, std::size_t k) { return Number::variable(-trend->value(output), k); };
-    const Number accumulation_time = estimated_accumulation_time(minus(0, 0), minus(1, 1), minus(2, 2),
-                                                                 Number::variable(e, 3), Number::variable(speed, 4));
-    RowVectorXd row = accumulation_time.slope[3] * (e_row * J);
+    const Number a = minus(0, 0), restitution = Number::variable(e, 3), w = Number::variable(speed, 4);
+    Number accumulation_time = estimated_accumulation_time(a, minus(1, 1), minus(2, 2), restitution, w);
+    RowVectorXd row = RowVectorXd::Zero(J.cols());
+    if (sticks_at_impacts(*model_, key)) {
+        const Gradient& terms = sticking(key);
+        const std::size_t alpha = PairTerms<IdentityLayout>({}, tangent_.dof).hddot(1);
+        accumulation_time = accumulation_time + estimated_delay_by_slip(a, Number::variable(terms.value(alpha), 6),
+                                                                        minus(3, 5), restitution, w);
+        row = accumulation_time.slope[6] * (terms.row(alpha) * J) - accumulation_time.slope[5] * (trend->row(3) * J);
+    }
+    row += accumulation_time.slope[3] * (e_row * J);
     for (std::size_t k = 0; k < 3; ++k) row -= accumulation_time.slope[k] * (trend->row(k) * J);
-    return row - accumulation_time.slope[4] * J.row(tangent_.u(contact));
+    return row - accumulation_time.slope[4] * J.row(tangent_.u(key.contact));
 }
 
 void Chain::reach_zeno_point(std::size_t event) {
@@ -206,9 +215,11 @@ void Chain::reach_zeno_point(std::size_t event) {
     if (!may_be_unpressed || !model_->stays_closed_without_force(i, mode_.without(i))) take_least(margins_.a_inf, a);
     // Perturbed runs with a longer accumulation time continue for the difference.
     ChainLink& link = add(ChainLink::Kind::jump, event);
-    link.J.col(tangent_.accumulation_time()) += rate();
+    link.F = rate();
+    link.J.col(tangent_.accumulation_time()) += link.F;
     link.J.row(tangent_.accumulation_time()).setZero();
     retract(link.J, mode_);
+    if (model_->has_friction()) mode_ = now.mode;  // a contact that sticks at its impacts may slide from here
 }
 
 void Chain::release(std::size_t event) {

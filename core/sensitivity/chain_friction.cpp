@@ -181,6 +181,7 @@ std::optional<std::size_t> Chain::vanishing_function(std::size_t event) {
 
 void Chain::change_friction(std::size_t event) {
     const Event& now = trajectory_->events[event];
+    if (waiting_) return break_off("the friction changes before the Zeno time of a contact");
     if (mode_ == now.mode && event > 0 && trajectory_->events[event - 1].t == now.t) {
         add(ChainLink::Kind::jump, event);  // a further record of the same change
         return;

@@ -168,13 +168,13 @@ ErrorEstimate estimate(const Trajectory& trajectory, const std::stop_token& stop
         if (!link->event) continue;
         const Event& event = trajectory.events[*link->event];
         if (link->completion) {
-            cut = {link->completion->contact, link->completion->others, chain.state(), link->completion->speed};
+            cut = {link->completion->key, link->completion->tangential, link->completion->speed};
             carried.move(of_cuts.shift(*cut), tangent);
         } else if (event.is_zeno() && cut) {
             // The error of the Zeno time of the run.
             const CompletionError::AccumulationEstimate accumulation_time = of_cuts.accumulation_time(*cut);
-            const double error = accumulation_time.formula + accumulation_time.error - (event.t - cut->restart.t);
-            if (!is_plastic_landing(event)) carried.error += chain.rate().head(carried.size) * error;
+            const double error = accumulation_time.formula + accumulation_time.error - (event.t - cut->tangential.t);
+            if (!is_plastic_landing(event)) carried.error += link->F.head(carried.size) * error;
             cut.reset();
         }
         result.events.push_back(carried.of_time());

@@ -5,6 +5,7 @@
 //     gap     (1 + e) hdot- + (W P)_N = 0
 //     stick   u- + (W P)_T = 0
 //     slip    P_T + sigma mu(u_s) P_N = 0,    u_s = (u+ + e u-)/(1 + e)
+#include <algorithm>
 #include <cmath>
 
 #include "contacts/impact_law.hpp"
@@ -65,6 +66,14 @@ struct Chain::ImpactRows {
     MatrixXd impulse_rows() const;
     // The derivative of v+ - v-.
     RowMatrix velocity_rows() const;
+    // v+ - v-
+    VectorXd velocity_jump() const {
+        VectorXd sum = VectorXd::Zero(rows.front().direction.size());
+        for (const Row& row : rows) sum += row.impulse * row.direction;
+        return sum;
+    }
+    // The impact after which the gaps stay closed, in the same branch: restitution 0. u_s is the same, and so is mu.
+    ImpactRows plastic() const;
 };
 
 MatrixXd Chain::ImpactRows::impulse_rows() const {
@@ -101,6 +110,32 @@ RowMatrix Chain::ImpactRows::velocity_rows() const {
     for (std::size_t i = 0; i < rows.size(); ++i)
         change += rows[i].direction * impulses.row(static_cast<Index>(i)) + rows[i].impulse * rows[i].direction_rows;
     return change;
+}
+
+Chain::ImpactRows Chain::ImpactRows::plastic() const {
+    const auto count = static_cast<Index>(rows.size());
+    MatrixXd A(count, count);
+    VectorXd b(count);
+    for (Index i = 0; i < count; ++i) {
+        const Row& row = rows[static_cast<std::size_t>(i)];
+        const bool slides = row.is_slip && row.sign != 0;
+        for (Index j = 0; j < count; ++j)
+            A(i, j) = slides ? 0.0 : W(static_cast<std::size_t>(i), static_cast<std::size_t>(j));
+        if (slides) {
+            A(i, i) = 1.0;
+            A(i, static_cast<Index>(row.gap)) = row.sign * row.coefficient;
+        }
+        b[i] = slides ? 0.0 : -row.rate;
+    }
+    const VectorXd impulses = least_solution(A, b);
+    ImpactRows result = *this;
+    for (Index i = 0; i < count; ++i) {
+        Row& row = result.rows[static_cast<std::size_t>(i)];
+        row.impulse = impulses[i];
+        row.e = 0.0;
+        row.e_row.setZero();
+    }
+    return result;
 }
 
 // mu'(u_s)
@@ -168,8 +203,7 @@ bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
 bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) {
     ImpactRows::Row row = impact.rows.back();
     const double normal = row.impulse, e = row.e, before = surfaces_.slip(contact, state_).u;
-    double after = surfaces_.slip(contact, {now.q, now.v_after, now.t}).u;
-    if (std::abs(after) <= branch_tolerance * (std::abs(before) + now.impact_speed)) after = 0.0;
+    const double after = surfaces_.slip(contact, {now.q, now.v_after, now.t}).u;
     const double speed = std::abs(after + e * before) / (1.0 + e);
     SlipGradient& slip = this->slip(contact);
     slip.at(state_, speed);
@@ -184,15 +218,19 @@ bool Chain::add_slip(const Event& now, std::size_t contact, ImpactRows& impact) 
         row.gradient_rows.row(k) = slip.d_row(i);
         row.direction_rows.row(k) = slip.impulse_row(i);
     }
-    row.sign = after > 0.0 ? 1 : after < 0.0 ? -1 : 0;
-    if (row.sign == 0 && !surfaces_.never_slides(contact) &&
-        !(std::abs(row.impulse) < (1.0 - branch_tolerance) * slip.coefficient() * normal)) {
+    // The impulse decides, because rounding hides u+ = 0 at small speeds.
+    const bool sticks = surfaces_.never_slides(contact) ||
+                        std::abs(row.impulse) < (1.0 - branch_tolerance) * slip.coefficient() * normal;
+    const double rounding =
+        std::max(branch_tolerance * (std::abs(before) + now.impact_speed), 4.0 * surfaces_.slip_error(contact, state_));
+    if (!sticks && std::abs(after) <= rounding) {
         break_off(
             "an impact is at the limit between sticking and sliding: the derivatives depend on the direction of "
             "the perturbation");
         return false;
     }
-    if (row.sign != 0) {
+    row.sign = sticks ? 0 : after > 0.0 ? 1 : -1;
+    if (!sticks) {
         row.coefficient = slip.coefficient();
         row.coefficient_row = slip.coefficient_row();
         row.coefficient_rate = coefficient_rate(contact, speed);
@@ -209,12 +247,11 @@ void Chain::land_with_friction(std::size_t event) {
     if (now.friction && now.friction->energy_cap)
         return break_off(
             "an impact would gain energy, and its restitution is reduced: derivatives are not computed past it");
-    const auto& events = trajectory_->events;
-    const Event* const next = event + 1 < events.size() ? &events[event + 1] : nullptr;
-    if (next != nullptr && is_zeno_point(*next) && next->truncation && next->truncation->t == now.t)
-        return break_off("derivatives through a Zeno point are not computed in systems with friction");
-    const bool rests = next != nullptr && is_plastic_landing(*next) && next->t == now.t;
+    if (waiting_) return break_off("an impact happens before the Zeno time of another contact");
+    ContactSet joins;
+    if (auto reason = next_completion(event, joins)) return break_off(std::move(*reason));
     const std::size_t i = now.contacts.only();
+    const bool completes = joins.contains(i), rests = completes && surfaces_.restitution(i).value == 0.0;
     set_gaps();
     h_[i] = 0.0;
     u_[i] = -now.impact_speed;
@@ -228,7 +265,13 @@ void Chain::land_with_friction(std::size_t event) {
     RowMatrix& J = link.J;
     move_onto(J, mode_.held().with(i));  // the rows of q leave it by the omitted terms of steps
     J.row(tangent_.h(i)).setZero();
-    complete_landing(now, rests ? next : nullptr, impact, link);
+    if (rests)
+        come_to_rest(event, impact, link);
+    else if (completes)
+        truncate_with_friction({i, mode_.only(impact.loaded), state_of_bouncing(event, i)}, now.impact_speed, impact,
+                               link);
+    else
+        bounce_with_friction(now, impact, J);
     settle(J, mode_);
     for (std::size_t k = 0; k < tangent_.contacts; ++k) {
         if (mode_.is_held(k) || k == i) continue;
@@ -242,34 +285,97 @@ void Chain::land_with_friction(std::size_t event) {
     u_[i] = newton::rate_after(surfaces_.restitution(i).value, -now.impact_speed);
 }
 
-// Sets the rows of v and of the gap rate to those after the impact, and the mode. With restitution 0 the contact rests
-// from here on (`rests`, else null); a restitution that grows from 0 moves its Zeno time by 2 w e'/a, and nothing else.
-void Chain::complete_landing(const Event& now, const Event* rests, const ImpactRows& impact, ChainLink& link) {
+// J with the rows of v after an impact.
+RowMatrix Chain::after_impact(const ImpactRows& impact, const RowMatrix& J) const {
+    RowMatrix result = J;
+    result.middleRows(tangent_.v(0), static_cast<Index>(tangent_.dof)) += impact.velocity_rows() * J;
+    return result;
+}
+
+// Sets the rows of v and of the gap rate to those after the impact, and the mode.
+void Chain::bounce_with_friction(const Event& now, const ImpactRows& impact, RowMatrix& J) {
     const std::size_t i = impact.landing;
-    RowMatrix& J = link.J;
-    const auto after = [&](const ImpactRows& rows) {
-        RowMatrix result = J;
-        result.middleRows(tangent_.v(0), static_cast<Index>(tangent_.dof)) += rows.velocity_rows() * J;
-        return result;
-    };
     const double e = surfaces_.restitution(i).value, u = -now.impact_speed;
-    const RowVectorXd e_row = restitution(i).row(0), u_row = J.row(tangent_.u(i));
+    const RowVectorXd u_row = J.row(tangent_.u(i));
     state_.v = now.v_after;
-    if (rests == nullptr) {
-        J = after(impact);
-        J.row(tangent_.u(i)) = -(e * u_row + u * e_row * J);
-        mode_ = now.mode;
-        return;
-    }
-    ImpactRows at_rest = impact;
-    for (ImpactRows::Row& row : at_rest.rows) row.e_row.setZero();
+    J = after_impact(impact, J);
+    J.row(tangent_.u(i)) = -(e * u_row + u * restitution(i).row(0) * J);
+    mode_ = now.mode;
+}
+
+// With restitution 0 the contact rests from here on; a restitution that grows from 0 moves its Zeno time by 2 w e'/a,
+// and nothing else.
+void Chain::come_to_rest(std::size_t event, const ImpactRows& impact, ChainLink& link) {
+    const Event& now = trajectory_->events[event];
+    const std::size_t i = impact.landing;
     if (!options_.errors)
-        link.completion = ChainLink::PendingCompletion{i, mode_.only(impact.loaded), now.impact_speed, after(impact)};
-    J = after(at_rest);
-    mode_ = rests->mode;
+        link.completion = ChainLink::PendingCompletion{
+            {i, mode_.only(impact.loaded)}, state_, now.impact_speed, after_impact(impact, link.J)};
+    link.J = after_impact(impact.plastic(), link.J);
+    state_.v = now.v_after;
+    mode_ = trajectory_->events[event + 1].mode;
     const double a = -surfaces_.of(i, mode_.without(i)).normal_acceleration(state_);
-    J.row(tangent_.accumulation_time()) = 2.0 * now.impact_speed / a * e_row;
+    link.J.row(tangent_.accumulation_time()) = 2.0 * now.impact_speed / a * restitution(i).row(0);
     waiting_ = true;
+}
+
+// The state in which a contact is held by the motion that replaces its bouncing after this impact.
+ContactState Chain::state_of_bouncing(std::size_t event, std::size_t contact) const {
+    const auto& events = trajectory_->events;
+    if (event + 1 < events.size() && events[event + 1].is_zeno()) {
+        const Event& zeno = events[event + 1];
+        using enum Certificate::Tail;
+        return zeno.certificate->tail == stick_then_slip ? ContactState::held : zeno.mode.state(contact);
+    }
+    return trajectory_->pieces[next_piece_].mode.state(contact);  // the run ends before the Zeno point
+}
+
+// The cut of a bouncing sequence that slides or sticks (theory-friction.md 4): the rows of q and s, and of the
+// accumulation time. A contact that sticks also drifts: q += n_T I_u, s += C I_u.
+void Chain::truncate_with_friction(const BouncingKey& key, double speed, const ImpactRows& impact, ChainLink& link) {
+    const ImpactRows plastic = impact.plastic();
+    RowMatrix newton = after_impact(impact, link.J);
+    link.J = after_impact(plastic, link.J);
+    state_.v += plastic.velocity_jump();
+    link.completion = ChainLink::PendingCompletion{key, state_, speed, std::move(newton)};
+    link.J.row(tangent_.accumulation_time()) = accumulation_time_row(link.J, key, speed);
+    if (sticks_at_impacts(*model_, key)) add_drift_of_slip(link.J, key, speed);
+    mode_ = key.mode.with(key.contact, key.state);
+    waiting_ = true;
+}
+
+// The terms of a contact that sticks, at hdot = u = 0.
+Gradient& Chain::sticking(const BouncingKey& key) {
+    auto& known = stickings_[key];
+    if (!known)
+        known =
+            std::make_unique<Gradient>(*model_, model_->bouncing(key).sticking, tangent_, trajectory_->run.parameters);
+    known->set_input(model_->layout().sigma(), 0.0);
+    known->set_input(model_->layout().second_sigma(), 0.0);
+    known->at(state_);
+    return *known;
+}
+
+void Chain::add_drift_of_slip(RowMatrix& J, const BouncingKey& key, double speed) {
+    const Gradient& terms = sticking(key);
+    const PairTerms<IdentityLayout> places({}, tangent_.dof);
+    using Number = Jet<double, 4>;
+    const std::size_t a = places.hddot(0), alpha = places.hddot(1);
+    const Number I = estimated_slip_integral(
+        Number::variable(-terms.value(a), 0), Number::variable(terms.value(alpha), 1),
+        Number::variable(surfaces_.restitution(key.contact).value, 2), Number::variable(speed, 3));
+    const RowMatrix at_cut = J;
+    const RowVectorXd I_row = (I.slope[1] * terms.row(alpha) - I.slope[0] * terms.row(a)) * at_cut +
+                              I.slope[2] * restitution(key.contact).row(0) * at_cut -
+                              I.slope[3] * at_cut.row(tangent_.u(key.contact));
+    for (std::size_t i = 0; i < tangent_.dof; ++i) {
+        const auto k = static_cast<Index>(i);
+        const std::size_t n = places.N(1, i), C = places.B(1, i);
+        J.row(tangent_.q(i)) += I.value * terms.row(n) * at_cut + terms.value(n) * I_row;
+        J.row(tangent_.v(i)) += I.value * terms.row(C) * at_cut + terms.value(C) * I_row;
+        state_.q[k] += terms.value(n) * I.value;
+        state_.v[k] += terms.value(C) * I.value;
+    }
 }
 
 }  // namespace achilles
