@@ -198,7 +198,7 @@ std::string first_line(const Trajectory& trajectory, const EventDescriptions& se
     if (trajectory.outcome.kind != Outcome::Kind::end_time)
         return fmt::format("{}: stopped at t = {:.9g} s of {:.9g} s: {}\n  {}. {}\n", title, trajectory.end_time,
                            trajectory.run.options.end_time, to_text(trajectory.outcome.kind),
-                           trajectory.outcome.message, advice(trajectory.outcome));
+                           trajectory.outcome.message, advice(trajectory));
     const bool has_zeno = std::any_of(trajectory.events.begin(), trajectory.events.end(), is_zeno_point);
     return fmt::format("{}: simulated to t = {:.9g} s, {} at the end{}\n", title, trajectory.end_time,
                        sentences.state_at_end(),
@@ -207,8 +207,8 @@ std::string first_line(const Trajectory& trajectory, const EventDescriptions& se
 
 }  // namespace
 
-std::string advice(const Outcome& outcome) {
-    switch (outcome.kind) {
+std::string advice(const Trajectory& trajectory) {
+    switch (trajectory.outcome.kind) {
         case Outcome::Kind::end_time:
         case Outcome::Kind::cancelled:
             return "";
@@ -228,7 +228,8 @@ std::string advice(const Outcome& outcome) {
         case Outcome::Kind::simultaneous_impacts:
             return "To continue with Moreau's law: --simultaneous moreau.";
         case Outcome::Kind::redundant_contacts:
-            return "Remove a redundant contact, or the friction of one.";
+            return trajectory.model->has_friction() ? "Remove a redundant contact or the friction of one."
+                                                    : "Remove a redundant contact.";
         case Outcome::Kind::painleve:
         case Outcome::Kind::impact_not_unique:
             return "Try a smaller friction coefficient, or choose an earlier --end.";

@@ -52,7 +52,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style = {});
 std::string answer(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command);
 
 // Advice after a run that stopped early: "Try a smaller --tolerance."; empty if the run reached its end time.
-std::string advice(const Outcome& outcome);
+std::string advice(const Trajectory& trajectory);
 
 // All details, with the digits that the estimated error supports; if `estimate` is null, it is computed here.
 std::string summary(const Trajectory& trajectory, const ErrorEstimate* estimate = nullptr);

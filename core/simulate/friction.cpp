@@ -25,6 +25,20 @@ bool slides_along_normal(const FrictionProblem& problem) {
     return both - mixed * mixed <= rounding * both;
 }
 
+// The first two joints that rest with equal or opposite slips, or slips that are multiples of one another; none if there
+// are no such joints. Only a sum of their friction forces is determined.
+std::optional<std::pair<std::size_t, std::size_t>> joints_with_one_slip(const FrictionProblem& problem) {
+    constexpr double rounding = 1e-12;
+    for (const FrictionProblem::Element& a : problem.elements)
+        for (const FrictionProblem::Element& b : problem.elements) {
+            if (a.which >= b.which || a.gap >= 0 || b.gap >= 0) continue;
+            const double both = problem.W(a.slip, a.slip) * problem.W(b.slip, b.slip),
+                         mixed = problem.W(a.slip, b.slip);
+            if (both - mixed * mixed <= rounding * both) return std::pair(a.which, b.which);
+        }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::string ExecutionAutomaton::name_of(std::size_t which) const {
@@ -337,6 +351,12 @@ void ExecutionAutomaton::stop_in_doubt(const FrictionProblem& problem, bool are_
              fmt::format("the slip of {} is a multiple of its gap rate, so that its forces are not unique while it "
                          "sticks, at {}",
                          names, where(next_.state)));
+    else if (const auto pair = joints_with_one_slip(problem); !are_forces_unique && pair)
+        stop(
+            Outcome::Kind::redundant_contacts,
+            fmt::format("{} and {} stick with one slip, and only the sum of their friction forces is determined; write "
+                        "one [[friction]] for both, at {}",
+                        name_of(pair->first), name_of(pair->second), where(next_.state)));
     else if (!are_forces_unique)
         stop(Outcome::Kind::redundant_contacts,
              fmt::format("the forces of {} are not unique while they stick, at {}", names, where(next_.state)));

@@ -8,6 +8,7 @@
 
 #include "model/model.hpp"
 #include "model/read_system.hpp"
+#include "output/output.hpp"
 #include "simulate/simulate.hpp"
 
 namespace achilles {
@@ -95,6 +96,30 @@ constraint = [{name = "floor", gap = "y", slip = "2*y'", restitution = 0, fricti
 )";
     expect_outcome(simulate_text(text, 1.0), Ending::redundant_contacts,
                    "the slip of 'floor' is a multiple of its gap rate");
+}
+
+// Two bearings of one shaft: how they share the friction is not determined, and nothing depends on it.
+TEST(FrictionLimits, JointsThatStickWithOneSlipAreNamed) {
+    const std::string text = R"(coordinate = [{name = "x", rate = 1}, {name = "y", rate = 9}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "0"
+friction = [{name = "left", slip = "x'", level = 1}, {name = "rail", slip = "y'", level = 1},
+            {name = "right", slip = "2*x'", level = 1}]
+)";
+    const auto run = simulate_text(text, 5.0);
+    expect_outcome(run, Ending::redundant_contacts,
+                   "'left' and 'right' stick with one slip, and only the sum of their friction forces is determined; "
+                   "write one [[friction]] for both");
+    EXPECT_NEAR(run.end_time, 1.0 / 3.0, 1e-12);
+    EXPECT_EQ(advice(run), "Remove a redundant contact or friction.");
+    Trajectory smooth = simulate_text(R"(coordinate = [{name = "y", start = 1}]
+lagrangian.kinetic = "y'^2/2"
+lagrangian.potential = "y"
+constraint = [{gap = "y"}]
+)",
+                                      0.1);
+    smooth.outcome.kind = Ending::redundant_contacts;
+    EXPECT_EQ(advice(smooth), "Remove a redundant contact.");
 }
 
 // Kane's paradox: T rises from 0.5 to 0.6328125 (theory-friction.md 3).
