@@ -50,6 +50,8 @@ std::string joined_names(const Model& model, ContactSet contacts, std::string_vi
     return fmt::format("{}", fmt::join(contact_names(model, contacts), between));
 }
 
+bool has_nonunique_forces(const Phase& phase) { return phase.is_nonunique() || !phase.mode.implied().empty(); }
+
 bool has_several_places(const Model& model) { return model.contacts() + model.description().frictions.size() > 1; }
 
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event) {

@@ -24,6 +24,9 @@ ContactSet rough_in(const Model& model, Mode mode);
 // Their states: "foot:stick+bearing:slip-". The names are those of contacts and joints by their number in a mode.
 std::string modes_text(const std::vector<std::pair<std::size_t, std::string>>& names, Mode mode);
 std::string modes_text(const Model& model, Mode mode);
+// Whether the forces of a phase could also be distributed otherwise: between its contacts (theory-gaps.md 2.5), or
+// between those that stick with equal slips and share their friction force (theory-friction.md 2).
+bool has_nonunique_forces(const Phase& phase);
 // Whether contacts, and joints with friction, need their names: there is more than one.
 bool has_several_places(const Model& model);
 // The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.

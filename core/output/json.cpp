@@ -339,7 +339,7 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                           {"end", number_json(phase.end)},
                           {"impacts", phase.impacts}});
         add_modes(phases.back(), trajectory, phase.mode);
-        if (phase.is_nonunique()) phases.back()["not_unique"] = true;
+        if (has_nonunique_forces(phase)) phases.back()["not_unique"] = true;
     }
     Json warnings = Json::array();
     for (const RunWarning& remark : remarks(trajectory, estimate)) warnings.push_back(remark.sentence);

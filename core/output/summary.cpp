@@ -93,7 +93,8 @@ class RunTimeline {
                                               trajectory_.run.q.size(), phase.start)
                                    : trajectory_.end;
         return fmt::format("{}, t = {} to {} s{}\n", contact_state(sentences_, trajectory_, phase.mode, at),
-                           time(phase.start), time(phase.end), phase.is_nonunique() ? ", forces not unique" : "");
+                           time(phase.start), time(phase.end),
+                           has_nonunique_forces(phase) ? ", forces not unique" : "");
     }
 
     std::string chatter_line(const ChatterPhases& chatter) const {

@@ -51,6 +51,32 @@ TEST(FrictionOutput, TheSummaryTellsHeatFromLosses) {
     EXPECT_TRUE(has(text, "loss 0 at impacts, heat of friction 0.")) << text;
 }
 
+// The two feet of a box stick together and share their friction force. While they slide, each has its own.
+TEST(FrictionOutput, APhaseOfSharedFrictionIsNotUnique) {
+    const Trajectory run = run_of(R"-(coordinate = [{name = "x", rate = 1}, {name = "y", start = 1}, {name = "phi"}]
+lagrangian.kinetic = "(x'^2 + y'^2 + phi'^2)/2"
+lagrangian.potential = "y"
+[[constraint]]
+name = "left"
+gap = "y - sin(phi) - cos(phi)"
+restitution = 0
+slip = "x' + (sin(phi) + cos(phi))*phi'"
+friction = 0.5
+[[constraint]]
+name = "right"
+gap = "y + sin(phi) - cos(phi)"
+restitution = 0
+slip = "x' - (sin(phi) - cos(phi))*phi'"
+friction = 0.5
+)-",
+                                  3.0);
+    ASSERT_EQ(run.phases.size(), 2u);
+    EXPECT_FALSE(has_nonunique_forces(run.phases[0]));
+    EXPECT_TRUE(has_nonunique_forces(run.phases[1]));
+    EXPECT_TRUE(has(to_json(run), R"("not_unique": true)"));
+    EXPECT_TRUE(has(summary(run), ", forces not unique"));
+}
+
 TEST(FrictionOutput, CsvHasSlipForceModesAndHeat) {
     const std::string csv = to_csv(sliding_block());
     const std::string heading = csv.substr(0, csv.find('\n'));

@@ -115,7 +115,7 @@ friction = [{name = "left", slip = "x'", level = 1}, {name = "rail", slip = "y'"
     Trajectory smooth = simulate_text(R"(coordinate = [{name = "y", start = 1}]
 lagrangian.kinetic = "y'^2/2"
 lagrangian.potential = "y"
-constraint = [{gap = "y"}]
+constraint = [{gap = "y", restitution = 0}]
 )",
                                       0.1);
     smooth.outcome.kind = Ending::redundant_contacts;
