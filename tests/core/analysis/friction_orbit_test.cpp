@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "analysis/orbit.hpp"
 #include "core/systems.hpp"
@@ -16,6 +17,7 @@ OrbitSearchResult search(const std::shared_ptr<const Model>& model, double end, 
     OrbitProblem problem;
     problem.run = model->default_run();
     problem.run.options.tolerance = tightest_options().tolerance;
+    problem.run.options.truncation = tightest_options().truncation;
     problem.run.options.end_time = end;
     problem.closing = closing;
     return find_orbit(model, problem);
@@ -109,6 +111,53 @@ TEST(FreeShift, IsRefusedWhereTheMotionDependsOnTheCoordinate) {
         search(load("woodpecker"), 1.0, {{"0.146", {}}, {{"free", {}}, {"free", {}}, {"0", {}}}});
     ASSERT_FALSE(found.orbit);
     EXPECT_EQ(found.reason, "the motion depends on theta, so its shift cannot be free");
+}
+
+// A ball on a table that moves by 1.25 sin(t), with a spring along the table: one Zeno point in each period.
+std::shared_ptr<const Model> on_table(const std::string& slip, const std::string& mu, const std::string& force) {
+    return typed(fmt::format(R"toml(coordinate = [{{name = "x", force = "{}"}}, {{name = "y", start = 1.5}}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2"
+lagrangian.potential = "y + x^2/8"
+constraint = [{{name = "table", gap = "y - 1.25*sin(t)", restitution = 0.5, slip = "{}", friction = {}}}]
+)toml",
+                             force, slip, mu));
+}
+
+// A fast belt pulls with a force that does not depend on x: the multipliers besides the two zeros are those of the
+// damped spring, exp(2 pi z) with z^2 + z/5 + 1/4 = 0.
+TEST(FrictionOrbit, ThroughAZenoPointThatSlides) {
+    const OrbitSearchResult found = search(on_table("x' - 9", "0.1", "-x'/5"), 40.0, {{"2*pi", {}}, {}});
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_EQ(found.orbit->zero_multipliers, 2u);
+    ASSERT_EQ(found.orbit->multipliers.size(), 4u);
+    const std::complex<double> expected =
+        std::exp(2.0 * std::numbers::pi * std::complex<double>(-0.1, std::sqrt(0.24)));
+    EXPECT_NEAR(found.orbit->multipliers[0].real(), expected.real(), 1e-9);
+    EXPECT_NEAR(std::abs(found.orbit->multipliers[0].imag()), std::abs(expected.imag()), 1e-9);
+}
+
+// With much friction every impact stops x'. At x = 0 a flight of the length T multiplies a change of x by cos(T/2), so
+// that the multiplier besides the three zeros is the product over all flights. Those after the cut are T e, T e^2, ...
+TEST(FrictionOrbit, ThroughAZenoPointThatSticks) {
+    const OrbitSearchResult found = search(on_table("x'", "2", "0"), 20.0, {{"2*pi", {}}, {}});
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_EQ(found.orbit->zero_multipliers, 3u);
+    ASSERT_EQ(found.orbit->multipliers.size(), 4u);
+    // The orbit starts within its longest flight.
+    std::vector<double> flights{-found.orbit->run.run.options.start_time};
+    for (const Event& event : found.orbit->run.events) {
+        if (event.is_impact()) {
+            flights.back() += event.t;
+            flights.push_back(-event.t);
+        }
+        if (event.is_release()) flights.front() += found.orbit->run.end_time - event.t;
+    }
+    ASSERT_GE(flights.size(), 4u);
+    flights.back() = 0.5 * flights[flights.size() - 2];
+    double product = 1.0;
+    for (int i = 0; i < 60; ++i) flights.push_back(0.5 * flights.back());
+    for (const double flight : flights) product *= std::cos(0.5 * flight);
+    EXPECT_NEAR(std::abs(found.orbit->multipliers[0]), std::abs(product), 1e-9);
 }
 
 }  // namespace

@@ -147,13 +147,13 @@ TEST(ErrorOfCompletion, ShiftIsOfThirdOrder) {
     const auto zeno = events_of(trajectory, Event::Kind::zeno).at(0);
     CompletionError of(*model, trajectory.run);
     const State restart{zeno.truncation->q, zeno.truncation->v, zeno.truncation->t};
-    const auto large = of.shift({0, {}, restart, 2e-3}), small = of.shift({0, {}, restart, 1e-3});
+    const auto large = of.shift({{0, {}}, restart, 2e-3}), small = of.shift({{0, {}}, restart, 1e-3});
     EXPECT_NEAR(large.q.norm() / small.q.norm(), 8.0, 1e-12);
     EXPECT_NEAR(large.v.norm() / small.v.norm(), 8.0, 1e-12);
     // Integral of the gap: I = 2 (e w)^3/(3 a^2 (1 - e^3)). The ball's M is constant, so D = -n' n, and q shifts by (B
     // - ndot) I only.
-    const auto accumulation_time = of.accumulation_time({0, {}, restart, 1e-3}),
-               shorter = of.accumulation_time({0, {}, restart, 5e-4});
+    const auto accumulation_time = of.accumulation_time({{0, {}}, restart, 1e-3}),
+               shorter = of.accumulation_time({{0, {}}, restart, 5e-4});
     EXPECT_NEAR(accumulation_time.error / shorter.error, 8.0, 0.05);
 }
 
