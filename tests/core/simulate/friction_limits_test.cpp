@@ -111,7 +111,7 @@ friction = [{name = "left", slip = "x'", level = 1}, {name = "rail", slip = "y'"
                    "'left' and 'right' stick with one slip, and only the sum of their friction forces is determined; "
                    "write one [[friction]] for both");
     EXPECT_NEAR(run.end_time, 1.0 / 3.0, 1e-12);
-    EXPECT_EQ(advice(run), "Remove a redundant contact or friction.");
+    EXPECT_EQ(advice(run), "Remove a redundant contact or the friction of one.");
     Trajectory smooth = simulate_text(R"(coordinate = [{name = "y", start = 1}]
 lagrangian.kinetic = "y'^2/2"
 lagrangian.potential = "y"
