@@ -22,7 +22,7 @@ class ProductSum {
     struct Factor {
         std::uint32_t atom;  // id of its node
         int exponent;
-        friend auto operator<=>(const Factor&, const Factor&) = default;
+        friend auto operator<=>(const Factor&, const Factor&) = default;  // NOLINT(modernize-use-nullptr)
     };
     using Factors = std::vector<Factor>;  // by id, exponents are not 0
     struct Product {

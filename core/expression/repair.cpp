@@ -65,7 +65,7 @@ std::string without_latex(std::string text) {
             while (end < text.size() && is_name_part(text[end])) ++end;
         }
         const std::string name = text.substr(begin, end - begin);
-        text = text.substr(0, at) + name + "'" + text.substr(std::min(text.size(), end + (text[begin - 1] == '{')));
+        text.replace(at, std::min(text.size(), end + (text[begin - 1] == '{')) - at, name + "'");
     }
     for (const std::string_view product : {"\\cdot", "\\times"})
         for (std::size_t at = text.find(product); at != text.npos; at = text.find(product))
