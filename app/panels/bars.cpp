@@ -232,8 +232,10 @@ void legend_entry(const std::string& text, const std::function<void(ImDrawList*,
 std::vector<Markers> legend_markers(const Session& session) {
     std::vector<Markers> events;
     const std::size_t contacts = session.model()->contacts();
-    for (const EventNames& names : possible_events(session.model()->has_friction()))
-        if (contacts > 0 || EventBase{names.kind}.is_friction())
+    const auto& all = session.trajectory().events;
+    const bool collapses = std::any_of(all.begin(), all.end(), [](const Event& event) { return event.is_collapse(); });
+    for (const EventNames& names : possible_events(contacts, session.model()->has_friction()))
+        if (EventBase{names.kind}.is_collapse() ? collapses : contacts > 0 || EventBase{names.kind}.is_friction())
             events.push_back(event_markers(session.theme(), names.kind));
     if (contacts > 1) events.push_back(opened_markers(session.theme()));
     return events;

@@ -406,6 +406,23 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     if (!other_contacts.empty()) paragraph("Until then " + other_contacts + ".", remaining().width, text_color());
 }
 
+void show_collapse(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    if (show_card_title(title("Collapse", session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    if (event.collapse_info) {
+        const auto& constraints = session.description().constraints;
+        for (const auto& [contact, impulse] : event.collapse_info->impulses)
+            row("impulse of " + constraints[contact].name, number(impulse, "{:.5g}"));
+    }
+    paragraph(
+        "Each impact of one contact drives the other one toward its surface, so the two impact in turn, ever "
+        "faster, until both have lost their speeds. The limit is a plastic impact on both. " +
+            typeset_sentence(session.sentences().of(index)) + ".",
+        remaining().width, text_color());
+    if (event.truncation && event.certificate) show_certificate(event);
+}
+
 void show_certificate(const Event& event) {
     const std::vector<std::string> lines = certificate_lines(event);
     float half = 0.44F * ImGui::GetContentRegionAvail().x;

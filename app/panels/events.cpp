@@ -45,6 +45,8 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
         case Event::Kind::slip:
         case Event::Kind::reversal:
             return show_friction(session, event, state, commands);
+        case Event::Kind::collapse:
+            return show_collapse(session, event, state, commands);
     }
 }
 
@@ -59,7 +61,8 @@ int reached(const Session& session) {
 // "Zeno point" or, with several contacts, "Zeno knee", "wall opens knee".
 std::string event_name(const Session& session, const Event& event) {
     const std::string contacts = event_contacts_text(session.trajectory(), event);
-    if (!event.opened.empty()) return contacts + " opens " + joined_names(*session.model(), event.opened);
+    if (event.is_impact() && !event.opened.empty())
+        return contacts + " opens " + joined_names(*session.model(), event.opened);
     const EventNames& names = names_of(event);
     return contacts.empty() ? std::string(names.name) : fmt::format("{} {}", names.label, contacts);
 }

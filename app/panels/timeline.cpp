@@ -54,8 +54,9 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
     }
     for (const std::size_t turn : turns(session.trajectory()))
         paint_marker(list,
-                     events[turn].opened.empty() ? event_markers(session.theme(), events[turn].kind)
-                                                 : opened_markers(session.theme()),
+                     events[turn].opened.empty() || !events[turn].is_impact()
+                         ? event_markers(session.theme(), events[turn].kind)
+                         : opened_markers(session.theme()),
                      {track.x(events[turn].t), top - units(8.0F)}, scale);
 }
 

@@ -90,7 +90,7 @@ std::vector<RunStep> steps_of(const Trajectory& run, const Precision& precision)
         const double error = precision.of_event(i);
         if (!event.changes_held()) continue;
         const std::string contacts = event_contacts_text(run, event);
-        steps.push_back({event.opened.empty()
+        steps.push_back({event.opened.empty() || !event.is_impact()
                              ? fmt::format("{}{}{}", names_of(event).label, contacts.empty() ? "" : " ", contacts)
                              : contacts + " opens " + joined_names(*run.model, event.opened),
                          event.t, error});

@@ -33,6 +33,7 @@ std::string unit_of_print(const SystemDescription& description, const std::strin
     const bool several = description.constraints.size() > 1;
     if (is_settable(description, print)) return unit_of(description, print);
     if (word == "zeno_time" || word == "impact_time" || word == "release_time") return "s";
+    if (word == "collapse_time" && several) return "s";
     const bool is_of_friction = word == "stick_time" || word == "slip_time" || word == "reversal_time";
     if (is_of_friction && !sliding_places(description).empty()) return "s";
     if (word == "impact_speed") return several ? "" : unit_of_expression(description, "gap'");
@@ -91,7 +92,7 @@ void check_quantity(const SystemDescription& description, const std::string& pri
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips" ||
-            name == "reversals")
+            name == "reversals" || name == "collapses")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "least_gap" || name == "work" || name == "loss" || name == "heat")
@@ -141,7 +142,7 @@ Program section_program(const Model& model, const std::string& zero) {
         return compile_option("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
     } catch (const InputError&) {
         std::vector<std::string> events, written;
-        for (const EventNames& names : possible_events(model.has_friction())) {
+        for (const EventNames& names : possible_events(model.contacts(), model.has_friction())) {
             events.emplace_back(names.word);
             written.push_back("--at " + events.back());
         }
@@ -174,6 +175,8 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
     if (sweep.at && sweep.at->event && EventBase{*sweep.at->event}.is_friction() && !model_->has_friction())
         throw InputError(fmt::format("--at {}", names_of(*sweep.at->event).word), {},
                          "only systems with friction have this event");
+    if (sweep.at && sweep.at->event == Event::Kind::collapse && (model_->contacts() < 2 || model_->has_friction()))
+        throw InputError("--at collapse", {}, "only two contacts without friction can collapse together");
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
     std::vector<std::string> names, quantities;

@@ -23,7 +23,7 @@ namespace achilles {
 // gaps, lambda, energy, power, work, loss). It may also contain zeno_time(k), impact_time(k), impact_speed(k) and
 // release_time(k), with k from 1 (without (k): the last one), zeno_points, impacts, releases, and least_gap. With
 // friction it may contain slips, friction forces and heat, stick_time(k), slip_time(k), reversal_time(k), sticks, slips
-// and reversals. A quantity that does not exist is NaN.
+// and reversals. Several contacts without friction have collapse_time(k) and collapses. A quantity that does not exist is NaN.
 //
 // d(QUANTITY, NAME) is the derivative of such a quantity by an initial coordinate x, an initial rate x' or a parameter,
 // through all impacts and Zeno points (theory-derivatives.md 7). At the end, time is fixed; at an event, the derivative

@@ -20,16 +20,6 @@ std::vector<std::uint32_t> variables_of_pair(const Layout& layout) {
     return variables;
 }
 
-// x' W^-1 y for 2-vectors and a symmetric W.
-Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
-                    const std::array<Interval, 2>& y) {
-    const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
-    return (W[1][1] * x[0] * y[0] - W[0][1] * (x[0] * y[1] + x[1] * y[0]) + W[0][0] * x[1] * y[1]) / det;
-}
-
-// The upper end of an interval, as a point.
-Interval top(const Interval& x) { return Interval(x.hi()); }
-
 // The bounds for one choice of eta, in interval arithmetic.
 class ChatterBound {
  public:
@@ -132,8 +122,17 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
     return best;
 }
 
-PairConditions::PairConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
-                               std::size_t second, Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground)
+Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
+                    const std::array<Interval, 2>& y) {
+    const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
+    return (W[1][1] * x[0] * y[0] - W[0][1] * (x[0] * y[1] + x[1] * y[0]) + W[0][0] * x[1] * y[1]) / det;
+}
+
+// ---- the box and the shadow of two contacts ----
+
+TwoContactConditions::TwoContactConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e,
+                                           std::size_t first, std::size_t second, Mode mode, ContactSet unpressed,
+                                           const FloatEnvironmentGuard& ground)
     : ConditionsBase(model, run, &model.pair(first, second, mode).others, variables_of_pair(model.layout()), unpressed,
                      ground),
       layout_(model.layout()),
@@ -144,20 +143,150 @@ PairConditions::PairConditions(const Model& model, const Run& run, const std::ar
     truncation_.reinitialization = Reinitialization::kinetic;
 }
 
-// Evaluates the terms over a box of q, s, the two sigma and t.
-bool PairConditions::evaluate_terms(const std::vector<Interval>& box) {
+bool TwoContactConditions::evaluate_terms(const std::vector<Interval>& box) {
     set_box(terms_, box);
     terms_.run();
     return certainly_positive(terms_.W(0, 0)) && certainly_positive(terms_.W(1, 1));
 }
 
-// The terms at the collision, with sigma = 0; nullopt if the pair is not pressed.
-std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision& collision, const State& tangential) {
+bool TwoContactConditions::evaluate_terms_at(const State& tangential) {
     std::vector<Interval> here;
     for (const double q : tangential.q) here.emplace_back(q);
     for (const double s : tangential.v) here.emplace_back(s);
     here.insert(here.end(), {Interval(0.0), Interval(0.0), Interval(tangential.t)});
-    if (!evaluate_terms(here)) return std::nullopt;
+    return evaluate_terms(here);
+}
+
+State TwoContactConditions::tangential_of(const PairCollision& collision) {
+    State tangential = collision.before;  // N does not depend on the velocity
+    set_state(point_, tangential);
+    point_.input(layout_.sigma()) = point_.input(layout_.second_sigma()) = 0.0;
+    point_.run();
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(dof_); ++i)
+        for (std::size_t k = 0; k < 2; ++k)
+            tangential.v[i] -= point_.N(k, static_cast<std::size_t>(i)) * collision.sigma[k];
+    set_state(point_, tangential);
+    point_.run();
+    return tangential;
+}
+
+TwoContactConditions::PairBox TwoContactConditions::first_box(const PairCollision& collision, const State& tangential,
+                                                              double duration, double growth) {
+    PairBox box(dof_);
+    box.duration = inflated(duration, room);
+    box.growth = growth;
+    const double ulp = 0x1p-52 * std::abs(tangential.t);
+    box.t0 = Interval(tangential.t) + Interval(-4.0 * ulp, 4.0 * ulp);
+    for (Eigen::Index i = 0; i < static_cast<Eigen::Index>(dof_); ++i) {
+        const auto k = static_cast<std::size_t>(i);
+        const double q = tangential.q[i], v = std::abs(collision.before.v[i]) + std::abs(tangential.v[i]);
+        box.q0[k] = rounding_interval(q, std::abs(q));
+        box.s0[k] = rounding_interval(tangential.v[i], v);
+        box.q_radius[k] = inflated(std::abs(tangential.v[i]) * duration, room);
+        box.s_radius[k] = inflated(std::abs(point_.A(k)) * duration, room);
+    }
+    return box;
+}
+
+void TwoContactConditions::update(PairBox& box, const std::array<Interval, 2>& size, const Interval& r0) const {
+    box.put_into(box.all);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const double most = (size[k] * Interval(box.growth) * r0).hi();
+        box.all[2 * dof_ + k] = {-most, most};
+    }
+    box.all.back() = box.time();
+}
+
+// Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, computed from K = W^-1 (W(q) - W).
+Interval TwoContactConditions::deviation_from(const std::array<std::array<Interval, 2>, 2>& W) {
+    const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
+    const Interval d0 = terms_.W(0, 0) - W[0][0], d1 = terms_.W(0, 1) - W[0][1], d2 = terms_.W(1, 1) - W[1][1];
+    const Interval k00 = (W[1][1] * d0 - W[0][1] * d1) / det, k11 = (W[0][0] * d2 - W[0][1] * d1) / det;
+    const Interval k01 = (W[1][1] * d1 - W[0][1] * d2) / det, k10 = (W[0][0] * d1 - W[0][1] * d0) / det;
+    return top(sqrt(abs(square(k00) + Interval(2.0) * k01 * k10 + square(k11))));
+}
+
+bool TwoContactConditions::contain(PairBox& box, const MotionBounds& bounds) {
+    bool inside = fits(bounds.T.hi(), box.duration, room) && bounds.growth.hi() <= box.growth;
+    if (!(bounds.growth.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bounds.growth.hi() - 1.0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        Interval rate = box.all[dof_ + i], F = terms_.A(i), shift_q(0.0), shift_s(0.0);
+        for (std::size_t k = 0; k < 2; ++k) {
+            const Interval &sigma = box.all[2 * dof_ + k], h = bounds.peak / bounds.force[k];
+            rate = rate + terms_.N(k, i) * sigma;
+            F = F + terms_.B(k, i) * sigma;
+            shift_q = shift_q + abs(terms_.N(k, i)) * h;
+            shift_s = shift_s + abs(terms_.B(k, i)) * h;
+        }
+        const Interval &u = box.all[2 * dof_], &w = box.all[2 * dof_ + 1];
+        F = F + terms_.D(0, i) * square(u) + terms_.D(1, i) * u * w + terms_.D(2, i) * square(w);
+        const double q = (abs(rate) * bounds.T + shift_q).hi(), v = (abs(F) * bounds.T + shift_s).hi();
+        inside = fits(q, box.q_radius[i], room) && inside;
+        inside = fits(v, box.s_radius[i], room) && inside;
+    }
+    return inside;
+}
+
+void TwoContactConditions::add_shadow(Certificate& c, const PairBox& box, const MotionBounds& bounds) {
+    const PairTerms<Evaluator<Interval>>& x = terms_;
+    double lipschitz = 1.0, largest = 0.0;
+    std::vector<Interval> E_q(dof_), E_s(dof_), uniform(dof_);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        Interval row(0.0), c_q(0.0);
+        Interval c_s = abs(x.D(0, i)) * bounds.products[0] + abs(x.D(1, i)) * bounds.products[1] +
+                       abs(x.D(2, i)) * bounds.products[2];
+        for (std::size_t k = 0; k < 2; ++k) {
+            Interval drift = -x.Bdot(k, i);
+            for (std::size_t j = 0; j < dof_; ++j)
+                drift = drift + x.dA_dq(i, j) * x.N(k, j) + x.dA_ds(i, j) * x.B(k, j);
+            c_q = c_q + abs(x.B(k, i) - x.Ndot(k, i)) * bounds.gap[k];
+            c_s = c_s + abs(drift) * bounds.gap[k];
+            uniform[i] = uniform[i] + abs(x.N(k, i)) * bounds.peak / bounds.force[k];
+        }
+        for (std::size_t j = 0; j < dof_; ++j) row = row + abs(x.dA_dq(i, j)) + abs(x.dA_ds(i, j));
+        lipschitz = std::max(lipschitz, row.hi());
+        E_q[i] = top(c_q);
+        E_s[i] = top(c_s);
+        largest = std::max({largest, c_q.hi(), c_s.hi()});
+    }
+    const Interval grown = (exp(Interval(lipschitz) * bounds.T) - Interval(1.0)) * Interval(largest);
+    Interval position(0.0), velocity(0.0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        E_q[i] = E_q[i] + grown;
+        E_s[i] = E_s[i] + grown;
+        uniform[i] = uniform[i] + E_q[i];
+        position = position + square(Interval(box.q_radius[i]));
+        velocity = velocity + square(Interval(box.s_radius[i]));
+    }
+    c.position_bound = sqrt(position).hi();
+    c.velocity_bound = sqrt(velocity).hi();
+    c.shadowing_position = norm(E_q).hi();
+    c.shadowing_velocity = norm(E_s).hi();
+    c.uniform_position = norm(uniform).hi();
+}
+
+State TwoContactConditions::restart_of(const PairCollision& collision, const State& tangential) const {
+    State restart = tangential;
+    for (std::size_t i = 0; i < dof_; ++i)
+        for (std::size_t k = 0; k < 2; ++k) {
+            restart.q[static_cast<Eigen::Index>(i)] -= point_.N(k, i) * collision.h[k];
+            restart.v[static_cast<Eigen::Index>(i)] -= point_.B(k, i) * collision.h[k];
+        }
+    return restart;
+}
+
+bool TwoContactConditions::is_accepted(const Certificate& certificate) {
+    for (const Inequality& inequality :
+         {certificate.decision->time, certificate.decision->position, certificate.decision->velocity})
+        if (!(inequality.left <= inequality.right)) return false;
+    return true;
+}
+
+// ---- pairs that a force presses (theory-gaps.md 3) ----
+
+// The terms at the collision, with sigma = 0; nullopt if the pair is not pressed.
+std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision& collision, const State& tangential) {
+    if (!evaluate_terms_at(tangential)) return std::nullopt;
     PairAtCollision pair;
     pair.e = e_;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -177,68 +306,20 @@ std::optional<PairAtCollision> PairConditions::at_collision(const PairCollision&
     return pair;
 }
 
-// Whether the motion until tau_inf and the shifted variables are proved to stay inside the box. If not, the box grows
-// to the required size. terms_ must be those over the box.
-bool PairConditions::contain(PairBox& box, const PairBound& bound, const PairAtCollision& pair) {
-    bool inside = fits(bound.T.hi(), box.duration, room) && bound.m.hi() <= box.growth;
-    if (!(bound.m.hi() <= box.growth)) box.growth = 1.0 + 1.5 * (bound.m.hi() - 1.0);
-    const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        Interval rate = box.all[dof_ + i], F = terms_.A(i), shift_q(0.0), shift_s(0.0);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const Interval &sigma = box.all[2 * dof_ + k], h = energy / pair.lambda[k];
-            rate = rate + terms_.N(k, i) * sigma;
-            F = F + terms_.B(k, i) * sigma;
-            shift_q = shift_q + abs(terms_.N(k, i)) * h;
-            shift_s = shift_s + abs(terms_.B(k, i)) * h;
-        }
-        const Interval &u = box.all[2 * dof_], &w = box.all[2 * dof_ + 1];
-        F = F + terms_.D(0, i) * square(u) + terms_.D(1, i) * u * w + terms_.D(2, i) * square(w);
-        const double q = (abs(rate) * bound.T + shift_q).hi(), v = (abs(F) * bound.T + shift_s).hi();
-        inside = fits(q, box.q_radius[i], room) && inside;
-        inside = fits(v, box.s_radius[i], room) && inside;
-    }
-    return inside;
+TwoContactConditions::MotionBounds PairConditions::motion_bounds(const PairBound& bound, const PairAtCollision& pair) {
+    const auto product = [&](std::size_t k, std::size_t l) {
+        return Interval(2.0) * sqrt(pair.W[k][k]) * sqrt(pair.W[l][l]) * bound.J;
+    };
+    return {bound.T,
+            bound.m,
+            square(bound.m * pair.r0) * Interval(0.5),
+            pair.lambda,
+            {bound.J / pair.lambda[0], bound.J / pair.lambda[1]},
+            {product(0, 0), product(0, 1), product(1, 1)}};
 }
 
 Certificate PairConditions::certificate_of(const PairBox& box, const PairBound& bound, const PairAtCollision& pair,
-                                           const PairCollision& collision) const {
-    // The integrals of h and of sigma_k sigma_l, in place of those of a single contact.
-    const std::array<Interval, 2> gap{bound.J / pair.lambda[0], bound.J / pair.lambda[1]};
-    const auto products = [&](std::size_t k, std::size_t l) {
-        return Interval(2.0) * sqrt(pair.W[k][k]) * sqrt(pair.W[l][l]) * bound.J;
-    };
-    const Interval energy = square(bound.m * pair.r0) * Interval(0.5);
-    const PairTerms<Evaluator<Interval>>& x = terms_;
-    double lipschitz = 1.0, largest = 0.0;
-    std::vector<Interval> E_q(dof_), E_s(dof_), uniform(dof_);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        Interval row(0.0), c_q(0.0);
-        Interval c_s =
-            abs(x.D(0, i)) * products(0, 0) + abs(x.D(1, i)) * products(0, 1) + abs(x.D(2, i)) * products(1, 1);
-        for (std::size_t k = 0; k < 2; ++k) {
-            Interval drift = -x.Bdot(k, i);
-            for (std::size_t j = 0; j < dof_; ++j)
-                drift = drift + x.dA_dq(i, j) * x.N(k, j) + x.dA_ds(i, j) * x.B(k, j);
-            c_q = c_q + abs(x.B(k, i) - x.Ndot(k, i)) * gap[k];
-            c_s = c_s + abs(drift) * gap[k];
-            uniform[i] = uniform[i] + abs(x.N(k, i)) * energy / pair.lambda[k];
-        }
-        for (std::size_t j = 0; j < dof_; ++j) row = row + abs(x.dA_dq(i, j)) + abs(x.dA_ds(i, j));
-        lipschitz = std::max(lipschitz, row.hi());
-        E_q[i] = top(c_q);
-        E_s[i] = top(c_s);
-        largest = std::max({largest, c_q.hi(), c_s.hi()});
-    }
-    const Interval grown = (exp(Interval(lipschitz) * bound.T) - Interval(1.0)) * Interval(largest);
-    Interval position(0.0), velocity(0.0);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        E_q[i] = E_q[i] + grown;
-        E_s[i] = E_s[i] + grown;
-        uniform[i] = uniform[i] + E_q[i];
-        position = position + square(Interval(box.q_radius[i]));
-        velocity = velocity + square(Interval(box.s_radius[i]));
-    }
+                                           const PairCollision& collision) {
     double wait = 0.0;  // as if each contact bounced alone, with the acceleration when both are held as a substitute
     for (std::size_t k = 0; k < 2; ++k) {
         const double e = mid(e_[k]), h = std::max(0.0, collision.h[k]);
@@ -249,11 +330,7 @@ Certificate PairConditions::certificate_of(const PairBox& box, const PairBound& 
     }
     Certificate c = certificate_at(collision.before.t, {Interval(0.0), bound.T}, wait);
     c.zeno_low = collision.before.t;
-    c.position_bound = sqrt(position).hi();
-    c.velocity_bound = sqrt(velocity).hi();
-    c.shadowing_position = norm(E_q).hi();
-    c.shadowing_velocity = norm(E_s).hi();
-    c.uniform_position = norm(uniform).hi();
+    add_shadow(c, box, motion_bounds(bound, pair));
     c.a_min = std::min(pair.a[0].lo(), pair.a[1].lo());
     c.a_max = std::max(pair.a[0].hi(), pair.a[1].hi());
     decide(c, 0.5 * bound.T.hi());
@@ -262,76 +339,30 @@ Certificate PairConditions::certificate_of(const PairBox& box, const PairBound& 
     return c;
 }
 
-std::optional<PairConditions::PairCompletion> PairConditions::certify(const PairCollision& collision,
-                                                                      bool cut_at_resolution) {
+std::optional<PairCompletion> PairConditions::certify(const PairCollision& collision, bool cut_at_resolution) {
     const FloatEnvironmentGuard ground;
-    const auto n = static_cast<Eigen::Index>(dof_);
-    State tangential = collision.before;  // N does not depend on the velocity
-    set_state(point_, tangential);
-    point_.input(layout_.sigma()) = point_.input(layout_.second_sigma()) = 0.0;
-    point_.run();
-    for (Eigen::Index i = 0; i < n; ++i)
-        for (std::size_t k = 0; k < 2; ++k)
-            tangential.v[i] -= point_.N(k, static_cast<std::size_t>(i)) * collision.sigma[k];
+    const State tangential = tangential_of(collision);
     auto pair = at_collision(collision, tangential);
     if (!pair) return std::nullopt;
     const auto first = pair_bound(*pair);
     if (!first || (!cut_at_resolution && 0.5 * first->T.hi() > truncation_.eps_t)) return std::nullopt;
-    set_state(point_, tangential);
-    point_.run();
-
-    PairBox box(dof_);
-    box.duration = inflated(first->T.hi(), room);
-    box.growth = 1.0 + 2.0 * (first->m.hi() - 1.0) + 1e-6;
-    const double ulp = 0x1p-52 * std::abs(tangential.t);
-    box.t0 = Interval(tangential.t) + Interval(-4.0 * ulp, 4.0 * ulp);
-    for (Eigen::Index i = 0; i < n; ++i) {
-        const auto k = static_cast<std::size_t>(i);
-        const double q = tangential.q[i], v = std::abs(collision.before.v[i]) + std::abs(tangential.v[i]);
-        box.q0[k] = rounding_interval(q, std::abs(q));
-        box.s0[k] = rounding_interval(tangential.v[i], v);
-        box.q_radius[k] = inflated(std::abs(tangential.v[i]) * first->T.hi(), room);
-        box.s_radius[k] = inflated(std::abs(point_.A(k)) * first->T.hi(), room);
-    }
+    PairBox box = first_box(collision, tangential, first->T.hi(), 1.0 + 2.0 * (first->m.hi() - 1.0) + 1e-6);
     for (int round = 0; round < 40; ++round) {
-        box.put_into(box.all);
-        for (std::size_t k = 0; k < 2; ++k) {
-            const double most = (sqrt(pair->W[k][k]) * Interval(box.growth) * pair->r0).hi();
-            box.all[2 * dof_ + k] = {-most, most};
-        }
-        box.all.back() = box.time();
+        update(box, {sqrt(pair->W[0][0]), sqrt(pair->W[1][1])}, pair->r0);
         if (!evaluate_terms(box.all)) return std::nullopt;
         const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
         pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
-        // Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, computed from K = W^-1 (W(q) - W).
-        const Interval det = pair->W[0][0] * pair->W[1][1] - square(pair->W[0][1]);
-        const Interval d0 = terms_.W(0, 0) - pair->W[0][0], d1 = terms_.W(0, 1) - pair->W[0][1],
-                       d2 = terms_.W(1, 1) - pair->W[1][1];
-        const Interval k00 = (pair->W[1][1] * d0 - pair->W[0][1] * d1) / det,
-                       k11 = (pair->W[0][0] * d2 - pair->W[0][1] * d1) / det;
-        const Interval k01 = (pair->W[1][1] * d1 - pair->W[0][1] * d2) / det,
-                       k10 = (pair->W[0][0] * d1 - pair->W[0][1] * d0) / det;
-        pair->omega = top(sqrt(abs(square(k00) + Interval(2.0) * k01 * k10 + square(k11))));
+        pair->omega = deviation_from(pair->W);
         const auto bound = pair_bound(*pair);
         if (!bound) return std::nullopt;
-        if (!contain(box, *bound, *pair)) continue;
+        if (!contain(box, motion_bounds(*bound, *pair))) continue;
         std::optional<Certificate::OtherContactBounds> others;
         if (!prove_other_contacts_stay(box.all, others)) return std::nullopt;
         evaluate_terms(box.all);
-        PairCompletion result{certificate_of(box, *bound, *pair, collision), tangential};
+        PairCompletion result{certificate_of(box, *bound, *pair, collision), restart_of(collision, tangential)};
         result.certificate.others = std::move(others);
         result.certificate.cut_at_resolution = cut_at_resolution;
-        if (!cut_at_resolution)
-            for (const Inequality& inequality :
-                 {result.certificate.decision->time, result.certificate.decision->position,
-                  result.certificate.decision->velocity})
-                if (!(inequality.left <= inequality.right)) return std::nullopt;
-        for (Eigen::Index i = 0; i < n; ++i)
-            for (std::size_t k = 0; k < 2; ++k) {
-                const auto c = static_cast<std::size_t>(i);
-                result.restart.q[i] -= point_.N(k, c) * collision.h[k];
-                result.restart.v[i] -= point_.B(k, c) * collision.h[k];
-            }
+        if (!cut_at_resolution && !is_accepted(result.certificate)) return std::nullopt;
         return result;
     }
     return std::nullopt;

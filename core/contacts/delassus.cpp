@@ -29,6 +29,15 @@ ContactVector<Number> zeros(Eigen::Index size) {
 
 }  // namespace
 
+ContactMatrix<double> rounding_radius(const ContactMatrix<double>& W) {
+    constexpr double few = 0x1p-48;
+    ContactMatrix<double> radius(W.rows(), W.cols());
+    for (Eigen::Index i = 0; i < W.rows(); ++i)
+        for (Eigen::Index k = 0; k < W.cols(); ++k)
+            radius(i, k) = W(i, k) == 0.0 ? 0.0 : few * std::sqrt(W(i, i) * W(k, k));
+    return radius;
+}
+
 ContactMatrix<Interval> enclosure(const ContactMatrix<double>& W, const ContactMatrix<double>& radius) {
     ContactMatrix<Interval> result(W.rows(), W.cols());
     for (Eigen::Index i = 0; i < W.rows(); ++i)

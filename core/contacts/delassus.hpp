@@ -32,6 +32,8 @@ inline bool counts_as_zero(const Interval& x, double natural) {
     return x.contains(0.0) && width(x) <= rounded_zero * natural;
 }
 
+// Error bound of a Delassus matrix evaluated in double: a few roundings of its terms.
+ContactMatrix<double> rounding_radius(const ContactMatrix<double>& W);
 // W +- radius, entry by entry: for a matrix that was computed and the bound on its error.
 ContactMatrix<Interval> enclosure(const ContactMatrix<double>& W, const ContactMatrix<double>& radius);
 

@@ -308,6 +308,14 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         for (const auto& [name, quantity] : of_friction)
             scope.forbidden.emplace(name, fmt::format("'{}' needs friction, and this system has none", name));
     }
+    const std::pair<const char*, RunQuantity> of_collapses[] = {{"collapse_time", {time, collapse}},
+                                                                {"collapses", {count, collapse}}};
+    if (system.constraints.size() > 1 && layout.frictions == 0) {
+        named.insert(named.end(), std::begin(of_collapses), std::end(of_collapses));
+    } else {
+        for (const auto& [name, quantity] : of_collapses)
+            scope.forbidden.emplace(name, fmt::format("'{}' is of two contacts without friction", name));
+    }
     for (const auto& [name, quantity] : named) {
         scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;

@@ -171,7 +171,7 @@ std::vector<ChatterPhases> chatters_of(const Trajectory& trajectory) {
     const auto end_of = [&](std::size_t phase) -> int {
         if (ends[phase] == (phase == 0 ? 0 : ends[phase - 1])) return 0;
         const Event& event = trajectory.events[ends[phase] - 1];
-        return event.is_zeno() ? 1 : event.opened.empty() ? 0 : -1;
+        return event.is_zeno() ? 1 : event.is_impact() && !event.opened.empty() ? -1 : 0;
     };
     for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
         const std::size_t first = i + 1;  // the phase before the first alternation is not part of it

@@ -91,6 +91,8 @@ std::string EventDescriptions::of(std::size_t event) const {
         case Event::Kind::slip:
         case Event::Kind::reversal:
             return friction(trajectory_.events[event]);
+        case Event::Kind::collapse:
+            return collapse(event);
         case Event::Kind::impact:
             break;
     }
@@ -162,7 +164,7 @@ std::string EventDescriptions::impact(std::size_t index) const {
         next != nullptr && next->truncation && next->truncation->t == event.t && !is_plastic_landing(*next);
     const std::string loss = lost(energy_lost(trajectory_, index), event);
     text += loss;
-    if (is_cut && !loss.empty()) text += " by it and the restart";
+    if (is_cut && !next->is_collapse() && !loss.empty()) text += " by it and the restart";
     if (event.friction != nullptr) {
         const std::string heat = energy(slips_->heat_of_impact(event), event);
         if (!heat.empty()) text += ", heat of friction " + heat;
@@ -190,6 +192,7 @@ std::string EventDescriptions::change(std::size_t index) const {
         return fmt::format("impact of {} opens {}{}", joined_names(*trajectory_.model, event.contacts, " and "),
                            joined_names(*trajectory_.model, event.opened, " and "), friction_after(index));
     if (event.is_friction()) return friction(event);
+    if (event.is_collapse()) return collapse(index);
     if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
         const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";
@@ -256,6 +259,35 @@ std::string EventDescriptions::zeno(std::size_t index) const {
     if (by_convention_ && *by_convention_ < index)
         text += fmt::format(", given Moreau's law at event {}", *by_convention_ + 1);
     return text;
+}
+
+std::string EventDescriptions::collapse(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    const Model& model = *trajectory_.model;
+    std::string text = joined_names(model, event.contacts, " and ") + ": ";
+    if (event.truncation) {
+        text += "infinitely many impacts";
+        if (const std::optional<double> bound = proved_time(event))
+            text += fmt::format(" within {} s", rounded_up(std::max(*bound, event.t - event.truncation->t)));
+        text += ", no force needed";
+    } else {
+        text += "they close at the same time, and the impacts of either order have no end: a plastic impact";
+    }
+    if (event.collapse_info)
+        text += fmt::format(" (speeds x {:.3g}, gaps x {:.3g} per two impacts)", event.collapse_info->speed_ratio,
+                            event.collapse_info->gap_ratio);
+    if (event.collapse_info && event.truncation) text += lost(event.collapse_info->loss, event);
+    const ContactSet held = event.contacts.within(event.mode.held()),
+                     touching = event.contacts.without(held).without(event.opened);
+    const auto end = [&](ContactSet contacts, const char* one, const char* both) {
+        if (contacts.empty()) return std::string();
+        return contacts == event.contacts ? std::string(both) : joined_names(model, contacts, " and ") + one;
+    };
+    std::string ends;
+    for (const std::string& part : {end(held, " is held", "both held"), end(event.opened, " leaves", "both leave"),
+                                    end(touching, " touches", "both touch")})
+        if (!part.empty()) ends += (ends.empty() ? "; " : ", ") + part;
+    return text + ends;
 }
 
 std::string EventDescriptions::impacts() const {

@@ -51,6 +51,7 @@ class EventDescriptions {
 
  private:
     std::string impact(std::size_t index) const;
+    std::string collapse(std::size_t index) const;
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
     std::string friction(const Event& event) const;

@@ -231,6 +231,14 @@ void add_friction(Json& result, const Trajectory& trajectory, const Event::Frict
                                    {"contacts", names(trajectory, friction.capped)}};
 }
 
+// The plastic impact that is the limit of a collapse.
+void add_collapse(Json& result, const Trajectory& trajectory, const CollapseInfo& limit) {
+    result["impulses"] = by_contact(trajectory, limit.impulses);
+    result["loss"] = number_json(limit.loss);
+    result["speed_ratio"] = number_json(limit.speed_ratio);
+    result["gap_ratio"] = number_json(limit.gap_ratio);
+}
+
 // The contacts that take part in an event. For an impact this includes touching contacts that receive an impulse.
 ContactSet taking_part(const Trajectory& trajectory, std::size_t index) {
     const Event& event = trajectory.events[index];
@@ -277,6 +285,7 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
     } else {
         result["v"] = list(event.v_after);
     }
+    if (event.collapse_info) add_collapse(result, trajectory, *event.collapse_info);
     if (!event.is_friction())
         add_modes(result, trajectory, event.mode);
     else if (event.kind != Event::Kind::stick)

@@ -125,14 +125,24 @@ struct MultiContactInfo {
     std::vector<ImpactOrderOutcome> alternatives;
 };
 
+// The limit of the impacts of a pair that collapses (theory-collapse.md 4): one plastic impact on both, in place of all
+// impacts after the cut. At a tie it is the impact at the same time.
+struct CollapseInfo {
+    std::vector<std::pair<std::size_t, double>> impulses;  // by contact
+    double loss = 0.0;                                     // of kinetic energy
+    double speed_ratio = 0.0, gap_ratio = 0.0;  // mu+ and mu-: factors of the speeds and of the gaps per two impacts
+};
+
 // Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
 struct EventBase {
-    // stick: the slip of a contact or joint ends; slip: it begins; reversal: it changes its sign.
-    enum class Kind { impact, zeno, release, stick, slip, reversal, last = reversal };
+    // stick: the slip of a contact or joint ends; slip: it begins; reversal: it changes its sign. collapse: the impacts
+    // of two contacts have used up their speeds without any force (theory-collapse.md).
+    enum class Kind { impact, zeno, release, stick, slip, reversal, collapse, last = collapse };
     Kind kind = Kind::impact;
     bool is_impact() const { return kind == Kind::impact; }
     bool is_zeno() const { return kind == Kind::zeno; }
     bool is_release() const { return kind == Kind::release; }
+    bool is_collapse() const { return kind == Kind::collapse; }
     bool is_friction() const { return kind == Kind::stick || kind == Kind::slip || kind == Kind::reversal; }
     friend bool operator==(const EventBase&, const EventBase&) = default;
 };
@@ -141,9 +151,10 @@ struct Event : EventBase {
     double t = 0.0;
     Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts)
     double impact_speed = 0.0;    // impact: |hdot| before the impact
-    ContactSet contacts;  // those that impact, become held at a Zeno point, or release; with friction, also joints
-    Mode mode;            // after the event
-    ContactSet opened;    // impact: contacts held before and opened by it
+    // Those that impact, become held at a Zeno point, collapse, or release; with friction, also joints.
+    ContactSet contacts;
+    Mode mode;          // after the event
+    ContactSet opened;  // impact: contacts held before and opened by it; collapse: those that leave after it
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
     double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
@@ -153,8 +164,9 @@ struct Event : EventBase {
         Vector q, v_before, v;  // v: after reinitialization
         double impact_speed = 0.0;
     };
-    std::optional<TruncationRecord> truncation;
-    std::optional<Certificate> certificate;  // zeno
+    std::optional<TruncationRecord> truncation;         // also collapse
+    std::optional<Certificate> certificate;             // zeno, collapse
+    std::shared_ptr<const CollapseInfo> collapse_info;  // collapse; else null
 
     struct FrictionImpulses {                                    // impact
         std::vector<std::pair<std::size_t, double>> tangential;  // by contact
@@ -183,17 +195,24 @@ struct EventNames {
     std::string_view name;   // in sentences and legends: "Zeno point"
     std::string_view label;  // before a number or names of contacts: "Zeno 2", "Zeno knee"
 };
-inline constexpr std::array<EventNames, 6> event_names{{
+inline constexpr std::array<EventNames, 7> event_names{{
     {Event::Kind::impact, "impact", "impact", "impact"},
     {Event::Kind::zeno, "zeno", "Zeno point", "Zeno"},
     {Event::Kind::release, "release", "release", "release"},
     {Event::Kind::stick, "stick", "stick", "stick"},
     {Event::Kind::slip, "slip", "start of slip", "slip"},
     {Event::Kind::reversal, "reversal", "reversal of slip", "reversal"},
+    {Event::Kind::collapse, "collapse", "collapse", "collapse"},
 }};
-// The kinds of events that a system may have; those of friction are the last ones.
-constexpr std::span<const EventNames> possible_events(bool has_friction) {
-    return std::span(event_names).first(has_friction ? event_names.size() : 3);
+// The kinds of events that a system may have.
+inline std::vector<EventNames> possible_events(std::size_t contacts, bool has_friction) {
+    std::vector<EventNames> possible;
+    for (const EventNames& names : event_names) {
+        const EventBase kind{names.kind};
+        if (kind.is_friction() ? has_friction : kind.is_collapse() ? contacts > 1 && !has_friction : true)
+            possible.push_back(names);
+    }
+    return possible;
 }
 // A plastic landing is a Zeno event, but has its own names.
 inline constexpr EventNames landing_names{Event::Kind::zeno, "landing", "landing", "landing"};

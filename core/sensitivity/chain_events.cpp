@@ -16,6 +16,7 @@ namespace {
 
 constexpr const char* several_at_zeno_point =
     "several contacts reach a Zeno point together: no derivatives are computed past this point";
+constexpr const char* at_collapse = "the impacts of two contacts collapse: no derivatives are computed past this point";
 
 // A number and its derivatives by the components of a change, for the impact law.
 struct ValueWithGradient {
@@ -48,6 +49,8 @@ void Chain::handle_event(std::size_t event) {
             return model_->has_friction() ? land_with_friction(event) : land(event);
         case Event::Kind::zeno:
             return reach_zeno_point(event);
+        case Event::Kind::collapse:
+            return break_off(at_collapse);
         case Event::Kind::release:
             return model_->has_friction() ? change_friction(event) : release(event);
         case Event::Kind::stick:
@@ -167,6 +170,9 @@ std::optional<std::string> Chain::next_completion(std::size_t event, ContactSet&
         joins = events[event + 1].contacts;
     } else if (next_piece_ < trajectory_->pieces.size()) {
         const DenseSegment& piece = trajectory_->pieces[next_piece_];
+        if (event + 1 < events.size() && events[event + 1].is_collapse() && events[event + 1].truncation &&
+            events[event + 1].truncation->t == now.t)
+            return at_collapse;
         if (piece.start == now.t && (event + 1 == events.size() || events[event + 1].t > now.t))
             joins = piece.mode.held().without(now.mode.held());
     }

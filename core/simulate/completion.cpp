@@ -37,8 +37,10 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
     if (surfaces_->count() > 1) {
         // Contacts that impact in turn may leave no time between impacts, even if each alone would bounce high.
         constexpr double resolved = 16.0;
-        if (record_.impacts() > 1 &&
-            (last_step_ < resolved * ulp(next_.state.t) || moves_within_rounding(which, -contact.hdot))) {
+        const bool at_rounding = record_.impacts() > 1 && (last_step_ < resolved * ulp(next_.state.t) ||
+                                                           moves_within_rounding(which, -contact.hdot));
+        if (complete_collapse(which, contact, at_rounding)) return;
+        if (at_rounding) {
             const Vector v_after = impact(contact, next_.state.v, restitution(which));
             if (!complete_pair(ContactSet::of(which), v_after, true)) end_chatter(ContactSet::of(which));
             return;
@@ -225,6 +227,7 @@ void ExecutionAutomaton::pass_zeno_point() {
     Event event = std::move(*completion_);
     completion_.reset();
     next_.state.t = event.t;
+    if (event.is_collapse()) return pass_collapse(std::move(event));
     if (next_.keeps_stick) {
         if (!decide_with_friction(next_.held(), next_.mode)) return;
         event.mode = next_.mode;

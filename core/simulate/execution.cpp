@@ -111,7 +111,8 @@ void ExecutionAutomaton::start_at_rest(ContactSet resting) {
 const StepRequest* ExecutionAutomaton::next() {
     if (outcome_ || (watch_ != nullptr && is_cancelled())) return nullptr;
     if (!is_time_left() && completing() && completion_->t < run_.options.end_time) pass_zeno_point();
-    if (!next_.unwatched.empty() && !is_time_left() && next_.until < run_.options.end_time) end_sharing();
+    if (!completing() && !next_.unwatched.empty() && !is_time_left() && next_.until < run_.options.end_time)
+        end_sharing();
     if (outcome_) return nullptr;
     if (!is_time_left()) {
         stop(Outcome::Kind::end_time, "reached the end time");
@@ -139,7 +140,8 @@ const StepRequest* ExecutionAutomaton::next() {
         next_.plain =
             stalled_ == 0 && !start.is_shortened && next_.unpressed.empty() && (in_contact || start.multiplicity <= 1);
     }
-    if (next_.begins && !next_.unwatched.empty()) next_.until = std::min(next_.until, end_of_sharing());
+    if (!completing() && next_.begins && !next_.unwatched.empty())
+        next_.until = std::min(next_.until, end_of_sharing());
     if (next_.begins) note_beginning();
     return &next_;
 }
@@ -196,7 +198,9 @@ void ExecutionAutomaton::accept(const StepResult& result) {
             return accept_friction_event(result.which);
         case StepOutcome::ambiguous:
             if (is_pivot(result.which)) return accept_friction_event(result.which);  // also where it only touches 0
-            return shared ? continue_phase() : stop(Outcome::Kind::undecided, ambiguity_text(result));
+            if (shared) return continue_phase();
+            if (!collapse_failure_.inequality.empty() && is_chatter()) return end_chatter({});
+            return stop(Outcome::Kind::undecided, ambiguity_text(result));
         case StepOutcome::off_surface:
             return fail_projection();
         case StepOutcome::step_failed:

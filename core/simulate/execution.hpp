@@ -13,8 +13,10 @@
 #include <memory>
 #include <optional>
 
+#include "certify/collapse.hpp"
 #include "certify/truncation.hpp"
 #include "certify/two_contacts.hpp"
+#include "contacts/collapse.hpp"
 #include "contacts/complementarity.hpp"
 #include "simulate/contact_cache.hpp"
 #include "simulate/event_stepper.hpp"
@@ -163,6 +165,22 @@ class ExecutionAutomaton {
     bool is_at_rest(Mode mode);
     void check_touching();
     std::string names_of(ContactSet contacts) const;
+    // ---- impacts that collapse (collapse.cpp) ----
+    std::optional<PairLaw<Interval>> law_of_pair(ContactSet pair, ContactSet held);
+    bool is_collapse_at_tie(ContactSet landing);
+    AlternateImpacts law_of_tie(ContactSet landing);
+    bool complete_collapse(std::size_t which, const Contact& contact, bool at_rounding);
+    bool complete_collapse(const std::array<std::size_t, 2>& pair, const std::array<Contact, 2>& contacts, double W12,
+                           bool at_rounding);
+    CollapseConditions& collapse_conditions(std::size_t first, std::size_t second);
+    std::shared_ptr<CollapseInfo> collapse_info(ContactSet pair, const AlternateImpacts& law);
+    void continue_to_collapse(ContactSet pair, const State& after, const State& restart, PairCompletion completion,
+                              std::shared_ptr<const CollapseInfo> info, double speed);
+    void record_collapse_at_tie(ContactSet pair, std::shared_ptr<const CollapseInfo> info);
+    void pass_collapse(Event event);
+    void finish_collapse(Event event, ContactSet held, Mode resting);
+    void stop_at_collapse(ContactSet pair);
+    std::string collapse_failure_text() const;
     // ---- friction (friction.cpp, friction_impact.cpp, friction_completion.cpp) ----
     // A contact or joint that leaves its cone, and the sign of its slip.
     struct SlipStart {
@@ -265,6 +283,17 @@ class ExecutionAutomaton {
         std::unique_ptr<PairConditions> conditions;
     };
     std::vector<PairConditionsCache> all_pairs_;  // the same for pairs
+    struct CollapseConditionsCache {
+        std::size_t first, second;
+        Mode mode;  // of the other contacts
+        ContactSet unpressed;
+        std::unique_ptr<CollapseConditions> conditions;
+    };
+    std::vector<CollapseConditionsCache> all_collapses_;
+    struct CollapseFailure {
+        std::string_view inequality;  // empty: no pair could collapse
+        ContactSet pair;
+    } collapse_failure_;                          // at the last impact
     TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique

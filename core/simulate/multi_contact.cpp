@@ -16,16 +16,6 @@ namespace {
 
 double ulp(double x) { return std::nextafter(std::abs(x), std::numeric_limits<double>::infinity()) - std::abs(x); }
 
-// Error bound of a Delassus matrix evaluated in double: a few roundings of its terms.
-ContactMatrix<double> radius_of(const ContactMatrix<double>& W) {
-    constexpr double few = 0x1p-48;
-    ContactMatrix<double> radius(W.rows(), W.cols());
-    for (Eigen::Index i = 0; i < W.rows(); ++i)
-        for (Eigen::Index k = 0; k < W.cols(); ++k)
-            radius(i, k) = W(i, k) == 0.0 ? 0.0 : few * std::sqrt(W(i, i) * W(k, k));
-    return radius;
-}
-
 }  // namespace
 
 std::string ExecutionAutomaton::names_of(ContactSet contacts) const {
@@ -42,11 +32,12 @@ double ExecutionAutomaton::rounding_so_far(const Contact& contact) const {
 
 // Whether these impacts have the same outcome in every order, given the held contacts (theory-gaps.md 2.4).
 bool ExecutionAutomaton::is_order_independent(ContactSet landing) {
+    if (is_collapse_at_tie(landing)) return true;
     const ClosedContacts closed = surfaces_->at(next_.state, next_.held().with(landing));
     ContactVector<double> e(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         e[static_cast<Eigen::Index>(i)] = restitution(closed.which[i]);
-    return !order_dependence(enclosure(closed.W, radius_of(closed.W)), e, closed.places_of(next_.held()),
+    return !order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, closed.places_of(next_.held()),
                              closed.places_of(landing))
                 .matters();
 }
@@ -85,7 +76,7 @@ bool ExecutionAutomaton::stays_held(std::size_t which, const Contact& contact) {
     const ClosedContacts closed = surfaces_->at(next_.state, next_.held().with(which));
     const auto held = closed.places_of(next_.held()), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
-    const auto W = enclosure(closed.W, radius_of(closed.W));
+    const auto W = enclosure(closed.W, rounding_radius(closed.W));
     if (order_dependence(W, e, held, lands).by_transmission) return false;
     const State after{next_.state.q, impact(contact, next_.state.v, restitution(which)), next_.state.t};
     const bool rests = restitution(which) == 0.0 && surfaces_->of(which, next_.mode).normal_acceleration(after) < 0.0;
@@ -158,10 +149,11 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     if (!surfaces_->project(next_.state, all, still)) return fail_projection();
     const ClosedContacts closed = surfaces_->at(next_.state, all);
     const ContactSet places = closed.places_of(held);
+    const bool collapses = is_collapse_at_tie(landing);  // then the impact is plastic, whatever the restitutions
     ContactVector<double> before = closed.rates(), e(before.size());
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        e[k] = restitution(closed.which[i]);
+        e[k] = collapses && landing.contains(closed.which[i]) ? 0.0 : restitution(closed.which[i]);
         if (still.contains(closed.which[i])) before[k] = 0.0;
     }
     const auto impact = moreau_impact(closed.W, before, e, places);
@@ -169,7 +161,8 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("no impulses satisfy the impact law of {}, at {}", names_of(all), where(next_.state)));
     const Vector v_before = next_.state.v, v_after = closed.after(v_before, impact->impulses);
-    if (complete_pair(landing, v_after, false)) return;
+    if (!collapses && complete_pair(landing, v_after, false)) return;
+    const auto limit = collapses ? collapse_info(landing, law_of_tie(landing)) : nullptr;
     auto joint = std::make_shared<MultiContactInfo>();
     joint->is_nonunique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -182,7 +175,7 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     const ContactSet open = closed.places_of(all.without(resting.without(loose)));
     const ContactSet fast = closed.places_of(held.without(loose));
     if (open.count() > 1) {
-        const auto order = order_dependence(enclosure(closed.W, radius_of(closed.W)), e, fast, open);
+        const auto order = order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, fast, open);
         joint->order_matters = order.matters();
         joint->rounded_zero = order.rounded_zero;
     }
@@ -229,8 +222,12 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     }
     change_rates(v_before, all);
     decide(left);
+    if (collapses && outcome_) return stop_at_collapse(landing);
     record_.after_impact(resting.without(next_.resting().held()), next_.resting());
-    enter_or_stay();
+    if (collapses)
+        record_collapse_at_tie(landing, limit);
+    else
+        enter_or_stay();
     if (!outcome_) begin_stretch(next_.mode, run_.options.end_time);
 }
 
@@ -347,7 +344,8 @@ void ExecutionAutomaton::end_chatter(ContactSet contacts) {
         if (surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
     stop(Outcome::Kind::undecided,
          fmt::format("contacts {} chatter together, in flights shorter than double precision resolves, at {}",
-                     names_of(contacts), where(next_.state)));
+                     names_of(contacts), where(next_.state)) +
+             collapse_failure_text());
 }
 
 // As for a single contact: the next flight, to leading order.

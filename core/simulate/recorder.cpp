@@ -147,13 +147,17 @@ Exchange Recorder::exchange_of_jump(const State& before, const State& after, dou
     return {work, work + energy_at(before) - energy_at(after)};
 }
 
+void Recorder::add(const Exchange& exchange) {
+    trajectory_.work += exchange.work;
+    trajectory_.loss += exchange.loss;
+    trajectory_.heat += exchange.heat;
+}
+
 void Recorder::impact(const State& before, const Vector& v_after, double speed, const Exchange& exchange,
                       ContactSet contacts, std::shared_ptr<const MultiContactInfo> joint) {
     ++trajectory_.statistics.impacts;
     ++trajectory_.phases.back().impacts;
-    trajectory_.work += exchange.work;
-    trajectory_.loss += exchange.loss;
-    trajectory_.heat += exchange.heat;
+    add(exchange);
     if (keep_ == Recording::final_state) {
         trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed});
         return;

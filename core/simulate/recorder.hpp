@@ -55,6 +55,8 @@ class Recorder {
     void after_impact(ContactSet opened, Mode mode);
     // Work and loss of a jump that is not an impact: the loss follows from the energies before and after.
     Exchange exchange_of_jump(const State& before, const State& after, double work);
+    // Adds the work and loss of such a jump.
+    void add(const Exchange& exchange);
     // Records any other event.
     void event(Event event);
     long impacts() const { return trajectory_.statistics.impacts; }

@@ -128,12 +128,17 @@ void include(std::span<const Sample> samples, Values& values, std::size_t curves
     }
 }
 
+bool has_collapse(std::span<const Event> events) {
+    return std::any_of(events.begin(), events.end(), [](const Event& event) { return event.is_collapse(); });
+}
+
 // Adds the markers of these events.
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / panel.courses;
-    for (const EventNames& row : possible_events(trajectory.model->has_friction())) {
+    for (const EventNames& row : possible_events(trajectory.model->contacts(), trajectory.model->has_friction())) {
         const Event::Kind kind = row.kind;
+        if (kind == Event::Kind::collapse && !has_collapse(events)) continue;  // rare: no empty row for it
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));
         const Trajectory* const run = &trajectory;
         markers.label = events_name({&run, 1}, kind);
@@ -154,7 +159,7 @@ void add_opened(Panel& panel, const Trajectory& trajectory, std::span<const Even
                 const Framing& framing, const Theme& theme) {
     Markers& markers = panel.markers.emplace_back(opened_markers(theme));
     for (const Event& event : events) {
-        if (event.opened.empty()) continue;
+        if (!event.is_impact() || event.opened.empty()) continue;
         values.set(sample_at(trajectory, event));
         for (std::size_t i = 0; i * panel.courses < panel.curves.size(); ++i) {
             const Point point = point_of(values[0], values[i + 1]);

@@ -91,7 +91,7 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
             name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");
         keys.push_back({name, for_print(event_markers(theme, names.kind))});
     }
-    const auto opens = [](const Event& event) { return !event.opened.empty(); };
+    const auto opens = [](const Event& event) { return event.is_impact() && !event.opened.empty(); };
     if (std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
             return std::any_of(run->events.begin(), run->events.end(), opens);
         })) {

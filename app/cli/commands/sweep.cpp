@@ -164,7 +164,8 @@ void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks)
         *command, "--print", typed.prints, "WHAT",
         "quantity to tabulate: an expression at the end of the run, zeno_time(k), impact_time(k), impact_speed(k), "
         "release_time(k), zeno_points, impacts, releases, least_gap; with friction also heat, stick_time(k), "
-        "slip_time(k), reversal_time(k), sticks, slips, reversals; derivatives such as d(zeno_time(1), e); held, "
+        "slip_time(k), reversal_time(k), sticks, slips, reversals; with several contacts collapse_time(k), collapses; "
+        "derivatives such as d(zeno_time(1), e); held, "
         "outcome, with friction modes; repeatable");
     const auto text_option = [&](const char* flag, std::optional<std::string>& place, const char* type,
                                  const char* about) {

@@ -76,12 +76,14 @@ class Certificate(Record):
 
 
 class Event(Record):
-    """An impact, a Zeno point or a release; with friction, a stick, a slip or a reversal.
+    """An impact, a Zeno point, a release or a collapse; with friction, a stick, a slip or a reversal.
 
     An impact has v_before and v_after, the others have v. A Zeno point has a certificate, the start of a slip and a
     reversal a direction (1 or -1, or one for each contact by name where they differ), and an impact with friction has
     tangential_impulses. A Zeno point at which friction stops every slip has sticks_from, the number of the first such
-    impact, and its certificate a tail: "slip", "stick" or "stick then slip"."""
+    impact, and its certificate a tail: "slip", "stick" or "stick then slip". A collapse has the impulses and the loss
+    of the plastic impact that its impacts converge to, the factors speed_ratio and gap_ratio per two impacts, and a
+    certificate."""
 
     kind: str
     t: float
@@ -108,6 +110,9 @@ class Event(Record):
     modes: Record
     tangential_impulses: Record
     energy_capped: Record
+    loss: float
+    speed_ratio: float
+    gap_ratio: float
 
 
 class Phase(Record):

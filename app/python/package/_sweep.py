@@ -102,7 +102,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
     the command line, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N and seed=S, give {"x": (-1, 1)},
     and N random points are drawn. `print` has the quantities to tabulate: expressions at the end of the run, zeno_time(k),
     impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; with friction also heat, sticks,
-    slips, reversals, stick_time(k), slip_time(k), reversal_time(k), modes; or the derivative of one of these numbers with respect to an initial coordinate,
+    slips, reversals, collapse_time(k), collapses, stick_time(k), slip_time(k), reversal_time(k), modes; or the derivative of one of these numbers with respect to an initial coordinate,
     rate or parameter, "d(zeno_time(1), e)". With `at` they are
     tabulated at every "impact", "zeno" or "release", or where an expression crosses zero upward, from time `after` on. A failed
     run is a point with its outcome, and a warning gives the number of such runs.
