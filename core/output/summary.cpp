@@ -325,7 +325,9 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
                   "grows along the run.\nTo check it, rerun with a smaller --tolerance.\n"
                 : "The last digits carry integration error, which grows along the run. To see how much, rerun with a "
                   "smaller --tolerance.\n";
-    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), is_zeno_point);
+    const bool completed = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {
+        return is_zeno_point(event) || (event.is_collapse() && event.truncation);
+    });
     if (completed)
         text +=
             "Certificates do not cover integration and rounding errors, before a truncation or after it, nor how the "

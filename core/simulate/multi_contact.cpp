@@ -223,11 +223,12 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     change_rates(v_before, all);
     decide(left);
     if (collapses && outcome_) return stop_at_collapse(landing);
-    record_.after_impact(resting.without(next_.resting().held()), next_.resting());
-    if (collapses)
-        record_collapse_at_tie(landing, limit);
-    else
+    if (collapses) {
+        record_collapse_at_tie(landing, limit);  // the collapse, not its impact, changes the mode
+    } else {
+        record_.after_impact(resting.without(next_.resting().held()), next_.resting());
         enter_or_stay();
+    }
     if (!outcome_) begin_stretch(next_.mode, run_.options.end_time);
 }
 

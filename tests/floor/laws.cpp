@@ -36,6 +36,7 @@ class Probe {
     explicit Probe(const Trajectory& t)
         : model(*t.model),
           surfaces(model, t.run),
+          trajectory_(t),
           energy_(model.evaluator(model.energy(), t.run.parameters)),
           flight_(model.evaluator(model.motion({}).program, t.run.parameters)) {
         for (std::size_t i = 0; i < model.contacts(); ++i)
@@ -110,8 +111,16 @@ class Probe {
     const Model& model;
     ContactCache surfaces;
     std::vector<double> restitution;
+    // Two contacts that collapse at a tie have a plastic impact (theory-collapse.md 4).
+    double restitution_at(const Event& impact, std::size_t contact) const {
+        for (const Event& event : trajectory_.events)
+            if (event.is_collapse() && !event.truncation && event.t == impact.t && event.contacts.contains(contact))
+                return 0.0;
+        return restitution[contact];
+    }
 
  private:
+    const Trajectory& trajectory_;
     EnergyTerms<Evaluator<double>> energy_;
     Evaluator<double> flight_;
 };
@@ -122,10 +131,10 @@ void complain(Violations& violations, bool holds, const std::string& sentence) {
 
 ContactSet held_before(const Event& event) { return event.mode.held().with(event.opened).without(event.contacts); }
 
-// The Zeno point of the impact sequence that was cut at this impact, if there is one.
+// The Zeno point or the collapse of the impact sequence that was cut at this impact, if there is one.
 const Event* cut_at(const Trajectory& trajectory, const Event& event) {
     for (const Event* next = &event + 1; next != trajectory.events.data() + trajectory.events.size(); ++next)
-        if (next->kind == Event::Kind::zeno)
+        if (next->is_zeno() || next->is_collapse())
             return next->truncation && next->truncation->t == event.t ? next : nullptr;
         else if (next->t > event.t)
             return nullptr;
@@ -218,7 +227,7 @@ Exchange exchange_of(Probe& probe, const Event& event) {
     for (std::size_t i = 0; i < blow.contacts.which.size(); ++i) {
         const auto k = static_cast<Eigen::Index>(i);
         sum.work -= blow.p[k] * blow.contacts.contacts[i].gap_t;
-        sum.loss -= 0.5 * blow.p[k] * (1.0 - probe.restitution[blow.contacts.which[i]]) * blow.rates[k];
+        sum.loss -= 0.5 * blow.p[k] * (1.0 - probe.restitution_at(event, blow.contacts.which[i])) * blow.rates[k];
     }
     return sum;
 }
@@ -260,7 +269,7 @@ void moreau(Violations& violations, Probe& probe, const Event& event) {
         const auto k = static_cast<Eigen::Index>(i);
         const std::size_t contact = blow.contacts.which[i];
         const bool is_capped = event.friction && event.friction->capped.contains(contact);
-        const double e = probe.restitution[contact] * (is_capped ? *event.friction->energy_cap : 1.0);
+        const double e = probe.restitution_at(event, contact) * (is_capped ? *event.friction->energy_cap : 1.0);
         const double left = blow.rates_after[k] + e * blow.rates[k];
         const double allowed = rounding * (1.0 + blow.contacts.contacts[i].g.norm());
         // The change of the contact's own hdot by its impulse. For a contact that is closed only nearly it is rounding
@@ -360,6 +369,9 @@ class PhaseCheck {
             case Event::Kind::reversal:
                 friction(event, phase);
                 break;
+            case Event::Kind::collapse:
+                collapse(event);
+                return next(event);
         }
         const bool is_rough = probe_.surfaces.has_friction();
         if (is_rough ? !(event.mode == phase.mode) : event.mode.held() != phase.mode.held()) next(event);
@@ -432,6 +444,22 @@ class PhaseCheck {
               event.t);
         check(event.certificate->zeno_low <= event.t && event.t <= event.certificate->zeno_high,
               "the Zeno time is outside its interval", event.t);
+    }
+    // Both contacts have lost their gap rates; those that stay are pressed, and the others leave.
+    void collapse(const Event& event) {
+        still(event, event.mode.held().with(event.contacts));
+        check(event.contacts.count() == 2 && event.opened.without(event.contacts).empty() &&
+                  event.opened.within(event.mode.held()).empty(),
+              "a collapse opens others than its contacts", event.t);
+        const ClosedContacts held = probe_.surfaces.at(after(event), event.mode.held());
+        check(held.which.empty() || probe_.forces(after(event), held).minCoeff() >= 0.0,
+              "a force pulls after a collapse", event.t);
+        if (!event.certificate || !event.certificate->certified || !event.collapse_info)
+            return check(false, "a collapse without a certificate", event.t);
+        for (const auto& [contact, impulse] : event.collapse_info->impulses)
+            check(impulse >= 0.0, "an impulse of a collapse pulls", event.t);
+        check(event.certificate->zeno_low <= event.t && event.t <= event.certificate->zeno_high,
+              "the time of a collapse is outside its interval", event.t);
     }
     // Accelerations alone may jump.
     void friction(const Event& event, const Phase& phase) {
