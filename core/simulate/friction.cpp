@@ -255,7 +255,7 @@ void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) 
     record_.event(std::move(event));
 }
 
-// Ends the run where coefficients leave the domain of their law. Called at the ends of steps, which are shortened to it,
+// Ends the run where coefficients leave the domain of their law. Called at ends of steps, which are shortened to it,
 // and at events; the values at the start of a run are checked with its input. False if the run ends.
 bool ExecutionAutomaton::check_friction_levels(ContactSet contacts_and_joints) {
     for (const std::size_t i : contacts_and_joints.within(surfaces_->varying())) {
