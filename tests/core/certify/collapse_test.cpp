@@ -61,7 +61,7 @@ Tally tally_of(double spread, double reach) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> part(0.0, 1.0);
     Tally tally;
-    for (int n = 0; n < 4000; ++n) {
+    for (int n = 0; n < 1500; ++n) {
         const double c2 = 0.6 + 0.39 * part(random);
         const std::array<double, 2> e{0.01 + 0.3 * part(random), 0.01 + 0.3 * part(random)};
         const AlternateImpacts law({1.0, -std::sqrt(c2), 1.0, e});
