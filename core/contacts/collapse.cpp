@@ -1,5 +1,7 @@
 #include "contacts/collapse.hpp"
 
+#include <algorithm>
+
 namespace achilles {
 
 AlternateImpacts::AlternateImpacts(const PairLaw<double>& pair) : k{}, e(pair.e) {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include "contacts/collapse.hpp"
@@ -19,14 +20,14 @@ double landing(double h, double v, double a) {
     return D < 0.0 ? std::numeric_limits<double>::infinity() : 2.0 * h / (-v + std::sqrt(D));
 }
 
-struct Start {
+struct PairStart {
     double rise, fall, gap;
 };
 
 // Time of the impacts in turn after one of contact 0, with accelerations of either sign chosen at random in every
 // flight. Negative if they stop alternating.
-double time_of(const std::array<double, 2>& k, const std::array<double, 2>& e, double spread, double ah, Start start,
-               std::mt19937_64& random) {
+double time_of(const std::array<double, 2>& k, const std::array<double, 2>& e, double spread, double ah,
+               PairStart start, std::mt19937_64& random) {
     std::uniform_real_distribution<double> part(-1.0, 1.0);
     std::array<double, 2> sigma{start.rise, -start.fall}, h{0.0, start.gap};
     std::size_t next = 1;
@@ -52,15 +53,15 @@ double time_of(const std::array<double, 2>& k, const std::array<double, 2>& e, d
     return t;
 }
 
-struct Tally {
+struct CollapseTally {
     int starts = 0, certified = 0;
     double worst = 0.0;
 };
 
-Tally tally_of(double spread, double reach) {
+CollapseTally tally_of(double spread, double reach) {
     std::mt19937_64 random(11);
     std::uniform_real_distribution<double> part(0.0, 1.0);
-    Tally tally;
+    CollapseTally tally;
     for (int n = 0; n < 1500; ++n) {
         const double c2 = 0.6 + 0.39 * part(random);
         const std::array<double, 2> e{0.01 + 0.3 * part(random), 0.01 + 0.3 * part(random)};
@@ -91,7 +92,7 @@ Tally tally_of(double spread, double reach) {
 }
 
 TEST(CollapseTime, HoldsForEveryAccelerationWithinItsBound) {
-    const Tally none = tally_of(0.0, 0.0), some = tally_of(0.0, 0.02);
+    const CollapseTally none = tally_of(0.0, 0.0), some = tally_of(0.0, 0.02);
     EXPECT_GT(none.certified, 0.7 * none.starts);
     EXPECT_GT(none.worst, 0.999999);  // without force the bound is nearly attained
     EXPECT_GT(some.certified, 0.3 * some.starts);
@@ -99,7 +100,7 @@ TEST(CollapseTime, HoldsForEveryAccelerationWithinItsBound) {
 }
 
 TEST(CollapseTime, HoldsForKAndRestitutionWithinTheirEnclosures) {
-    const Tally moved = tally_of(0.005, 0.01);
+    const CollapseTally moved = tally_of(0.005, 0.01);
     EXPECT_GT(moved.certified, 0.2 * moved.starts);
     EXPECT_GT(moved.worst, 0.9);
 }

@@ -10,29 +10,29 @@ namespace achilles {
 namespace {
 
 // The impacts in turn after an impact of contact 0, in the order of the theory: speeds and gaps one by one.
-struct Chain {
+struct AlternateRun {
     double t = 0.0;
     bool alternates = true;  // the last speed was positive
     double speed = 0.0;
 };
-Chain impacts_in_turn_of(const PairLaw<double>& pair, double rise, double fall, double gap, int most) {
-    Chain chain;
+AlternateRun impacts_in_turn_of(const PairLaw<double>& pair, double rise, double fall, double gap, int most) {
+    AlternateRun sequence;
     std::array<double, 2> sigma{rise, -fall}, h{0.0, gap};
     const std::array<double, 2> W{pair.W11, pair.W22};
     std::size_t next = 1;
-    for (int i = 0; i < most && chain.alternates; ++i) {
+    for (int i = 0; i < most && sequence.alternates; ++i) {
         const double wait = h[next] / -sigma[next];
-        chain.t += wait;
+        sequence.t += wait;
         h[1 - next] += wait * sigma[1 - next];
         h[next] = 0.0;
         const double u = -sigma[next];
         sigma[next] = pair.e[next] * u;
         sigma[1 - next] += pair.W12 * (1.0 + pair.e[next]) * u / W[next];
         next = 1 - next;
-        chain.alternates = sigma[next] < 0.0;
-        chain.speed = u;
+        sequence.alternates = sigma[next] < 0.0;
+        sequence.speed = u;
     }
-    return chain;
+    return sequence;
 }
 
 PairLaw<double> random_pair(std::mt19937_64& random) {
@@ -56,14 +56,14 @@ TEST(AlternateImpacts, HaveTheTimeOfTheClosedForm) {
         const double limit = law.nu(0), fall = limit * (0.5 + 1.5 * part(random));
         if (std::abs(fall - limit) < 1e-3 * limit) continue;
         const double T = law.time(0, 1.0, -fall, 0.01);
-        const Chain chain = impacts_in_turn_of(pair, 1.0, fall, 0.01, 400);
+        const AlternateRun sequence = impacts_in_turn_of(pair, 1.0, fall, 0.01, 400);
         if (fall > limit) {
             ++inside;
-            ASSERT_TRUE(chain.alternates) << i;
-            EXPECT_NEAR(chain.t, T, 1e-9 * T) << i;
+            ASSERT_TRUE(sequence.alternates) << i;
+            EXPECT_NEAR(sequence.t, T, 1e-9 * T) << i;
         } else {
             ++outside;
-            EXPECT_FALSE(chain.alternates) << i;
+            EXPECT_FALSE(sequence.alternates) << i;
             EXPECT_LT(T, 0.0) << i;
         }
     }
