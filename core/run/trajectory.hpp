@@ -136,7 +136,7 @@ struct CollapseInfo {
 // Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
 struct EventBase {
     // stick: the slip of a contact or joint ends; slip: it begins; reversal: it changes its sign. collapse: the impacts
-    // of two contacts have used up their speeds without any force (theory-collapse.md).
+    // of two contacts have used up their speeds without any force (theory-collapse.md 1).
     enum class Kind { impact, zeno, release, stick, slip, reversal, collapse, last = collapse };
     Kind kind = Kind::impact;
     bool is_impact() const { return kind == Kind::impact; }

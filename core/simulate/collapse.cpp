@@ -1,4 +1,4 @@
-// Impacts of a pair that collapse without force (theory-collapse.md).
+// Impacts of a pair that collapse without force (theory-collapse.md 5).
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -119,7 +119,7 @@ constexpr std::array<EventSign, event_names.size()> event_signs{{
     {Event::Kind::stick, Markers::MarkerShape::circle, 9.0, wine, blush},
     {Event::Kind::slip, Markers::MarkerShape::circle, 9.0, wine, blush, true},
     {Event::Kind::reversal, Markers::MarkerShape::diamond, 10.0, wine, blush, true},
-    {Event::Kind::collapse, Markers::MarkerShape::diamond, 11.0, purple, pink, true},
+    {Event::Kind::collapse, Markers::MarkerShape::square, 10.0, purple, pink, true},
 }};
 static_assert(has_all_event_kinds(event_signs));
 
