@@ -28,7 +28,7 @@ TEST(ScaledGaps, ReversedSlipsChangeNoRunOfTheGallery) {
         for (const double factor : {1.0, 0.3})
             EXPECT_EQ(difference_by_scaling(model->description(), factor, -1), "") << name << ", times " << factor;
     }
-    EXPECT_EQ(rough, 9);
+    EXPECT_EQ(rough, 10);
 }
 
 // The sliding speed in a coefficient is then that of the unscaled slip.
