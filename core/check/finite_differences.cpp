@@ -123,9 +123,9 @@ class Differences {
         for (Eigen::Index k = 0; k < m; ++k)
             for (Eigen::Index i = 0; i < dof_; ++i)
                 G(k, i) = slope([&](const PreciseState& x) { return gaps_(x)[k]; }, at, &PreciseState::q, i);
-        const Matrix W = G * inverse.solve(Matrix(G.transpose()));
         const Matrix rows = joined(G, at);
-        const Matrix W_rows = rows * inverse.solve(Matrix(rows.transpose()));
+        Matrix W;                                                                 // of the gaps, then of the slips
+        if (rows.rows() > 0) W = rows * inverse.solve(Matrix(rows.transpose()));  // Eigen needs a right side
         Reals accelerations(rows.rows());
         accelerations.head(m) = hddot;
         accelerations.tail(rows.rows() - m) = (slips_(later(step)) - slips_(later(-step))) / (2 * step);
@@ -141,7 +141,7 @@ class Differences {
         }
         for (Eigen::Index k = 0; k < m; ++k)
             for (Eigen::Index j = 0; j < m; ++j)
-                if (j != k) all[next++] = while_kept(k, rows_of(j, m), W_rows, accelerations);
+                if (j != k) all[next++] = while_kept(k, rows_of(j, m), W, accelerations);
         return all;
     }
 
