@@ -35,8 +35,9 @@ struct OrbitMonitor {
 
 // The condition of return: the period, and the shift of the coordinates. Expressions in the parameters.
 struct ReturnCondition {
-    Text period;              // of the drive; a guess without a drive; empty: unknown
-    std::vector<Text> shift;  // by coordinate; empty entries are 0, free_shift: any; may be empty
+    Text period;  // of the drive; a guess without a drive; empty: unknown
+    // By coordinate; may be empty. An empty entry is 0, and free_shift stands for any shift.
+    std::vector<Text> shift;
 };
 
 // Default options for orbit searches: the tightest tolerances that double precision supports.

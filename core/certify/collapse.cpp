@@ -206,7 +206,8 @@ bool CollapseConditions::decides_who_stays(const PairBox& box, bool& both_held) 
     both_held = true;
     bool both_leave = true, one_leaves = false;
     for (std::size_t k = 0; k < 2; ++k) {
-        const Interval other = a[1 - k] - terms_.W(0, 1) / terms_.W(k, k) * a[k];  // of the other one while k is held
+        // The acceleration of the other gap while contact k is held.
+        const Interval other = a[1 - k] - terms_.W(0, 1) / terms_.W(k, k) * a[k];
         both_held = both_held && certainly_positive(other);
         one_leaves = one_leaves || (certainly_positive(a[k]) && certainly_negative(other));
         both_leave = both_leave && (certainly_negative(a[k]) || mag(a[k]) == 0.0);

@@ -8,8 +8,8 @@ namespace achilles {
 
 // Enclosures over a neighborhood, in units in which W_11 = W_22 = 1 at the cut.
 struct AlternationBounds {
-    std::array<Interval, 2> k, e;  // of k only the lower ends count
-    Interval acceleration;         // of |hddot|: only the upper end counts
+    std::array<Interval, 2> k, e;  // only the lower ends of k are used
+    Interval acceleration;         // encloses |hddot|; only its upper end is used
 };
 // The pair just after an impact of contact `landed`, at the approach speed u. The other one approaches at the speed v;
 // its gap is H.

@@ -124,8 +124,9 @@ class Differences {
             for (Eigen::Index i = 0; i < dof_; ++i)
                 G(k, i) = slope([&](const PreciseState& x) { return gaps_(x)[k]; }, at, &PreciseState::q, i);
         const Matrix rows = joined(G, at);
-        Matrix W;                                                                 // of the gaps, then of the slips
-        if (rows.rows() > 0) W = rows * inverse.solve(Matrix(rows.transpose()));  // Eigen needs a right side
+        // W has a row for each gap, then one for each slip. Without rows there is nothing to solve.
+        Matrix W;
+        if (rows.rows() > 0) W = rows * inverse.solve(Matrix(rows.transpose()));
         Reals accelerations(rows.rows());
         accelerations.head(m) = hddot;
         accelerations.tail(rows.rows() - m) = (slips_(later(step)) - slips_(later(-step))) / (2 * step);
