@@ -234,9 +234,11 @@ std::vector<Markers> legend_markers(const Session& session) {
     const std::size_t contacts = session.model()->contacts();
     const auto& all = session.trajectory().events;
     const bool collapses = std::any_of(all.begin(), all.end(), [](const Event& event) { return event.is_collapse(); });
-    for (const EventNames& names : possible_events(contacts, session.model()->has_friction()))
-        if (EventBase{names.kind}.is_collapse() ? collapses : contacts > 0 || EventBase{names.kind}.is_friction())
+    for (const EventNames& names : possible_events(*session.model())) {
+        const EventBase kind{names.kind};
+        if (kind.is_collapse() ? collapses : contacts > 0 || kind.is_friction() || kind.is_jump())
             events.push_back(event_markers(session.theme(), names.kind));
+    }
     if (contacts > 1) events.push_back(opened_markers(session.theme()));
     return events;
 }

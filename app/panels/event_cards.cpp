@@ -229,6 +229,40 @@ FrictionShare friction_share(const Trajectory& run, std::size_t which, Mode mode
 
 }  // namespace
 
+void show_jump(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Trajectory& run = session.trajectory();
+    const Event& event = run.events[index];
+    if (show_card_title(title("Jump", session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    row("", "before", "after");
+    const SystemDescription& description = session.description();
+    const State errors = session.precision().of_state(event.t);
+    const auto rows = [&](const char* prime, const Vector& before, const Vector& after, const Vector& error,
+                          const char* unit) {
+        for (std::size_t i = 0; i < description.coordinates.size(); ++i) {
+            const auto at = static_cast<Eigen::Index>(i);
+            if (before[at] == after[at]) continue;
+            const bool is_angle = description.coordinates[i].unit == "rad";
+            const double factor = is_angle ? degrees(1.0) : 1.0;
+            row(typeset_name(description.coordinates[i].name + prime) + (is_angle ? unit : ""),
+                number(before[at] * factor, error[at] * factor, 6), number(after[at] * factor, error[at] * factor, 6));
+        }
+    };
+    rows("", event.q_before(), event.q, errors.q, " [\u00b0]");
+    rows("'", event.v_before, event.v_after, errors.v, " [\u00b0/s]");
+    paragraph(session.sentences().of(index) + ".", remaining().width, text_color());
+}
+
+void show_pass(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
+    const Event& event = session.trajectory().events[index];
+    if (show_card_title(title("Pass", session, event, index), time_of(session, index), state))
+        commands.emplace_back(command::Select{0});
+    paragraph(
+        "The gap falls through zero where 'when' of this contact is not positive: no impact. The contact does not "
+        "count until its gap has risen above zero again.",
+        remaining().width, text_color());
+}
+
 void show_friction(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Trajectory& run = session.trajectory();
     const Event& event = run.events[index];

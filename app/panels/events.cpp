@@ -47,6 +47,10 @@ void show_card_of_event(const Session& session, std::size_t event, PanelState& s
             return show_friction(session, event, state, commands);
         case Event::Kind::collapse:
             return show_collapse(session, event, state, commands);
+        case Event::Kind::jump:
+            return show_jump(session, event, state, commands);
+        case Event::Kind::pass:
+            return show_pass(session, event, state, commands);
     }
 }
 
@@ -156,19 +160,23 @@ void show_spreads(PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// Button at x that starts, stops or removes the proof of the current run. A system with friction has no proofs.
+// Button at x that starts, stops or removes the proof of the current run. A system with friction or jumps has no proofs.
 void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
-    const bool has_friction = session.model()->has_friction();
-    const std::string refusal = "runs with dry friction cannot be proved; the status line has the estimated error";
+    const char* const what = session.model()->has_friction() ? "dry friction"
+                             : session.model()->has_jumps()  ? "jumps"
+                                                             : "contacts that count only sometimes";
+    const bool is_refused = session.model()->has_friction() || session.model()->has_guards();
+    const std::string refusal =
+        fmt::format("runs with {} cannot be proved; the status line has the estimated error", what);
     const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
-    ImGui::BeginDisabled(has_friction);
+    ImGui::BeginDisabled(is_refused);
     ImGui::SameLine(x + width + units(2.0F));
     if (ImGui::Button("##spread", {arrow, 0.0F})) ImGui::OpenPopup("spreads");
     remember(state, "prove more");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     paint_menu_arrow(low.x + 0.5F * (high.x - low.x) - units(4.0F), 0.5F * (low.y + high.y), ImGui::IsItemHovered());
-    tooltip(has_friction ? refusal : "prove more than the present run: all starts in a box around its start");
+    tooltip(is_refused ? refusal : "prove more than the present run: all starts in a box around its start");
     show_spreads(state, commands);
     ImGui::SameLine(x);
     if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word, {width, 0.0F})) {
@@ -179,7 +187,7 @@ void show_proving(float x, const Session& session, PanelState& state, Commands& 
     }
     remember(state, "prove");
     ImGui::EndDisabled();
-    tooltip(has_friction   ? refusal
+    tooltip(is_refused     ? refusal
             : is_under_way ? "stop the proof"
             : is_there     ? "remove the proof from the plots and the events"
                            : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "

@@ -364,6 +364,8 @@ void show_impact(const Session& session, std::size_t index, PanelState& state, C
 void show_release(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_friction(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_collapse(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_jump(const Session& session, std::size_t index, PanelState& state, Commands& commands);
+void show_pass(const Session& session, std::size_t index, PanelState& state, Commands& commands);
 void show_comparison(const Session& session, PanelState& state, Commands& commands);
 float comparison_width(const Session& session);
 // Below the sliders: the pinned runs, if any.

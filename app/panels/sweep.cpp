@@ -148,7 +148,7 @@ void show_moments(const SweepSpec& sweep, const Session& session, PanelState& st
     };
     if (ImGui::RadioButton("at the end of the run", !sweep.at)) ask({});
     remember(state, "sweep at end");
-    for (const EventNames& names : possible_events(session.model()->contacts(), session.model()->has_friction())) {
+    for (const EventNames& names : possible_events(*session.model())) {
         const std::string name = fmt::format("at every {}", names.name);
         if (ImGui::RadioButton(name.c_str(), sweep.at && sweep.at->event == names.kind))
             ask(Section{names.kind, {}, sweep.at ? sweep.at->after : std::nullopt});

@@ -92,7 +92,7 @@ void check_quantity(const SystemDescription& description, const std::string& pri
             throw refused_slope(print, fmt::format("'{}' is text, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "impacts" || name == "zeno_points" || name == "releases" || name == "sticks" || name == "slips" ||
-            name == "reversals" || name == "collapses")
+            name == "reversals" || name == "collapses" || name == "jumps" || name == "passes")
             throw refused_slope(print, fmt::format("'{}' is a whole number, and has no derivative", name),
                                 "print the quantity without d(...)");
         if (name == "least_gap" || name == "work" || name == "loss" || name == "heat")
@@ -142,7 +142,7 @@ Program section_program(const Model& model, const std::string& zero) {
         return compile_option("--at", zero, [&](std::span<const Text> one) { return model.compile_view(one); });
     } catch (const InputError&) {
         std::vector<std::string> events, written;
-        for (const EventNames& names : possible_events(model.contacts(), model.has_friction())) {
+        for (const EventNames& names : possible_events(model)) {
             events.emplace_back(names.word);
             written.push_back("--at " + events.back());
         }
@@ -177,6 +177,10 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
                          "only systems with friction have this event");
     if (sweep.at && sweep.at->event == Event::Kind::collapse && (model_->contacts() < 2 || model_->has_friction()))
         throw InputError("--at collapse", {}, "only two contacts without friction can collapse together");
+    if (sweep.at && sweep.at->event == Event::Kind::jump && !model_->has_jumps())
+        throw InputError("--at jump", {}, "this system has no [[jump]]");
+    if (sweep.at && sweep.at->event == Event::Kind::pass && !model_->has_conditional_contacts())
+        throw InputError("--at pass", {}, "in this system every contact counts: none has a 'when'");
     const SystemDescription& description = model_->description();
     std::vector<Text> texts;
     std::vector<std::string> names, quantities;
@@ -212,6 +216,7 @@ RunMeasures::RunMeasures(std::shared_ptr<const Model> model, const SweepSpec& sw
         model_->contacts() > 1 || sweep.base.options.truncation.reinitialization == Reinitialization::euclidean;
     needs_everything_ = sweep.at || quantities_ || needs_least_gap_ ||
                         (asks("work") && model_->equations().has_power()) || (asks("loss") && jumps_tell_no_loss) ||
+                        (asks("loss") && model_->has_jumps()) ||
                         (model_->has_friction() && (asks("work") || asks("heat")));
 }
 

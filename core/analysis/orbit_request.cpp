@@ -5,6 +5,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "analysis/return_map.hpp"
 #include "analysis/sweep.hpp"
@@ -87,6 +88,25 @@ void make_exact(Options& options, const std::set<std::string_view>& set_by_user)
             option.set(options, std::min(std::get<double>(option.get(options)), std::get<double>(option.get(exact))));
 }
 
+// Checks that the contacts that [orbit] lists as inactive are those with a negative gap at its start.
+void check_inactive(const Model& model, const Run& run) {
+    const SystemDescription& system = model.description();
+    for (std::size_t i = 0; i < model.contacts(); ++i) {
+        if (!model.is_conditional(i)) continue;
+        auto gap = model.evaluator(model.gap(i), run.parameters);
+        set_state(gap, run.start());
+        gap.run();
+        const double h = gap.output(0);
+        const bool is_listed = system.orbit->inactive->contains(i);
+        constexpr double rounding = 1e-9;
+        if (std::abs(h) > rounding && is_listed != (h < 0.0))
+            throw system.error(system.orbit->at,
+                               fmt::format("'{}' is {}inactive in [orbit], but its gap is {:.6g} there",
+                                           system.constraints[i].name, is_listed ? "" : "not ", h),
+                               "the contacts that do not count at the start are those with a negative gap");
+    }
+}
+
 void read_closing(const OrbitOptions& typed, const Model& model, ReturnCondition& closing) {
     const auto check = [&](const char* flag, const std::string& text) {
         compile_option(flag, text, [&](std::span<const Text> one) { return model.compile_of_parameters(one); });
@@ -167,6 +187,7 @@ OrbitRequest parse_orbit_request(const OrbitOptions& typed, const Run& run, cons
         begin_at(whole.run, guess, has_clock);
         // Explicit settings take precedence over the guess.
         for (const std::string& setting : typed.settings) assign(whole.run, description, setting);
+        if (orbit->inactive) check_inactive(*model, whole.run);
     }
     whole.is_guess = typed.guess || question.from_end || (orbit && typed.from.empty());
     read_closing(typed, *model, whole.closing);

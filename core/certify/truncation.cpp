@@ -146,7 +146,7 @@ bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
     if (other_contact_terms_ == nullptr) return true;
     set_box(other_contact_program_, box);
     other_contact_program_.run();
-    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_);
+    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_, inactive_);
     if (!proved) return false;
     if (is_alone_) proved.reset();
     return true;
@@ -178,7 +178,9 @@ TruncationConditions::TruncationConditions(const Model& model, const Run& run, c
                                            const BouncingKey& key, ContactSet unpressed,
                                            const FloatEnvironmentGuard& ground)
     : ConditionsBase(model, run,
-                     model.contacts() == 1 && !model.has_friction() ? nullptr : &model.other_contact_terms(key),
+                     model.contacts() == 1 && !model.has_friction() && !model.has_guards()
+                         ? nullptr
+                         : &model.other_contact_terms(key),
                      model.bouncing(key).variables, unpressed, ground),
       sigma_(model.layout().sigma()),
       autonomous_(model.equations().autonomous),
@@ -195,7 +197,7 @@ AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
 
 std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
                                                                         const Evaluator<Interval>& program,
-                                                                        ContactSet unpressed) {
+                                                                        ContactSet unpressed, ContactSet inactive) {
     Certificate::OtherContactBounds others;
     const std::size_t bouncing = other_contact_terms.bouncing.size();
     std::size_t next = bouncing;
@@ -217,13 +219,21 @@ std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const Ot
         }
         others.held.push_back(held);
     }
-    for (std::size_t i = 0; i < other_contact_terms.open.size(); ++i) {
+    for (const std::size_t contact : other_contact_terms.open) {
         const Interval gap = program.output(next++);
+        if (inactive.contains(contact)) {
+            if (!certainly_negative(gap)) return std::nullopt;
+            continue;
+        }
         if (!certainly_positive(gap)) return std::nullopt;
         others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
     }
     for (std::size_t i = 0; i < other_contact_terms.positive; ++i)
         if (!certainly_positive(program.output(next++))) return std::nullopt;
+    for (std::size_t i = 0; i < other_contact_terms.nonzero; ++i) {
+        const Interval on = program.output(next++);
+        if (!certainly_positive(on) && !certainly_negative(on)) return std::nullopt;
+    }
     return others;
 }
 

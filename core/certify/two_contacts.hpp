@@ -42,6 +42,7 @@ struct PairCompletion {
 // Base of the conditions for two contacts: the box around a cut, and the shadow of the motion in it.
 class TwoContactConditions : protected ConditionsBase {
  public:
+    using ConditionsBase::set_inactive;
     // For two contacts while others are held; those in `unpressed` need no contact force.
     TwoContactConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
                          std::size_t second, Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground);

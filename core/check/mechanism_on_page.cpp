@@ -42,6 +42,8 @@ class MechanismPage {
                 "is quadratic in the rates and T0 is the kinetic energy at rates zero; 'work' belongs to that "
                 "balance.");
         put_frictions();
+        put_conditions();
+        put_jumps();
     }
 
  private:
@@ -140,6 +142,34 @@ class MechanismPage {
         if (std::any_of(places.begin(), places.end(),
                         [](const SlidingPlace& place) { return !is_joint(place.number); }))
             say("A contact slides with coefficient*lambda against its slip, and sticks up to static*lambda.");
+    }
+
+    void put_conditions() {
+        std::vector<std::vector<std::string>> rows;
+        for (const ConstraintDescription& constraint : system_.constraints)
+            if (!constraint.when.text.empty())
+                rows.push_back({words(constraint.name), words(fmt::format("where `{}` > 0", constraint.when.text))});
+        if (rows.empty()) return;
+        page_.heading("Contacts that count only sometimes");
+        page_.lines(rows);
+    }
+
+    // "after impacts of foot, where x > 0: x = -x, x' = x'/2"
+    void put_jumps() {
+        std::vector<std::vector<std::string>> rows;
+        for (const JumpDescription& jump : system_.jumps) {
+            std::string line = jump.contact
+                                   ? fmt::format("after impacts of {}", system_.constraints[*jump.contact].name)
+                                   : fmt::format("where `{}` falls through 0", jump.on.text);
+            if (!jump.when.text.empty()) line += fmt::format(" and `{}` > 0", jump.when.text);
+            for (std::size_t i = 0; i < jump.set.size(); ++i)
+                line += fmt::format("{} `{}` := `{}`", i == 0 ? ":" : ",", names_[jump.set[i].place],
+                                    jump.set[i].value.text);
+            rows.push_back({words(jump.name), words(line)});
+        }
+        if (rows.empty()) return;
+        page_.heading("Jumps");
+        page_.lines(rows);
     }
 
     Page& page_;

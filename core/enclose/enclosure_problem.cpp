@@ -183,6 +183,13 @@ void check(const Model& model, const EnclosureProblem& claim) {
     if (description.has_friction())
         throw description.error(sliding_places(description).front().level->at, "a proof does not cover friction",
                                 "achilles simulate runs this system, with an estimate of its error");
+    const char* const hint = "achilles simulate runs this system, with an estimate of its error";
+    if (!description.jumps.empty())
+        throw description.error(description.jumps.front().at, "a proof does not cover jumps", hint);
+    for (const ConstraintDescription& constraint : description.constraints)
+        if (!constraint.when.text.empty())
+            throw description.error(constraint.when.at, "a proof does not cover contacts that count only sometimes",
+                                    hint);
     std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];

@@ -144,11 +144,12 @@ struct BouncingModel {
 //   for every held contact, in the mode that holds the other held ones: hddot (negative if pressed), W, and for each
 //       bouncing contact kappa, the factor by which it transmits an impulse;
 //   for every open contact: its gap;
-//   with friction: functions that must stay positive (theory-friction.md 4.1).
+//   functions that must stay positive: of friction (theory-friction.md 4.1), and `when` of the bouncing contacts;
+//   `on` of the watched jumps, which must not vanish (theory-modes.md 3).
 struct OtherContactTerms {
     std::vector<std::size_t> bouncing, held, open;
     Program program;
-    std::size_t positive = 0;  // the number of functions of friction
+    std::size_t positive = 0, nonzero = 0;  // the numbers of these functions
 };
 OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
                                         const Expressions& velocity, ContactModes& motions, const Layout& layout,

@@ -251,6 +251,12 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
                        const FrictionLaw& law = each.second;
                        return is_steady(law.slip) && is_steady(law.level) && is_steady(law.static_level);
                    });
+    const auto is_steady_or_none = [&](const std::optional<Expression>& x) { return !x || is_steady(*x); };
+    e.autonomous = e.autonomous && std::all_of(e.when.begin(), e.when.end(), is_steady_or_none);
+    for (const JumpLaw& jump : e.jumps) {
+        e.autonomous = e.autonomous && is_steady_or_none(jump.on) && is_steady_or_none(jump.when);
+        for (const auto& [slot, value] : jump.set) e.autonomous = e.autonomous && is_steady(value);
+    }
     for (const Expression force : e.Q) e.quadratic_in_rates = e.quadratic_in_rates && is_quadratic(force, v_slots);
     const std::uint32_t speed = layout.sliding_speed();
     for (const auto& [which, law] : e.friction)
@@ -290,6 +296,11 @@ ContactModes::ContactModes(const Equations& equations, const Layout& layout)
         for (Expression* x : {&law.slip, &law.c, &law.level, &law.static_level}) adopt(*x);
         adopt_all(law.d);
     }
+    when_ = equations.when;
+    for (std::optional<Expression>& when : when_)
+        if (when) adopt(*when);
+    for (const JumpLaw& jump : equations.jumps)
+        if (jump.on) watched_jumps_.push_back(graph_.adopt(*jump.on));
 }
 
 const ModeEquations& ContactModes::of(Mode mode) {
@@ -441,17 +452,25 @@ ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const 
     }
     WatchedFriction friction;
     if (!motion.slips.empty()) friction = modes.watched_friction(motion);
-    for (const Expression function : friction.functions) {
+    Expressions further = friction.functions;
+    for (const JumpLaw& jump : e.jumps)
+        if (jump.on) further.push_back(graph.adopt(*jump.on));
+    for (const Expression function : further) {
         values.push_back(function);
         event_functions.push_back(function);
         rates.push_back(rate_of(function, motion.f, layout));
     }
+    const std::size_t jumps = further.size() - friction.functions.size();
     Expressions powers;
     if (!motion.slips.empty()) powers = modes.powers(motion.mode, graph.adopt(e.power));
     if (std::all_of(powers.begin(), powers.end(), [](Expression power) { return power.is_zero(); })) powers.clear();
     SeriesProgram series = series_of(motion, joined({event_functions, powers}), pivots, layout);
-    return {motion.mode, TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
-            std::move(series), std::move(friction.events), powers.size()};
+    return {motion.mode,
+            TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
+            std::move(series),
+            std::move(friction.events),
+            jumps,
+            powers.size()};
 }
 
 }  // namespace achilles

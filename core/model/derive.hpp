@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "model/friction.hpp"
+#include "model/jump.hpp"
 #include "program/program.hpp"
 #include "program/terms.hpp"
 #include "run/mode.hpp"
@@ -80,6 +81,8 @@ struct Equations {
     Expression kinetic, potential, energy;
     std::vector<Expression> gaps, restitutions;  // of every contact
     FrictionLaws friction;
+    std::vector<std::optional<Expression>> when;  // of every contact: it counts only where this is positive
+    std::vector<JumpLaw> jumps;
     ModeEquations free;              // the mode in which all contacts are open
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive
@@ -110,6 +113,9 @@ class ContactModes {
     const ModeEquations& of(Mode mode);
     Graph& graph() { return graph_; }
     const FrictionLaws& friction() const { return friction_; }  // in this graph
+    // `when` of every contact, and `on` of the watched jumps, in this graph.
+    const std::vector<std::optional<Expression>>& when() const { return when_; }
+    const std::vector<Expression>& watched_jumps() const { return watched_jumps_; }
 
     // What friction watches in this mode (model/friction.hpp).
     WatchedFriction watched_friction(const ModeEquations& motion);
@@ -127,6 +133,8 @@ class ContactModes {
     Graph graph_;
     Layout layout_;
     FrictionLaws friction_;  // in this graph
+    std::vector<std::optional<Expression>> when_;
+    std::vector<Expression> watched_jumps_;
     std::map<Mode, ModeEquations> known_;
 };
 
@@ -139,14 +147,18 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 // In a mode, every contact has an event function, the function that its law watches (contacts/contact_law.hpp). It is
 // the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W). The event
-// functions of friction follow. In the series, the powers() of a mode with friction are its last event functions: they
+// functions of friction follow, then those of the watched jumps. In the series, the powers() of a mode with friction are its last event functions: they
 // are integrated along a step, not watched.
 struct ModeDynamics {
     Mode mode;
     TypedProgram<MotionTerms> program;
     SeriesProgram series;                 // MotionSeries
     std::vector<FrictionEvent> friction;  // event function contacts + k is friction[k]
+    std::size_t jumps = 0;                // how many watched jumps follow
     std::size_t powers = 0;               // how many powers follow in the series: none, or work and heat
+
+    // How many event functions follow those of the contacts.
+    std::size_t further_events() const { return friction.size() + jumps; }
 };
 
 // Compiles a mode. `equations` belongs to the graph of `motion`, or to the graph that it was copied from. Throws

@@ -89,8 +89,54 @@ std::vector<Restitution> Model::restitutions(std::span<const double> parameters)
     return result;
 }
 
+std::vector<EventNames> possible_events(const Model& model) {
+    std::vector<EventNames> possible;
+    for (const EventNames& names : event_names) {
+        const EventBase event{names.kind};
+        const bool is_possible = event.is_friction()   ? model.has_friction()
+                                 : event.is_collapse() ? model.contacts() > 1 && !model.has_friction()
+                                 : event.is_jump()     ? model.has_jumps()
+                                 : event.is_pass()     ? model.has_conditional_contacts()
+                                                       : true;
+        if (is_possible) possible.push_back(names);
+    }
+    return possible;
+}
+
+void Model::compile_jumps() {
+    Graph& graph = *graph_;
+    Expressions guards;
+    const auto guard = [&](const std::optional<Expression>& condition) {
+        guards.push_back(condition.value_or(graph.number(1)));
+    };
+    for (std::size_t i = 0; i < equations_.jumps.size(); ++i) {
+        const JumpLaw& jump = equations_.jumps[i];
+        if (jump.on) {
+            watched_jumps_.push_back(i);
+            guard(jump.on);
+        }
+        Expressions after;
+        for (std::uint32_t slot = 0; slot < 2 * layout_.dof; ++slot) after.push_back(graph.symbol(slot));
+        for (const auto& [slot, value] : jump.set) after[slot] = value;
+        jump_maps_.emplace_back(after, layout_.slots());
+    }
+    for (const auto& when : equations_.when) {
+        guard(when);
+        has_conditional_contacts_ = has_conditional_contacts_ || when.has_value();
+    }
+    for (const JumpLaw& jump : equations_.jumps) guard(jump.when);
+    if (has_guards()) guards_ = Program(guards, layout_.slots());
+    Expressions slopes;
+    std::vector<std::uint32_t> state;
+    for (std::uint32_t slot = 0; slot < 2 * layout_.dof; ++slot) state.push_back(slot);
+    for (const std::size_t i : watched_jumps_)
+        for (const Expression slope : gradient(*equations_.jumps[i].on, state)) slopes.push_back(slope);
+    if (!slopes.empty()) jump_slopes_ = Program(slopes, layout_.slots());
+}
+
 void Model::compile() {
     const Equations& e = equations_;
+    compile_jumps();
     const Slots slots = layout_.slots();
     const auto program = [&](Expression output) { return Program(std::span(&output, 1), slots); };
     for (const Expression e_of : e.restitutions) restitutions_.push_back(program(e_of));
@@ -142,6 +188,18 @@ const auto& Model::derived(Map& map, const typename Map::key_type& key, const Ma
 const ModeDynamics& Model::motion(Mode mode) const {
     return derived(motions_, mode,
                    [&] { return make_motion(contact_modes().of(mode), equations_, layout_, contact_modes()); });
+}
+
+const Program& Model::jump_curvatures(Mode mode) const {
+    return derived(jump_curvatures_, mode, [&] {
+        const ModeEquations& motion = contact_modes().of(mode);
+        Expressions second;
+        for (const std::size_t i : watched_jumps_) {
+            const Expression on = contact_modes().graph().adopt(*equations_.jumps[i].on);
+            second.push_back(rate_of(rate_of(on, motion.f, layout_), motion.f, layout_));
+        }
+        return Program(second, layout_.slots());
+    });
 }
 
 const SeriesProgram& Model::hddot_series(Mode mode) const {

@@ -145,6 +145,23 @@ void read_frictions(const SystemDescription& system, const Layout& layout, const
     }
 }
 
+// The conditions of the contacts, and the jumps.
+void read_modes(const SystemDescription& system, const Layout& layout, ExpressionReader& reader, Equations& equations,
+                Graph& graph) {
+    Scope scope = force_scope(system, layout, graph);
+    for (const ConstraintDescription& constraint : system.constraints)
+        equations.when.push_back(reader.read(constraint.when, scope));
+    for (const JumpDescription& jump : system.jumps) {
+        JumpLaw& law = equations.jumps.emplace_back();
+        law.contact = jump.contact;
+        if (!jump.contact) law.on = reader.read(jump.on, scope);
+        law.when = reader.read(jump.when, scope);
+        for (const JumpDescription::Assignment& each : jump.set)
+            if (const auto value = reader.read(each.value, scope))
+                law.set.emplace_back(static_cast<std::uint32_t>(each.place), *value);
+    }
+}
+
 }  // namespace
 
 void read_equations(const SystemDescription& system, const Layout& layout, Graph& graph, Names& names,
@@ -162,6 +179,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         gaps.push_back(read(constraint.gap, gap_scope(system, layout, graph)));
         restitutions.push_back(read(constraint.restitution, restitution_scope(system, layout, graph)));
     }
+    read_modes(system, layout, reader, equations, graph);
     if (layout.frictions > 0) read_frictions(system, layout, names, reader, equations, mistakes, graph);
     const Expression nothing = graph.number(0);
     equations.kinetic = equations.given.kinetic = kinetic.value_or(nothing);

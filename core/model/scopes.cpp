@@ -316,6 +316,14 @@ Scope measure_scope(const SystemDescription& system, const Layout& layout, Graph
         for (const auto& [name, quantity] : of_collapses)
             scope.forbidden.emplace(name, fmt::format("'{}' is of two contacts without friction", name));
     }
+    if (!system.jumps.empty()) {
+        named.push_back({"jump_time", {time, jump}});
+        named.push_back({"jumps", {count, jump}});
+    }
+    if (system.has_conditional_contacts()) {
+        named.push_back({"pass_time", {time, pass}});
+        named.push_back({"passes", {count, pass}});
+    }
     for (const auto& [name, quantity] : named) {
         scope.allowed.emplace(name, input(quantity));  // a name defined by the system takes precedence
         if (quantity.kind != time && quantity.kind != speed) continue;

@@ -131,6 +131,7 @@ void Model::check_gap(const Run& run, std::size_t contact) const {
     const double error = rad(h);
     if (!std::isfinite(error)) throw no_value(*this, run, at, "the gap", {&equations_.gaps[contact], 1});
     if (mid(h) < -4.0 * error) {
+        if (is_conditional(contact)) return;  // it does not count until the gap has risen
         const Run file = default_run();
         const bool is_of_file = run.q == file.q && run.parameters == file.parameters;  // otherwise its sign was right
         const auto& shapes = description_.mechanism.contacts;

@@ -85,7 +85,8 @@ class ContactChanges {
         std::vector<std::vector<std::string>> rows;
         rows.push_back(row(given_text(run.options.start_time), "start", run.q, {}, sentences_.state_at_start()));
         for (std::size_t i = 0; i < trajectory_.events.size(); ++i)
-            if (const Event& event = trajectory_.events[i]; event.changes_held()) rows.push_back(row(i, event));
+            if (const Event& event = trajectory_.events[i]; event.changes_held() || event.is_pass())
+                rows.push_back(row(i, event));
         const State errors = precision_.of_state(trajectory_.end_time);
         const bool reached = trajectory_.outcome.kind == Outcome::Kind::end_time;
         rows.push_back(row(
@@ -172,11 +173,12 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
     return text + ".\n";
 }
 
-// Proofs do not cover friction.
+// Proofs do not cover friction, nor jumps and contacts that count only sometimes.
 std::string end_line(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.no_estimate_reason;
-    if (trajectory.model->has_friction()) return fmt::format("State at the end: {}.\n", state);
+    if (trajectory.model->has_friction() || trajectory.model->has_guards())
+        return fmt::format("State at the end: {}.\n", state);
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
 

@@ -54,8 +54,13 @@ bool has_nonunique_forces(const Phase& phase) { return phase.is_nonunique() || !
 
 bool has_several_places(const Model& model) { return model.contacts() + model.description().frictions.size() > 1; }
 
+const std::string& jump_name(const Trajectory& trajectory, const Event& jump) {
+    return trajectory.model->description().jumps[jump.jump->number].name;
+}
+
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event) {
     const Model& model = *trajectory.model;
+    if (event.is_jump()) return jump_name(trajectory, event);
     return has_several_places(model) ? joined_names(model, event.contacts) : "";
 }
 
@@ -147,6 +152,21 @@ std::string assumed_impact_law(const Trajectory& trajectory, std::size_t event) 
     return "";
 }
 
+namespace {
+
+// Whether a phase in this mode goes on after an event.
+bool goes_on(const Trajectory& trajectory, std::size_t index, Mode mode) {
+    const Event& event = trajectory.events[index];
+    const bool jumps_next = index + 1 < trajectory.events.size() && trajectory.events[index + 1].is_jump() &&
+                            trajectory.events[index + 1].t == event.t;
+    if (event.is_jump()) return jumps_next;  // several jumps of one instant end the phase together
+    if (event.is_impact() && jumps_next) return true;
+    // Friction may have several events at one instant, of which the first ends the phase.
+    return event.mode == mode && (event.is_impact() || event.is_pass() || trajectory.model->has_friction());
+}
+
+}  // namespace
+
 std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     std::vector<std::size_t> ends;
     std::size_t next = 0;
@@ -154,9 +174,7 @@ std::vector<std::size_t> ends_of_phases(const Trajectory& trajectory) {
     for (const Phase& phase : trajectory.phases) {
         const bool is_last = &phase == &trajectory.phases.back();
         for (bool open = true; open && next < events.size(); ++next)
-            // Friction may have several events at one instant, of which the first ends the phase.
-            open = is_last ||
-                   (events[next].mode == phase.mode && (events[next].is_impact() || trajectory.model->has_friction()));
+            open = is_last || goes_on(trajectory, next, phase.mode);
         ends.push_back(next);
     }
     return ends;

@@ -29,7 +29,10 @@ std::string modes_text(const Model& model, Mode mode);
 bool has_nonunique_forces(const Phase& phase);
 // Whether contacts, and joints with friction, need their names: there is more than one.
 bool has_several_places(const Model& model);
-// The names of the contacts that impact, become held or release at an event. Empty for a system with one contact.
+// The name of a jump.
+const std::string& jump_name(const Trajectory& trajectory, const Event& jump);
+// The names of the contacts that impact, become held, release or pass at an event; empty for a system with one contact.
+// The name of a jump.
 std::string event_contacts_text(const Trajectory& trajectory, const Event& event);
 
 // The impulses of impacts, v+ = v- + M^-1 sum p_i g_i', of the impacting contacts and of the held ones that react to
@@ -100,7 +103,8 @@ class EnergyBalance {
     EnergyTerms<Evaluator<double>> energy_;
 };
 
-// The energy dissipated by this event: by an impact, or by the restart at a Zeno point.
+// The energy dissipated by this event: by an impact, or by the restart at a Zeno point; of a jump what it takes out,
+// negative where it adds energy.
 double energy_lost(const Trajectory& trajectory, std::size_t event);
 
 // The impact sequence that ends at a Zeno point: all impacts of its contacts since they were last held, and the energy

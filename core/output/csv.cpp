@@ -55,7 +55,7 @@ std::string row_of(const std::vector<std::string>& cells) {
 
 bool is_of_several(const Model& model) { return model.contacts() > 1; }
 bool has_work(const Model& model) {
-    return is_of_several(model) || model.equations().has_power() || model.has_friction();
+    return is_of_several(model) || model.equations().has_power() || model.has_friction() || model.has_jumps();
 }
 // With one gap and no joints, the columns of contacts and friction have no names of contacts.
 bool has_named_columns(const Model& model) { return is_of_several(model) || !model.description().frictions.empty(); }
@@ -94,6 +94,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
     add("energy", "energy");
     add("j");
     if (is_of_several(model)) add("held");
+    if (model.has_conditional_contacts()) add("inactive");
     if (model.has_friction()) add("modes");
     if (has_work(model)) {
         add("work", "work");
@@ -153,6 +154,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         append(text, energy.total());
         text += fmt::format(",{}", sample.j);
         if (is_of_several(model)) text += "," + joined_names(model, sample.mode.held(), "+");
+        if (model.has_conditional_contacts()) text += "," + joined_names(model, sample.inactive, "+");
         if (model.has_friction()) text += "," + modes_text(model, sample.mode);
         if (has_work(model)) {
             append(text, sample.work);

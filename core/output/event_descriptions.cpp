@@ -93,10 +93,30 @@ std::string EventDescriptions::of(std::size_t event) const {
             return friction(trajectory_.events[event]);
         case Event::Kind::collapse:
             return collapse(event);
+        case Event::Kind::jump:
+            return jump(event);
+        case Event::Kind::pass:
+            return pass(trajectory_.events[event]);
         case Event::Kind::impact:
             break;
     }
     return impact(event);
+}
+
+// "jump 'legs swap', 0.02 J lost"
+std::string EventDescriptions::jump(std::size_t index) const {
+    const Event& event = trajectory_.events[index];
+    const double loss = energy_lost(trajectory_, index);
+    if (loss >= 0.0) return fmt::format("jump '{}'{}", jump_name(trajectory_, event), lost(loss, event));
+    const std::string gained = energy(-loss, event);
+    std::string text = fmt::format("jump '{}'", jump_name(trajectory_, event));
+    if (gained.empty()) return text;
+    return text + (energy_unit_.empty() ? ", energy gained " + gained : ", " + gained + " gained");
+}
+
+std::string EventDescriptions::pass(const Event& event) const {
+    return fmt::format("the gap{} passes through zero: no contact, since 'when' is not positive",
+                       is_of_several_ ? " of " + joined_names(*trajectory_.model, event.contacts) : "");
 }
 
 // "sticks", "starts to slide to the left", "reverses and slides to the left"; of several, each with its name.
@@ -193,6 +213,8 @@ std::string EventDescriptions::change(std::size_t index) const {
                            joined_names(*trajectory_.model, event.opened, " and "), friction_after(index));
     if (event.is_friction()) return friction(event);
     if (event.is_collapse()) return collapse(index);
+    if (event.is_jump()) return jump(index);
+    if (event.is_pass()) return pass(event);
     if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
         const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";

@@ -55,6 +55,8 @@ class EventDescriptions {
     std::string zeno(std::size_t index) const;
     std::string release(const Event& event) const;
     std::string friction(const Event& event) const;
+    std::string jump(std::size_t index) const;
+    std::string pass(const Event& event) const;
     std::string friction_after(std::size_t index) const;
     std::string participle(std::size_t which, Mode mode, const State& at) const;
     std::string verbs(ContactSet which, Mode mode, const State& at) const;

@@ -104,13 +104,16 @@ Json units_of(const SystemDescription& description) {
 
 Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) {
     Json samples = Json::array();
-    for (const Sample& sample : samples_at(trajectory, times))
+    for (const Sample& sample : samples_at(trajectory, times)) {
         samples.push_back({{"t", number_json(sample.t)},
                            {"j", sample.j},
                            {"phase", to_text(sample.phase)},
                            {"held", contact_names(*trajectory.model, sample.mode.held())},
                            {"q", list(sample.state.q)},
                            {"v", list(sample.state.v)}});
+        if (trajectory.model->has_conditional_contacts())
+            samples.back()["inactive"] = contact_names(*trajectory.model, sample.inactive);
+    }
     return samples;
 }
 
@@ -211,6 +214,11 @@ void add_modes(Json& result, const Trajectory& trajectory, Mode mode) {
         modes[contact_names(*trajectory.model, ContactSet::of(i)).front()] = state_word(mode.state(i));
 }
 
+// The contacts that do not count; only for systems where contacts may.
+void add_inactive(Json& result, const Trajectory& trajectory, ContactSet inactive) {
+    if (trajectory.model->has_conditional_contacts()) result["inactive"] = names(trajectory, inactive);
+}
+
 // The sign of the slip that begins: a number, or one for each contact by name where they differ.
 void add_direction(Json& result, const Trajectory& trajectory, const Event& event) {
     Json& direction = result["direction"] = Json::object();
@@ -274,16 +282,30 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
         result["contacts"] = contacts;
     result["held"] = names(trajectory, event.mode.held());
     result["opened"] = names(trajectory, event.opened);
+    add_inactive(result, trajectory, event.inactive);
     result["q"] = list(event.q);
-    if (event.is_impact()) {
+    if (event.is_discontinuous()) {
         result["v_before"] = list(event.v_before);
         result["v_after"] = list(event.v_after);
+    } else {
+        result["v"] = list(event.v_after);
+    }
+    if (event.is_jump()) {
+        const double loss = energy_lost(trajectory, index);
+        result["name"] = jump_name(trajectory, event);
+        result["q_before"] = list(event.q_before());
+        result["loss"] = number_json(loss);
+        Sample before;
+        before.t = event.t;
+        before.state = {event.q_before(), event.v_before, event.t};
+        const Energies energy = EnergyBalance(*trajectory.model, trajectory.run).at(before);
+        result["gains_energy"] = loss < -noise * (std::abs(energy.kinetic) + std::abs(energy.potential));
+    }
+    if (event.is_impact()) {
         result["impact_speed"] = number_json(event.impact_speed);
         result["impulses"] = by_contact(trajectory, impulses.of(index));
         if (event.joint) add_joint(result, trajectory, *event.joint);
         if (event.friction) add_friction(result, trajectory, *event.friction);
-    } else {
-        result["v"] = list(event.v_after);
     }
     if (event.collapse_info) add_collapse(result, trajectory, *event.collapse_info);
     if (!event.is_friction())
@@ -386,6 +408,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"ulps", rounding::libm},
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
+    add_inactive(result["start"], trajectory, trajectory.start_inactive);
+    add_inactive(result["end"], trajectory, trajectory.end_inactive);
     if (trajectory.model->has_friction()) {
         result["end"]["heat"] = number_json(trajectory.heat);
         add_modes(result["end"], trajectory, trajectory.end_mode);

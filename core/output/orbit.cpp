@@ -7,6 +7,7 @@
 
 #include "analysis/orbit.hpp"
 #include "model/model.hpp"
+#include "output/contacts.hpp"
 #include "output/json_parts.hpp"
 #include "system/input_error.hpp"
 
@@ -80,6 +81,8 @@ std::string to_json(const Orbit& orbit, const Branch* branch) {
             {"period", number_json(column[2 * n])}, {"q", list(column.head(n))}, {"v", list(column.segment(n, n))}};
     }
     result["derivatives"] = std::move(by);
+    if (orbit.run.model->has_conditional_contacts())
+        result["state"]["inactive"] = contact_names(*orbit.run.model, orbit.run.start_inactive);
     result["newton"] = {{"steps", orbit.iterations}, {"error", number_json(orbit.error)}};
     result["branch"] = branch != nullptr ? branch_of(*branch, description) : Json(nullptr);
     return printable_json(result.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";

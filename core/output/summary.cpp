@@ -152,7 +152,7 @@ class RunTimeline {
     std::string event_line(std::size_t index) const {
         const Event& event = trajectory_.events[index];
         const bool is_plastic = is_plastic_landing(event);
-        const std::string contacts = is_of_several() ? " of " + names(event.contacts) + "," : "";
+        const std::string contacts = is_of_several() && !event.is_jump() ? " of " + names(event.contacts) + "," : "";
         std::string text = fmt::format("  {:<9} t = {:<16}{} {}\n", names_of(event).word,
                                        known_digits(event.t, precision_.of_event(index), 10), contacts,
                                        named(model_, 0, event.q, precision_.of_state(event.t).q));
@@ -307,10 +307,12 @@ std::string summary(const Trajectory& trajectory, const ErrorEstimate* known) {
     const bool has_power = model.equations().has_power();
     text += fmt::format("{}, {} steps, {} evaluations, energy drift{} {}", EventDescriptions(trajectory).impacts(),
                         s.steps, s.evaluations, has_power ? " (work subtracted)" : "", drift_text(s.energy_drift));
-    if (model.contacts() > 0)
-        text += ", least gap " + least_gap_text(least_gap(trajectory), scale_of(trajectory).q.maxCoeff());
+    // It is infinite if no contact counts at any time.
+    if (const double least = least_gap(trajectory); model.contacts() > 0 && std::isfinite(least))
+        text += ", least gap " + least_gap_text(least, scale_of(trajectory).q.maxCoeff());
     text += "\n";
-    if (has_power || model.contacts() > 1 || model.has_friction()) text += balance(trajectory, precision);
+    if (has_power || model.contacts() > 1 || model.has_friction() || model.has_jumps())
+        text += balance(trajectory, precision);
     if (trajectory.ambiguous_impacts > 0) text += conventions(trajectory.ambiguous_impacts);
     if (s.impacts > 0) text += "Gap speed is |hdot|, the rate at which the gap closes, not the speed of a body.\n";
     const bool has_forces = std::any_of(trajectory.events.begin(), trajectory.events.end(), [](const Event& event) {

@@ -65,7 +65,7 @@ State scale_of(const Trajectory& trajectory) {
         scale.v = scale.v.cwiseMax(v.cwiseAbs());
     };
     for (const Event& event : trajectory.events) {
-        take(event.q, event.v_before);
+        take(event.q_before(), event.v_before);
         take(event.q, event.v_after);
     }
     take(trajectory.end.q, trajectory.end.v);
@@ -77,7 +77,11 @@ std::vector<EventRecord> sequence_of(const Trajectory& trajectory) {
     std::vector<EventRecord> sequence;
     sequence.reserve(trajectory.events.size());
     for (const Event& event : trajectory.events)
-        sequence.push_back({{event.kind}, event.contacts, event.t, event.impact_speed});
+        sequence.push_back({{event.kind},
+                            event.contacts,
+                            event.t,
+                            event.impact_speed,
+                            event.jump ? static_cast<int>(event.jump->number) : -1});
     return sequence;
 }
 

@@ -33,6 +33,7 @@ struct DenseSegment {
     std::uint32_t degree = 0;
     Mode mode;                // mode of its phase; between a cut and its Zeno point, of the next phase
     ContactSet load_bearing;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
+    ContactSet inactive;      // contacts that do not count (theory-modes.md 1)
     Mode motion() const { return mode.only(load_bearing); }
     double work = 0.0, loss = 0.0, heat = 0.0;  // from the start of the run to the start of this piece
 };
@@ -136,25 +137,30 @@ struct CollapseInfo {
 // Base of the event records: the kind. Insert new kinds before `last`, each with a row in event_names below.
 struct EventBase {
     // stick: the slip of a contact or joint ends; slip: it begins; reversal: it changes its sign. collapse: the impacts
-    // of two contacts have used up their speeds without any force (theory-collapse.md 1).
-    enum class Kind { impact, zeno, release, stick, slip, reversal, collapse, last = collapse };
+    // of two contacts have used up their speeds without any force (theory-collapse.md 1). jump: the state jumps as a
+    // [[jump]] says; pass: a gap closes that does not count, and falls below zero.
+    enum class Kind { impact, zeno, release, stick, slip, reversal, collapse, jump, pass, last = pass };
     Kind kind = Kind::impact;
     bool is_impact() const { return kind == Kind::impact; }
     bool is_zeno() const { return kind == Kind::zeno; }
     bool is_release() const { return kind == Kind::release; }
     bool is_collapse() const { return kind == Kind::collapse; }
     bool is_friction() const { return kind == Kind::stick || kind == Kind::slip || kind == Kind::reversal; }
+    bool is_jump() const { return kind == Kind::jump; }
+    bool is_pass() const { return kind == Kind::pass; }
     friend bool operator==(const EventBase&, const EventBase&) = default;
 };
 
 struct Event : EventBase {
     double t = 0.0;
-    Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts)
+    Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts and jumps); q after a jump
     double impact_speed = 0.0;    // impact: |hdot| before the impact
-    // Those that impact, become held at a Zeno point, collapse, or release; with friction, also joints.
+    // Those that impact, become held at a Zeno point, collapse, release, or pass; with friction, also joints; of a jump,
+    // that whose impact it follows.
     ContactSet contacts;
-    Mode mode;          // after the event
-    ContactSet opened;  // impact: contacts held before and opened by it; collapse: those that leave after it
+    Mode mode;            // after the event
+    ContactSet opened;    // impact: contacts held before and opened by it; collapse: those that leave after it
+    ContactSet inactive;  // contacts that do not count after the event
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
     double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
@@ -175,8 +181,18 @@ struct Event : EventBase {
     };
     std::shared_ptr<const FrictionImpulses> friction;  // may be null
 
-    // True if the mode may change: any event but an impact that opens no held contact.
-    bool changes_held() const { return !is_impact() || !opened.empty(); }
+    struct JumpRecord {
+        std::size_t number;  // of the [[jump]] in the file, from 0
+        Vector q_before;
+    };
+    std::shared_ptr<const JumpRecord> jump;  // of a jump; else null
+    // The coordinates before the event.
+    const Vector& q_before() const { return jump ? jump->q_before : q; }
+    // True if the state differs before and after the event.
+    bool is_discontinuous() const { return is_impact() || is_jump(); }
+
+    // True if the mode may change: any event but a pass, and an impact that opens no held contact.
+    bool changes_held() const { return !is_pass() && (!is_impact() || !opened.empty()); }
 
     Event() {}  // leaves the storage of the two optional members uninitialized, because most events have neither
 };
@@ -195,7 +211,7 @@ struct EventNames {
     std::string_view name;   // in sentences and legends: "Zeno point"
     std::string_view label;  // before a number or names of contacts: "Zeno 2", "Zeno knee"
 };
-inline constexpr std::array<EventNames, 7> event_names{{
+inline constexpr std::array<EventNames, 9> event_names{{
     {Event::Kind::impact, "impact", "impact", "impact"},
     {Event::Kind::zeno, "zeno", "Zeno point", "Zeno"},
     {Event::Kind::release, "release", "release", "release"},
@@ -203,17 +219,9 @@ inline constexpr std::array<EventNames, 7> event_names{{
     {Event::Kind::slip, "slip", "start of slip", "slip"},
     {Event::Kind::reversal, "reversal", "reversal of slip", "reversal"},
     {Event::Kind::collapse, "collapse", "collapse", "collapse"},
+    {Event::Kind::jump, "jump", "jump", "jump"},
+    {Event::Kind::pass, "pass", "pass of a gap that does not count", "pass"},
 }};
-// The kinds of events that a system may have.
-inline std::vector<EventNames> possible_events(std::size_t contacts, bool has_friction) {
-    std::vector<EventNames> possible;
-    for (const EventNames& names : event_names) {
-        const EventBase kind{names.kind};
-        if (kind.is_friction() ? has_friction : kind.is_collapse() ? contacts > 1 && !has_friction : true)
-            possible.push_back(names);
-    }
-    return possible;
-}
 // A plastic landing is a Zeno event, but has its own names.
 inline constexpr EventNames landing_names{Event::Kind::zeno, "landing", "landing", "landing"};
 
@@ -235,6 +243,7 @@ struct EventRecord : EventBase {
     ContactSet contacts;
     double t = 0.0;
     double impact_speed = 0.0;  // impact: |hdot| before the impact
+    int jump = -1;              // the number of the [[jump]]
     friend bool operator==(const EventRecord&, const EventRecord&) = default;
 };
 
@@ -253,7 +262,7 @@ struct Outcome {
         painleve,              // rigid bodies with this friction have no motion, or several
         impact_not_unique,     // no impulses with friction obey the impact law, or several
         energy_gain,           // an impact with friction would gain energy, and the options ask to stop
-        too_many_events,       // sticks, slips and reversals
+        too_many_events,       // sticks, slips and reversals, or jumps
         cancelled              // by another thread
     };
     Kind kind = Kind::end_time;
@@ -280,12 +289,13 @@ struct Trajectory {
     std::vector<double> coefficients;
     double end_time = 0.0;
     State end;
+    ContactSet start_inactive, end_inactive;  // contacts that do not count
     Phase::Kind end_phase = Phase::Kind::hybrid;
     Mode end_mode;
     int ambiguous_impacts = 0;  // number of impacts whose order matters but is unknown
     // E(end) - E(start) = work - loss - heat. The work is that of forces, of a time-dependent potential and of moving
-    // surfaces; the loss is the energy dissipated at impacts. For a run stored with Recording::final_state the work is
-    // NaN, unless none can be done.
+    // surfaces; the loss is the energy dissipated at impacts and taken out by jumps. For a run stored with Recording::final_state the work is
+    // NaN, unless none can be done; so is the loss if the system has jumps.
     double work = 0.0, loss = 0.0;
     double heat = 0.0;  // of dry friction, in contact and at impacts
     Outcome outcome;

@@ -223,7 +223,7 @@ void Chain::step() {
         ChainLink& link = add(ChainLink::Kind::step);
         link.length = span;
         slope.slope_after(span, mode_, link.J);
-        if (!options_.errors) watch_minima(slope, span);
+        if (!options_.errors) watch_minima(slope, span, piece.inactive);
         const bool is_end = span >= left;
         const double t = is_end ? piece.end : state_.t + span;
         if (!is_end && !(t > state_.t))
@@ -240,7 +240,7 @@ void Chain::step() {
 }
 
 // Finds minima of open gaps inside the step, by values.
-void Chain::watch_minima(const FlowSensitivity& slope, double span) {
+void Chain::watch_minima(const FlowSensitivity& slope, double span, ContactSet but) {
     const int order = slope.order();
     for (std::size_t i = 0; i < tangent_.contacts; ++i) {
         if (mode_.is_held(i)) continue;
@@ -260,7 +260,7 @@ void Chain::watch_minima(const FlowSensitivity& slope, double span) {
             power *= span;
             rising += k * (k - 1) * std::abs(c[static_cast<std::size_t>(k)]) * power;
         }
-        const int parts = rising < 0.0 ? 0 : 8;
+        const int parts = rising < 0.0 || but.contains(i) ? 0 : 8;
         double before = 0.0, falling = u_[i];
         for (int part = 1; part <= parts; ++part) {
             const double t = span * part / parts, rate = at(t).second;

@@ -128,6 +128,14 @@ class Chain {
     void add_drift_of_slip(RowMatrix& J, const BouncingKey& key, double speed);
     ContactState state_of_bouncing(std::size_t event, std::size_t contact) const;
     double coefficient_rate(std::size_t which, double speed);
+    // Jumps of the state, and passes (chain_jump.cpp).
+    void jump(std::size_t event);
+    bool continue_after_jump(const Event& now, const std::string& name);
+    void pass(std::size_t event);
+    void keep_zeros(std::optional<std::size_t> watched);
+    ContactSet closed_here();
+    Gradient& jump_map(std::size_t number);
+    Gradient& guards();
     void break_off(std::string reason) { broken_ = std::move(reason); }
 
     ChainLink& add(ChainLink::Kind kind, std::optional<std::size_t> event = {});
@@ -138,7 +146,7 @@ class Chain {
     Eigen::RowVectorXd accumulation_time_row(const RowMatrix& J, const BouncingKey& key, double speed);
     std::optional<std::string> next_completion(std::size_t event, ContactSet& joins) const;
     void set_gaps();
-    void watch_minima(const FlowSensitivity& slope, double span);
+    void watch_minima(const FlowSensitivity& slope, double span, ContactSet but);
 
     ContactGradient& surface(std::size_t contact, Mode mode);
     SlipGradient& slip(std::size_t which);
@@ -159,6 +167,10 @@ class Chain {
     std::map<std::size_t, std::unique_ptr<SlipGradient>> slips_;
     std::map<std::size_t, std::pair<Program, std::optional<Evaluator<double>>>> coefficient_rates_;
     std::map<Mode, std::unique_ptr<Gradient>> event_functions_;
+    std::map<std::size_t, std::unique_ptr<Gradient>> jump_maps_;
+    std::unique_ptr<Gradient> guards_;
+    State scale_;                    // of the run; empty until needed
+    RowMatrix zeros_, since_zeros_;  // rows that vanish before the jumps of an instant; changes since then
     std::map<Mode, std::unique_ptr<FlowSensitivity>> slopes_;
     std::map<Mode, std::unique_ptr<FlowDifference>> differences_;  // used instead of slopes_ for errors
     Model::MotionEvaluators motions_;

@@ -43,7 +43,7 @@ void take_out(const ValueWithGradient& rate, const ContactGradient& surface, con
 
 void Chain::handle_event(std::size_t event) {
     const Event& now = trajectory_->events[event];
-    state_ = {now.q, now.v_before, now.t};
+    state_ = {now.q_before(), now.v_before, now.t};
     switch (now.kind) {
         case Event::Kind::impact:
             return model_->has_friction() ? land_with_friction(event) : land(event);
@@ -57,6 +57,10 @@ void Chain::handle_event(std::size_t event) {
         case Event::Kind::slip:
         case Event::Kind::reversal:
             return change_friction(event);
+        case Event::Kind::jump:
+            return jump(event);
+        case Event::Kind::pass:
+            return pass(event);
     }
 }
 

@@ -88,17 +88,16 @@ Derivatives differentiate(const Trajectory& trajectory, const MatrixXd& directio
         if (link->event && link->kind == ChainLink::Kind::jump) {
             const Event& event = trajectory.events[*link->event];
             // At the event, after the crossing and before the jump.
-            if (event.is_impact()) {
-                take(*link->event);
+            if (event.is_discontinuous()) take(*link->event);
+            if (event.is_impact())
                 result.events.back().impact_speed = -Z.row(tangent.u(event.contacts.only())).transpose();
-            }
             // v_after is that of Newton's impact law, also if the run continues from a restart.
             std::optional<MatrixXd> drawn;
             if (link->completion) drawn = (link->completion->newton * Z).middleRows(tangent.v(0), n);
             link->apply(Z);
             take(*link->event);
             Derivatives::EventSensitivity& at = result.events.back();
-            if (!event.is_impact()) at.v_before = at.v_after;
+            if (!event.is_discontinuous()) at.v_before = at.v_after;
             if (drawn) at.v_after = std::move(*drawn);
             continue;
         }

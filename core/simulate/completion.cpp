@@ -24,6 +24,7 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
         stop(Outcome::Kind::undecided, "an impact whose speed is zero to within rounding at " + where(next_.state));
         return;
     }
+    if (has_guards() && !does_count(which)) return outcome_ ? void() : pass_alone(which, contact.hdot);
     if (record_.impacts() >= run_.options.max_impacts) {
         const bool elastic = restitution(which) >= 1.0;
         stop(Outcome::Kind::too_many_impacts,
@@ -34,6 +35,11 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (surfaces_->has_friction()) return collide_with_friction(ContactSet::of(which));
+    if (model_->has_jumps() && may_jump(ContactSet::of(which), falling_jumps())) {
+        const auto together = surfaces_->count() > 1 ? landing_with(which, contact) : ContactSet::of(which);
+        if (together) collide(*together);
+        return;
+    }
     if (surfaces_->count() > 1) {
         // Contacts that impact in turn may leave no time between impacts, even if each alone would bounce high.
         constexpr double resolved = 16.0;
@@ -112,6 +118,7 @@ bool ExecutionAutomaton::could_truncate(const Collision& collision, ContactState
              })});
         conditions_ = all_conditions_.back().conditions.get();
     }
+    conditions_->set_inactive(next_.inactive);
     return !conditions_->fails_at_point(collision);
 }
 

@@ -294,18 +294,29 @@ double size_of(ContactKinematics& surface, const State& start) {
 
 }  // namespace
 
-GapUnits::GapUnits(const Model& model, const Run& run) : units_(model.contacts(), 1.0) {
+GapUnits::GapUnits(const Model& model, const Run& run)
+    : units_(model.contacts(), 1.0), jump_units_(model.watched_jumps().size(), 1.0) {
+    if (!jump_units_.empty()) jump_slopes_ = model.evaluator(model.jump_slopes(), run.parameters);
     for (std::size_t i = 0; i < model.contacts(); ++i) surfaces_.emplace_back(model, run, i);
     find(run.start());
 }
 
 void GapUnits::find(const State& state) {
     constexpr double step = 8.0;  // of the exponent, so that sizes around 1 give the unit 1
-    place_ = state.q;
-    for (std::size_t i = 0; i < surfaces_.size(); ++i) {
-        const double size = size_of(surfaces_[i], state);
+    const auto unit_of = [](double size) {
         const bool is_usable = size > 0.0 && std::isfinite(size);
-        units_[i] = is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0;
+        return is_usable ? std::exp2(step * std::round(std::log2(size) / step)) : 1.0;
+    };
+    place_ = state.q;
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) units_[i] = unit_of(size_of(surfaces_[i], state));
+    if (!jump_slopes_) return;
+    set_state(*jump_slopes_, state);
+    jump_slopes_->run();
+    const auto width = static_cast<std::size_t>(2 * state.q.size());
+    for (std::size_t k = 0; k < jump_units_.size(); ++k) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < width; ++i) sum += std::pow(jump_slopes_->output(k * width + i), 2);
+        jump_units_[k] = unit_of(std::sqrt(sum));
     }
 }
 

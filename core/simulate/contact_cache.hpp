@@ -161,13 +161,16 @@ class GapUnits {
     double operator[](std::size_t contact) const { return units_[contact]; }
     // The unit of what friction watches. The slip of a contact has the unit of its gap (theory-friction.md 1).
     double operator[](const FrictionEvent& event) const;
+    // The same of `on` of a watched jump, by its slope in q and v.
+    double of_jump(std::size_t watched) const { return jump_units_[watched]; }
 
  private:
     void find(const State& state);
 
     std::vector<ContactKinematics> surfaces_;
     Vector place_;
-    std::vector<double> units_;
+    std::vector<double> units_, jump_units_;
+    std::optional<Evaluator<double>> jump_slopes_;
 };
 
 }  // namespace achilles

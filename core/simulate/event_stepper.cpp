@@ -90,7 +90,8 @@ std::optional<EventStepper::EventCandidate> EventStepper::first_incident(std::ui
     std::optional<EventCandidate> first;
     for (std::size_t i = 0; i < events(); ++i) {
         if ((but & bit(i)) != 0) continue;
-        if (is_of_friction(i) ? is_slip_of_frictionless(i) || is_kept(i) : !is_watched(i)) continue;
+        const bool is_friction = is_further(i) && !is_jump(i);
+        if (is_friction ? is_slip_of_frictionless(i) || is_kept(i) : !is_further(i) && !is_watched(i)) continue;
         contact_ = i;
         const FirstCrossing descent = this->descent();
         if (descent.kind == FirstCrossing::Kind::none) continue;
@@ -109,7 +110,7 @@ bool EventStepper::is_kept(std::size_t event) const {
 
 // First zero crossing of the contact's event function in the last step.
 FirstCrossing EventStepper::descent() {
-    if (is_of_friction(contact_)) return friction_descent();
+    if (is_further(contact_) || is_inactive(contact_)) return further_descent();
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
             return gap_descent();
@@ -121,7 +122,7 @@ FirstCrossing EventStepper::descent() {
 
 std::optional<StepResult::StepOutcome> EventStepper::meet(const EventCandidate& incident) {
     contact_ = incident.contact;
-    if (is_of_friction(contact_)) return meet_force(incident.descent);
+    if (is_further(contact_) || is_inactive(contact_)) return meet_force(incident.descent);
     switch (watched_of(contact_)) {
         case WatchedFunction::gap:
             return meet_gap(incident.descent);

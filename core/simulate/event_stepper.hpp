@@ -23,10 +23,12 @@ struct EventStart {
     Gap gap;                    // for all but open contacts, only state_error is used
     int multiplicity = 0;       // order of its zero at the start: of h if open; 1 for a force that starts at 0
     bool is_shortened = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
+    bool is_below = false;      // of a watched jump: the function is negative, and its rise is the next event
 };
 
 // Request for a smooth step from state.t to `until` at the latest, or to the first event in (t, until]. Events are the
-// closing of an open gap and a zero of the force of a held contact. A zero at t itself, of the order given by
+// closing of an open gap, a zero of the force of a held contact, the rise of the gap of an inactive contact, and those of
+// friction and of watched jumps. A zero at t itself, of the order given by
 // `multiplicity`, is not an event.
 struct StepRequest {
     Mode mode;            // its held contacts have independent gradients
@@ -36,8 +38,9 @@ struct StepRequest {
     ContactSet load_sharing_candidates;
     ContactSet unwatched;  // held contacts not checked for events: the load may be shared otherwise
     ContactSet unpressed;  // held, not checked for events: nothing presses them (theory-gaps.md 2.7)
+    ContactSet inactive;   // open with a gap of at most 0: their rise is an event (theory-modes.md 1)
     State state;
-    std::vector<EventStart> starts;  // at that state, for each event function: contacts, then friction (ModeDynamics)
+    std::vector<EventStart> starts;  // at that state, for each event function (ModeDynamics)
     double until = 0.0;              // s, > state.t
     double first_step = 0.0;         // s; a known reasonable length for the first step of a flight; 0: none
     long most = 1;                   // largest number of steps to take at once if none has an event
@@ -57,6 +60,8 @@ struct StepResult {
         impact,          // the gap of `which` closes; `state` is on the contact surface, before the impact
         force_vanishes,  // of the held contact `which`
         friction_event,  // of the event function `which`
+        gap_rises,       // of the inactive contact `which`
+        jump_event,      // a zero of the event function `which` of a watched jump
         ambiguous,       // no event so far, but cannot decide whether one follows just after
         off_surface,     // `state` cannot be projected onto the contact surfaces where it belongs
         step_failed      // no step was possible, see `failure`; `state` is that of the request
@@ -69,7 +74,7 @@ struct StepResult {
     const State* state = nullptr;    // valid until the next step
     double gap = 0.0;                // smallest gap at the end of the step, or at the ends of several steps
     std::vector<EventStart> starts;  // for each event function; meaningless for `which` at an event
-    std::size_t which = 0;           // the contact of the event, or the event function of friction
+    std::size_t which = 0;           // the contact of the event, or the further event function
     Contact contact;                 // at an impact: its contact quantities, in the mode of the request
     double remainder = 0.0;          // ambiguous gap: the bound on its error
     StepFailure failure = StepFailure::none;
@@ -118,10 +123,12 @@ class EventStepper {
     std::optional<StepOutcome> meet_force(FirstCrossing descent);
     StepOutcome doubt_force(double theta);
     std::optional<StepOutcome> locate_release(double theta);
-    double negative_force_at(const State& state);
-    double rate_of_force_at(const State& state);
-    // Functions of friction (flight.cpp).
-    FirstCrossing friction_descent();
+    // The function that vanishes at the event, up to its sign, and its rate.
+    double value_at(const State& state);
+    double rate_at(const State& state);
+    // Functions of friction and of jumps, and gaps of inactive contacts (flight.cpp).
+    FirstCrossing further_descent();
+    StepOutcome vanishing() const;
     bool end_on_surface();
     // Events of either kind.
     const Contact& contact_at_end(std::size_t contact);
@@ -135,7 +142,9 @@ class EventStepper {
     bool is_last() const;
     ContactSet held() const { return request_->held(); }
     WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
-    bool is_of_friction(std::size_t event) const { return event >= surfaces_->count(); }
+    bool is_further(std::size_t event) const { return event >= surfaces_->count(); }
+    bool is_jump(std::size_t event) const { return event >= events() - model_->watched_jumps().size(); }
+    bool is_inactive(std::size_t event) const { return !is_further(event) && request_->inactive.contains(event); }
     bool is_slip_of_frictionless(std::size_t event);
     bool is_friction_allowed(const State& state);
     void end_where_friction_is_not_allowed();

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "model/degenerate_gap.hpp"
 #include "simulate/domain_monitor.hpp"
@@ -49,7 +50,8 @@ bool ExecutionAutomaton::restart(const Run& run) {
     record_.restart(model_, run_);
     last_sliding_impact_ = 0;
     last_step_ = proving_ = cut_error_ = 0.0;
-    stalled_ = load_sharing_changes_ = friction_events_ = 0;
+    stalled_ = load_sharing_changes_ = friction_events_ = jumps_ = jumps_at_once_ = 0;
+    impacts_before_ = 0;
     evaluations_ = 0;
     completion_.reset();
     outcome_.reset();
@@ -66,30 +68,63 @@ void ExecutionAutomaton::begin() {
     scale_ = {Vector::Zero(model_->dof()), Vector::Zero(model_->dof()), 0.0};
     note_scale();
     next_.starts.assign(surfaces_->count(), {});
-    begin_stretch({}, run_.options.end_time);
+    has_moved_ = false;
+    decide_at_start();
+    if (record_.has_no_step()) record_.set_inactive_at_start();
+}
+
+// Decides the mode of every contact from the state alone: at the start of the run, and after a jump.
+void ExecutionAutomaton::decide_at_start() {
+    set_inactive({});
+    known_zeros_ = all_watched_jumps();
+    prepare_stretch({}, run_.options.end_time);
     ContactSet landing, resting;
+    UncountedContacts uncounted;
     Contact last;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         ContactKinematics& surface = surfaces_->of(i);
         const Contact contact = surface.at(next_.state);
         next_.starts[i] = {{contact.h, contact.hdot}, 0};
-        if (contact.h > 4.0 * surface.gap_error(next_.state)) continue;
+        const double gap_error = closed_within(surface, contact);
+        if (contact.h > gap_error) continue;
+        if (contact.h < -gap_error && has_guards()) {
+            set_inactive(next_.inactive.with(i));  // a negative gap of another contact is excluded before
+            continue;
+        }
         next_.starts[i] = {{0.0, contact.hdot}, 1};  // |h| and |hdot| within rounding count as zero
         const double error = 4.0 * surface.hdot_error(next_.state);
-        if (contact.hdot < -error) {
+        if (contact.hdot > error) continue;
+        const bool counts = does_count(i), closes = contact.hdot < -error;
+        if (outcome_) break;
+        if (closes && counts) {
             landing = landing.with(i);
             last = contact;
-        } else if (contact.hdot <= error) {
-            resting = resting.with(i);
+        } else if (closes) {
+            uncounted.closing.emplace_back(i, contact.hdot);
+        } else {
+            ContactSet& set = counts ? resting : uncounted.resting;
+            set = set.with(i);
         }
     }
-    if (surfaces_->has_friction()) return begin_with_friction(landing, resting);
+    set_inactive(next_.inactive.with(uncounted.resting));
+    if (outcome_) return open_first_phase({});
+    if (surfaces_->has_friction()) return begin_with_friction(landing, resting, uncounted);
     if (landing.empty()) start_at_rest(resting);
-    record_.open(next_.resting(), next_.held(), next_.state.t);
-    if (landing.empty() || outcome_) return;
+    open_first_phase(uncounted);
+    if (outcome_) return;
+    if (landing.empty()) return has_guards() ? begin_stretch(next_.mode, run_.options.end_time) : void();
     if (surfaces_->count() == 1) return land(0, last);
     next_.touching = resting;
     collide(landing);
+}
+
+// Opens the phase that begins with the decided mode, at the start or after a jump.
+void ExecutionAutomaton::open_first_phase(const UncountedContacts& uncounted) {
+    record_.open(next_.resting(), next_.held(), next_.state.t);
+    if (!has_guards()) return;
+    if (!outcome_) decide_uncounted(uncounted.resting);
+    record_.after_jumps(std::exchange(jumped_, 0), next_.resting());
+    for (const auto& [contact, hdot] : uncounted.closing) pass(contact, hdot);
 }
 
 // Contacts that start with h = 0 and hdot = 0.
@@ -180,7 +215,7 @@ void ExecutionAutomaton::accept(const StepResult& result) {
     using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
     const bool shared = result.end == StepOutcome::ambiguous && !surfaces_->has_friction() &&
-                        continue_without(result.which, *result.state);
+                        result.which < surfaces_->count() && continue_without(result.which, *result.state);
     if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();
     if (result.steps > 0) advance(result);
     next_.state = *result.state;
@@ -196,6 +231,10 @@ void ExecutionAutomaton::accept(const StepResult& result) {
             return release(result.which);
         case StepOutcome::friction_event:
             return accept_friction_event(result.which);
+        case StepOutcome::gap_rises:
+            return count_again(result.which);
+        case StepOutcome::jump_event:
+            return accept_jump_event(result.which);
         case StepOutcome::ambiguous:
             if (is_pivot(result.which)) return accept_friction_event(result.which);  // also where it only touches 0
             if (shared) return continue_phase();
@@ -229,6 +268,13 @@ void ExecutionAutomaton::note_scale() {
 
 // Begins a segment in this mode that ends at `until` (s) at the latest.
 void ExecutionAutomaton::begin_stretch(Mode mode, double until) {
+    prepare_stretch(mode, until);
+    if (!has_guards()) return;
+    update_inactive();
+    start_jump_functions();
+}
+
+void ExecutionAutomaton::prepare_stretch(Mode mode, double until) {
     next_.mode = mode;
     next_.first_step = 0.0;
     next_.until = until;
@@ -263,6 +309,16 @@ void ExecutionAutomaton::retry_tight() {
 
 std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
     const std::string place = where(next_.state);
+    if (result.which >= surfaces_->motion(next_.mode).first_jump())
+        return fmt::format(
+            "cannot decide whether the function of the jump '{}' passes through zero: it is within "
+            "integration error of zero just after {}",
+            name_of_watched_jump(result.which - surfaces_->motion(next_.mode).first_jump()), place);
+    if (result.which < surfaces_->count() && next_.inactive.contains(result.which))
+        return fmt::format(
+            "cannot decide whether the gap of '{}' rises above zero: it is within integration error of "
+            "zero just after {}",
+            model_->description().constraints[result.which].name, place);
     if (result.which >= surfaces_->count())
         return fmt::format(
             "cannot decide whether {} starts to slide, stops or reverses: its slip or its friction force is "
@@ -281,6 +337,9 @@ std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
 
 void ExecutionAutomaton::stop_at(StepFailure failure) {
     if (failure == StepFailure::step_too_small && is_chatter()) return end_chatter({});
+    if (failure == StepFailure::step_too_small && jumps_ > 1 && is_just_after_jump())
+        return stop(Outcome::Kind::too_many_events,
+                    "jumps follow one another in ever shorter times: they do not end, at " + where(next_.state));
     const std::string place = where(next_.state);
     if (failure == StepFailure::not_a_number)
         return stop(Outcome::Kind::not_a_number, "the motion diverges: the state is not finite just after " + place);

@@ -10,6 +10,7 @@
 #pragma once
 
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 
@@ -58,6 +59,8 @@ class ExecutionAutomaton {
     //     impact          Newton's impact law, or contact until the Zeno point if the truncation is certified
     //     force_vanishes  release of the contact if h''' > 0 is proved
     //     ambiguous       the segment is redone at exact_tolerance if that is allowed; otherwise the run ends
+    //     gap_rises       an inactive contact counts again
+    //     jump_event      the jump, or the function rises through zero
     //     off_surface, step_failed    the run ends
     // It also ends if an event cannot be decided. Then the run has an outcome and next() returns null.
     void accept(const StepResult& result);
@@ -80,8 +83,15 @@ class ExecutionAutomaton {
         int stalled;
     };
 
+    // Contacts that are closed at the start or after a jump and do not count: at rest, and those that close, with hdot.
+    struct UncountedContacts {
+        ContactSet resting;
+        std::vector<std::pair<std::size_t, double>> closing;
+    };
     void begin();
-    void begin_with_friction(ContactSet landing, ContactSet resting);
+    void decide_at_start();
+    void open_first_phase(const UncountedContacts& uncounted);
+    void begin_with_friction(ContactSet landing, ContactSet resting, const UncountedContacts& uncounted);
     void start_at_rest(ContactSet resting);
     bool is_time_left() const;
     bool is_cancelled();
@@ -89,6 +99,7 @@ class ExecutionAutomaton {
     double state_error() const;
     void advance(const StepResult& result);
     void begin_stretch(Mode mode, double until);
+    void prepare_stretch(Mode mode, double until);
     void change_rates(const Vector& v_before, ContactSet but) {
         if (surfaces_->count() > 1) change_other_rates(v_before, but);
     }
@@ -227,6 +238,44 @@ class ExecutionAutomaton {
     void record_plastic_landing(std::size_t contact, const State& before, double speed);
     std::string name_of(std::size_t contact_or_joint) const;
     ContactSet all_joints() const;
+    // ---- jumps, and contacts that count only sometimes (jump.cpp) ----
+    // Jumps of the file by number, in its order; watched jumps by their own number.
+    using Jumps = std::vector<std::size_t>;
+    bool has_guards() const { return model_->has_guards(); }
+    ContactSet all_watched_jumps() const;
+    const std::string& name_of_watched_jump(std::size_t watched) const {
+        return model_->description().jumps[model_->watched_jumps()[watched]].name;
+    }
+    // The signs of the guards of the model over the rounding box of the state; 0 where one may vanish.
+    int sign_of_guard(std::size_t guard);
+    bool does_count(std::size_t contact);
+    void start_jump_functions();
+    int sign_after_zero(std::size_t watched, Interval rate, EventStart& start);
+    ContactSet falling_jumps();
+    bool may_jump(ContactSet landing, ContactSet falling) const;
+    Jumps jumps_after(ContactSet landing, ContactSet falling);
+    void accept_jump_event(std::size_t event);
+    double resolution(const Interval& rate) const;
+    double rounding_of_jump(std::size_t watched);
+    double closed_within(ContactKinematics& surface, const Contact& contact) const;
+    bool is_just_after_jump() const {
+        constexpr double few_ulps = 0x1p-46;
+        return next_.state.t - last_jump_ <= few_ulps * std::abs(next_.state.t);
+    }
+    void go_on_in_mode();
+    void jump_after_impact(const Jumps& jumps, ContactSet landing, ContactSet opened);
+    void jump(const Jumps& jumps, ContactSet landing);
+    bool apply_jump(std::size_t number, ContactSet landing);
+    bool is_endless(std::size_t jumps);
+    void pass(std::size_t contact, double hdot);
+    void pass_alone(std::size_t contact, double hdot);
+    void count_again(std::size_t contact);
+    void update_inactive();
+    void decide_uncounted(ContactSet contacts);
+    void set_inactive(ContactSet inactive) {
+        next_.inactive = inactive;
+        record_.set_inactive(inactive);
+    }
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {
@@ -299,6 +348,18 @@ class ExecutionAutomaton {
     bool not_unique_ = false;                     // whether the contact forces are not unique
     std::map<std::size_t, int> slip_roots_;  // order of the zero of u at the start of a segment, by contact or joint
     int friction_events_ = 0;                // sticks, slips and reversals so far
+    std::optional<Evaluator<Interval>> guards_;
+    std::map<Mode, Evaluator<Interval>> jump_curvatures_;
+    std::optional<Evaluator<double>> jump_slopes_;
+    ContactSet below_;          // watched jumps whose function is negative
+    ContactSet known_zeros_;    // those whose zero at the state, if there is one, is no event: the state has jumped
+    ContactSet located_zeros_;  // those whose zero has been found at the state
+    long impacts_before_ = 0;   // impacts at the last start of a segment
+    int jumps_ = 0;             // so far
+    int jumps_at_once_ = 0;     // since time last advanced
+    double last_jump_ = 0.0;    // s
+    std::size_t jumped_ = 0;    // jumps just recorded, whose mode is not decided yet
+    bool has_moved_ = false;    // whether the last jumps changed coordinates
     // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
     double load_sharing_since_ = 0.0;
     int load_sharing_changes_ = 0;

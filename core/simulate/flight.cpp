@@ -1,8 +1,10 @@
-// EventStepper: impacts of open contacts, zeros of the forces of held ones, and zeros of the functions of friction.
+// EventStepper: impacts of open contacts, zeros of the forces of held ones, and zeros of further functions: of friction
+// and of jumps, and the rise of the gaps of inactive contacts.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "simulate/event_stepper.hpp"
 
@@ -98,7 +100,7 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         const Polynomial::EndValue reached = h.at_end();
         Gap gap{reached.value, reached.slope / flow_->duration()};
         if (!surface.within_gap_error(end.h - gap.h, 4.0, end, flow_->end())) {
-            if (end.h < 0.0) {
+            if (end.h < 0.0 && !is_inactive(i)) {
                 contact_ = i;
                 return false;
             }
@@ -107,10 +109,10 @@ bool EventStepper::settle_gaps(ContactSet but, double& least) {
         flow_->add_error(i, h, gap);
         flow_->move_gap(i, gap);
         result_.starts[i] = {gap, 0, (shortened_ & bit_of(i)) != 0};
-        least = std::min(least, end.h);
+        if (!is_inactive(i)) least = std::min(least, end.h);
     }
     for (std::size_t i = surfaces_->count(); i < events(); ++i)
-        result_.starts[i] = {{}, 0, (shortened_ & bit_of(i)) != 0};
+        result_.starts[i] = {{}, 0, (shortened_ & bit_of(i)) != 0, start_of(i).is_below};
     return true;
 }
 
@@ -210,8 +212,7 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
         case FirstCrossing::Kind::none:
             break;
         case FirstCrossing::Kind::root:
-            if (descent.theta == 0.0)
-                return is_of_friction(contact_) ? StepOutcome::friction_event : StepOutcome::force_vanishes;
+            if (descent.theta == 0.0) return vanishing();
             return locate_release(descent.theta);  // nullopt: the step was shortened
         case FirstCrossing::Kind::increasing:
             if (!has_exact_start() || was_shortened) return doubt_force(0.0);
@@ -247,30 +248,51 @@ bool EventStepper::end_on_surface() {
         end = projected_;
     else
         gap = surfaces_->settle(end, request_->mode);
-    end_step(gap ? *gap : is_of_friction(contact_) ? 0.0 : surfaces_->of(contact_).at(flow_->end()).h);
+    end_step(gap ? *gap : is_further(contact_) ? 0.0 : surfaces_->of(contact_).at(flow_->end()).h);
     return gap.has_value();
 }
 
-double EventStepper::negative_force_at(const State& state) {
-    if (surfaces_->has_friction()) return surfaces_->motion(request_->mode).at(state, contact_).value;
+double EventStepper::value_at(const State& state) {
+    if (is_inactive(contact_)) return surfaces_->of(contact_).at(state).h;
+    if (surfaces_->has_friction() || is_further(contact_))
+        return surfaces_->motion(request_->mode).at(state, contact_).value;
     return surfaces_->of(contact_, request_->mode.without(contact_)).normal_acceleration(state);
 }
-double EventStepper::rate_of_force_at(const State& state) {
-    if (surfaces_->has_friction()) return surfaces_->motion(request_->mode).at(state, contact_).rate;
+double EventStepper::rate_at(const State& state) {
+    if (is_inactive(contact_)) return surfaces_->of(contact_).at(state).hdot;
+    if (surfaces_->has_friction() || is_further(contact_))
+        return surfaces_->motion(request_->mode).at(state, contact_).rate;
     return surfaces_->of(contact_, request_->mode.without(contact_)).jerk(state);
 }
 
-// First zero of a function of friction in the last step. At a start at 0 that is not a known root, theta is 0.
-FirstCrossing EventStepper::friction_descent() {
-    const int multiplicity = start_of(contact_).multiplicity;
+// What the zero of the function that is examined means.
+StepResult::StepOutcome EventStepper::vanishing() const {
+    if (is_inactive(contact_)) return StepOutcome::gap_rises;
+    if (!is_further(contact_)) return StepOutcome::force_vanishes;
+    return is_jump(contact_) ? StepOutcome::jump_event : StepOutcome::friction_event;
+}
+
+// First zero in the last step of a function of friction or of a jump, or of the gap of an inactive contact. What is
+// negative is watched for its rise. At a start at 0 that is not a known root, theta is 0.
+FirstCrossing EventStepper::further_descent() {
+    const EventStart& start = start_of(contact_);
+    const int multiplicity = start.multiplicity;
+    const bool is_gap = is_inactive(contact_), rises = is_gap || start.is_below;
     Polynomial function;
-    flow_->event_function(contact_, function);
-    if (!flow_->is_expansion()) {
+    if (is_gap)
+        function = gap_along(contact_);
+    else
+        flow_->event_function(contact_, function);
+    if (!is_gap && !flow_->is_expansion()) {
         State end = flow_->end();
         surfaces_->settle(end, request_->mode);
-        function.c[static_cast<std::size_t>(std::max(2, multiplicity))] += negative_force_at(end) - function(1.0);
+        function.c[static_cast<std::size_t>(std::max(2, multiplicity))] += value_at(end) - function(1.0);
     }
     for (int k = 0; k < multiplicity; ++k) function.c[static_cast<std::size_t>(k)] = 0.0;
+    const auto terms = std::span(function.c).first(static_cast<std::size_t>(function.degree + 1));
+    const auto is_zero = [](double c) { return c == 0.0; };
+    if ((is_gap || is_jump(contact_)) && std::all_of(terms.begin(), terms.end(), is_zero)) return {};  // it stays 0
+    for (double& c : terms) c = rises ? -c : c;
     if (multiplicity == 0 && !(function.c[0] > 0.0)) return {FirstCrossing::Kind::root, 0.0};
     return first_descent(function, multiplicity, flow_->remainder(contact_, function));
 }
@@ -295,7 +317,7 @@ FirstCrossing EventStepper::force_descent() {
     for (int i = 0; i <= force.degree; ++i) force.c[static_cast<std::size_t>(i)] *= -1.0;
     if (!flow_->is_expansion()) {
         project_end();
-        force.c[2] += -negative_force_at(projected_) - force(1.0);
+        force.c[2] += -value_at(projected_) - force(1.0);
     }
     if (multiplicity > 0) {
         force.c[0] = 0.0;
@@ -315,7 +337,7 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta
         const bool projected = surfaces_->settle(flow_->edit_end(), request_->mode).has_value();
         if (!projected || flow_->duration() < duration * (1.0 - 1e-12)) return std::nullopt;
         const State& end = flow_->end();
-        const double correction = -negative_force_at(end) / rate_of_force_at(end);
+        const double correction = -value_at(end) / rate_at(end);
         const bool close = std::abs(correction) < 1e-7;
         if (close) {
             forget_step();
@@ -328,11 +350,11 @@ std::optional<StepResult::StepOutcome> EventStepper::locate_release(double theta
     }
     const std::size_t contact = contact_;
     double least = std::numeric_limits<double>::infinity();
-    if (!is_of_friction(contact)) least = surfaces_->of(contact).at(flow_->end()).h;
+    if (!is_further(contact) && !is_inactive(contact)) least = surfaces_->of(contact).at(flow_->end()).h;
     settle_gaps({}, least);
     contact_ = contact;
     end_step(least);
-    return is_of_friction(contact) ? StepOutcome::friction_event : StepOutcome::force_vanishes;
+    return vanishing();
 }
 
 }  // namespace achilles

@@ -72,7 +72,8 @@ Mode ExecutionAutomaton::sliding_mode(ContactSet contacts_and_joints) {
     return mode;
 }
 
-void ExecutionAutomaton::begin_with_friction(ContactSet landing, ContactSet resting) {
+void ExecutionAutomaton::begin_with_friction(ContactSet landing, ContactSet resting,
+                                             const UncountedContacts& uncounted) {
     const Mode mode = sliding_mode(resting.with(all_joints()));
     if (!surfaces_->settle(next_.state, mode)) return fail_projection();
     if (landing.empty()) {
@@ -80,7 +81,7 @@ void ExecutionAutomaton::begin_with_friction(ContactSet landing, ContactSet rest
     } else {
         decide_with_friction({}, mode.without(resting));
     }
-    record_.open(next_.mode, next_.held(), next_.state.t);
+    open_first_phase(uncounted);
     if (outcome_) return;
     if (landing.empty()) return begin_stretch(next_.mode, run_.options.end_time);
     next_.touching = resting;
@@ -101,8 +102,10 @@ void ExecutionAutomaton::start_friction_functions() {
 }
 
 bool ExecutionAutomaton::is_pivot(std::size_t event) const {
-    return event >= surfaces_->count() &&
-           model_->motion(next_.mode).friction[event - surfaces_->count()].watched == FrictionFunction::pivot;
+    const std::vector<FrictionEvent>& friction = model_->motion(next_.mode).friction;
+    const std::size_t number = event - surfaces_->count();
+    return event >= surfaces_->count() && number < friction.size() &&
+           friction[number].watched == FrictionFunction::pivot;
 }
 
 void ExecutionAutomaton::accept_friction_event(std::size_t event) {

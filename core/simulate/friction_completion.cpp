@@ -32,7 +32,7 @@ Exchange ExecutionAutomaton::exchange_of_cut(const ImpactWithFriction& impact, c
 
 // Truncates the bouncing at this impact of a single contact, if that is certified. False if the contact bounces on.
 bool ExecutionAutomaton::complete_with_friction(const ImpactWithFriction& impact) {
-    if (!impact.landing.has_one()) return false;
+    if (!impact.landing.has_one() || (model_->has_jumps() && may_jump(impact.landing, falling_jumps()))) return false;
     const std::size_t which = impact.landing.only();
     const ContactState state = impact.mode.state(which);
     const double e = restitution(which), speed = -impact.rows.rows[0].rate;

@@ -25,11 +25,12 @@ Exchange energy_of_impact(const ContactRows& rows, const Eigen::VectorXd& impuls
 ContactSet ExecutionAutomaton::closing_with(ContactSet landing) {
     const ContactSet still = next_.held().with(next_.touching);
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (still.with(landing).contains(i)) continue;
+        if (still.with(landing).with(next_.inactive).contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         const double rounding = 4.0 * surfaces_->of(i).gap_error(next_.state);
-        if (other.hdot < 0.0 && other.h <= rounding - 0x1p-50 * std::abs(next_.state.t) * other.hdot)
+        if (other.hdot < 0.0 && other.h <= rounding - 0x1p-50 * std::abs(next_.state.t) * other.hdot && does_count(i))
             landing = landing.with(i);
+        if (outcome_) break;
     }
     return landing;
 }
@@ -132,6 +133,9 @@ std::optional<Mode> ExecutionAutomaton::mode_after_impact(const ContactRows& row
 void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
     const ContactSet held = next_.held(), still = held.with(next_.touching);
     landing = closing_with(landing);
+    if (outcome_) return;
+    const Jumps jumps = jumps_after(landing, falling_jumps());
+    if (outcome_) return;
     const ContactSet all = still.with(landing);
     if (all.count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
@@ -166,6 +170,12 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         last_sliding_impact_ = record_.impacts_of_phase();
     const State before = next_.state;
     next_.state.v = v_after;
+    if (!jumps.empty()) {
+        ContactSet opened;
+        for (const std::size_t i : held)
+            if (impact.after[rows.gap_of(i)] > 0.0) opened = opened.with(i);
+        return jump_after_impact(jumps, landing, opened);
+    }
     const std::optional<Mode> after = mode_after_impact(rows, impact, all);
     if (!after) return;
     if (!surfaces_->settle(next_.state, *after)) return fail_projection();

@@ -50,9 +50,13 @@ std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, co
     const double when = few * surfaces_->of(which).gap_error(next_.state) / std::abs(contact.hdot) + time;
     ContactSet landing = ContactSet::of(which), in_doubt;
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i)) continue;
+        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i) || next_.inactive.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         if (!(other.hdot < 0.0)) continue;
+        if (other.h <= next_.starts[i].gap.error + few * rounding_so_far(other) && !does_count(i)) {
+            if (outcome_) return std::nullopt;
+            continue;
+        }
         const double own = few * surfaces_->of(i).gap_error(next_.state) - other.hdot * (time + when);
         const double rounding = few * rounding_so_far(other) - other.hdot * resolved * time;
         if (other.h <= std::max(own, rounding)) {
@@ -161,7 +165,11 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("no impulses satisfy the impact law of {}, at {}", names_of(all), where(next_.state)));
     const Vector v_before = next_.state.v, v_after = closed.after(v_before, impact->impulses);
-    if (!collapses && complete_pair(landing, v_after, false)) return;
+    const ContactSet falling = falling_jumps();
+    const Jumps jumps = jumps_after(landing, falling);
+    if (outcome_) return;
+    const bool is_cut = !may_jump(landing, falling);
+    if (is_cut && !collapses && complete_pair(landing, v_after, false)) return;
     const auto limit = collapses ? collapse_info(landing, law_of_tie(landing)) : nullptr;
     auto joint = std::make_shared<MultiContactInfo>();
     joint->is_nonunique = !impact->unique;
@@ -199,8 +207,8 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     }
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
-        if (!(hdot > 0.0) || !too_short_to_resolve(closed.which[i], hdot)) continue;
-        if (!complete_pair(landing, v_after, true)) end_chatter(all);
+        if (!(hdot > 0.0) || !jumps.empty() || !too_short_to_resolve(closed.which[i], hdot)) continue;
+        if (!is_cut || !complete_pair(landing, v_after, true)) end_chatter(all);
         return;
     }
     Exchange exchange{0.0, impact->loss};
@@ -211,6 +219,13 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
     record_.impact(next_.state, v_after, speed, exchange, landing, surfaces_->count() > 1 ? std::move(joint) : nullptr);
     next_.state.v = v_after;
+    if (!jumps.empty()) {
+        ContactSet opened;
+        for (std::size_t i = 0; i < closed.which.size(); ++i)
+            if (held.contains(closed.which[i]) && impact->hdot_after[static_cast<Eigen::Index>(i)] > 0.0)
+                opened = opened.with(closed.which[i]);
+        return jump_after_impact(jumps, landing, opened);
+    }
     // Contacts with hdot+ > 0 leave at once; the others may be held.
     ContactSet left;
     forget_held();
@@ -242,6 +257,8 @@ bool ExecutionAutomaton::complete_pair(ContactSet landing, const Vector& v_after
             const ContactSet two = ContactSet::of(i).with(j);
             // All other closed contacts must be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
+            if (next_.inactive.contains(j)) continue;
+            if (model_->has_jumps() && may_jump(two, {})) continue;
             if (complete_pair(std::min(i, j), std::max(i, j), next_.mode.without(two), landing, v_after,
                               cut_at_resolution))
                 return true;
@@ -286,6 +303,7 @@ bool ExecutionAutomaton::complete_pair(std::size_t first, std::size_t second, Mo
              std::make_unique<PairConditions>(*model_, run_, e, first, second, others, unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
+    known->conditions->set_inactive(next_.inactive);
     auto completion = timed([&] { return known->conditions->certify(collision, cut_at_resolution); });
     if (!completion) return false;
     const ContactSet two = ContactSet::of(first).with(second), all = others.held().with(two);
@@ -329,7 +347,7 @@ bool ExecutionAutomaton::moves_within_rounding(std::size_t which, double speed) 
     const double way = speed * last_step_ / surfaces_->of(which).at(next_.state).g.norm();
     if (!(way < 0x1p-40 * (1.0 + next_.state.q.cwiseAbs().maxCoeff()))) return false;  // cheap
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
-        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i)) continue;
+        if (i == which || next_.mode.is_held(i) || next_.touching.contains(i) || next_.inactive.contains(i)) continue;
         const Contact other = surfaces_->of(i).at(next_.state);
         const double known = few * surfaces_->of(i).gap_error(next_.state);
         if (other.h < known && std::abs(other.hdot) * last_step_ < known && speed * last_step_ < known) return true;
@@ -342,7 +360,7 @@ bool ExecutionAutomaton::moves_within_rounding(std::size_t which, double speed) 
 void ExecutionAutomaton::end_chatter(ContactSet contacts) {
     constexpr double close = 1e-6;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
+        if (!next_.inactive.contains(i) && surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
     stop(Outcome::Kind::undecided,
          fmt::format("contacts {} chatter together, in flights shorter than double precision resolves, at {}",
                      names_of(contacts), where(next_.state)) +

@@ -19,9 +19,11 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.run = run;
     trajectory_.phases.reserve(8);
     any_gap_ = false;
+    inactive_ = {};
     largest_ = largest_change_ = 0.0;
     if (keep_ == Recording::final_state) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
+        if (trajectory_.model->has_jumps()) trajectory_.loss = std::numeric_limits<double>::quiet_NaN();
         trajectory_.passages.reserve(32);
         return;
     }
@@ -112,6 +114,7 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     make_room(trajectory_.pieces, 1, memory);
     DenseSegment& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
     piece.mode = mode;
+    piece.inactive = inactive_;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
     piece.heat = trajectory_.heat;
@@ -159,7 +162,7 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     ++trajectory_.phases.back().impacts;
     add(exchange);
     if (keep_ == Recording::final_state) {
-        trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed});
+        trajectory_.passages.push_back({{Event::Kind::impact}, contacts, before.t, speed, -1});
         return;
     }
     make_room(trajectory_.events, 1, trajectory_.run.options.memory);
@@ -172,6 +175,7 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.impact_speed = speed;
     event.contacts = contacts;
     event.mode = trajectory_.phases.back().mode;
+    event.inactive = inactive_;
     if (joint && joint->order_matters) ++trajectory_.ambiguous_impacts;
     event.joint = std::move(joint);
     event.work = trajectory_.work;
@@ -189,11 +193,29 @@ void Recorder::after_impact(ContactSet opened, Mode mode) {
     trajectory_.events.back().mode = mode;
 }
 
+void Recorder::jump(Event event, const Exchange& exchange) {
+    trajectory_.work += exchange.work;
+    trajectory_.loss += exchange.loss;
+    this->event(std::move(event));
+}
+
+void Recorder::after_jumps(std::size_t count, Mode mode) {
+    if (keep_ == Recording::final_state) return;
+    for (auto event = trajectory_.events.rbegin(); count > 0; ++event) {
+        if (!event->is_jump()) continue;
+        event->mode = mode;
+        event->inactive = inactive_;
+        --count;
+    }
+}
+
 void Recorder::event(Event event) {
     if (keep_ == Recording::final_state) {
-        trajectory_.passages.push_back({{event.kind}, event.contacts, event.t, 0.0});
+        const int jump = event.jump ? static_cast<int>(event.jump->number) : -1;
+        trajectory_.passages.push_back({{event.kind}, event.contacts, event.t, 0.0, jump});
         return;
     }
+    event.inactive = inactive_;
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
     event.heat = trajectory_.heat;
@@ -207,6 +229,7 @@ Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluation
     trajectory_.end = state;
     trajectory_.end_phase = phase();
     trajectory_.end_mode = trajectory_.phases.back().mode;
+    trajectory_.end_inactive = inactive_;
     trajectory_.outcome = std::move(outcome);
     trajectory_.statistics.evaluations = evaluations;
     if (largest_change_ > 0.0) trajectory_.statistics.energy_drift = largest_change_ / largest_;

@@ -57,12 +57,21 @@ class Recorder {
     Exchange exchange_of_jump(const State& before, const State& after, double work);
     // Adds the work and loss of such a jump.
     void add(const Exchange& exchange);
+    // Records a jump of the state, with its loss.
+    void jump(Event event, const Exchange& exchange);
+    // Sets the mode after the last jumps, once it is decided.
+    void after_jumps(std::size_t count, Mode mode);
     // Records any other event.
     void event(Event event);
+    // The contacts that do not count, from here on.
+    void set_inactive(ContactSet inactive) { inactive_ = inactive; }
+    // Ends the start of the run, whose inactive contacts are those of now.
+    void set_inactive_at_start() { trajectory_.start_inactive = inactive_; }
     long impacts() const { return trajectory_.statistics.impacts; }
     int impacts_of_phase() const { return trajectory_.phases.back().impacts; }
     bool knows_energies() const { return keep_ == Recording::full; }
     long steps() const { return trajectory_.statistics.steps; }
+    bool has_no_step() const { return steps() == 0; }
     // Memory of everything recorded, bytes.
     double bytes() const;
 
@@ -79,6 +88,7 @@ class Recorder {
     double largest_ = 0.0;         // the same over the whole run
     double largest_change_ = 0.0;  // of energy minus work in any segment, for runs with work
     bool any_gap_ = false;
+    ContactSet inactive_;
 };
 
 }  // namespace achilles

@@ -67,6 +67,7 @@ Sample Sampler::at(double t) {
     if (piece == trajectory_.pieces.begin()) {  // a run without a step
         sample.mode = trajectory_.end_mode;
         sample.load_bearing = trajectory_.phases.back().load_bearing;
+        sample.inactive = trajectory_.end_inactive;
         sample.contact = !sample.mode.is_free();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
@@ -77,18 +78,21 @@ Sample Sampler::at(double t) {
     sample.contact = !std::prev(piece)->mode.is_free();
     sample.mode = std::prev(piece)->mode;
     sample.load_bearing = std::prev(piece)->load_bearing;
+    sample.inactive = std::prev(piece)->inactive;
     sample.state = state(*std::prev(piece), t);
     set_work(sample, *std::prev(piece));
     sample.loss = std::prev(piece)->loss;
     // The last step may end at an impact after which no step was made.
     if (t == trajectory_.end_time) {
         const auto& events = trajectory_.events;
-        if ((trajectory_.model->contacts() > 1 || trajectory_.model->has_friction()) && !events.empty() &&
+        const Model& model = *trajectory_.model;
+        if ((model.contacts() > 1 || model.has_friction() || model.has_jumps()) && !events.empty() &&
             events.back().t == t) {
             sample.mode = events.back().mode;
             sample.load_bearing = trajectory_.phases.back().load_bearing;
             sample.contact = !sample.mode.is_free();
         }
+        sample.inactive = trajectory_.end_inactive;
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
@@ -104,6 +108,7 @@ Sample Sampler::in(const DenseSegment& piece, double t, bool with_work) const {
     sample.contact = !piece.mode.is_free();
     sample.mode = piece.mode;
     sample.load_bearing = piece.load_bearing;
+    sample.inactive = piece.inactive;
     sample.state = state(piece, t);
     if (with_work) set_work(sample, piece);
     sample.loss = piece.loss;
@@ -203,7 +208,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
                 take({event.t, static_cast<int>(j), mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained,
                       !mode.is_free(), mode, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
                       j == 0 ? 0.0 : events[j - 1].loss, load_bearing_contacts(trajectory_, mode, event.t),
-                      j == 0 ? 0.0 : events[j - 1].heat},
+                      j == 0 ? 0.0 : events[j - 1].heat, j == 0 ? trajectory_.start_inactive : events[j - 1].inactive},
                      nullptr);
             }
             ++j;
@@ -235,7 +240,7 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     if (pass_events(trajectory_.end_time) || !last)
         take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_mode.is_free(),
               trajectory_.end_mode, trajectory_.end, trajectory_.work, trajectory_.loss,
-              trajectory_.phases.back().load_bearing, trajectory_.heat},
+              trajectory_.phases.back().load_bearing, trajectory_.heat, trajectory_.end_inactive},
              nullptr);
 }
 
@@ -306,9 +311,9 @@ double least_gap(const Trajectory& trajectory) {
         trajectory.statistics.steps > 0 ? trajectory.statistics.least_gap : std::numeric_limits<double>::infinity();
     for (std::size_t contact = 0; contact < trajectory.model->contacts(); ++contact) {
         GapAlong gap(trajectory, contact);
-        least = std::min(least, gap.at(trajectory.run.start()).h);
+        if (!trajectory.start_inactive.contains(contact)) least = std::min(least, gap.at(trajectory.run.start()).h);
         for (const DenseSegment& piece : trajectory.pieces)
-            if (!piece.mode.is_held(contact)) least = gap.below(least, piece);
+            if (!piece.mode.is_held(contact) && !piece.inactive.contains(contact)) least = gap.below(least, piece);
     }
     return least;
 }

@@ -20,6 +20,7 @@ struct Sample {
     double work = 0.0, loss = 0.0;  // of the run up to t
     ContactSet load_bearing{};      // held contacts whose constraints define the motion (Phase)
     double heat = 0.0;
+    ContactSet inactive{};  // contacts that do not count
 };
 
 // The mode just before an event: the mode after the event before, or at the start.

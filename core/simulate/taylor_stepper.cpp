@@ -38,20 +38,24 @@ void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Ga
         if (known == motions_.end()) {
             const ModeDynamics& motion = model_->motion(mode);
             const SeriesProgram& series = motion.series;
-            known = motions_
-                        .emplace(mode,
-                                 MotionExpansion{
-                                     {series, parameters_}, {series, tolerance_}, motion.friction, motion.powers})
-                        .first;
+            known =
+                motions_
+                    .emplace(
+                        mode,
+                        MotionExpansion{
+                            {series, parameters_}, {series, tolerance_}, motion.friction, motion.jumps, motion.powers})
+                    .first;
         }
         motion_ = &known->second;
         mode_ = mode;
-        step_.set_further_events(motion_->friction.size(), motion_->powers);
+        step_.set_further_events(motion_->further_events(), motion_->powers);
     }
     const std::vector<double>& units = gap_units_.at(state);
     for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
     for (std::size_t k = 0; k < motion_->friction.size(); ++k)
         step_.gap_unit(units.size() + k) = gap_units_[motion_->friction[k]];
+    for (std::size_t k = 0; k < motion_->jumps; ++k)
+        step_.gap_unit(units.size() + motion_->friction.size() + k) = gap_units_.of_jump(k);
     for (std::size_t i = 0; i < gaps.size(); ++i) step_.gap(i) = gaps[i];
     to_ = state;
     evaluated_ = true;

@@ -240,6 +240,11 @@ std::vector<std::string> output_names(const SystemDescription& system, std::stri
     return names;
 }
 
+bool SystemDescription::has_conditional_contacts() const {
+    return std::any_of(constraints.begin(), constraints.end(),
+                       [](const ConstraintDescription& c) { return !c.when.text.empty(); });
+}
+
 std::vector<SlidingPlace> sliding_places(const SystemDescription& system) {
     std::vector<SlidingPlace> places;
     const auto add = [&](const auto& table, const Text& level, const std::optional<Text>& static_level,

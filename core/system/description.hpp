@@ -80,6 +80,7 @@ struct ConstraintDescription {
     Text friction{};  // Coulomb coefficient while sliding; `slip` in it is the sliding speed. Empty: no friction
     std::optional<Text> static_friction{};  // default: friction at slip 0
     bool never_slides = false;              // friction = "inf"
+    Text when{};                            // a closing gap is a contact only where this is positive; empty: always
 
     bool has_friction() const { return !friction.text.empty(); }
 };
@@ -93,6 +94,21 @@ struct FrictionDescription {
 };
 inline constexpr std::size_t max_frictions = 8;
 
+// A jump of the state at an event (theory-modes.md 2).
+struct JumpDescription {
+    std::string name;
+    Text on;                             // the name of a contact, or an expression that falls through zero
+    std::optional<std::size_t> contact;  // right after whose impacts; empty: `on` is an expression
+    Text when;                           // the jump happens only where this is positive; empty: always
+    struct Assignment {
+        std::size_t place;  // of the coordinate, or of its rate after all coordinates
+        Text value;         // in terms of the state before the jump
+    };
+    std::vector<Assignment> set;
+    Location at;
+};
+inline constexpr std::size_t max_jumps = 8;
+
 struct ViewDescription {
     std::string name;
     Text x;
@@ -102,10 +118,11 @@ struct ViewDescription {
 
 // A periodic orbit, or an initial guess of one (theory-derivatives.md 9).
 struct OrbitDescription {
-    std::vector<double> q, v;  // at the start of the period, by coordinate
-    std::optional<double> t;   // start time (s) for a driven system; default: start time of [run]
-    Text period;               // s, an expression in the parameters; may be empty
-    std::vector<Text> shift;   // by coordinate: increment over a period; empty: zero
+    std::vector<double> q, v;            // at the start of the period, by coordinate
+    std::optional<double> t;             // start time (s) for a driven system; default: start time of [run]
+    Text period;                         // s, an expression in the parameters; may be empty
+    std::vector<Text> shift;             // by coordinate: increment over a period; empty: zero
+    std::optional<ContactSet> inactive;  // contacts that do not count at the start, as listed in the file
     Location at;
 };
 
@@ -142,6 +159,7 @@ struct SystemDescription {
     Text dissipation;                                // R: -dR/dv is added to the forces; may be empty
     std::vector<ConstraintDescription> constraints;  // may be empty: a smooth system
     std::vector<FrictionDescription> frictions;      // without a gap
+    std::vector<JumpDescription> jumps;              // in the order of the file
     Options options;                                 // defaults overridden by [run] and [truncation]
     Location reinitialization_at;                    // of this option; line 0 if the file does not have it
     std::vector<DrawingDescription> drawings;        // as written; may be empty
@@ -150,6 +168,8 @@ struct SystemDescription {
     MechanismSummary mechanism;
 
     bool has_friction() const;
+    // Whether some contact counts only sometimes.
+    bool has_conditional_contacts() const;
     // An error at a location in this file, with the line and a caret.
     InputError error(Location at, const std::string& message, const std::string& hint = {}) const;
 };

@@ -63,6 +63,11 @@ class MechanismExpander {
             substitute_in_slip(*friction);
             for (const char* key : {"level", "static_level"}) substitute_in(*friction, key, "slip");
         }
+        for (TomlValue* jump : tables_of(root_, "jump")) {
+            for (const char* key : {"on", "when"}) substitute_in(*jump, key);
+            if (TomlValue* set = find_entry(*jump, "set"))
+                for (TomlEntry& entry : set->entries) substitute_in(entry.value);
+        }
         MechanismDrawings drawings = draw_mechanism(mechanism_, contacts_);
         expand_written_drawings();
         add_drawings(drawings);
@@ -168,7 +173,7 @@ class MechanismExpander {
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
-            substitute_in(*table, "restitution");
+            for (const char* key : {"restitution", "when"}) substitute_in(*table, key);
             substitute_in_slip(*table);
             TomlValue* typed = find_entry(*table, "gap");
             if (typed != nullptr && !substitute_in(*typed)) remove_entry(*table, "gap");  // 0 would be a second mistake

@@ -183,6 +183,11 @@ Mistake no_name(const Text& name) {
                            : "a name is a letter followed by letters, digits and underscores"};
 }
 
+Mistake used_twice(const Text& name, const Location& other) {
+    return {name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
+            fmt::format("it is already the name at line {}", other.line)};
+}
+
 void read_unit(const Fields& fields, std::string& unit) {
     unit = fields.string_or("unit", "");
     for (std::size_t at = 0; at < unit.size(); ++at) {

@@ -62,6 +62,9 @@ class Fields {
 // The mistake that a text is not a name. The advice spells out a Greek letter.
 Mistake no_name(const Text& name);
 
+// For a name that stands at another place already.
+Mistake used_twice(const Text& name, const Location& other);
+
 // Reads the unit of the quantity. Degrees are not allowed, because sines are evaluated in radians; after this mistake
 // the unit is set to rad. Throws Mistake.
 void read_unit(const Fields& fields, std::string& unit);

@@ -55,11 +55,6 @@ struct FileReader {
     std::map<std::string, Location> contact_names = {};  // and of [[friction]]
 };
 
-Mistake used_twice(const Text& name, const Location& other) {
-    return {name.at, fmt::format("the name '{}' is used twice", shown(name.text)),
-            fmt::format("it is already the name at line {}", other.line)};
-}
-
 // Reads a name that is not used yet. Throws Mistake.
 Text read_name(Names& names, const Fields& fields) {
     const bool was_complete = std::exchange(names.complete, false);  // until this name is read
@@ -309,6 +304,7 @@ void read_constraints(FileReader& reading) {
         });
         if (has_gap) mistakes.attempt([&] { read_friction(fields, constraint); });
         mistakes.attempt([&] { constraint.restitution = fields.expression("restitution"); });
+        mistakes.attempt([&] { constraint.when = fields.expression_or_none("when"); });
         mistakes.attempt([&] { constraint.begins = fields.string_or("begins", ""); });
         mistakes.attempt([&] { constraint.ends = fields.string_or("ends", ""); });
     }
@@ -393,6 +389,26 @@ void read_orbit(FileReader& reading, const TomlValue& table) {
             read_by_coordinate(reading, fields, "shift", [&](std::size_t, const TomlValue& value) {
                 orbit.shift.push_back(fields.expression("shift", value));
             });
+        });
+    if (const TomlValue* list = fields.find("inactive"))
+        mistakes.attempt([&] {
+            if (list->kind != TomlValue::Kind::array)
+                throw fields.wrong_type("inactive", *list, "a list of names, as [\"foot\"]");
+            orbit.inactive = ContactSet();
+            const std::vector<std::string> names = names_of_contacts(reading.system);
+            for (const TomlValue& item : list->items) {
+                const auto found = std::find(names.begin(), names.end(), item.text.text);
+                if (item.kind != TomlValue::Kind::string || found == names.end())
+                    throw Mistake{item.at,
+                                  fmt::format("no [[constraint]] is named '{}'{}", shown(item.text.text),
+                                              did_you_mean(item.text.text, names)),
+                                  {}};
+                const auto i = static_cast<std::size_t>(found - names.begin());
+                if (reading.system.constraints[i].when.text.empty())
+                    throw Mistake{item.at, fmt::format("'{}' always counts: it has no 'when'", *found),
+                                  "only a contact with when can be inactive"};
+                orbit.inactive = orbit.inactive->with(i);
+            }
         });
     reading.system.orbit = std::move(orbit);
 }
@@ -511,6 +527,7 @@ ParsedFile read_tables(std::string text, std::string name, std::string* expanded
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
     read_constraints(reading);
     read_frictions(reading);
+    read_jumps(limited_tables(reading, "jump", max_jumps), system, read.names, mistakes);
     if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;
     read_pictures(reading);

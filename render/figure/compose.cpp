@@ -136,7 +136,7 @@ bool has_collapse(std::span<const Event> events) {
 void add_markers(Panel& panel, const Trajectory& trajectory, std::span<const Event> events, Values& values,
                  const Framing& framing, const Theme& theme) {
     const std::size_t curves = panel.curves.size() / panel.courses;
-    for (const EventNames& row : possible_events(trajectory.model->contacts(), trajectory.model->has_friction())) {
+    for (const EventNames& row : possible_events(*trajectory.model)) {
         const Event::Kind kind = row.kind;
         if (kind == Event::Kind::collapse && !has_collapse(events)) continue;  // rare: no empty row for it
         Markers& markers = panel.markers.emplace_back(event_markers(theme, kind));

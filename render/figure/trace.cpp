@@ -230,6 +230,7 @@ class Tracer {
     Tracer(const Trajectory& trajectory, const TraceRequest& request, const ReadQuantities& read)
         : request_(request),
           read_(read),
+          trajectory_(trajectory),
           model_(*trajectory.model),
           looks_(look_count(model_)),
           sampler_(trajectory),
@@ -256,6 +257,8 @@ class Tracer {
         sampler_.walk(request_.from, request_.to, request_.with_work,
                       [&](const Sample& sample, const DenseSegment* piece) {
                           read_node(sample, next_);
+                          if (is_torn(sample.j))
+                              for (const auto& thinner : thinners_) thinner->lift();
                           if (piece != nullptr && has_last_)
                               step(*piece);
                           else
@@ -271,6 +274,16 @@ class Tracer {
     static constexpr int max_halvings = 24;
     static constexpr int max_of_step = 200000;  // maximum number of samples in one step
 
+    // Whether the position has jumped since the last sample, which was before event `last_event_`.
+    bool is_torn(int j) {
+        const int from = std::exchange(last_event_, j);
+        if (!model_.has_jumps() || from < 0) return false;
+        for (int i = from; i < j; ++i) {
+            const Event& event = trajectory_.events[static_cast<std::size_t>(i)];
+            if (event.q_before() != event.q) return true;
+        }
+        return false;
+    }
     void read_node(const Sample& sample, TraceNode& node) {
         node.t = sample.t;
         node.look = look_of(model_, sample.phase, sample.mode);
@@ -407,6 +420,8 @@ class Tracer {
 
     const TraceRequest& request_;
     const ReadQuantities& read_;
+    const Trajectory& trajectory_;
+    int last_event_ = -1;
     const Model& model_;
     std::size_t looks_;
     Sampler sampler_;
