@@ -45,9 +45,13 @@ inline std::shared_ptr<const Model> load(const std::string& name) {
     return std::make_shared<const Model>(read_system(path));
 }
 
+// Those without jumps, too.
 inline std::vector<std::string> systems_without_friction() {
     std::vector<std::string> names = all_systems();
-    std::erase_if(names, [](const std::string& name) { return load(name)->has_friction(); });
+    std::erase_if(names, [](const std::string& name) {
+        const auto model = load(name);
+        return model->has_friction() || model->has_guards();
+    });
     return names;
 }
 

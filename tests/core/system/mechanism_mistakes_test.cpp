@@ -122,7 +122,7 @@ known keys: name, line, curve, over, disc, ring, at, on, speed)m"},
      R"m(f.toml:4:1: unknown key 'bodies' in a system file; did you mean 'body'?
     bodies = [
     ^
-known keys: title, source, coordinate, parameter, lagrangian, constraint, friction, world, body, ground, spring, damper, force, torque, run, view, drawing, truncation, orbit, extra)m"},
+known keys: title, source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, ground, spring, damper, force, torque, run, view, drawing, truncation, orbit, extra)m"},
     {"Color", R"m(disc = "r", )m", R"m(disc = "r", color = "red", )m",
      R"m(f.toml:5:52: 'red' is not a color
       {name = "ball", mass = "m", disc = "r", color = "red", at = ["x", "y"], angle = "phi"},

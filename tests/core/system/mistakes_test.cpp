@@ -38,11 +38,13 @@ const FileEdit in_keys[] = {
      "name, start, rate, force, unit, range, rate_range"},
     {"[lagrangian]", "[langrangian]",
      "f.toml:14:2: unknown key 'langrangian' in a system file; did you mean 'lagrangian'?\n    [langrangian]\n     "
-     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, friction, world, body, ground, "
+     "^\nknown keys: title, source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, "
+     "ground, "
      "spring, damper, force, torque, run, view, drawing, truncation, orbit, extra"},
     {"[[parameter]]\nname = \"m\"", "[[param]]\nname = \"m\"",
      "f.toml:8:3: unknown key 'param' in a system file; did you mean 'parameter'?\n    [[param]]\n      ^\nknown keys: "
-     "title, source, coordinate, parameter, lagrangian, constraint, friction, world, body, ground, spring, damper, "
+     "title, source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, ground, spring, "
+     "damper, "
      "force, "
      "torque, "
      "run, view, drawing, truncation, orbit, extra"},
