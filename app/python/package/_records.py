@@ -76,14 +76,18 @@ class Certificate(Record):
 
 
 class Event(Record):
-    """An impact, a Zeno point, a release or a collapse; with friction, a stick, a slip or a reversal.
+    """An impact, a Zeno point, a release or a collapse; with friction, a stick, a slip or a reversal; a jump, or a pass.
 
     An impact has v_before and v_after, the others have v. A Zeno point has a certificate, the start of a slip and a
     reversal a direction (1 or -1, or one for each contact by name where they differ), and an impact with friction has
     tangential_impulses. A Zeno point at which friction stops every slip has sticks_from, the number of the first such
     impact, and its certificate a tail: "slip", "stick" or "stick then slip". A collapse has the impulses and the loss
     of the plastic impact that its impacts converge to, the factors speed_ratio and gap_ratio per two impacts, and a
-    certificate."""
+    certificate.
+
+    A jump has its name, q_before and v_before, q and v_after, its loss of energy, and gains_energy where that is negative.
+    A pass is the closing of a gap that does not count. Where contacts may not count, inactive names those that do not
+    count after the event."""
 
     kind: str
     t: float
@@ -113,6 +117,10 @@ class Event(Record):
     loss: float
     speed_ratio: float
     gap_ratio: float
+    inactive: list[str]
+    name: str
+    q_before: np.ndarray
+    gains_energy: bool
 
 
 class Phase(Record):

@@ -104,7 +104,7 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
     impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; with friction also heat, sticks,
     slips, reversals, collapse_time(k), collapses, stick_time(k), slip_time(k), reversal_time(k), modes; or the derivative of one of these numbers with respect to an initial coordinate,
     rate or parameter, "d(zeno_time(1), e)". With `at` they are
-    tabulated at every "impact", "zeno" or "release", or where an expression crosses zero upward, from time `after` on. A failed
+    tabulated at every "impact", "zeno" or "release" ("jump", "pass"), or where an expression crosses zero upward, from time `after` on. A failed
     run is a point with its outcome, and a warning gives the number of such runs.
 
     progress(done, count) is called a few times per second. An exception from it ends the sweep, as Ctrl-C does, once the current
