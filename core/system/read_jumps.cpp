@@ -21,24 +21,28 @@ namespace {
 
 // What a jump follows: one word is the name of a contact. Throws Mistake.
 void read_on(const SystemDescription& system, const Names& known, const Fields& fields, JumpDescription& jump) {
-    jump.on = fields.expression("on");
-    std::string word = jump.on.text;
+    const Text on = fields.expression("on");
+    std::string word = on.text;
     word.erase(0, word.find_first_not_of(' '));
     word.erase(word.find_last_not_of(' ') + 1);
-    if (!is_name(word)) return;
+    if (!is_name(word)) {
+        jump.on = on;
+        return;
+    }
     const std::vector<std::string> names = names_of_contacts(system);
     const auto found = std::find(names.begin(), names.end(), word);
     if (found != names.end()) {
+        jump.on = on;
         jump.contact = static_cast<std::size_t>(found - names.begin());
         return;
     }
     if (known.places.contains(word))
-        throw Mistake{jump.on.at, fmt::format("'{}' in [[jump]] is no contact", word),
+        throw Mistake{on.at, fmt::format("'{}' in [[jump]] is no contact", word),
                       fmt::format("one word is the name of a contact; an expression that is one name stands in "
                                   "parentheses: on = \"({})\"",
                                   word)};
     if (!known.complete) throw ErrorAlreadyReported{};  // the contact's own table has a mistake
-    throw Mistake{jump.on.at, fmt::format("no [[constraint]] is named '{}'{}", word, did_you_mean(word, names)),
+    throw Mistake{on.at, fmt::format("no [[constraint]] is named '{}'{}", word, did_you_mean(word, names)),
                   names.empty() ? "write an expression that falls through zero, as on = \"x - 1\""
                                 : fmt::format("the contacts are {}", listed(names))};
 }

@@ -88,7 +88,8 @@ const JumpMistake jump_mistakes[] = {
      "at "
      "line 10"},
     {"WordOfAnotherProgram", "[[jump]]", "[[reset]]",
-     "f.toml:9:1: unknown key 'reset' in a system file; did you mean 'jump'?\n    [[reset]]\n    ^\nknown keys: title, "
+     "f.toml:9:3: unknown key 'reset' in a system file; did you mean 'jump'?\n    [[reset]]\n      ^\nknown keys: "
+     "title, "
      "source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, ground, spring, damper, "
      "force, "
      "torque, run, view, drawing, truncation, orbit, extra"},
