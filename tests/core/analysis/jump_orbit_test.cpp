@@ -41,7 +41,7 @@ TEST(JumpOrbit, OfTheSimplestWalkerIsThePublishedOne) {
 
 TEST(JumpOrbit, KeepsItsPeriodOverAThousandSteps) {
     const auto model = load("simplest_walker");
-    Run run = model->default_run();
+    achilles::Run run = model->default_run();
     run.options.tolerance = 1e-14;
     run.options.end_time = 3884.0;
     run.options.max_events = 2000;

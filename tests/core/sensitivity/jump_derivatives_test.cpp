@@ -11,7 +11,7 @@ namespace achilles::test {
 namespace {
 
 Run tight(const Model& model, double end) {
-    Run run = model.default_run();
+    achilles::Run run = model.default_run();
     run.options.tolerance = 1e-15;
     run.options.end_time = end;
     return run;
@@ -33,7 +33,7 @@ std::string words(const Trajectory& run) {
 // Compares the derivatives of the end and of all event times with central differences of fourth order.
 void expect_jump_differences(const std::shared_ptr<const Model>& model, double end, const std::string& expected,
                              double step = 2e-4) {
-    const Run start = tight(*model, end);
+    const achilles::Run start = tight(*model, end);
     const Trajectory run = simulate(model, start);
     EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
     EXPECT_EQ(words(run), expected);
@@ -52,7 +52,7 @@ void expect_jump_differences(const std::shared_ptr<const Model>& model, double e
     for (Eigen::Index k = 0; k < static_cast<Eigen::Index>(d.directions.size()); ++k) {
         if (!d.refused[static_cast<std::size_t>(k)].empty()) continue;
         const auto at = [&](double change) {
-            Run other = start;
+            achilles::Run other = start;
             entry(other, k) += change;
             return numbers_of(simulate(model, other));
         };
@@ -142,7 +142,7 @@ jump = [{name = "land", on = "(x)", set = {y = ")toml" +
 
 TEST(JumpDerivatives, GiveAnErrorEstimate) {
     const auto model = load("simplest_walker");
-    Run run = model->default_run();
+    achilles::Run run = model->default_run();
     run.options.tolerance = 1e-9;
     const Trajectory rough = simulate(model, run);
     run.options.tolerance = 1e-15;

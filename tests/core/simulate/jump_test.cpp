@@ -31,7 +31,7 @@ lagrangian.potential = "{}"
 
 Trajectory run_until(const std::string& text, double end, Method method = Method::taylor, double tolerance = 1e-13) {
     const auto model = typed(text);
-    Run run = model->default_run();
+    achilles::Run run = model->default_run();
     run.options.end_time = end;
     run.options.method = method;
     run.options.tolerance = method == Method::taylor ? tolerance : 1e-11;
@@ -133,7 +133,9 @@ TEST(Jump, AtAStartOnItsZeroIsNoEvent) {
                 run_until(point(0.0, speed, "x", R"toml(jump = [{name = "j", on = "(x)", set = {"x'" = "0"}}])toml"),
                           3.0, method);
             EXPECT_EQ(words_of(run), speed > 0.0 ? "jump" : "") << speed;  // a thrown point comes back
-            if (speed > 0.0) EXPECT_NEAR(run.events[0].t, 2.0, known_to(method));
+            if (speed > 0.0) {
+                EXPECT_NEAR(run.events[0].t, 2.0, known_to(method));
+            }
         }
 }
 
@@ -190,7 +192,9 @@ jump = [{{name = "j", on = "{}", set = {{"x'" = "x'"}}}}])toml",
     ASSERT_NE(jump, run.events.end());
     EXPECT_NEAR(jump->t, 2.99999999, 1e-12);
     for (const Event& event : run.events)
-        if (event.truncation) EXPECT_GT(event.truncation->t, jump->t);
+        if (event.truncation) {
+            EXPECT_GT(event.truncation->t, jump->t);
+        }
 }
 
 TEST(Jump, WithoutEndHasAnOutcome) {
@@ -297,13 +301,14 @@ TEST(Jump, RunsAreTheSameInABatch) {
     const auto model = typed(point(0.5, 0.0, "x", R"toml(jump = [{name = "bounce", on = "(x)", set = {
             "x'" = "-k*x'"}}])toml"));
     const auto run_of = [&](std::size_t i) {
-        Run run = model->default_run();
+        achilles::Run run = model->default_run();
         run.options.end_time = 2.3;
         run.parameters[0] = 0.1 * static_cast<double>(i + 1);
         return run;
     };
     simulate_ends(model, 9, run_of, [&](std::size_t i, RunResult&& result) {
-        const Trajectory alone = simulate(model, run_of(i)), &there = std::get<Trajectory>(result);
+        const Trajectory alone = simulate(model, run_of(i));
+        const auto& there = std::get<Trajectory>(result);
         EXPECT_EQ(there.end.q, alone.end.q);
         EXPECT_EQ(sequence_of(there), sequence_of(alone));
         EXPECT_TRUE(std::isnan(there.loss));  // without energies it is not known
