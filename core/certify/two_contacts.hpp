@@ -91,6 +91,7 @@ class TwoContactConditions : protected ConditionsBase {
 
 class PairConditions : private TwoContactConditions {
  public:
+    using TwoContactConditions::set_inactive;
     using TwoContactConditions::TwoContactConditions;
 
     // The certificate for a truncation at this collision, and the state after it. nullopt if the proof fails or its

@@ -247,7 +247,8 @@ void BatchSimulator::load(RunGroup& group, std::size_t lane, const StepRequest& 
         step.q_and_v[static_cast<std::size_t>(i)][lane] = request.state.q[i];
         step.q_and_v[static_cast<std::size_t>(n + i)][lane] = request.state.v[i];
     }
-    const auto& [gap, multiplicity, is_shortened] = request.starts.front();
+    const EventStart& start = request.starts.front();
+    const auto& gap = start.gap;
     step.t[lane] = request.state.t;
     step.until[lane] = request.until;
     step.state_error[lane] = gap.state_error;
@@ -257,7 +258,7 @@ void BatchSimulator::load(RunGroup& group, std::size_t lane, const StepRequest& 
     step.hdot[lane] = gap.hdot;
     step.error[lane] = gap.error;
     step.rate_error[lane] = gap.rate_error;
-    step.known[lane] = multiplicity;
+    step.known[lane] = start.multiplicity;
 }
 
 // The smallest number of steps that one of these runs may still make.

@@ -53,6 +53,7 @@ std::optional<PairLaw<Interval>> ExecutionAutomaton::law_of_pair(ContactSet pair
 // both orders (theory-collapse.md 4).
 bool ExecutionAutomaton::is_collapse_at_tie(ContactSet landing) {
     if (landing.count() != 2 || !next_.touching.empty() || next_.held().count() + 2 > max_closed_contacts) return false;
+    if (may_jump(landing, {})) return false;  // a contact with a jump is never cut
     for (const std::size_t i : landing)
         if (!(surfaces_->of(i).at(next_.state).hdot < 0.0)) return false;
     const FloatEnvironmentGuard ground;
@@ -74,6 +75,7 @@ bool ExecutionAutomaton::complete_collapse(std::size_t which, const Contact& con
     if (completing() || !next_.touching.empty() || !(e > 0.0 && e < 1.0)) return false;
     for (std::size_t j = 0; j < surfaces_->count(); ++j) {
         if (j == which || next_.mode.is_held(j) || !(restitution(j) > 0.0 && restitution(j) < 1.0)) continue;
+        if (next_.inactive.contains(j) || may_jump(ContactSet::of(which).with(j), {})) continue;
         const Contact other = surfaces_->of(j, next_.mode).at(next_.state);
         const double W = other.g.dot(contact.impulse_direction) * contact.W;
         if (!(W < 0.0)) continue;
@@ -121,6 +123,7 @@ bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pai
     start.collision.sigma[1 - landed] = sigma;
     start.collision.h[1 - landed] = h;
     std::string_view failed;
+    conditions.set_inactive(next_.inactive);
     auto completion = timed([&] { return conditions.certify(start, cut_at_resolution, failed); });
     if (!completion) return fail(failed);
     const ContactSet two = ContactSet::of(which).with(j), all = next_.held().with(two);

@@ -42,7 +42,9 @@ struct Markers {
         square,
         circle,
         triangle,
+        inverted_triangle,
         diamond,
+        hexagon,
         bar
     };  // bar: a vertical line over the height of the panel
     std::string label;

@@ -89,8 +89,12 @@ const char* shape_text(Markers::MarkerShape shape) {
             return "circle";
         case Markers::MarkerShape::triangle:
             return "triangle";
+        case Markers::MarkerShape::inverted_triangle:
+            return "inverted triangle";
         case Markers::MarkerShape::diamond:
             return "diamond";
+        case Markers::MarkerShape::hexagon:
+            return "hexagon";
         case Markers::MarkerShape::bar:
             return "bar";
     }

@@ -120,8 +120,8 @@ constexpr std::array<EventSign, event_names.size()> event_signs{{
     {Event::Kind::slip, Markers::MarkerShape::circle, 9.0, wine, blush, true},
     {Event::Kind::reversal, Markers::MarkerShape::diamond, 10.0, wine, blush, true},
     {Event::Kind::collapse, Markers::MarkerShape::square, 10.0, purple, pink, true},
-    {Event::Kind::jump, Markers::MarkerShape::bar, 10.0, purple, pink},
-    {Event::Kind::pass, Markers::MarkerShape::triangle, 9.0, blue, sky, true},
+    {Event::Kind::jump, Markers::MarkerShape::hexagon, 9.0, navy, lilac},
+    {Event::Kind::pass, Markers::MarkerShape::inverted_triangle, 9.0, blue, sky, true},
 }};
 static_assert(has_all_event_kinds(event_signs));
 

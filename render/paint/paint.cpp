@@ -36,8 +36,12 @@ std::vector<Point> corners(const Mark& mark) {
             return polygon(mark.at, mark.size / std::numbers::sqrt2, 4, std::numbers::pi / 4.0);
         case Markers::MarkerShape::triangle:
             return polygon({mark.at.x, mark.at.y + mark.size * 0.1}, mark.size * 0.68, 3, 0.0);
+        case Markers::MarkerShape::inverted_triangle:
+            return polygon({mark.at.x, mark.at.y - mark.size * 0.1}, mark.size * 0.68, 3, std::numbers::pi);
         case Markers::MarkerShape::diamond:
             return polygon(mark.at, mark.size * 0.68, 4, 0.0);
+        case Markers::MarkerShape::hexagon:
+            return polygon(mark.at, mark.size * 0.58, 6, 0.0);
         case Markers::MarkerShape::circle:
         case Markers::MarkerShape::bar:
             break;
