@@ -298,8 +298,8 @@ TEST(When, MustHoldOverACut) {
 }
 
 TEST(Jump, RunsAreTheSameInABatch) {
-    const auto model = typed(point(0.5, 0.0, "x", R"toml(jump = [{name = "bounce", on = "(x)", set = {
-            "x'" = "-k*x'"}}])toml"));
+    const auto model =
+        typed(point(0.5, 0.0, "x", R"toml(jump = [{name = "bounce", on = "(x)", set = {"x'" = "-k*x'"}}])toml"));
     const auto run_of = [&](std::size_t i) {
         achilles::Run run = model->default_run();
         run.options.end_time = 2.3;
