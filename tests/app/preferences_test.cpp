@@ -44,7 +44,7 @@ TEST(Gallery, ShowsItsGroups) {
     hands.state.systems = known_systems();
     hands.click("systems");
     EXPECT_TRUE(hands.says("the paper"));
-    EXPECT_TRUE(hands.says("robots"));
+    EXPECT_TRUE(hands.says("robots and walkers"));
     hands.click("open double_pendulum");
     EXPECT_EQ(hands.session.system(), "double_pendulum");
 }

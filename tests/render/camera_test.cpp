@@ -310,7 +310,7 @@ TEST(ScaleBar, IsRoundAndInTheUnitOfTheFile) {
     EXPECT_EQ(length_label(2e-9, "m"), "2\u00b710\u207b\u2079 m");
     EXPECT_EQ(length_label(1e-6, "m"), "10\u207b\u2076 m");
     for (const std::string& name : test::all_systems())
-        EXPECT_EQ(length_unit(test::load(name)->description()), "m") << name;
+        EXPECT_EQ(length_unit(test::load(name)->description()), name == "simplest_walker" ? "" : "m") << name;
 }
 
 TEST(TwoViews, CutASystemInSpaceWhereItsPointIs) {

@@ -61,6 +61,9 @@ class Truth {
     Point before(const Event& event, std::size_t quantity) {
         Sample sample = sample_at(run_, event);
         sample.state.v = event.v_before;
+        sample.mode = mode_before(run_, static_cast<std::size_t>(&event - run_.events.data()));
+        sample.contact = !sample.mode.is_free();
+        sample.load_bearing = load_bearing_contacts(run_, sample.mode, event.t);
         values_.set(sample);
         return map_({values_[0], values_[quantity + 1]});
     }
