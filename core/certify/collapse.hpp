@@ -28,7 +28,7 @@ std::optional<CollapseTime> collapse_time(const AlternationBounds& bounds, const
 
 class CollapseConditions : private TwoContactConditions {
  public:
-    using TwoContactConditions::set_inactive;
+    using TwoContactConditions::set_states;
     using TwoContactConditions::TwoContactConditions;
 
     // `collision.before` is the state after an impact of the contact `landed` (0 or 1), at approach speed `speed`.

@@ -146,7 +146,7 @@ bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
     if (other_contact_terms_ == nullptr) return true;
     set_box(other_contact_program_, box);
     other_contact_program_.run();
-    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_, inactive_);
+    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_, inactive_, latched_);
     if (!proved) return false;
     if (is_alone_) proved.reset();
     return true;
@@ -197,20 +197,21 @@ AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
 
 std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
                                                                         const Evaluator<Interval>& program,
-                                                                        ContactSet unpressed, ContactSet inactive) {
+                                                                        ContactSet unpressed, ContactSet inactive,
+                                                                        ContactSet latched) {
     Certificate::OtherContactBounds others;
     const std::size_t bouncing = other_contact_terms.bouncing.size();
     std::size_t next = bouncing;
     for (const std::size_t contact : other_contact_terms.held) {
         const Interval hddot = program.output(next), W = program.output(next + 1);
         next += 2;
-        const bool is_unpressed = unpressed.contains(contact);
-        if (!(is_unpressed || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
+        const bool is_unpressed = unpressed.contains(contact), is_latched = latched.contains(contact);
+        if (!(is_unpressed || is_latched || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
         Certificate::OtherContactBounds::HeldContactBound held{contact, 0.0, 0.0,
                                                                is_unpressed ? 0.0 : (-hddot / W).lo()};
         for (std::size_t k = 0; k < bouncing; ++k) {
             const Interval kappa = program.output(next++);
-            if (!(kappa.lo() >= 0.0)) {
+            if (!is_latched && !(kappa.lo() >= 0.0)) {
                 if (!counts_as_zero(kappa, std::sqrt(mid(program.output(k)) / mid(W)))) return std::nullopt;
                 others.rounded_zero = true;
             }

@@ -137,17 +137,20 @@ class ConditionsBase {
                    std::vector<std::uint32_t> variables, ContactSet unpressed, const FloatEnvironmentGuard&);
 
  public:
-    // Contacts that do not count, from the next proof on: their gaps must stay below zero (theory-modes.md 3).
-    void set_inactive(ContactSet inactive) { inactive_ = inactive; }
+    // The contacts that do not count, from the next proof on: their gaps must stay below zero; and those held by a
+    // latch, which nothing need press (theory-modes.md 3, 4).
+    void set_states(ContactSet inactive, ContactSet latched) {
+        inactive_ = inactive;
+        latched_ = latched;
+    }
 
  protected:
     void set_box(auto& program, const std::vector<Interval>& box) const {
         for (std::size_t i = 0; i < variables_.size(); ++i) program.input(variables_[i]) = box[i];
     }
     // Whether the other contacts are proved to keep their states (theory-gaps.md 2.3): over the box every held contact
-    // is pressed, impulses press it further, and every other gap is open; and whether no jump happens and the bouncing
-    // contacts count. If there are others, `proved` receives their
-    // bounds.
+    // is pressed, impulses press it further, and every other gap is open; and whether no jump happens, no latch ends and
+    // the bouncing contacts count. If there are others, `proved` receives their bounds.
     bool prove_other_contacts_stay(const std::vector<Interval>& box,
                                    std::optional<Certificate::OtherContactBounds>& proved);
     // A certificate with tau_inf in [tau_k + earliest, tau_k + latest]. Its estimate of tau_inf is clamped to that
@@ -162,7 +165,7 @@ class ConditionsBase {
  private:
     std::vector<std::uint32_t> variables_;
     bool is_alone_;  // there is no other contact; there may be joints
-    ContactSet unpressed_, inactive_;
+    ContactSet unpressed_, inactive_, latched_;
     const OtherContactTerms* other_contact_terms_;
     Evaluator<Interval> other_contact_program_;
 };
@@ -173,7 +176,7 @@ enum class CertificateScope { full, decision };
 
 class TruncationConditions : protected ConditionsBase {
  public:
-    using ConditionsBase::set_inactive;
+    using ConditionsBase::set_states;
     TruncationConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key,
                          ContactSet unpressed, const FloatEnvironmentGuard& ground);
     virtual ~TruncationConditions() = default;
@@ -235,11 +238,12 @@ Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>
 
 // The bounds on the other contacts from the outputs of their program, which must have run. Returns nullopt if one of
 // them is not proved pressed, or open, a function is not proved positive, or a jump is not excluded. Contacts in
-// `unpressed`, which need no force (theory-gaps.md 2.7), need not be pressed; the gaps of `inactive` ones must be
-// negative.
+// `unpressed`, which need no force (theory-gaps.md 2.7), need not be pressed; `latched` ones may pull; the gaps of
+// `inactive` ones must be negative.
 std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
                                                                         const Evaluator<Interval>& program,
-                                                                        ContactSet unpressed, ContactSet inactive = {});
+                                                                        ContactSet unpressed, ContactSet inactive = {},
+                                                                        ContactSet latched = {});
 
 // kappa of held contact i for the bouncing contact, from a program that has run.
 Interval transmission(const OtherContactTerms& other_contact_terms, const Evaluator<Interval>& program, std::size_t i);

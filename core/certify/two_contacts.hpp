@@ -42,7 +42,7 @@ struct PairCompletion {
 // Base of the conditions for two contacts: the box around a cut, and the shadow of the motion in it.
 class TwoContactConditions : protected ConditionsBase {
  public:
-    using ConditionsBase::set_inactive;
+    using ConditionsBase::set_states;
     // For two contacts while others are held; those in `unpressed` need no contact force.
     TwoContactConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
                          std::size_t second, Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground);
@@ -91,7 +91,7 @@ class TwoContactConditions : protected ConditionsBase {
 
 class PairConditions : private TwoContactConditions {
  public:
-    using TwoContactConditions::set_inactive;
+    using TwoContactConditions::set_states;
     using TwoContactConditions::TwoContactConditions;
 
     // The certificate for a truncation at this collision, and the state after it. nullopt if the proof fails or its

@@ -43,6 +43,7 @@ class MechanismPage {
                 "balance.");
         put_frictions();
         put_conditions();
+        put_latches();
         put_jumps();
     }
 
@@ -154,13 +155,29 @@ class MechanismPage {
         page_.lines(rows);
     }
 
+    // "knee: until an impact of foot"
+    void put_latches() {
+        std::vector<std::vector<std::string>> rows;
+        for (const ConstraintDescription& constraint : system_.constraints) {
+            const Trigger& latch = constraint.latch;
+            if (latch.on.text.empty()) continue;
+            rows.push_back({words(constraint.name),
+                            words(latch.contact ? fmt::format("held until an impact of {}",
+                                                              system_.constraints[*latch.contact].name)
+                                                : fmt::format("held until `{}` rises through 0", latch.on.text))});
+        }
+        if (rows.empty()) return;
+        page_.heading("Latches");
+        page_.lines(rows);
+    }
+
     // "after impacts of foot, where x > 0: x = -x, x' = x'/2"
     void put_jumps() {
         std::vector<std::vector<std::string>> rows;
         for (const JumpDescription& jump : system_.jumps) {
-            std::string line = jump.contact
-                                   ? fmt::format("after impacts of {}", system_.constraints[*jump.contact].name)
-                                   : fmt::format("where `{}` falls through 0", jump.on.text);
+            std::string line = jump.on.contact
+                                   ? fmt::format("after impacts of {}", system_.constraints[*jump.on.contact].name)
+                                   : fmt::format("where `{}` falls through 0", jump.on.on.text);
             if (!jump.when.text.empty()) line += fmt::format(" and `{}` > 0", jump.when.text);
             for (std::size_t i = 0; i < jump.set.size(); ++i)
                 line += fmt::format("{} `{}` := `{}`", i == 0 ? ":" : ",", names_[jump.set[i].place],

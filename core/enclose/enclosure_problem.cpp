@@ -177,6 +177,21 @@ Interval restitution_over(const Model& model, const EnclosureProblem& claim, std
     return e;
 }
 
+namespace {
+
+// Where the first force with held(NAME) stands.
+Location place_of_held(const SystemDescription& system) {
+    const auto is_there = [](const Text& text) {
+        const std::vector<std::string> names = names_in(text.text);
+        return std::find(names.begin(), names.end(), "held") != names.end();
+    };
+    for (const CoordinateDescription& coordinate : system.coordinates)
+        if (is_there(coordinate.force)) return coordinate.force.at;
+    return system.dissipation.at;
+}
+
+}  // namespace
+
 void check(const Model& model, const EnclosureProblem& claim) {
     const FloatEnvironmentGuard ground;
     const SystemDescription& description = model.description();
@@ -190,6 +205,11 @@ void check(const Model& model, const EnclosureProblem& claim) {
         if (!constraint.when.text.empty())
             throw description.error(constraint.when.at, "a proof does not cover contacts that count only sometimes",
                                     hint);
+    for (const ConstraintDescription& constraint : description.constraints)
+        if (!constraint.latch.on.text.empty())
+            throw description.error(constraint.latch.on.at, "a proof does not cover latches", hint);
+    if (model.do_forces_see_contact())
+        throw description.error(place_of_held(description), "a proof does not cover forces with held(NAME)", hint);
     std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];

@@ -21,6 +21,8 @@ struct Scope {
     std::map<std::string, Expression, std::less<>> units{};  // factors of units after a value, as in 30 deg
     // Quantities with an index from 1 in parentheses, as in zeno_time(2).
     std::map<std::string, std::function<Expression(int)>, std::less<>> listed{};
+    // Quantities of a contact, with its name in parentheses, as in held(foot).
+    std::map<std::string, std::map<std::string, Expression, std::less<>>, std::less<>> of_contact{};
 };
 
 // A syntax error; `offset` counts bytes from the start of the text.

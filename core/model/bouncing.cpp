@@ -125,7 +125,7 @@ OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing
     Row conditions = positive, nonzero;
     for (const std::size_t k : bouncing)
         if (const auto& when = motions.when()[k]) conditions.push_back(substitute(*when, v, velocity));
-    for (const Expression on : motions.watched_jumps()) nonzero.push_back(substitute(on, v, velocity));
+    for (const Expression guard : motions.watched_guards()) nonzero.push_back(substitute(guard, v, velocity));
     result.positive = conditions.size();
     result.nonzero = nonzero.size();
     result.program = Program(joined({outputs, gaps, conditions, nonzero}), layout.slots());

@@ -184,6 +184,33 @@ void complete(ContactEquations& c, const Row& f, std::size_t contact, const Row&
 
 }  // namespace
 
+namespace {
+
+// Expressions with held(NAME) as they are while these contacts are held, and no others.
+Row forces_of(Row forces, ContactSet held, const Layout& layout) {
+    if (!layout.forces_see_contact) return forces;
+    std::vector<std::uint32_t> slots;
+    Row values;
+    for (std::size_t i = 0; i < layout.contacts; ++i) {
+        slots.push_back(layout.held(i));
+        values.push_back(forces.front().graph().number(held.contains(i) ? 1 : 0));
+    }
+    for (Expression& force : forces) force = substitute(force, slots, values);
+    return forces;
+}
+
+}  // namespace
+
+std::vector<WatchedGuard> watched_guards(const std::vector<JumpLaw>& jumps,
+                                         const std::vector<std::optional<LatchLaw>>& latches) {
+    std::vector<WatchedGuard> guards;
+    for (std::size_t i = 0; i < jumps.size(); ++i)
+        if (jumps[i].on) guards.push_back({false, i, *jumps[i].on});
+    for (std::size_t i = 0; i < latches.size(); ++i)
+        if (latches[i] && latches[i]->until) guards.push_back({true, i, *latches[i]->until});
+    return guards;
+}
+
 Expression cancelled(Expression quotient) {
     Graph& graph = quotient.graph();
     const auto at = [&](std::uint32_t id) { return Expression(&graph, id); };
@@ -211,8 +238,9 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
     const Factorization mass(e.M, n, graph);
     e.pivots = mass.pivots();
     e.bias = bias(e.M, e.potential, v, q_slots, graph);
+    const Row forces = forces_of(e.Q, {}, layout);
     Row against(n);  // b - Q
-    for (std::size_t i = 0; i < n; ++i) against[i] = e.bias[i] - e.Q[i];
+    for (std::size_t i = 0; i < n; ++i) against[i] = e.bias[i] - forces[i];
     Row& f = e.free.f = mass.solve(against);
     for (Expression& entry : f) entry = -entry;
 
@@ -253,6 +281,7 @@ void derive(Equations& e, const Layout& layout, Graph& graph) {
                    });
     const auto is_steady_or_none = [&](const std::optional<Expression>& x) { return !x || is_steady(*x); };
     e.autonomous = e.autonomous && std::all_of(e.when.begin(), e.when.end(), is_steady_or_none);
+    for (const auto& latch : e.latches) e.autonomous = e.autonomous && (!latch || is_steady_or_none(latch->until));
     for (const JumpLaw& jump : e.jumps) {
         e.autonomous = e.autonomous && is_steady_or_none(jump.on) && is_steady_or_none(jump.when);
         for (const auto& [slot, value] : jump.set) e.autonomous = e.autonomous && is_steady(value);
@@ -299,8 +328,34 @@ ContactModes::ContactModes(const Equations& equations, const Layout& layout)
     when_ = equations.when;
     for (std::optional<Expression>& when : when_)
         if (when) adopt(*when);
-    for (const JumpLaw& jump : equations.jumps)
-        if (jump.on) watched_jumps_.push_back(graph_.adopt(*jump.on));
+    for (const WatchedGuard& guard : achilles::watched_guards(equations.jumps, equations.latches))
+        watched_guards_.push_back(graph_.adopt(guard.function));
+    in_forces_ = equations.in_forces;
+    if (in_forces_.empty()) return;
+    M_ = equations.M;
+    Q_ = equations.Q;
+    adopt_all(M_);
+    adopt_all(Q_);
+}
+
+// The mode without held contacts in which these act on the forces: f changes by M^-1 (Q - Q_0).
+ModeEquations ContactModes::derive_free(ContactSet acting) {
+    ModeEquations result = known_.at({});
+    result.mode = Mode().with_acting(acting);
+    const std::size_t n = layout_.dof;
+    const Row now = forces_of(Q_, acting, layout_), without = forces_of(Q_, {}, layout_);
+    Row more(n);
+    for (std::size_t i = 0; i < n; ++i) more[i] = now[i] - without[i];
+    const Row change = Factorization(M_, n, graph_).solve(more);
+    for (std::size_t i = 0; i < n; ++i) result.f[i] = result.f[i] + change[i];
+    const Row v = symbols(slots_from(layout_.v(0), n), graph_);
+    for (std::size_t i = 0; i < result.contacts.size(); ++i) {
+        ContactEquations& c = result.contacts[i];
+        c.hddot = c.hddot + dot(c.g, change, graph_);
+        complete(c, result.f, i, v);
+    }
+    for (auto& [which, slip] : result.slips) slip.udot = slip.udot + dot(slip.d, change, graph_);
+    return result;
 }
 
 const ModeEquations& ContactModes::of(Mode mode) {
@@ -310,11 +365,12 @@ const ModeEquations& ContactModes::of(Mode mode) {
 
 // Adds the last contact k that keeps its gap to the mode without it, which is derived first if necessary.
 ModeEquations ContactModes::derive(Mode mode) {
+    if (mode.is_free() && mode.joints().empty()) return derive_free(mode.acting());
     if (!friction_.empty()) return derive_with_friction(mode);
     const ContactSet kept = contacts_keeping(mode, Constraint::gap);
     std::size_t k = 0;
     for (const std::size_t i : kept) k = i;
-    const ModeEquations& before = of(mode.without(k));
+    const ModeEquations& before = of(unconstrained(mode, k));
     const ContactEquations& last = before.contacts.at(k);
     if (last.delassus[k].is_zero())
         throw std::domain_error("contacts with linearly dependent gradients cannot all be held");
@@ -323,7 +379,7 @@ ModeEquations ContactModes::derive(Mode mode) {
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
         ContactEquations& c = result.contacts[i];
         if (kept.contains(i)) {
-            c = of(mode.without(i)).contacts[i];
+            c = of(unconstrained(mode, i)).contacts[i];
             continue;
         }
         const Expression part = c.delassus[k] / last.W;
@@ -342,29 +398,31 @@ ModeEquations ContactModes::derive_with_friction(Mode mode) {
     const ContactSet all = mode.held().with(mode.joints());
     std::size_t k = 0;
     for (const std::size_t i : all) k = i;
-    ModeEquations result = of(mode.without(k));
+    ModeEquations result = of(unconstrained(mode, k));
     result.mode = mode;
     add_to_mode(result, k, mode, friction_, layout_);
     const Row v = symbols(slots_from(layout_.v(0), layout_.dof), graph_);
     for (std::size_t i = 0; i < result.contacts.size(); ++i) {
         if (mode.is_held(i)) {
-            result.contacts[i] = of(mode.without(i)).contacts[i];
+            result.contacts[i] = of(unconstrained(mode, i)).contacts[i];
         } else if (!result.contacts[i].delassus[i].is_zero()) {
             complete(result.contacts[i], result.f, i, v);
         }
     }
     for (auto& [which, slip] : result.slips)
-        if (mode.is_held(which)) slip = of(mode.without(which)).slips.at(which);
+        if (mode.is_held(which)) slip = of(unconstrained(mode, which)).slips.at(which);
     return result;
 }
 
 WatchedFriction ContactModes::watched_friction(const ModeEquations& motion) {
-    return achilles::watched_friction(
-        motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(motion.mode.without(i)); });
+    return achilles::watched_friction(motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& {
+        return of(unconstrained(motion.mode, i));
+    });
 }
 
 Expressions ContactModes::powers(Mode mode, Expression work) {
     const ModeEquations& motion = of(mode);
+    work = forces_of({work}, mode.held().with(mode.acting()), layout_).front();
     for (const std::size_t i : contacts_keeping(mode, Constraint::gap)) {
         const Expression gap_t = motion.contacts[i].gap_t;
         if (friction_.empty()) {
@@ -376,17 +434,17 @@ Expressions ContactModes::powers(Mode mode, Expression work) {
     }
     if (friction_.empty()) return {work};
     const FrictionPower friction = friction_power(
-        motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(mode.without(i)); });
+        motion, friction_, layout_, [&](std::size_t i) -> const ModeEquations& { return of(unconstrained(mode, i)); });
     return {work + friction.work, friction.heat};
 }
 
 FrictionForce ContactModes::force_of(std::size_t which, Mode mode) {
-    return friction_force(of(mode.without(which)), which, mode, friction_, layout_);
+    return friction_force(of(unconstrained(mode, which)), which, mode, friction_, layout_);
 }
 
 Expression ContactModes::watched_force(std::size_t contact, Mode mode) {
     if (friction_.empty()) return of(mode).contacts[contact].hddot;
-    return negative_force(of(mode.without(contact)), contact, mode, friction_);
+    return negative_force(of(unconstrained(mode, contact)), contact, mode, friction_);
 }
 
 namespace {
@@ -452,25 +510,20 @@ ModeDynamics make_motion(const ModeEquations& motion, const Equations& e, const 
     }
     WatchedFriction friction;
     if (!motion.slips.empty()) friction = modes.watched_friction(motion);
-    Expressions further = friction.functions;
-    for (const JumpLaw& jump : e.jumps)
-        if (jump.on) further.push_back(graph.adopt(*jump.on));
+    const Expressions& guards = modes.watched_guards();
+    Expressions further = joined({friction.functions, guards});
     for (const Expression function : further) {
         values.push_back(function);
         event_functions.push_back(function);
         rates.push_back(rate_of(function, motion.f, layout));
     }
-    const std::size_t jumps = further.size() - friction.functions.size();
     Expressions powers;
     if (!motion.slips.empty()) powers = modes.powers(motion.mode, graph.adopt(e.power));
     if (std::all_of(powers.begin(), powers.end(), [](Expression power) { return power.is_zero(); })) powers.clear();
     SeriesProgram series = series_of(motion, joined({event_functions, powers}), pivots, layout);
-    return {motion.mode,
-            TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
-            std::move(series),
-            std::move(friction.events),
-            jumps,
-            powers.size()};
+    return {motion.mode,       TypedProgram<MotionTerms>::of(slots, motion.f, pivots, joined({values, rates})),
+            std::move(series), std::move(friction.events),
+            guards.size(),     powers.size()};
 }
 
 }  // namespace achilles

@@ -14,11 +14,13 @@
 namespace achilles {
 
 // Slot of each input of a program: q (n), v (n), the parameters (p), then t, contact, sigma, the parameter of a drawn
-// curve, work, loss; with friction also the sliding speed, the friction forces and the heat.
+// curve, work, loss; with friction also the sliding speed, the friction forces and the heat; where forces depend on
+// contact, for each contact whether it is held.
 struct Layout {
     std::uint32_t dof = 0, p = 0;  // number of coordinates and of parameters
     std::uint32_t contacts = 1;
-    std::uint32_t frictions = 0;  // contacts and joints with friction
+    std::uint32_t frictions = 0;      // contacts and joints with friction
+    bool forces_see_contact = false;  // held(NAME) stands in a force
     std::uint32_t q(std::size_t i) const { return static_cast<std::uint32_t>(i); }
     std::uint32_t v(std::size_t i) const { return dof + static_cast<std::uint32_t>(i); }
     std::uint32_t parameter(std::size_t i) const { return 2 * dof + static_cast<std::uint32_t>(i); }
@@ -36,7 +38,12 @@ struct Layout {
     std::uint32_t sliding_speed() const { return force(contacts); }
     std::uint32_t heat() const { return force(contacts) + 1; }
     std::uint32_t friction_force(std::size_t k) const { return force(contacts) + 2 + static_cast<std::uint32_t>(k); }
-    std::uint32_t count() const { return frictions == 0 ? force(contacts) : friction_force(frictions); }
+    std::uint32_t held(std::size_t i) const {
+        return (frictions == 0 ? force(contacts) : friction_force(frictions)) + static_cast<std::uint32_t>(i);
+    }
+    // Whether views read the accelerations of gaps and the forces as inputs: they depend on the mode.
+    bool has_contact_inputs() const { return contacts != 1 || frictions > 0 || forces_see_contact; }
+    std::uint32_t count() const { return held(forces_see_contact ? contacts : 0); }
     Slots slots() const { return {count(), 2 * dof, 2 * dof + p}; }
 };
 
@@ -72,6 +79,11 @@ struct GivenTerms {
     std::vector<Expression> Q;
 };
 
+// A mode in which this held contact is open, but goes on acting if it is one of those in the forces.
+inline Mode unconstrained(Mode mode, std::size_t contact, ContactSet in_forces) {
+    return mode.without(contact).with_acting(ContactSet::of(contact).within(in_forces));
+}
+
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.
 struct Equations {
     GivenTerms given;
@@ -83,6 +95,10 @@ struct Equations {
     FrictionLaws friction;
     std::vector<std::optional<Expression>> when;  // of every contact: it counts only where this is positive
     std::vector<JumpLaw> jumps;
+    std::vector<std::optional<LatchLaw>> latches;  // of every contact
+    // The contacts that act on the forces: Q depends on held(NAME), which is constant within a mode. Those of `free`
+    // are 0.
+    ContactSet in_forces;
     ModeEquations free;              // the mode in which all contacts are open
     Expression power;                // dE/dt = v'Q + dV/dt in free flight; each held contact adds -lambda dh/dt
     std::vector<Expression> pivots;  // D of M = L D L'; M is positive definite if and only if all pivots are positive
@@ -111,11 +127,16 @@ class ContactModes {
     // Works in a copy of the equations' graph.
     ContactModes(const Equations& equations, const Layout& layout);
     const ModeEquations& of(Mode mode);
+    // A mode without the constraint of one of its held contacts, which goes on acting on the forces: its acceleration
+    // there decides the contact force.
+    Mode unconstrained(Mode mode, std::size_t contact) const {
+        return achilles::unconstrained(mode, contact, in_forces_);
+    }
     Graph& graph() { return graph_; }
     const FrictionLaws& friction() const { return friction_; }  // in this graph
-    // `when` of every contact, and `on` of the watched jumps, in this graph.
+    // `when` of every contact, and the watched guards, in this graph.
     const std::vector<std::optional<Expression>>& when() const { return when_; }
-    const std::vector<Expression>& watched_jumps() const { return watched_jumps_; }
+    const std::vector<Expression>& watched_guards() const { return watched_guards_; }
 
     // What friction watches in this mode (model/friction.hpp).
     WatchedFriction watched_friction(const ModeEquations& motion);
@@ -130,11 +151,14 @@ class ContactModes {
  private:
     ModeEquations derive(Mode mode);
     ModeEquations derive_with_friction(Mode mode);
+    ModeEquations derive_free(ContactSet acting);
     Graph graph_;
     Layout layout_;
     FrictionLaws friction_;  // in this graph
     std::vector<std::optional<Expression>> when_;
-    std::vector<Expression> watched_jumps_;
+    std::vector<Expression> watched_guards_;
+    ContactSet in_forces_;
+    std::vector<Expression> M_, Q_;  // where forces see contact
     std::map<Mode, ModeEquations> known_;
 };
 
@@ -147,18 +171,18 @@ Expression jerk_of(const ContactEquations& contact, const Layout& layout);
 
 // In a mode, every contact has an event function, the function that its law watches (contacts/contact_law.hpp). It is
 // the gap, or for the force the hddot of the mode in which the contact is open (the force is -hddot/W). The event
-// functions of friction follow, then those of the watched jumps. In the series, the powers() of a mode with friction are its last event functions: they
-// are integrated along a step, not watched.
+// functions of friction follow, then the watched guards. In the series, the powers() of a mode with friction are its
+// last event functions: they are integrated along a step, not watched.
 struct ModeDynamics {
     Mode mode;
     TypedProgram<MotionTerms> program;
     SeriesProgram series;                 // MotionSeries
     std::vector<FrictionEvent> friction;  // event function contacts + k is friction[k]
-    std::size_t jumps = 0;                // how many watched jumps follow
+    std::size_t guards = 0;               // how many watched guards follow
     std::size_t powers = 0;               // how many powers follow in the series: none, or work and heat
 
     // How many event functions follow those of the contacts.
-    std::size_t further_events() const { return friction.size() + jumps; }
+    std::size_t further_events() const { return friction.size() + guards; }
 };
 
 // Compiles a mode. `equations` belongs to the graph of `motion`, or to the graph that it was copied from. Throws

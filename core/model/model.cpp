@@ -109,12 +109,10 @@ void Model::compile_jumps() {
     const auto guard = [&](const std::optional<Expression>& condition) {
         guards.push_back(condition.value_or(graph.number(1)));
     };
-    for (std::size_t i = 0; i < equations_.jumps.size(); ++i) {
-        const JumpLaw& jump = equations_.jumps[i];
-        if (jump.on) {
-            watched_jumps_.push_back(i);
-            guard(jump.on);
-        }
+    watched_guards_ = achilles::watched_guards(equations_.jumps, equations_.latches);
+    for (const WatchedGuard& watched : watched_guards_) guards.push_back(watched.function);
+    for (const auto& latch : equations_.latches) has_latches_ = has_latches_ || latch;
+    for (const JumpLaw& jump : equations_.jumps) {
         Expressions after;
         for (std::uint32_t slot = 0; slot < 2 * layout_.dof; ++slot) after.push_back(graph.symbol(slot));
         for (const auto& [slot, value] : jump.set) after[slot] = value;
@@ -129,9 +127,9 @@ void Model::compile_jumps() {
     Expressions slopes;
     std::vector<std::uint32_t> state;
     for (std::uint32_t slot = 0; slot < 2 * layout_.dof; ++slot) state.push_back(slot);
-    for (const std::size_t i : watched_jumps_)
-        for (const Expression slope : gradient(*equations_.jumps[i].on, state)) slopes.push_back(slope);
-    if (!slopes.empty()) jump_slopes_ = Program(slopes, layout_.slots());
+    for (const WatchedGuard& watched : watched_guards_)
+        for (const Expression slope : gradient(watched.function, state)) slopes.push_back(slope);
+    if (!slopes.empty()) guard_slopes_ = Program(slopes, layout_.slots());
 }
 
 void Model::compile() {
@@ -190,14 +188,12 @@ const ModeDynamics& Model::motion(Mode mode) const {
                    [&] { return make_motion(contact_modes().of(mode), equations_, layout_, contact_modes()); });
 }
 
-const Program& Model::jump_curvatures(Mode mode) const {
-    return derived(jump_curvatures_, mode, [&] {
+const Program& Model::guard_curvatures(Mode mode) const {
+    return derived(guard_curvatures_, mode, [&] {
         const ModeEquations& motion = contact_modes().of(mode);
         Expressions second;
-        for (const std::size_t i : watched_jumps_) {
-            const Expression on = contact_modes().graph().adopt(*equations_.jumps[i].on);
-            second.push_back(rate_of(rate_of(on, motion.f, layout_), motion.f, layout_));
-        }
+        for (const Expression guard : contact_modes().watched_guards())
+            second.push_back(rate_of(rate_of(guard, motion.f, layout_), motion.f, layout_));
         return Program(second, layout_.slots());
     });
 }

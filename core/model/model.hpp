@@ -43,8 +43,15 @@ class Model {
     const Equations& equations() const { return equations_; }
     bool has_friction() const { return !equations_.friction.empty(); }
     bool has_jumps() const { return !equations_.jumps.empty(); }
-    // Whether there are jumps, or contacts that count only sometimes.
-    bool has_guards() const { return has_jumps() || has_conditional_contacts_; }
+    bool has_latches() const { return has_latches_; }
+    // Whether there are jumps, latches, or contacts that count only sometimes.
+    bool has_guards() const { return has_jumps() || has_latches_ || has_conditional_contacts_; }
+    // Whether forces depend on which contacts are held.
+    bool do_forces_see_contact() const { return layout_.forces_see_contact; }
+    // A mode without the constraint of one of its held contacts (model/derive.hpp).
+    Mode unconstrained(Mode mode, std::size_t contact) const {
+        return achilles::unconstrained(mode, contact, equations_.in_forces);
+    }
     // Whether some contact counts only sometimes.
     bool has_conditional_contacts() const { return has_conditional_contacts_; }
     bool is_conditional(std::size_t contact) const { return equations_.when[contact].has_value(); }
@@ -71,18 +78,18 @@ class Model {
     const TypedProgram<SlipTerms>& slip_terms(std::size_t which, Mode mode = {}) const;
     // lambda, tau and their common factor, of a contact or joint that is not open in this mode (friction_force).
     const Program& friction_force(std::size_t which, Mode mode) const;
-    // The jumps that follow an expression, in the order of the file: what ModeDynamics watches.
-    const std::vector<std::size_t>& watched_jumps() const { return watched_jumps_; }
-    // `on` of the watched jumps, then `when` of every contact and of every jump; 1 where there is none.
+    // What ModeDynamics watches.
+    const std::vector<WatchedGuard>& watched_guards() const { return watched_guards_; }
+    // The watched guards, then `when` of every contact and of every jump; 1 where there is none.
     const Program& guards() const { return guards_; }
-    std::size_t guard_of_contact(std::size_t contact) const { return watched_jumps_.size() + contact; }
-    std::size_t guard_of_jump(std::size_t jump) const { return watched_jumps_.size() + contacts() + jump; }
+    std::size_t guard_of_contact(std::size_t contact) const { return watched_guards_.size() + contact; }
+    std::size_t guard_of_jump(std::size_t jump) const { return watched_guards_.size() + contacts() + jump; }
     // q and v after a jump, from the state before.
     const Program& jump_map(std::size_t jump) const { return jump_maps_[jump]; }
-    // The derivatives of `on` of each watched jump by q and v.
-    const Program& jump_slopes() const { return jump_slopes_; }
-    // The second rates of `on` of the watched jumps along the motion in a mode.
-    const Program& jump_curvatures(Mode mode) const;
+    // The derivatives of each watched guard by q and v.
+    const Program& guard_slopes() const { return guard_slopes_; }
+    // The second rates of the watched guards along the motion in a mode.
+    const Program& guard_curvatures(Mode mode) const;
     // Whether hddot of a contact in a mode is proved to be 0 wherever h = hdot = 0 for this contact and the held ones,
     // for all parameters. Its gap then stays 0 while theirs do, and its force is 0 (theory-gaps.md 2.7).
     bool stays_closed_without_force(std::size_t contact, Mode mode) const;
@@ -223,11 +230,11 @@ class Model {
     mutable std::map<ContactInMode, Program> friction_forces_;
     std::vector<const ContactPrograms*> free_;  // the entries of programs_ for the mode without held contacts
     std::vector<Program> restitutions_;
-    std::vector<std::size_t> watched_jumps_;
-    bool has_conditional_contacts_ = false;
-    Program guards_, jump_slopes_;
+    std::vector<WatchedGuard> watched_guards_;
+    bool has_conditional_contacts_ = false, has_latches_ = false;
+    Program guards_, guard_slopes_;
     std::vector<Program> jump_maps_;
-    mutable std::map<Mode, Program> jump_curvatures_;
+    mutable std::map<Mode, Program> guard_curvatures_;
     Program derived_parameters_;
     SeriesProgram edge_series_;
     std::vector<DomainBoundary> edges_;

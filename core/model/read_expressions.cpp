@@ -120,11 +120,22 @@ void read_forces(const SystemDescription& system, const Layout& layout, Expressi
     });
 }
 
+// The contacts whose held(NAME) stands in the forces.
+ContactSet contacts_in(const std::vector<Expression>& forces, const Layout& layout) {
+    ContactSet found;
+    for (std::size_t i = 0; layout.forces_see_contact && i < layout.contacts; ++i) {
+        const std::uint32_t slot = layout.held(i);
+        if (std::any_of(forces.begin(), forces.end(), [&](Expression force) { return depends_on(force, {&slot, 1}); }))
+            found = found.with(i);
+    }
+    return found;
+}
+
 // The friction of every contact that has it, and of every joint. What has a mistake is the time.
 void read_frictions(const SystemDescription& system, const Layout& layout, const Names& names, ExpressionReader& reader,
                     Equations& equations, ErrorCollector& mistakes, Graph& graph) {
     const Expression any_value = graph.symbol(layout.t()), nothing = graph.number(0);
-    Scope in_slip = force_scope(system, layout, graph), in_level = friction_scope(system, layout, graph),
+    Scope in_slip = state_scope(system, layout, graph), in_level = friction_scope(system, layout, graph),
           in_static = static_friction_scope(system, layout, graph);
     for (const SlidingPlace& place : sliding_places(system)) {
         FrictionLaw& law = equations.friction[place.number];
@@ -148,13 +159,19 @@ void read_frictions(const SystemDescription& system, const Layout& layout, const
 // The conditions of the contacts, and the jumps.
 void read_modes(const SystemDescription& system, const Layout& layout, ExpressionReader& reader, Equations& equations,
                 Graph& graph) {
-    Scope scope = force_scope(system, layout, graph);
+    Scope scope = state_scope(system, layout, graph);
     for (const ConstraintDescription& constraint : system.constraints)
         equations.when.push_back(reader.read(constraint.when, scope));
+    for (const ConstraintDescription& constraint : system.constraints) {
+        std::optional<LatchLaw>& law = equations.latches.emplace_back();
+        if (constraint.latch.on.text.empty()) continue;
+        law.emplace().contact = constraint.latch.contact;
+        if (!law->contact) law->until = reader.read(constraint.latch.on, scope);
+    }
     for (const JumpDescription& jump : system.jumps) {
         JumpLaw& law = equations.jumps.emplace_back();
-        law.contact = jump.contact;
-        if (!jump.contact) law.on = reader.read(jump.on, scope);
+        law.contact = jump.on.contact;
+        if (!law.contact) law.on = reader.read(jump.on.on, scope);
         law.when = reader.read(jump.when, scope);
         for (const JumpDescription::Assignment& each : jump.set)
             if (const auto value = reader.read(each.value, scope))
@@ -172,7 +189,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
         return reader.read(text, scope, places);
     };
     read_definitions(system, layout, reader, graph);
-    const auto kinetic = read(system.kinetic, force_scope(system, layout, graph), &parts);
+    const auto kinetic = read(system.kinetic, state_scope(system, layout, graph), &parts);
     const auto potential = read(system.potential, potential_scope(system, layout, graph));
     std::vector<std::optional<Expression>> gaps, restitutions;
     for (const ConstraintDescription& constraint : system.constraints) {
@@ -202,6 +219,7 @@ void read_equations(const SystemDescription& system, const Layout& layout, Graph
                 mistakes.add(std::move(*mistake));
     }
     read_forces(system, layout, reader, equations, mistakes);
+    equations.in_forces = contacts_in(equations.Q, layout);
     equations.given.Q = equations.Q;
     attempt_within_limits(mistakes, system, equations, [&] { add_prescribed_motion(motion, layout, equations); });
 }
@@ -211,7 +229,7 @@ namespace {
 // What no equation uses: slips without friction, drawings, views, the closing of an orbit.
 void read_rest(const SystemDescription& system, const Layout& layout, Graph& graph, const Equations& equations,
                const Names& names, ExpressionReader& reader) {
-    Scope in_slips = force_scope(system, layout, graph);
+    Scope in_slips = state_scope(system, layout, graph);
     for (const ConstraintDescription& constraint : system.constraints)
         if (!constraint.has_friction()) reader.read(constraint.slip, in_slips);
     Scope in_drawings = drawing_scope(system, layout, graph);

@@ -80,6 +80,9 @@ void forbid_outputs(Scope& scope, const SystemDescription& system) {
         forbid(word);
     }
     for (const char* word : {"energy", "work", "loss", "power"}) forbid(word);
+    scope.forbidden.emplace("held",
+                            "held(NAME) is allowed only in a force and in the dissipation; write what else depends on "
+                            "contact as a force");
 }
 
 // Coordinates, t and parameters. For messages: `what` names the text, `why` gives the reason why rates are not allowed.
@@ -116,7 +119,7 @@ Scope constant_scope(const SystemDescription& system, const Layout& layout, Grap
 
 }  // namespace
 
-Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+Scope state_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
     Scope scope;
     allow_positions(scope, system, layout, graph);
     allow_rates(scope, system, layout, graph);
@@ -124,6 +127,16 @@ Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& 
     scope.allowed.emplace("t", graph.symbol(layout.t()));
     forbid_primes(scope, system);
     forbid_outputs(scope, system);
+    return scope;
+}
+
+Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph) {
+    Scope scope = state_scope(system, layout, graph);
+    if (!layout.forces_see_contact) return scope;
+    scope.forbidden.erase("held");
+    auto& held = scope.of_contact["held"];
+    for (std::size_t i = 0; i < system.constraints.size(); ++i)
+        held.emplace(system.constraints[i].name, graph.symbol(layout.held(i)));
     return scope;
 }
 
@@ -175,10 +188,25 @@ Scope definition_scope(const SystemDescription& system, const Layout& layout, Gr
     return constant_scope(system, layout, graph, "a derived parameter");
 }
 
+namespace {
+
+// Whether held(NAME) stands in a force or in the dissipation.
+bool do_forces_see_contact(const SystemDescription& system) {
+    const auto sees = [](const Text& text) {
+        const std::vector<std::string> names = names_in(text.text);
+        return std::find(names.begin(), names.end(), "held") != names.end();
+    };
+    return sees(system.dissipation) ||
+           std::any_of(system.coordinates.begin(), system.coordinates.end(),
+                       [&](const CoordinateDescription& coordinate) { return sees(coordinate.force); });
+}
+
+}  // namespace
+
 Layout layout_of(const SystemDescription& system) {
     const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
     return {count(system.coordinates), count(system.parameters), count(system.constraints),
-            count(sliding_places(system))};
+            count(sliding_places(system)), do_forces_see_contact(system)};
 }
 
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {
@@ -199,6 +227,8 @@ std::vector<std::string> slot_names(const SystemDescription& system, const Layou
         names[layout.acceleration(i)] = "gap_" + system.constraints[i].name + "''";
         names[layout.force(i)] = "lambda_" + system.constraints[i].name;
     }
+    for (std::size_t i = 0; layout.forces_see_contact && i < layout.contacts; ++i)
+        names[layout.held(i)] = "held(" + system.constraints[i].name + ")";
     if (layout.frictions == 0) return names;
     names[layout.sliding_speed()] = "slip";
     names[layout.heat()] = "heat";
@@ -217,7 +247,7 @@ std::vector<std::array<Expression, 4>> contact_values(const Layout& layout, Grap
     for (std::size_t i = 0; i < layout.contacts; ++i) {
         const ContactEquations& c = equations.free.contacts[i];
         const Expression hdot = graph.adopt(c.hdot), gap = graph.adopt(equations.gaps[i]);
-        if (layout.contacts == 1 && layout.frictions == 0) {
+        if (!layout.has_contact_inputs()) {
             values.push_back(
                 {gap, hdot, (graph.number(1) - held) * graph.adopt(c.hddot), held * graph.adopt(c.lambda)});
         } else {

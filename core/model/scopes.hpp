@@ -19,7 +19,9 @@ Layout layout_of(const SystemDescription& system);
 // The names of the inputs, by slot: what to_text() prints.
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout);
 
-// Coordinates, rates, t, parameters: for the kinetic energy, a force, the dissipation or a slip.
+// Coordinates, rates, t, parameters: for the kinetic energy, a slip, a guard and what a jump sets.
+Scope state_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
+// These, and held(NAME): for a force and the dissipation.
 Scope force_scope(const SystemDescription& system, const Layout& layout, Graph& graph);
 // Coordinates, t, parameters.
 Scope potential_scope(const SystemDescription& system, const Layout& layout, Graph& graph);

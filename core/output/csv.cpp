@@ -95,6 +95,7 @@ std::string heading(const Model& model, const CsvStyle& style) {
     add("j");
     if (is_of_several(model)) add("held");
     if (model.has_conditional_contacts()) add("inactive");
+    if (model.has_latches()) add("latched");
     if (model.has_friction()) add("modes");
     if (has_work(model)) {
         add("work", "work");
@@ -155,6 +156,7 @@ std::string to_csv(const Trajectory& trajectory, const CsvStyle& style) {
         text += fmt::format(",{}", sample.j);
         if (is_of_several(model)) text += "," + joined_names(model, sample.mode.held(), "+");
         if (model.has_conditional_contacts()) text += "," + joined_names(model, sample.inactive, "+");
+        if (model.has_latches()) text += "," + joined_names(model, sample.latched, "+");
         if (model.has_friction()) text += "," + modes_text(model, sample.mode);
         if (has_work(model)) {
             append(text, sample.work);

@@ -203,7 +203,11 @@ std::string EventDescriptions::beginning(const Event& event) const {
     const std::string words = is_one ? own_words(event.contacts, &ConstraintDescription::begins) : "";
     if (!words.empty()) return words;
     if (!is_of_several_) return "contact begins";
-    return joined_names(*trajectory_.model, event.contacts, " and ") + (is_one ? " is held" : " are held");
+    const bool latches = is_one && event.latched.contains(event.contacts.only());
+    return joined_names(*trajectory_.model, event.contacts, " and ") +
+           (latches  ? " latches"
+            : is_one ? " is held"
+                     : " are held");
 }
 
 std::string EventDescriptions::change(std::size_t index) const {
@@ -218,6 +222,9 @@ std::string EventDescriptions::change(std::size_t index) const {
     if (event.is_release()) {
         const bool is_one = event.contacts.count() == 1;
         const std::string ends = is_one ? own_words(event.contacts, &ConstraintDescription::ends) : "";
+        if (event.ends_latch)
+            return (ends.empty() ? joined_names(*trajectory_.model, event.contacts, " and ") + " opens" : ends) +
+                   ": its latch ends";
         if (!ends.empty()) return ends + ": its contact force reached zero";
         return is_of_several_
                    ? "force of " + joined_names(*trajectory_.model, event.contacts, " and ") + " reached zero"

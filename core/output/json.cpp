@@ -113,6 +113,8 @@ Json samples_of(const Trajectory& trajectory, const std::vector<double>& times) 
                            {"v", list(sample.state.v)}});
         if (trajectory.model->has_conditional_contacts())
             samples.back()["inactive"] = contact_names(*trajectory.model, sample.inactive);
+        if (trajectory.model->has_latches())
+            samples.back()["latched"] = contact_names(*trajectory.model, sample.latched);
     }
     return samples;
 }
@@ -215,8 +217,9 @@ void add_modes(Json& result, const Trajectory& trajectory, Mode mode) {
 }
 
 // The contacts that do not count; only for systems where contacts may.
-void add_inactive(Json& result, const Trajectory& trajectory, ContactSet inactive) {
+void add_states(Json& result, const Trajectory& trajectory, ContactSet inactive, ContactSet latched) {
     if (trajectory.model->has_conditional_contacts()) result["inactive"] = names(trajectory, inactive);
+    if (trajectory.model->has_latches()) result["latched"] = names(trajectory, latched);
 }
 
 // The sign of the slip that begins: a number, or one for each contact by name where they differ.
@@ -282,7 +285,8 @@ Json event_of(const Trajectory& trajectory, std::size_t index, Impulses& impulse
         result["contacts"] = contacts;
     result["held"] = names(trajectory, event.mode.held());
     result["opened"] = names(trajectory, event.opened);
-    add_inactive(result, trajectory, event.inactive);
+    add_states(result, trajectory, event.inactive, event.latched);
+    if (event.ends_latch) result["ends_latch"] = true;
     result["q"] = list(event.q);
     if (event.is_discontinuous()) {
         result["v_before"] = list(event.v_before);
@@ -408,8 +412,8 @@ std::string to_json(const Trajectory& trajectory, const Instants& instants, cons
                      {"ulps", rounding::libm},
                      {"ulps_hyperbolic", rounding::hyperbolic},
                      {"library", mathematical_library()}}}};
-    add_inactive(result["start"], trajectory, trajectory.start_inactive);
-    add_inactive(result["end"], trajectory, trajectory.end_inactive);
+    add_states(result["start"], trajectory, trajectory.start_inactive, trajectory.start_latched);
+    add_states(result["end"], trajectory, trajectory.end_inactive, trajectory.end_latched);
     if (trajectory.model->has_friction()) {
         result["end"]["heat"] = number_json(trajectory.heat);
         add_modes(result["end"], trajectory, trajectory.end_mode);

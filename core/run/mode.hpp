@@ -40,7 +40,7 @@ class Mode {
         const auto flags = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> first_flag & 0xFFu); };
         return ContactSet(flags(bits_) | flags(bits_ >> high) << 8u);
     }
-    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact)); }
+    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact), acting_); }
     // The contacts that are not open, and those in a given state.
     constexpr ContactSet held() const {
         return ContactSet(static_cast<std::uint32_t>(bits_ | bits_ >> high) & of_contacts);
@@ -60,11 +60,20 @@ class Mode {
             all);
     }
 
+    // Open contacts that act on the forces as held ones do: held(NAME) is 1 for them (theory-modes.md 5). Only
+    // derivations and decisions have such modes.
+    constexpr ContactSet acting() const { return acting_; }
+    constexpr Mode with_acting(ContactSet contacts) const {
+        Mode result = *this;
+        result.acting_ = acting_.with(contacts.without(held()));
+        return result;
+    }
+
     constexpr Mode with(ContactSet contacts, ContactState state) const {
         const std::uint64_t set = contacts.bits_;
         std::uint64_t kept = bits_ & ~(set | set << high);
         for (const std::size_t i : contacts.within(implied())) kept &= ~flag(i);
-        return Mode(kept | low_bits(set, state) | high_bits(set, state));
+        return Mode(kept | low_bits(set, state) | high_bits(set, state), acting_.without(contacts));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
     // This mode with these contacts open.
@@ -74,7 +83,9 @@ class Mode {
     constexpr Mode only(ContactSet contacts) const { return without(held().without(contacts)); }
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
-    friend constexpr bool operator<(const Mode& a, const Mode& b) { return a.bits_ < b.bits_; }
+    friend constexpr bool operator<(const Mode& a, const Mode& b) {
+        return a.bits_ != b.bits_ ? a.bits_ < b.bits_ : a.acting_.bits_ < b.acting_.bits_;
+    }
 
  private:
     // A state has two bits. The low bits of all contacts and joints are in one half of the word, the high bits in the
@@ -92,8 +103,9 @@ class Mode {
         return (static_cast<std::uint32_t>(state) & 2u) != 0 ? set << high : 0u;
     }
 
-    constexpr explicit Mode(std::uint64_t bits) : bits_(bits) {}
+    constexpr Mode(std::uint64_t bits, ContactSet acting) : bits_(bits), acting_(acting) {}
     std::uint64_t bits_ = 0;
+    ContactSet acting_;
 };
 
 // Key of the data of one contact in a mode.

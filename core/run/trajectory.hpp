@@ -34,6 +34,7 @@ struct DenseSegment {
     Mode mode;                // mode of its phase; between a cut and its Zeno point, of the next phase
     ContactSet load_bearing;  // held contacts that determine the motion; samples are projected to their h = hdot = 0
     ContactSet inactive;      // contacts that do not count (theory-modes.md 1)
+    ContactSet latched;       // contacts that a latch holds (theory-modes.md 4)
     Mode motion() const { return mode.only(load_bearing); }
     double work = 0.0, loss = 0.0, heat = 0.0;  // from the start of the run to the start of this piece
 };
@@ -155,12 +156,14 @@ struct Event : EventBase {
     double t = 0.0;
     Vector q, v_before, v_after;  // velocities are equal unless they jump (at impacts and jumps); q after a jump
     double impact_speed = 0.0;    // impact: |hdot| before the impact
-    // Those that impact, become held at a Zeno point, collapse, release, or pass; with friction, also joints; of a jump,
-    // that whose impact it follows.
+    // Those that impact, become held at a Zeno point, collapse, release, or pass; with friction, also joints; of a
+    // jump, that whose impact it follows.
     ContactSet contacts;
-    Mode mode;            // after the event
-    ContactSet opened;    // impact: contacts held before and opened by it; collapse: those that leave after it
-    ContactSet inactive;  // contacts that do not count after the event
+    Mode mode;                // after the event
+    ContactSet opened;        // impact: contacts held before and opened by it; collapse: those that leave after it
+    ContactSet inactive;      // contacts that do not count after the event
+    ContactSet latched;       // contacts that a latch holds after the event
+    bool ends_latch = false;  // release: by an expression that ends the latch
     std::shared_ptr<const MultiContactInfo> joint;  // may be null
     double work = 0.0, loss = 0.0, heat = 0.0;      // from the start of the run, including this event
     int impacts = 0;                                // zeno: impacts of the phase it ends, including the one at the cut
@@ -290,12 +293,13 @@ struct Trajectory {
     double end_time = 0.0;
     State end;
     ContactSet start_inactive, end_inactive;  // contacts that do not count
+    ContactSet start_latched, end_latched;    // contacts that a latch holds (theory-modes.md 4)
     Phase::Kind end_phase = Phase::Kind::hybrid;
     Mode end_mode;
     int ambiguous_impacts = 0;  // number of impacts whose order matters but is unknown
     // E(end) - E(start) = work - loss - heat. The work is that of forces, of a time-dependent potential and of moving
-    // surfaces; the loss is the energy dissipated at impacts and taken out by jumps. For a run stored with Recording::final_state the work is
-    // NaN, unless none can be done; so is the loss if the system has jumps.
+    // surfaces; the loss is the energy dissipated at impacts and taken out by jumps. For a run stored with
+    // Recording::final_state the work is NaN, unless none can be done; so is the loss if the system has jumps.
     double work = 0.0, loss = 0.0;
     double heat = 0.0;  // of dry friction, in contact and at impacts
     Outcome outcome;

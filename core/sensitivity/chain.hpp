@@ -106,6 +106,7 @@ class Chain {
     void step();
     void handle_event(std::size_t event);
     void land(std::size_t event);
+    ContactSet latched_before(std::size_t event) const;
     void reach_zeno_point(std::size_t event);
     void release(std::size_t event);
     // With dry friction (chain_friction.cpp, friction_impact_sensitivity.cpp).

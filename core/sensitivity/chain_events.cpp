@@ -72,6 +72,11 @@ ChainLink& Chain::cross(std::size_t event, RowVectorXd G, double residual) {
     return link;
 }
 
+// The contacts that a latch holds before an event.
+ContactSet Chain::latched_before(std::size_t event) const {
+    return event == 0 ? trajectory_->start_latched : trajectory_->events[event - 1].latched;
+}
+
 void Chain::land(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (waiting_) return break_off("an impact happens before the Zeno time of another contact");
@@ -95,7 +100,8 @@ void Chain::land(std::size_t event) {
                 return break_off("a contact that is closed without a force takes part in an impact");
             const double rate = surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot;
             constexpr double strictly = 1e-10;
-            if (impulse > strictly * scale)
+            const bool is_latched = latched_before(event).contains(contact) && !(rate > strictly * now.impact_speed);
+            if (is_latched || impulse > strictly * scale)
                 loaded = loaded.with(contact);
             else if (!(rate > strictly * now.impact_speed))
                 return break_off("an impact neither loads a held contact nor opens it");
@@ -239,16 +245,22 @@ void Chain::release(std::size_t event) {
             "several contacts are released at the same time: which is first depends on the direction of the "
             "perturbation");
     const std::size_t i = now.contacts.only();
-    const Mode others = mode_.without(i);
-    auto& normal = normals_[{others, i}];
-    if (!normal)
-        normal = std::make_unique<Gradient>(*model_, model_->programs_of(i, others).normal_acceleration, tangent_,
-                                            trajectory_->run.parameters);
-    normal->at(state_);
     set_gaps();
-    const double jerk = surfaces_.of(i, others).jerk(state_);
-    take_least(margins_.release_jerk, jerk);
-    cross(event, normal->row(0), normal->value(0));
+    if (now.ends_latch) {
+        std::size_t watched = 0;
+        while (!model_->watched_guards()[watched].is_latch || model_->watched_guards()[watched].number != i) ++watched;
+        guards().at(state_);
+        cross(event, guards().row(watched), guards().value(watched));
+    } else {
+        const Mode others = model_->unconstrained(mode_, i);
+        auto& normal = normals_[{others, i}];
+        if (!normal)
+            normal = std::make_unique<Gradient>(*model_, model_->programs_of(i, others).normal_acceleration, tangent_,
+                                                trajectory_->run.parameters);
+        normal->at(state_);
+        take_least(margins_.release_jerk, surfaces_.of(i, others).jerk(state_));
+        cross(event, normal->row(0), normal->value(0));
+    }
     ChainLink& link = add(ChainLink::Kind::jump, event);
     retract(link.J, mode_);
     mode_ = now.mode;

@@ -82,7 +82,9 @@ void Chain::jump(std::size_t event) {
                             name));
         if (!follows_jump) {
             std::size_t watched = 0;
-            while (model_->watched_jumps()[watched] != now.jump->number) ++watched;
+            while (model_->watched_guards()[watched].is_latch ||
+                   model_->watched_guards()[watched].number != now.jump->number)
+                ++watched;
             set_gaps();
             guards().at(state_);
             cross(event, guards().row(watched), guards().value(watched));

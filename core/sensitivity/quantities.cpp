@@ -77,8 +77,7 @@ class Quantities::Inputs {
         set(layout_.work(), place_.work, none);
         set(layout_.loss(), place_.loss, none);
         if (layout_.frictions > 0) set(layout_.heat(), place_.heat, none);
-        if (layout_.contacts == 1 && layout_.frictions == 0)
-            return set(layout_.contact(), place_.mode.is_free() ? 0.0 : 1.0);
+        if (!layout_.has_contact_inputs()) return set(layout_.contact(), place_.mode.is_free() ? 0.0 : 1.0);
         set_contacts(none);
     }
 
@@ -124,8 +123,9 @@ class Quantities::Inputs {
             } else if (held) {
                 set(layout_.acceleration(i), a);
                 set(layout_.force(i), f,
-                    layout_.frictions > 0 ? quotient_of(i, 0)
-                                          : derivatives_of(model_.programs_of(i, place_.mode.without(i)).force, 0));
+                    layout_.frictions > 0
+                        ? quotient_of(i, 0)
+                        : derivatives_of(model_.programs_of(i, model_.unconstrained(place_.mode, i)).force, 0));
             } else {
                 set(layout_.force(i), f);
                 set(layout_.acceleration(i), a,

@@ -40,8 +40,8 @@ BatchSimulator::BatchRun::BatchRun(std::size_t number, const std::shared_ptr<con
 BatchSimulator::BatchSimulator(const std::shared_ptr<const Model>& model, Vectors vectors)
     : end_{Vector(model->dof()), Vector(model->dof()), 0.0},
       model_(model),
-      has_lanes_(!model->has_friction() && !model->has_guards() && model->contacts() == 1 && model->edges().empty() &&
-                 !model->motion({}).series.is_partial() &&
+      has_lanes_(!model->has_friction() && !model->has_guards() && !model->do_forces_see_contact() &&
+                 model->contacts() == 1 && model->edges().empty() && !model->motion({}).series.is_partial() &&
                  !model->motion(Mode::holding(ContactSet::of(0))).series.is_partial()),
       vectors_(vectors),
       groups_{RunGroup(end_.q.size()), RunGroup(end_.q.size()), RunGroup(end_.q.size())} {

@@ -34,7 +34,7 @@ std::optional<PairLaw<Interval>> ExecutionAutomaton::law_of_pair(ContactSet pair
     if (!block) return std::nullopt;
     const auto [first, second] = places_of_pair(closed, pair);
     const auto by_first = block->transmission(W, first), by_second = block->transmission(W, second);
-    for (const std::size_t i : closed.places_of(held)) {
+    for (const std::size_t i : closed.places_of(held.without(next_.latched))) {
         const auto k = static_cast<Eigen::Index>(i);
         for (const Transmission<Interval>* by : {&by_first, &by_second})
             if (!(by->kappa[k].lo() >= 0.0) && !counts_as_zero(by->kappa[k], std::sqrt(mid(by->W) / mid(W(k, k)))))
@@ -123,7 +123,7 @@ bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pai
     start.collision.sigma[1 - landed] = sigma;
     start.collision.h[1 - landed] = h;
     std::string_view failed;
-    conditions.set_inactive(next_.inactive);
+    conditions.set_states(next_.inactive, next_.latched);
     auto completion = timed([&] { return conditions.certify(start, cut_at_resolution, failed); });
     if (!completion) return fail(failed);
     const ContactSet two = ContactSet::of(which).with(j), all = next_.held().with(two);

@@ -35,7 +35,8 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (surfaces_->has_friction()) return collide_with_friction(ContactSet::of(which));
-    if (model_->has_jumps() && may_jump(ContactSet::of(which), falling_jumps())) {
+    if ((model_->has_jumps() && may_jump(ContactSet::of(which), falling_jumps())) ||
+        !unlatched_by(ContactSet::of(which)).empty()) {
         const auto together = surfaces_->count() > 1 ? landing_with(which, contact) : ContactSet::of(which);
         if (together) collide(*together);
         return;
@@ -118,7 +119,7 @@ bool ExecutionAutomaton::could_truncate(const Collision& collision, ContactState
              })});
         conditions_ = all_conditions_.back().conditions.get();
     }
-    conditions_->set_inactive(next_.inactive);
+    conditions_->set_states(next_.inactive, next_.latched);
     return !conditions_->fails_at_point(collision);
 }
 
@@ -165,7 +166,8 @@ void ExecutionAutomaton::capture(const Contact& contact, const Collision& before
         hddot = Interval(0.0);
         next_.unpressed = next_.unpressed.with(which_);
     }
-    if (next_.unpressed.contains(which_) || certainly_negative(hddot)) {
+    const bool latches = model_->equations().latches[which_].has_value();  // then its force may pull
+    if (next_.unpressed.contains(which_) || certainly_negative(hddot) || latches) {
         Certificate certificate;
         certificate.certified = true;
         certificate.conditions = run_.options.truncation.conditions;
@@ -175,7 +177,7 @@ void ExecutionAutomaton::capture(const Contact& contact, const Collision& before
         certificate.a_min = -hddot.hi();
         certificate.a_max = -hddot.lo();
         certificate.tightest_bound = "restitution 0: no impact sequence is truncated";
-        certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
+        if (!latches) certificate.assumptions = {{"normal acceleration", hddot.hi(), 0.0}};
         complete(contact, collision, std::move(certificate));
     } else if (certainly_positive(hddot)) {
         bounce(contact, 0.0);
@@ -270,7 +272,8 @@ void ExecutionAutomaton::release(std::size_t which) {
     if (surfaces_->has_friction()) return release_with_friction(which);
     const Mode mode = next_.mode;
     const ContactSet vanishing = surfaces_->count() > 1 ? vanishing_with(which) : ContactSet::of(which);
-    const bool leaves = certainly_positive(surfaces_->of(which, mode.without(which)).normal(next_.state).jerk);
+    const bool leaves =
+        certainly_positive(surfaces_->of(which, model_->unconstrained(mode, which)).normal(next_.state).jerk);
     if (surfaces_->count() > 1 &&
         (!leaves || vanishing.count() > 1 || !next_.touching.with(next_.unpressed).empty() || not_unique_)) {
         const ContactSet resting = next_.resting().held();
@@ -287,15 +290,17 @@ void ExecutionAutomaton::release(std::size_t which) {
     }
     next_.mode = mode.without(which);
     next_.starts[which] = {{0.0, 0.0}, 3};
-    leave(ContactSet::of(which));
+    start_released(ContactSet::of(which));
+    if (!outcome_) leave(ContactSet::of(which));
 }
 
 // Records the release of these contacts.
-void ExecutionAutomaton::leave(ContactSet contacts) {
+void ExecutionAutomaton::leave(ContactSet contacts, bool ends_latch) {
     Event event;
     event.kind = Event::Kind::release;
     event.contacts = contacts;
     event.mode = next_.resting();
+    event.ends_latch = ends_latch;
     if (not_unique_) {
         auto joint = std::make_shared<MultiContactInfo>();
         joint->is_nonunique = true;

@@ -79,12 +79,12 @@ ContactKinematics& ContactCache::of(std::size_t contact, Mode mode) {
     return in_modes_.emplace(key, ContactKinematics(*model_, run_, contact, mode)).first->second;
 }
 
-ClosedContacts ContactCache::at(const State& state, ContactSet contacts) {
+ClosedContacts ContactCache::at(const State& state, ContactSet contacts, Mode others) {
     ClosedContacts closed;
     for (std::size_t i = 0; i < count(); ++i) {
         if (!contacts.contains(i)) continue;
         closed.which.push_back(i);
-        closed.contacts.push_back(free_[i].at(state));
+        closed.contacts.push_back(of(i, others).at(state));
     }
     const auto n = static_cast<Eigen::Index>(closed.which.size());
     closed.W.resize(n, n);
@@ -295,8 +295,8 @@ double size_of(ContactKinematics& surface, const State& start) {
 }  // namespace
 
 GapUnits::GapUnits(const Model& model, const Run& run)
-    : units_(model.contacts(), 1.0), jump_units_(model.watched_jumps().size(), 1.0) {
-    if (!jump_units_.empty()) jump_slopes_ = model.evaluator(model.jump_slopes(), run.parameters);
+    : units_(model.contacts(), 1.0), guard_units_(model.watched_guards().size(), 1.0) {
+    if (!guard_units_.empty()) guard_slopes_ = model.evaluator(model.guard_slopes(), run.parameters);
     for (std::size_t i = 0; i < model.contacts(); ++i) surfaces_.emplace_back(model, run, i);
     find(run.start());
 }
@@ -309,14 +309,14 @@ void GapUnits::find(const State& state) {
     };
     place_ = state.q;
     for (std::size_t i = 0; i < surfaces_.size(); ++i) units_[i] = unit_of(size_of(surfaces_[i], state));
-    if (!jump_slopes_) return;
-    set_state(*jump_slopes_, state);
-    jump_slopes_->run();
+    if (!guard_slopes_) return;
+    set_state(*guard_slopes_, state);
+    guard_slopes_->run();
     const auto width = static_cast<std::size_t>(2 * state.q.size());
-    for (std::size_t k = 0; k < jump_units_.size(); ++k) {
+    for (std::size_t k = 0; k < guard_units_.size(); ++k) {
         double sum = 0.0;
-        for (std::size_t i = 0; i < width; ++i) sum += std::pow(jump_slopes_->output(k * width + i), 2);
-        jump_units_[k] = unit_of(std::sqrt(sum));
+        for (std::size_t i = 0; i < width; ++i) sum += std::pow(guard_slopes_->output(k * width + i), 2);
+        guard_units_[k] = unit_of(std::sqrt(sum));
     }
 }
 

@@ -106,7 +106,7 @@ class ContactCache {
     }
 
     // `contacts` must contain at most max_closed_contacts.
-    ClosedContacts at(const State& state, ContactSet contacts);
+    ClosedContacts at(const State& state, ContactSet contacts, Mode others = {});
     // Whether hddot of a contact in this mode may be 0 within rounding. `scale` has the largest coordinates, rates and
     // time so far.
     bool is_nearly_free(std::size_t contact, Mode mode, const State& state, const State& scale);
@@ -161,16 +161,16 @@ class GapUnits {
     double operator[](std::size_t contact) const { return units_[contact]; }
     // The unit of what friction watches. The slip of a contact has the unit of its gap (theory-friction.md 1).
     double operator[](const FrictionEvent& event) const;
-    // The same of `on` of a watched jump, by its slope in q and v.
-    double of_jump(std::size_t watched) const { return jump_units_[watched]; }
+    // The unit of a watched guard, by its slope in q and v.
+    double of_guard(std::size_t watched) const { return guard_units_[watched]; }
 
  private:
     void find(const State& state);
 
     std::vector<ContactKinematics> surfaces_;
     Vector place_;
-    std::vector<double> units_, jump_units_;
-    std::optional<Evaluator<double>> jump_slopes_;
+    std::vector<double> units_, guard_units_;
+    std::optional<Evaluator<double>> guard_slopes_;
 };
 
 }  // namespace achilles

@@ -23,7 +23,7 @@ double ContactForces::force(std::size_t contact) {
         if (shared_.empty()) share();
         return shared_[contact];
     }
-    const Mode others = mode_.without(contact);
+    const Mode others = model_->unconstrained(mode_, contact);
     const ContactInMode key(others, contact);
     auto known = forces_.find(key);
     if (known == forces_.end())
@@ -60,7 +60,9 @@ void ContactForces::share() {
     const ClosedContacts closed = all_->at(state_, mode_.held());
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        hddot[static_cast<Eigen::Index>(i)] = all_->of(closed.which[i]).normal_acceleration(state_);
+        hddot[static_cast<Eigen::Index>(i)] =
+            all_->of(closed.which[i], Mode().with_acting(mode_.held().within(model_->equations().in_forces)))
+                .normal_acceleration(state_);
     const Eigen::MatrixXd W = closed.W;
     const Eigen::VectorXd least = least_solution(W, Eigen::VectorXd(-hddot));
     const auto pressing = solve_complementarity(closed.W, -closed.W * least);
@@ -111,13 +113,14 @@ void ContactForces::run_view(Evaluator<double>& view, const Sample& sample, cons
     set_state(view, sample.state);
     view.input(layout.work()) = sample.work;
     view.input(layout.loss()) = sample.loss;
-    if (layout.contacts == 1 && layout.frictions == 0) {
+    if (!layout.has_contact_inputs()) {
         view.input(layout.contact()) = sample.contact ? 1.0 : 0.0;
     } else {
         set(sample);
         for (std::size_t i = 0; i < layout.contacts; ++i) {
             if (is_read(layout.acceleration(i))) view.input(layout.acceleration(i)) = acceleration(i);
             if (is_read(layout.force(i))) view.input(layout.force(i)) = force(i);
+            if (layout.forces_see_contact) view.input(layout.held(i)) = mode_.is_held(i) ? 1.0 : 0.0;
         }
         if (layout.frictions > 0) view.input(layout.heat()) = sample.heat;
         std::size_t k = 0;

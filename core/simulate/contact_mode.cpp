@@ -13,12 +13,14 @@ namespace achilles {
 void ExecutionAutomaton::decide(ContactSet closed, ContactSet vanishing) {
     forget_held();
     not_unique_ = false;
+    closed = closed.without(next_.latched);
     if (closed.empty()) return;
     if (closed.count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 closed.count(), max_closed_contacts, names_of(closed), where(next_.state)));
-    const ClosedContacts all = surfaces_->at(next_.state, closed);
+    base_ = with_forces_of_now(latched_mode(), closed);
+    const ClosedContacts all = surfaces_->at(next_.state, closed, latched_mode());
     const ContactVector<double> hddot = accelerations(all);
     const auto forces = solve_complementarity(all.W, hddot);
     if (!forces)
@@ -32,13 +34,15 @@ void ExecutionAutomaton::decide(ContactSet closed, ContactSet vanishing) {
                                                    "decide between contact and release{}{} at {}",
                                                    surfaces_->count() > 1 ? " for " : "",
                                                    surfaces_->count() > 1 ? names_of(closed) : "", where(next_.state)));
+    else
+        start_released(base_.acting().without(next_.resting().held()));
 }
 
-// hddot in free flight, at the current state.
+// hddot while only latched contacts are held, at the current state.
 ContactVector<double> ExecutionAutomaton::accelerations(const ClosedContacts& closed) {
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i]).normal_acceleration(next_.state);
+        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i], base_).normal_acceleration(next_.state);
     return hddot;
 }
 
@@ -59,7 +63,7 @@ ContactSet ExecutionAutomaton::pressed_by_rates(ContactSet doubtful, Mode mode) 
     ContactVector<double> jerk(n);
     for (Eigen::Index i = 0; i < n; ++i) {
         const auto at = static_cast<std::size_t>(i);
-        jerk[i] = surfaces_->of(which[at], mode).jerk(next_.state);
+        jerk[i] = surfaces_->of(which[at], mode.with_acting(base_.acting())).jerk(next_.state);
         const ContactVector<double> kappa = block->transmission(closed.W, places[at]).kappa;
         for (Eigen::Index k = 0; k < n; ++k)
             W(k, i) = HeldBlock<double>::between(closed.W, places[static_cast<std::size_t>(k)], places[at], kappa);
@@ -83,13 +87,14 @@ bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet 
 bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet vanishing, ContactSet unpressed) {
     active = active.with(unpressed);
     next_.touching = {};
-    Mode mode = Mode::holding(unpressed);
+    Mode mode = latched_mode().with(unpressed, ContactState::held);
     ContactSet doubtful;
     const double resolved = 16.0 * 0x1p-52 * std::abs(next_.state.t);
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (unpressed.contains(i)) next_.starts[i] = {};
         if (!closed.without(unpressed).contains(i)) continue;
-        const auto [hddot, jerk] = surfaces_->of(i, Mode::holding(active.without(i))).normal(next_.state);
+        const auto [hddot, jerk] =
+            surfaces_->of(i, base_.with(active.without(i), ContactState::held)).normal(next_.state);
         // True if hddot is known to be 0, or vanishes at a time that equals t within rounding.
         const bool is_zero = vanishing.contains(i) || mag(hddot) <= resolved * mag(jerk);
         if (!is_zero && certainly_negative(hddot)) {
@@ -109,7 +114,7 @@ bool ExecutionAutomaton::judge(ContactSet closed, ContactSet active, ContactSet 
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {
             if (!doubtful.contains(i)) continue;
             const Mode others = alone ? mode : mode.with(pressed, ContactState::held).without(i);
-            const auto normal = surfaces_->of(i, others).normal(next_.state);
+            const auto normal = surfaces_->of(i, others.with_acting(base_.acting())).normal(next_.state);
             if (certainly_negative(normal.jerk) && pressed.contains(i)) {
                 mode = mode.with(i, ContactState::held);
                 next_.starts[i] = {{}, 1};
@@ -139,7 +144,7 @@ ContactSet ExecutionAutomaton::unpressed_of(ContactSet contacts, Mode mode) {
 ContactSet ExecutionAutomaton::always_unpressed(Mode mode) {
     ContactSet found;
     for (const std::size_t i : next_.unpressed)
-        if (mode.is_held(i) && surfaces_->never_needs_force(i, mode.without(i))) found = found.with(i);
+        if (mode.is_held(i) && surfaces_->never_needs_force(i, model_->unconstrained(mode, i))) found = found.with(i);
     return found;
 }
 
@@ -147,12 +152,13 @@ ContactSet ExecutionAutomaton::always_unpressed(Mode mode) {
 ContactSet ExecutionAutomaton::unpressed_among(ContactSet closed, ContactSet active) {
     ContactSet found;
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
-        if (closed.contains(i) && surfaces_->is_nearly_free(i, Mode::holding(active.without(i)), next_.state, scale_))
+        if (closed.contains(i) &&
+            surfaces_->is_nearly_free(i, base_.with(active.without(i), ContactState::held), next_.state, scale_))
             found = found.with(i);
     active = active.without(found);  // forces that may be 0 press no other contact
     for (ContactSet before; before != found;) {
         before = found;
-        found = unpressed_of(found, Mode::holding(active.with(found)));
+        found = unpressed_of(found, base_.with(active.with(found), ContactState::held));
     }
     return found;
 }
@@ -164,8 +170,8 @@ ContactSet ExecutionAutomaton::vanishing_with(std::size_t which) {
     const double known = state_error() + 0x1p-40;
     const State scale{known * scale_.q, known * scale_.v, 0.0};
     for (const std::size_t i : next_.held()) {
-        if (i == which || next_.unpressed.contains(i)) continue;
-        const Interval hddot = surfaces_->of(i, next_.mode.without(i)).hddot_within(scale, next_.state);
+        if (i == which || next_.unpressed.with(next_.latched).contains(i)) continue;
+        const Interval hddot = surfaces_->of(i, model_->unconstrained(next_.mode, i)).hddot_within(scale, next_.state);
         if (!certainly_negative(hddot)) found = found.with(i);
     }
     return found;

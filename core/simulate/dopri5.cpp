@@ -246,7 +246,7 @@ void Dopri5::initialize(Mode mode, const State& state, std::span<const Gap> gaps
         const std::size_t further = contact - contacts_;  // if it is not of a contact
         rate.unit = contact < contacts_          ? units_[contact]
                     : further < friction_.size() ? units_[friction_[further]]
-                                                 : units_.of_jump(further - friction_.size());
+                                                 : units_.of_guard(further - friction_.size());
         rate.per_unit = 1.0 / rate.unit;
     }
     gaps_.assign(gaps.begin(), gaps.end());

@@ -90,7 +90,7 @@ std::optional<EventStepper::EventCandidate> EventStepper::first_incident(std::ui
     std::optional<EventCandidate> first;
     for (std::size_t i = 0; i < events(); ++i) {
         if ((but & bit(i)) != 0) continue;
-        const bool is_friction = is_further(i) && !is_jump(i);
+        const bool is_friction = is_further(i) && !is_guard(i);
         if (is_friction ? is_slip_of_frictionless(i) || is_kept(i) : !is_further(i) && !is_watched(i)) continue;
         contact_ = i;
         const FirstCrossing descent = this->descent();

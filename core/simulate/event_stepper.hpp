@@ -23,13 +23,12 @@ struct EventStart {
     Gap gap;                    // for all but open contacts, only state_error is used
     int multiplicity = 0;       // order of its zero at the start: of h if open; 1 for a force that starts at 0
     bool is_shortened = false;  // the last step was shortened to its remainder (theory-truncation.md 6)
-    bool is_below = false;      // of a watched jump: the function is negative, and its rise is the next event
+    bool is_below = false;      // of a watched guard: the function is negative, and its rise is the next event
 };
 
 // Request for a smooth step from state.t to `until` at the latest, or to the first event in (t, until]. Events are the
 // closing of an open gap, a zero of the force of a held contact, the rise of the gap of an inactive contact, and those of
-// friction and of watched jumps. A zero at t itself, of the order given by
-// `multiplicity`, is not an event.
+// friction and of watched guards. A zero at t itself, of the order given by `multiplicity`, is not an event.
 struct StepRequest {
     Mode mode;            // its held contacts have independent gradients
     ContactSet touching;  // open in `mode`, but their gap stays 0: not checked for events
@@ -38,6 +37,7 @@ struct StepRequest {
     ContactSet load_sharing_candidates;
     ContactSet unwatched;  // held contacts not checked for events: the load may be shared otherwise
     ContactSet unpressed;  // held, not checked for events: nothing presses them (theory-gaps.md 2.7)
+    ContactSet latched;    // held, not checked for events: they are held against any force (theory-modes.md 4)
     ContactSet inactive;   // open with a gap of at most 0: their rise is an event (theory-modes.md 1)
     State state;
     std::vector<EventStart> starts;  // at that state, for each event function (ModeDynamics)
@@ -61,7 +61,7 @@ struct StepResult {
         force_vanishes,  // of the held contact `which`
         friction_event,  // of the event function `which`
         gap_rises,       // of the inactive contact `which`
-        jump_event,      // a zero of the event function `which` of a watched jump
+        guard_event,     // a zero of the event function `which` of a watched guard
         ambiguous,       // no event so far, but cannot decide whether one follows just after
         off_surface,     // `state` cannot be projected onto the contact surfaces where it belongs
         step_failed      // no step was possible, see `failure`; `state` is that of the request
@@ -126,7 +126,7 @@ class EventStepper {
     // The function that vanishes at the event, up to its sign, and its rate.
     double value_at(const State& state);
     double rate_at(const State& state);
-    // Functions of friction and of jumps, and gaps of inactive contacts (flight.cpp).
+    // Functions of friction, watched guards, and gaps of inactive contacts (flight.cpp).
     FirstCrossing further_descent();
     StepOutcome vanishing() const;
     bool end_on_surface();
@@ -143,7 +143,7 @@ class EventStepper {
     ContactSet held() const { return request_->held(); }
     WatchedFunction watched_of(std::size_t contact) const { return law_of(request_->mode.state(contact)).watched; }
     bool is_further(std::size_t event) const { return event >= surfaces_->count(); }
-    bool is_jump(std::size_t event) const { return event >= events() - model_->watched_jumps().size(); }
+    bool is_guard(std::size_t event) const { return event >= events() - model_->watched_guards().size(); }
     bool is_inactive(std::size_t event) const { return !is_further(event) && request_->inactive.contains(event); }
     bool is_slip_of_frictionless(std::size_t event);
     bool is_friction_allowed(const State& state);
@@ -151,7 +151,10 @@ class EventStepper {
     std::size_t events() const { return request_->starts.size(); }
     bool is_kept(std::size_t event) const;
     bool is_watched(std::size_t contact) const {
-        return !request_->touching.with(request_->unwatched).with(request_->unpressed).contains(contact);
+        return !request_->touching.with(request_->unwatched)
+                    .with(request_->unpressed)
+                    .with(request_->latched)
+                    .contains(contact);
     }
     const EventStart& start_of(std::size_t contact) const { return request_->starts[contact]; }
 

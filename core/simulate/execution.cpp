@@ -70,13 +70,14 @@ void ExecutionAutomaton::begin() {
     next_.starts.assign(surfaces_->count(), {});
     has_moved_ = false;
     decide_at_start();
-    if (record_.has_no_step()) record_.set_inactive_at_start();
+    if (record_.has_no_step()) record_.end_start();
 }
 
 // Decides the mode of every contact from the state alone: at the start of the run, and after a jump.
 void ExecutionAutomaton::decide_at_start() {
     set_inactive({});
-    known_zeros_ = all_watched_jumps();
+    const ContactSet latched = std::exchange(next_.latched, {});
+    known_zeros_ = all_watched_guards();
     prepare_stretch({}, run_.options.end_time);
     ContactSet landing, resting;
     UncountedContacts uncounted;
@@ -101,6 +102,8 @@ void ExecutionAutomaton::decide_at_start() {
             last = contact;
         } else if (closes) {
             uncounted.closing.emplace_back(i, contact.hdot);
+        } else if (latched.contains(i)) {
+            next_.latched = next_.latched.with(i);  // it stays so through a jump that keeps it closed
         } else {
             ContactSet& set = counts ? resting : uncounted.resting;
             set = set.with(i);
@@ -109,7 +112,10 @@ void ExecutionAutomaton::decide_at_start() {
     set_inactive(next_.inactive.with(uncounted.resting));
     if (outcome_) return open_first_phase({});
     if (surfaces_->has_friction()) return begin_with_friction(landing, resting, uncounted);
-    if (landing.empty()) start_at_rest(resting);
+    if (landing.empty())
+        start_at_rest(resting);
+    else
+        next_.mode = latched_mode();
     open_first_phase(uncounted);
     if (outcome_) return;
     if (landing.empty()) return has_guards() ? begin_stretch(next_.mode, run_.options.end_time) : void();
@@ -129,9 +135,11 @@ void ExecutionAutomaton::open_first_phase(const UncountedContacts& uncounted) {
 
 // Contacts that start with h = 0 and hdot = 0.
 void ExecutionAutomaton::start_at_rest(ContactSet resting) {
+    next_.mode = latched_mode();
     if (resting.empty()) return;
-    if (resting.count() > 1) {
-        if (!surfaces_->project(next_.state, resting, resting)) return fail_projection();
+    const ContactSet closed = resting.with(next_.latched);
+    if (closed.count() > 1) {
+        if (!surfaces_->project(next_.state, closed, closed)) return fail_projection();
     } else {
         for (std::size_t i = 0; i < surfaces_->count(); ++i)
             if (resting.contains(i))
@@ -214,6 +222,7 @@ double ExecutionAutomaton::state_error() const {
 void ExecutionAutomaton::accept(const StepResult& result) {
     using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
+    acting_ = next_.held().within(model_->equations().in_forces);
     const bool shared = result.end == StepOutcome::ambiguous && !surfaces_->has_friction() &&
                         result.which < surfaces_->count() && continue_without(result.which, *result.state);
     if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();
@@ -233,8 +242,8 @@ void ExecutionAutomaton::accept(const StepResult& result) {
             return accept_friction_event(result.which);
         case StepOutcome::gap_rises:
             return count_again(result.which);
-        case StepOutcome::jump_event:
-            return accept_jump_event(result.which);
+        case StepOutcome::guard_event:
+            return accept_guard_event(result.which);
         case StepOutcome::ambiguous:
             if (is_pivot(result.which)) return accept_friction_event(result.which);  // also where it only touches 0
             if (shared) return continue_phase();
@@ -269,9 +278,11 @@ void ExecutionAutomaton::note_scale() {
 // Begins a segment in this mode that ends at `until` (s) at the latest.
 void ExecutionAutomaton::begin_stretch(Mode mode, double until) {
     prepare_stretch(mode, until);
-    if (!has_guards()) return;
+    if (model_->has_latches()) latch_held();
+    if (model_->do_forces_see_contact()) check_held_forces();
+    if (!has_guards() || outcome_) return;
     update_inactive();
-    start_jump_functions();
+    start_guards();
 }
 
 void ExecutionAutomaton::prepare_stretch(Mode mode, double until) {
@@ -309,11 +320,11 @@ void ExecutionAutomaton::retry_tight() {
 
 std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
     const std::string place = where(next_.state);
-    if (result.which >= surfaces_->motion(next_.mode).first_jump())
+    if (result.which >= surfaces_->motion(next_.mode).first_guard())
         return fmt::format(
-            "cannot decide whether the function of the jump '{}' passes through zero: it is within "
-            "integration error of zero just after {}",
-            name_of_watched_jump(result.which - surfaces_->motion(next_.mode).first_jump()), place);
+            "cannot decide whether the function of {} passes through zero: it is within integration error of zero "
+            "just after {}",
+            text_of_guard(result.which - surfaces_->motion(next_.mode).first_guard()), place);
     if (result.which < surfaces_->count() && next_.inactive.contains(result.which))
         return fmt::format(
             "cannot decide whether the gap of '{}' rises above zero: it is within integration error of "

@@ -60,7 +60,7 @@ class ExecutionAutomaton {
     //     force_vanishes  release of the contact if h''' > 0 is proved
     //     ambiguous       the segment is redone at exact_tolerance if that is allowed; otherwise the run ends
     //     gap_rises       an inactive contact counts again
-    //     jump_event      the jump, or the function rises through zero
+    //     guard_event     a jump, the end of a latch, or only a change of sign
     //     off_surface, step_failed    the run ends
     // It also ends if an event cannot be decided. Then the run has an outcome and next() returns null.
     void accept(const StepResult& result);
@@ -142,7 +142,7 @@ class ExecutionAutomaton {
     void capture(const Contact& contact, const Collision& collision);
     void pass_zeno_point();
     void release(std::size_t which);
-    void leave(ContactSet contacts);
+    void leave(ContactSet contacts, bool ends_latch = false);
     void enter_phase();
     void enter_or_stay();
     // ---- several closed contacts (multi_contact.cpp, contact_mode.cpp) ----
@@ -164,7 +164,7 @@ class ExecutionAutomaton {
     ContactSet vanishing_with(std::size_t which);
     ContactSet pressed_by_rates(ContactSet doubtful, Mode mode);
     bool needs_no_force(std::size_t contact, Mode mode) {
-        return surfaces_->needs_no_force(contact, mode.without(contact), next_.state, scale_);
+        return surfaces_->needs_no_force(contact, model_->unconstrained(mode, contact), next_.state, scale_);
     }
     ContactSet unpressed_of(ContactSet contacts, Mode mode);
     ContactSet always_unpressed(Mode mode);
@@ -239,24 +239,23 @@ class ExecutionAutomaton {
     std::string name_of(std::size_t contact_or_joint) const;
     ContactSet all_joints() const;
     // ---- jumps, and contacts that count only sometimes (jump.cpp) ----
-    // Jumps of the file by number, in its order; watched jumps by their own number.
+    // Jumps of the file by number, in its order; watched guards by their own number.
     using Jumps = std::vector<std::size_t>;
     bool has_guards() const { return model_->has_guards(); }
-    ContactSet all_watched_jumps() const;
-    const std::string& name_of_watched_jump(std::size_t watched) const {
-        return model_->description().jumps[model_->watched_jumps()[watched]].name;
-    }
+    ContactSet all_watched_guards() const;
+    // "the jump 'strike'", or "the latch of 'knee'"
+    std::string text_of_guard(std::size_t watched) const;
     // The signs of the guards of the model over the rounding box of the state; 0 where one may vanish.
     int sign_of_guard(std::size_t guard);
     bool does_count(std::size_t contact);
-    void start_jump_functions();
+    void start_guards();
     int sign_after_zero(std::size_t watched, Interval rate, EventStart& start);
     ContactSet falling_jumps();
     bool may_jump(ContactSet landing, ContactSet falling) const;
     Jumps jumps_after(ContactSet landing, ContactSet falling);
-    void accept_jump_event(std::size_t event);
+    void accept_guard_event(std::size_t event);
     double resolution(const Interval& rate) const;
-    double rounding_of_jump(std::size_t watched);
+    double rounding_of_guard(std::size_t watched);
     double closed_within(ContactKinematics& surface, const Contact& contact) const;
     bool is_just_after_jump() const {
         constexpr double few_ulps = 0x1p-46;
@@ -276,6 +275,19 @@ class ExecutionAutomaton {
         next_.inactive = inactive;
         record_.set_inactive(inactive);
     }
+    // ---- latches, and forces that depend on contact (latch.cpp) ----
+    // The mode in which only the latched contacts are held.
+    Mode latched_mode() const { return Mode::holding(next_.latched); }
+    // A mode in which the contacts that were held at the last event go on acting on the forces: for decisions.
+    Mode with_forces_of_now(Mode mode, ContactSet closed) const { return mode.with_acting(acting_.within(closed)); }
+    void latch_held();
+    void latch_landed(std::size_t contact);
+    Exchange add_impulses_of_latched(MultiContactInfo& joint, const Vector& dv);
+    ContactSet unlatched_by(ContactSet landing) const;
+    void unlatch(ContactSet contacts);
+    void end_latch(std::size_t contact);
+    void check_held_forces();
+    void start_released(ContactSet contacts);
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {
@@ -296,7 +308,7 @@ class ExecutionAutomaton {
     ContactSet enough_of(const ClosedContacts& closed, const ContactVector<double>& hddot, ContactSet pressed);
     bool continue_without(std::size_t which, const State& state);
     void forget_held() {
-        next_.mode = {};
+        next_.mode = latched_mode();
         next_.touching = next_.load_sharing_candidates = next_.unwatched = next_.unpressed = {};
     }
     void continue_phase();
@@ -349,9 +361,12 @@ class ExecutionAutomaton {
     std::map<std::size_t, int> slip_roots_;  // order of the zero of u at the start of a segment, by contact or joint
     int friction_events_ = 0;                // sticks, slips and reversals so far
     std::optional<Evaluator<Interval>> guards_;
-    std::map<Mode, Evaluator<Interval>> jump_curvatures_;
-    std::optional<Evaluator<double>> jump_slopes_;
-    ContactSet below_;          // watched jumps whose function is negative
+    std::map<Mode, Evaluator<Interval>> guard_curvatures_;
+    std::optional<Evaluator<double>> guard_slopes_;
+    ContactSet spent_;          // held contacts whose latch has ended: they latch again only after they have opened
+    Mode base_;                 // of a decision: only latched contacts are held, with the forces of now
+    ContactSet acting_;         // those that were held when the last event began and act on the forces
+    ContactSet below_;          // watched guards that are negative
     ContactSet known_zeros_;    // those whose zero at the state, if there is one, is no event: the state has jumped
     ContactSet located_zeros_;  // those whose zero has been found at the state
     long impacts_before_ = 0;   // impacts at the last start of a segment

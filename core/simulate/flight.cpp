@@ -1,5 +1,5 @@
 // EventStepper: impacts of open contacts, zeros of the forces of held ones, and zeros of further functions: of friction
-// and of jumps, and the rise of the gaps of inactive contacts.
+// and of guards, and the rise of the gaps of inactive contacts.
 
 #include <algorithm>
 #include <cmath>
@@ -256,23 +256,23 @@ double EventStepper::value_at(const State& state) {
     if (is_inactive(contact_)) return surfaces_->of(contact_).at(state).h;
     if (surfaces_->has_friction() || is_further(contact_))
         return surfaces_->motion(request_->mode).at(state, contact_).value;
-    return surfaces_->of(contact_, request_->mode.without(contact_)).normal_acceleration(state);
+    return surfaces_->of(contact_, model_->unconstrained(request_->mode, contact_)).normal_acceleration(state);
 }
 double EventStepper::rate_at(const State& state) {
     if (is_inactive(contact_)) return surfaces_->of(contact_).at(state).hdot;
     if (surfaces_->has_friction() || is_further(contact_))
         return surfaces_->motion(request_->mode).at(state, contact_).rate;
-    return surfaces_->of(contact_, request_->mode.without(contact_)).jerk(state);
+    return surfaces_->of(contact_, model_->unconstrained(request_->mode, contact_)).jerk(state);
 }
 
 // What the zero of the function that is examined means.
 StepResult::StepOutcome EventStepper::vanishing() const {
     if (is_inactive(contact_)) return StepOutcome::gap_rises;
     if (!is_further(contact_)) return StepOutcome::force_vanishes;
-    return is_jump(contact_) ? StepOutcome::jump_event : StepOutcome::friction_event;
+    return is_guard(contact_) ? StepOutcome::guard_event : StepOutcome::friction_event;
 }
 
-// First zero in the last step of a function of friction or of a jump, or of the gap of an inactive contact. What is
+// First zero in the last step of a function of friction, of a watched guard, or of the gap of an inactive contact. What is
 // negative is watched for its rise. At a start at 0 that is not a known root, theta is 0.
 FirstCrossing EventStepper::further_descent() {
     const EventStart& start = start_of(contact_);
@@ -291,7 +291,7 @@ FirstCrossing EventStepper::further_descent() {
     for (int k = 0; k < multiplicity; ++k) function.c[static_cast<std::size_t>(k)] = 0.0;
     const auto terms = std::span(function.c).first(static_cast<std::size_t>(function.degree + 1));
     const auto is_zero = [](double c) { return c == 0.0; };
-    if ((is_gap || is_jump(contact_)) && std::all_of(terms.begin(), terms.end(), is_zero)) return {};  // it stays 0
+    if ((is_gap || is_guard(contact_)) && std::all_of(terms.begin(), terms.end(), is_zero)) return {};  // it stays 0
     for (double& c : terms) c = rises ? -c : c;
     if (multiplicity == 0 && !(function.c[0] > 0.0)) return {FirstCrossing::Kind::root, 0.0};
     return first_descent(function, multiplicity, flow_->remainder(contact_, function));

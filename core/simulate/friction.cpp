@@ -222,6 +222,8 @@ void ExecutionAutomaton::release_with_friction(std::size_t which) {
 // to be released by a vanishing force.
 void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
     const Mode mode = next_.mode;
+    start_released(released);
+    if (outcome_) return;
     ContactSet stick, slip, reversal;
     for (const std::size_t i : before.held().with(before.joints())) {
         const int was = slip_sign(before.state(i)), is = slip_sign(mode.state(i));
@@ -379,6 +381,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
     Mode base;  // joints that slip: their forces are known
     for (const std::size_t i : joints)
         if (slip_sign(sliding.state(i)) != 0) base = base.with(i, sliding.state(i));
+    base = with_forces_of_now(base, closed);
     const ContactSet decided = closed.with(joints).without(base.slipping());
     if (decided.within(surfaces_->rough()).count() > max_rough || closed.count() > max_closed_contacts) {
         stop(Outcome::Kind::redundant_contacts,
@@ -388,7 +391,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         return false;
     }
     if (decided.empty()) {
-        next_.mode = base;
+        next_.mode = base.without(base.acting());
         return true;
     }
     const ContactRows rows = surfaces_->rows(next_.state, closed, rough.without(base.slipping()), base);
@@ -399,7 +402,7 @@ bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, s
         return false;
     }
     const FrictionMotion& chosen = choice.motions.front();
-    Mode mode = base;
+    Mode mode = base.without(base.acting());
     for (const FrictionProblem::Element& each : problem.elements)
         mode = mode.with(each.which, chosen.mode.state(each.which));
     for (const std::size_t i : implied_slips(problem, chosen.mode)) mode = mode.with_implied_slip(i);

@@ -1,4 +1,5 @@
-// Jumps of the state, and contacts that count only sometimes (theory-modes.md 1, 2).
+// Guards: jumps of the state, and contacts that count only sometimes (theory-modes.md 1, 2); the ends of latches by an
+// expression (latch.cpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -22,9 +23,16 @@ int sign_beyond_rounding(const Interval& value, double more = 0.0) {
 
 }  // namespace
 
-ContactSet ExecutionAutomaton::all_watched_jumps() const {
+std::string ExecutionAutomaton::text_of_guard(std::size_t watched) const {
+    const WatchedGuard& guard = model_->watched_guards()[watched];
+    const SystemDescription& system = model_->description();
+    return guard.is_latch ? fmt::format("the latch of '{}'", system.constraints[guard.number].name)
+                          : fmt::format("the jump '{}'", system.jumps[guard.number].name);
+}
+
+ContactSet ExecutionAutomaton::all_watched_guards() const {
     ContactSet all;
-    for (std::size_t k = 0; k < model_->watched_jumps().size(); ++k) all = all.with(k);
+    for (std::size_t k = 0; k < model_->watched_guards().size(); ++k) all = all.with(k);
     return all;
 }
 
@@ -48,24 +56,24 @@ bool ExecutionAutomaton::does_count(std::size_t contact) {
     return sign > 0;
 }
 
-// ---- watched jumps ----
+// ---- watched guards ----
 
-// Starts the functions of the watched jumps at the state: whether each is above or below zero. A zero that the state
+// Starts the watched guards at the state: whether each is above or below zero. A zero that the state
 // has jumped to is a known root; one that a smooth motion has reached is still an event.
-void ExecutionAutomaton::start_jump_functions() {
-    const std::size_t count = model_->watched_jumps().size();
+void ExecutionAutomaton::start_guards() {
+    const std::size_t count = model_->watched_guards().size();
     if (count == 0) return;
-    if (record_.impacts() != impacts_before_) known_zeros_ = all_watched_jumps();
+    if (record_.impacts() != impacts_before_) known_zeros_ = all_watched_guards();
     impacts_before_ = record_.impacts();
     ModeKinematics& motion = surfaces_->motion(next_.mode);
     const auto values = motion.enclosed(next_.state);
-    const std::size_t first = motion.first_jump();
+    const std::size_t first = motion.first_guard();
     next_.starts.resize(first + count);
     for (std::size_t k = 0; k < count; ++k) {
         EventStart& start = next_.starts[first + k] = {};
         const auto& [value, rate] = values[first + k];
         const bool is_located = located_zeros_.contains(k);
-        int sign = is_located ? 0 : sign_beyond_rounding(value, resolution(rate) + rounding_of_jump(k));
+        int sign = is_located ? 0 : sign_beyond_rounding(value, resolution(rate) + rounding_of_guard(k));
         if (sign == 0 && !is_located && !known_zeros_.contains(k)) {
             start.is_below = below_.contains(k);
             continue;
@@ -78,18 +86,18 @@ void ExecutionAutomaton::start_jump_functions() {
     known_zeros_ = located_zeros_ = {};
 }
 
-// The effect on the function of a watched jump of roundings of the state at the largest values that it has had.
-double ExecutionAutomaton::rounding_of_jump(std::size_t watched) {
+// The effect on a watched guard of roundings of the state at the largest values that it has had.
+double ExecutionAutomaton::rounding_of_guard(std::size_t watched) {
     constexpr double few = 4.0;
-    if (!jump_slopes_) jump_slopes_ = model_->evaluator(model_->jump_slopes(), run_.parameters);
-    set_state(*jump_slopes_, next_.state);
-    jump_slopes_->run();
+    if (!guard_slopes_) guard_slopes_ = model_->evaluator(model_->guard_slopes(), run_.parameters);
+    set_state(*guard_slopes_, next_.state);
+    guard_slopes_->run();
     const auto n = static_cast<std::size_t>(model_->dof());
     double sum = 0.0;
     for (std::size_t i = 0; i < n; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
-        sum += std::abs(jump_slopes_->output(watched * 2 * n + i)) * scale_.q[k] +
-               std::abs(jump_slopes_->output((watched * 2 + 1) * n + i)) * scale_.v[k];
+        sum += std::abs(guard_slopes_->output(watched * 2 * n + i)) * scale_.q[k] +
+               std::abs(guard_slopes_->output((watched * 2 + 1) * n + i)) * scale_.v[k];
     }
     return few * 0x1p-53 * sum;
 }
@@ -101,26 +109,26 @@ double ExecutionAutomaton::closed_within(ContactKinematics& surface, const Conta
     return few * (surface.gap_error(next_.state) + (has_moved_ ? rounding_so_far(contact) : 0.0));
 }
 
-// The sign of the function of a watched jump just after its known zero, of order 1 or 2.
+// The sign of a watched guard just after its known zero, of order 1 or 2.
 int ExecutionAutomaton::sign_after_zero(std::size_t watched, Interval rate, EventStart& start) {
     start.multiplicity = 1;
     if (const int sign = sign_beyond_rounding(rate); sign != 0) return sign;
     start.multiplicity = 2;
     const FloatEnvironmentGuard ground;
-    auto known = jump_curvatures_.find(next_.mode);
-    if (known == jump_curvatures_.end())
+    auto known = guard_curvatures_.find(next_.mode);
+    if (known == guard_curvatures_.end())
         known =
-            jump_curvatures_
-                .emplace(next_.mode, model_->evaluator<Interval>(model_->jump_curvatures(next_.mode), run_.parameters))
+            guard_curvatures_
+                .emplace(next_.mode, model_->evaluator<Interval>(model_->guard_curvatures(next_.mode), run_.parameters))
                 .first;
     set_rounding_box(known->second, next_.state);
     known->second.run();
     if (const int sign = sign_beyond_rounding(known->second.output(watched)); sign != 0) return sign;
     if (is_at_rest(next_.mode)) return 1;  // it stays 0
     stop(Outcome::Kind::undecided,
-         fmt::format("the function of the jump '{}' and its first two rates are zero to within rounding: cannot decide "
-                     "whether it falls, at {}",
-                     name_of_watched_jump(watched), where(next_.state)));
+         fmt::format("the function of {} and its first two rates are zero to within rounding: cannot decide its sign, "
+                     "at {}",
+                     text_of_guard(watched), where(next_.state)));
     return 0;
 }
 
@@ -133,12 +141,13 @@ double ExecutionAutomaton::resolution(const Interval& rate) const {
 // The watched jumps whose functions fall through zero at the present state, within rounding.
 ContactSet ExecutionAutomaton::falling_jumps() {
     ContactSet falling;
-    if (model_->watched_jumps().empty()) return falling;
+    if (model_->watched_guards().empty()) return falling;
     ModeKinematics& motion = surfaces_->motion(next_.mode);
     const auto values = motion.enclosed(next_.state);
-    for (const std::size_t k : all_watched_jumps().without(below_).without(known_zeros_)) {
-        const auto& [value, rate] = values[motion.first_jump() + k];
-        if (sign_beyond_rounding(value, resolution(rate) + rounding_of_jump(k)) == 0 && sign_of(rate) < 0)
+    for (const std::size_t k : all_watched_guards().without(below_).without(known_zeros_)) {
+        if (model_->watched_guards()[k].is_latch) continue;
+        const auto& [value, rate] = values[motion.first_guard() + k];
+        if (sign_beyond_rounding(value, resolution(rate) + rounding_of_guard(k)) == 0 && sign_of(rate) < 0)
             falling = falling.with(k);
     }
     return falling;
@@ -173,17 +182,22 @@ ExecutionAutomaton::Jumps ExecutionAutomaton::jumps_after(ContactSet landing, Co
     return jumps;
 }
 
-// A zero of the function of a watched jump: it rises, or falls, which may be the jump.
-void ExecutionAutomaton::accept_jump_event(std::size_t event) {
-    const std::size_t watched = event - surfaces_->motion(next_.mode).first_jump();
+// A zero of a watched guard: it rises, or falls, which may be the jump; a rise may end a latch.
+void ExecutionAutomaton::accept_guard_event(std::size_t event) {
+    const std::size_t watched = event - surfaces_->motion(next_.mode).first_guard();
     if (below_.contains(watched)) {
         below_ = below_.without(watched);
+        located_zeros_ = ContactSet::of(watched);
+        const WatchedGuard& guard = model_->watched_guards()[watched];
+        return guard.is_latch && next_.latched.contains(guard.number) ? end_latch(guard.number) : go_on_in_mode();
+    }
+    if (model_->watched_guards()[watched].is_latch) {
         located_zeros_ = ContactSet::of(watched);
         return go_on_in_mode();
     }
     if (completing())
-        return stop(Outcome::Kind::undecided, fmt::format("the jump '{}' happens before the Zeno time, at {}",
-                                                          name_of_watched_jump(watched), where(next_.state)));
+        return stop(Outcome::Kind::undecided,
+                    fmt::format("{} happens before the Zeno time, at {}", text_of_guard(watched), where(next_.state)));
     // Impacts at this instant come first.
     const ContactSet falling = falling_jumps().with(watched);
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
@@ -194,8 +208,8 @@ void ExecutionAutomaton::accept_jump_event(std::size_t event) {
         if (contact.h > error || !(contact.hdot < -4.0 * surface.hdot_error(next_.state))) continue;
         if (falling_jumps().contains(watched)) return land(i, contact);
         return stop(Outcome::Kind::undecided,
-                    fmt::format("cannot decide whether the jump '{}' happens together with the impact of {}, at {}",
-                                name_of_watched_jump(watched), name_of(i), where(next_.state)));
+                    fmt::format("cannot decide whether {} happens together with the impact of {}, at {}",
+                                text_of_guard(watched), name_of(i), where(next_.state)));
     }
     const Jumps jumps = jumps_after({}, falling);
     if (outcome_) return;

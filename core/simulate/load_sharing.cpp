@@ -43,7 +43,7 @@ ContactSet basis_of(const ClosedContacts& closed, ContactSet set) {
 ContactVector<double> ExecutionAutomaton::rounding_of(const ClosedContacts& closed) {
     ContactVector<double> rounding(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        rounding[static_cast<Eigen::Index>(i)] = 4.0 * width(surfaces_->of(closed.which[i]).hddot(next_.state));
+        rounding[static_cast<Eigen::Index>(i)] = 4.0 * width(surfaces_->of(closed.which[i], base_).hddot(next_.state));
     return rounding;
 }
 
@@ -104,13 +104,13 @@ bool ExecutionAutomaton::hold_dependent(const ClosedContacts& closed, const Cont
     }
     // At permanent rest, it does not matter which of the pressed contacts bear the load.
     const ContactSet pressed_ones = closed.contacts_at(pressed);
-    const bool rests = doubted.empty() && is_at_rest(Mode::holding(pressed_ones));
+    const bool rests = doubted.empty() && is_at_rest(latched_mode().with(pressed_ones, ContactState::held));
     if (!rests && (!doubted.empty() || !is_stuck(closed, pressed)))
         return (doubted.empty() || !can_retry_tight()) && share(closed, hddot, forces);
     const ContactSet carrying = rests ? pressed_ones : closed.contacts_at(enough_of(closed, hddot, pressed));
     if (!HeldBlock<double>::of(closed.W, closed.places_of(carrying))) return false;
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
-    hold(Mode::holding(carrying), closed.contacts_at(all_places(closed)).without(carrying));
+    hold(latched_mode().with(carrying, ContactState::held), closed.contacts_at(all_places(closed)).without(carrying));
     update_load_sharing_candidates(closed, pressed);
     return true;
 }
@@ -134,7 +134,7 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
         return false;
     const ContactSet held = closed.contacts_at(sharing.front().places);
     for (const std::size_t contact : closed.which) next_.starts[contact] = {};
-    hold(Mode::holding(held), closed.contacts_at(all).without(held));
+    hold(latched_mode().with(held, ContactState::held), closed.contacts_at(all).without(held));
     update_load_sharing_candidates(closed, forces.active);
     next_.unwatched = held;
     return true;
@@ -143,6 +143,7 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
 // Ends the time during which load-bearing contacts are not checked.
 void ExecutionAutomaton::end_sharing() {
     const Mode resting = next_.resting();
+    acting_ = next_.held().within(model_->equations().in_forces);
     decide(next_.held().with(next_.touching));
     if (outcome_) return;
     if (next_.resting() == resting) return continue_phase();
@@ -153,7 +154,7 @@ void ExecutionAutomaton::end_sharing() {
 // Holds these load-bearing contacts if each force is proved to press, or to grow from 0. The other contacts rest with
 // them, touch, or leave.
 bool ExecutionAutomaton::hold_load_sharing(const ClosedContacts& closed, const LoadSharing& sharing) {
-    const Mode mode = Mode::holding(closed.contacts_at(sharing.places));
+    const Mode mode = latched_mode().with(closed.contacts_at(sharing.places), ContactState::held);
     std::vector<EventStart> starts = next_.starts;
     ContactSet touching;
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
@@ -165,7 +166,8 @@ bool ExecutionAutomaton::hold_load_sharing(const ClosedContacts& closed, const L
             start = {{0.0, 0.0}, 2};  // order of its zero if it opens
             continue;
         }
-        const auto normal = surfaces_->of(contact, mode.without(contact)).normal(next_.state);
+        const auto normal =
+            surfaces_->of(contact, mode.without(contact).with_acting(base_.acting())).normal(next_.state);
         if (mode.is_held(contact)) {
             const bool presses = certainly_negative(normal.hddot);
             if (!presses && (certainly_positive(normal.hddot) || !certainly_negative(normal.jerk))) return false;

@@ -15,10 +15,10 @@ class ModeKinematics {
  public:
     ModeKinematics(const Model& model, std::span<const double> parameters, Mode mode);
 
-    // The number of event functions: one for each contact, then those of friction and of the watched jumps.
+    // The number of event functions: one for each contact, then those of friction and the watched guards.
     std::size_t events() const { return contacts_ + dynamics_->further_events(); }
-    // The number of the event function of the first watched jump.
-    std::size_t first_jump() const { return contacts_ + dynamics_->friction.size(); }
+    // The number of the event function of the first watched guard.
+    std::size_t first_guard() const { return contacts_ + dynamics_->friction.size(); }
     std::span<const FrictionEvent> friction() const { return dynamics_->friction; }
 
     // Value and rate of an event function; for an open contact the value is hddot, and there is no rate.

@@ -33,11 +33,12 @@ double ExecutionAutomaton::rounding_so_far(const Contact& contact) const {
 // Whether these impacts have the same outcome in every order, given the held contacts (theory-gaps.md 2.4).
 bool ExecutionAutomaton::is_order_independent(ContactSet landing) {
     if (is_collapse_at_tie(landing)) return true;
-    const ClosedContacts closed = surfaces_->at(next_.state, next_.held().with(landing));
+    const ContactSet held = next_.held().without(next_.latched);
+    const ClosedContacts closed = surfaces_->at(next_.state, held.with(landing), latched_mode());
     ContactVector<double> e(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         e[static_cast<Eigen::Index>(i)] = restitution(closed.which[i]);
-    return !order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, closed.places_of(next_.held()),
+    return !order_dependence(enclosure(closed.W, rounding_radius(closed.W)), e, closed.places_of(held),
                              closed.places_of(landing))
                 .matters();
 }
@@ -75,10 +76,11 @@ std::optional<ContactSet> ExecutionAutomaton::landing_with(std::size_t which, co
 // Whether all held contacts stay held at an impact of this contact: the impact presses them (kappa >= 0), and so do the
 // forces with the velocities after it.
 bool ExecutionAutomaton::stays_held(std::size_t which, const Contact& contact) {
-    if (next_.mode.is_free()) return true;
+    const ContactSet holding = next_.held().without(next_.latched);
+    if (holding.empty()) return true;
     if (next_.held().count() >= max_closed_contacts) return false;
-    const ClosedContacts closed = surfaces_->at(next_.state, next_.held().with(which));
-    const auto held = closed.places_of(next_.held()), lands = closed.places_of(ContactSet::of(which));
+    const ClosedContacts closed = surfaces_->at(next_.state, holding.with(which), latched_mode());
+    const auto held = closed.places_of(holding), lands = closed.places_of(ContactSet::of(which));
     ContactVector<double> e = ContactVector<double>::Zero(closed.W.rows());
     const auto W = enclosure(closed.W, rounding_radius(closed.W));
     if (order_dependence(W, e, held, lands).by_transmission) return false;
@@ -87,7 +89,7 @@ bool ExecutionAutomaton::stays_held(std::size_t which, const Contact& contact) {
     for (std::size_t i = 0; i < closed.which.size(); ++i) {
         const std::size_t other = closed.which[i];
         if (!next_.unpressed.contains(other)) continue;
-        if (!surfaces_->needs_no_force(other, next_.mode.without(other), after, scale_)) return false;
+        if (!surfaces_->needs_no_force(other, model_->unconstrained(next_.mode, other), after, scale_)) return false;
         e[static_cast<Eigen::Index>(i)] = restitution(other);
         if (restitution(other) > 0.0 && order_dependence(W, e, held.without(i), lands.with(i)).matters()) return false;
     }
@@ -99,9 +101,10 @@ bool ExecutionAutomaton::stays_held(std::size_t which, const Contact& contact) {
 bool ExecutionAutomaton::is_pressed(const ClosedContacts& closed, ContactSet held, const State& state) {
     const auto block = HeldBlock<double>::of(closed.W, held);
     if (!block) return false;
+    const Mode others = latched_mode().with_acting(closed.contacts_at(held).within(model_->equations().in_forces));
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
-        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i]).normal_acceleration(state);
+        hddot[static_cast<Eigen::Index>(i)] = surfaces_->of(closed.which[i], others).normal_acceleration(state);
     const ContactVector<double> lambda = -block->solve(hddot);
     constexpr double rounding = 1e-12;
     for (Eigen::Index i = 0; i < lambda.size(); ++i) {
@@ -141,17 +144,17 @@ double ExecutionAutomaton::plastic_work(const State& before, ContactSet contacts
 
 // Simultaneous impact of several contacts, by Newton's law in Moreau's form.
 void ExecutionAutomaton::collide(ContactSet landing) {
-    const ContactSet held = next_.held(), resting = next_.resting().held(), still = held.with(next_.touching),
-                     all = still.with(landing);
-    if (all.count() > max_closed_contacts)
+    const ContactSet latched = next_.latched, held = next_.held().without(latched), resting = next_.resting().held(),
+                     still = held.with(next_.touching), all = still.with(landing);
+    if (all.with(latched).count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 all.count(), max_closed_contacts, names_of(all), where(next_.state)));
     if (completing())
         return stop(Outcome::Kind::undecided, fmt::format("impact of {} before the Zeno time of another contact, at {}",
                                                           names_of(landing), where(next_.state)));
-    if (!surfaces_->project(next_.state, all, still)) return fail_projection();
-    const ClosedContacts closed = surfaces_->at(next_.state, all);
+    if (!surfaces_->project(next_.state, all.with(latched), still.with(latched))) return fail_projection();
+    const ClosedContacts closed = surfaces_->at(next_.state, all, latched_mode());
     const ContactSet places = closed.places_of(held);
     const bool collapses = is_collapse_at_tie(landing);  // then the impact is plastic, whatever the restitutions
     ContactVector<double> before = closed.rates(), e(before.size());
@@ -168,13 +171,15 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     const ContactSet falling = falling_jumps();
     const Jumps jumps = jumps_after(landing, falling);
     if (outcome_) return;
-    const bool is_cut = !may_jump(landing, falling);
+    const ContactSet unlatched = unlatched_by(landing);
+    const bool is_cut = !may_jump(landing, falling) && unlatched.empty();
     if (is_cut && !collapses && complete_pair(landing, v_after, false)) return;
     const auto limit = collapses ? collapse_info(landing, law_of_tie(landing)) : nullptr;
     auto joint = std::make_shared<MultiContactInfo>();
     joint->is_nonunique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
+    const Exchange by_latches = add_impulses_of_latched(*joint, v_after - v_before);
     // An unpressed contact with e > 0 would be opened by an impact just before, so for the order it counts as
     // impacting.
     ContactSet loose;
@@ -211,7 +216,7 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         if (!is_cut || !complete_pair(landing, v_after, true)) end_chatter(all);
         return;
     }
-    Exchange exchange{0.0, impact->loss};
+    Exchange exchange{by_latches.work, impact->loss};
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         exchange.work += newton::work(impact->impulses[static_cast<Eigen::Index>(i)], closed.contacts[i].gap_t);
     double speed = 0.0;
@@ -219,6 +224,7 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         if (landing.contains(closed.which[i])) speed = std::max(speed, -closed.contacts[i].hdot);
     record_.impact(next_.state, v_after, speed, exchange, landing, surfaces_->count() > 1 ? std::move(joint) : nullptr);
     next_.state.v = v_after;
+    unlatch(unlatched);
     if (!jumps.empty()) {
         ContactSet opened;
         for (std::size_t i = 0; i < closed.which.size(); ++i)
@@ -233,9 +239,13 @@ void ExecutionAutomaton::collide(ContactSet landing) {
         const std::size_t contact = closed.which[i];
         const double hdot = impact->hdot_after[static_cast<Eigen::Index>(i)];
         next_.starts[contact] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
-        if (!(hdot > 0.0)) left = left.with(contact);
+        if (hdot > 0.0) continue;
+        left = left.with(contact);
+        if (landing.contains(contact)) latch_landed(contact);
     }
-    change_rates(v_before, all);
+    left = left.with(unlatched);
+    for (const std::size_t i : unlatched) next_.starts[i] = {};
+    change_rates(v_before, all.with(latched));
     decide(left);
     if (collapses && outcome_) return stop_at_collapse(landing);
     if (collapses) {
@@ -303,7 +313,7 @@ bool ExecutionAutomaton::complete_pair(std::size_t first, std::size_t second, Mo
              std::make_unique<PairConditions>(*model_, run_, e, first, second, others, unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
-    known->conditions->set_inactive(next_.inactive);
+    known->conditions->set_states(next_.inactive, next_.latched);
     auto completion = timed([&] { return known->conditions->certify(collision, cut_at_resolution); });
     if (!completion) return false;
     const ContactSet two = ContactSet::of(first).with(second), all = others.held().with(two);

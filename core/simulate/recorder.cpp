@@ -19,7 +19,7 @@ void Recorder::restart(std::shared_ptr<const Model> model, const Run& run) {
     trajectory_.run = run;
     trajectory_.phases.reserve(8);
     any_gap_ = false;
-    inactive_ = {};
+    inactive_ = latched_ = {};
     largest_ = largest_change_ = 0.0;
     if (keep_ == Recording::final_state) {
         if (work_.any()) trajectory_.work = std::numeric_limits<double>::quiet_NaN();
@@ -115,6 +115,7 @@ void Recorder::step(const Flow& flow, double gap, Mode mode) {
     DenseSegment& piece = trajectory_.pieces.emplace_back(flow.piece(trajectory_.coefficients));
     piece.mode = mode;
     piece.inactive = inactive_;
+    piece.latched = latched_;
     piece.work = trajectory_.work;
     piece.loss = trajectory_.loss;
     piece.heat = trajectory_.heat;
@@ -176,6 +177,7 @@ void Recorder::impact(const State& before, const Vector& v_after, double speed, 
     event.contacts = contacts;
     event.mode = trajectory_.phases.back().mode;
     event.inactive = inactive_;
+    event.latched = latched_;
     if (joint && joint->order_matters) ++trajectory_.ambiguous_impacts;
     event.joint = std::move(joint);
     event.work = trajectory_.work;
@@ -191,6 +193,7 @@ void Recorder::after_impact(ContactSet opened, Mode mode) {
     if (keep_ == Recording::final_state) return;
     trajectory_.events.back().opened = opened;
     trajectory_.events.back().mode = mode;
+    trajectory_.events.back().latched = latched_;
 }
 
 void Recorder::jump(Event event, const Exchange& exchange) {
@@ -205,6 +208,7 @@ void Recorder::after_jumps(std::size_t count, Mode mode) {
         if (!event->is_jump()) continue;
         event->mode = mode;
         event->inactive = inactive_;
+        event->latched = latched_;
         --count;
     }
 }
@@ -216,6 +220,7 @@ void Recorder::event(Event event) {
         return;
     }
     event.inactive = inactive_;
+    event.latched = latched_;
     event.work = trajectory_.work;
     event.loss = trajectory_.loss;
     event.heat = trajectory_.heat;
@@ -230,6 +235,7 @@ Trajectory Recorder::finish(const State& state, Outcome outcome, long evaluation
     trajectory_.end_phase = phase();
     trajectory_.end_mode = trajectory_.phases.back().mode;
     trajectory_.end_inactive = inactive_;
+    trajectory_.end_latched = latched_;
     trajectory_.outcome = std::move(outcome);
     trajectory_.statistics.evaluations = evaluations;
     if (largest_change_ > 0.0) trajectory_.statistics.energy_drift = largest_change_ / largest_;

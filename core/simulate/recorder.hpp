@@ -65,8 +65,13 @@ class Recorder {
     void event(Event event);
     // The contacts that do not count, from here on.
     void set_inactive(ContactSet inactive) { inactive_ = inactive; }
-    // Ends the start of the run, whose inactive contacts are those of now.
-    void set_inactive_at_start() { trajectory_.start_inactive = inactive_; }
+    // The contacts that a latch holds, from here on.
+    void set_latched(ContactSet latched) { latched_ = latched; }
+    // Ends the start of the run: its inactive and latched contacts are those of now.
+    void end_start() {
+        trajectory_.start_inactive = inactive_;
+        trajectory_.start_latched = latched_;
+    }
     long impacts() const { return trajectory_.statistics.impacts; }
     int impacts_of_phase() const { return trajectory_.phases.back().impacts; }
     bool knows_energies() const { return keep_ == Recording::full; }
@@ -88,7 +93,7 @@ class Recorder {
     double largest_ = 0.0;         // the same over the whole run
     double largest_change_ = 0.0;  // of energy minus work in any segment, for runs with work
     bool any_gap_ = false;
-    ContactSet inactive_;
+    ContactSet inactive_, latched_;
 };
 
 }  // namespace achilles

@@ -68,6 +68,7 @@ Sample Sampler::at(double t) {
         sample.mode = trajectory_.end_mode;
         sample.load_bearing = trajectory_.phases.back().load_bearing;
         sample.inactive = trajectory_.end_inactive;
+        sample.latched = trajectory_.end_latched;
         sample.contact = !sample.mode.is_free();
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
@@ -79,6 +80,7 @@ Sample Sampler::at(double t) {
     sample.mode = std::prev(piece)->mode;
     sample.load_bearing = std::prev(piece)->load_bearing;
     sample.inactive = std::prev(piece)->inactive;
+    sample.latched = std::prev(piece)->latched;
     sample.state = state(*std::prev(piece), t);
     set_work(sample, *std::prev(piece));
     sample.loss = std::prev(piece)->loss;
@@ -93,6 +95,7 @@ Sample Sampler::at(double t) {
             sample.contact = !sample.mode.is_free();
         }
         sample.inactive = trajectory_.end_inactive;
+        sample.latched = trajectory_.end_latched;
         sample.state = trajectory_.end;
         sample.work = trajectory_.work;
         sample.loss = trajectory_.loss;
@@ -109,6 +112,7 @@ Sample Sampler::in(const DenseSegment& piece, double t, bool with_work) const {
     sample.mode = piece.mode;
     sample.load_bearing = piece.load_bearing;
     sample.inactive = piece.inactive;
+    sample.latched = piece.latched;
     sample.state = state(piece, t);
     if (with_work) set_work(sample, piece);
     sample.loss = piece.loss;
@@ -208,7 +212,8 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
                 take({event.t, static_cast<int>(j), mode.is_free() ? Phase::Kind::hybrid : Phase::Kind::constrained,
                       !mode.is_free(), mode, State{event.q, event.v_before, event.t}, j == 0 ? 0.0 : events[j - 1].work,
                       j == 0 ? 0.0 : events[j - 1].loss, load_bearing_contacts(trajectory_, mode, event.t),
-                      j == 0 ? 0.0 : events[j - 1].heat, j == 0 ? trajectory_.start_inactive : events[j - 1].inactive},
+                      j == 0 ? 0.0 : events[j - 1].heat, j == 0 ? trajectory_.start_inactive : events[j - 1].inactive,
+                      j == 0 ? trajectory_.start_latched : events[j - 1].latched},
                      nullptr);
             }
             ++j;
@@ -240,7 +245,8 @@ void Sampler::visit(const Selection& selection, const Visitor& visitor) const {
     if (pass_events(trajectory_.end_time) || !last)
         take({trajectory_.end_time, static_cast<int>(j), trajectory_.end_phase, !trajectory_.end_mode.is_free(),
               trajectory_.end_mode, trajectory_.end, trajectory_.work, trajectory_.loss,
-              trajectory_.phases.back().load_bearing, trajectory_.heat, trajectory_.end_inactive},
+              trajectory_.phases.back().load_bearing, trajectory_.heat, trajectory_.end_inactive,
+              trajectory_.end_latched},
              nullptr);
 }
 

@@ -21,6 +21,7 @@ struct Sample {
     ContactSet load_bearing{};      // held contacts whose constraints define the motion (Phase)
     double heat = 0.0;
     ContactSet inactive{};  // contacts that do not count
+    ContactSet latched{};   // contacts that a latch holds
 };
 
 // The mode just before an event: the mode after the event before, or at the start.

@@ -43,7 +43,7 @@ void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Ga
                     .emplace(
                         mode,
                         MotionExpansion{
-                            {series, parameters_}, {series, tolerance_}, motion.friction, motion.jumps, motion.powers})
+                            {series, parameters_}, {series, tolerance_}, motion.friction, motion.guards, motion.powers})
                     .first;
         }
         motion_ = &known->second;
@@ -54,8 +54,8 @@ void TaylorStepper::initialize(Mode mode, const State& state, std::span<const Ga
     for (std::size_t i = 0; i < units.size(); ++i) step_.gap_unit(i) = units[i];
     for (std::size_t k = 0; k < motion_->friction.size(); ++k)
         step_.gap_unit(units.size() + k) = gap_units_[motion_->friction[k]];
-    for (std::size_t k = 0; k < motion_->jumps; ++k)
-        step_.gap_unit(units.size() + motion_->friction.size() + k) = gap_units_.of_jump(k);
+    for (std::size_t k = 0; k < motion_->guards; ++k)
+        step_.gap_unit(units.size() + motion_->friction.size() + k) = gap_units_.of_guard(k);
     for (std::size_t i = 0; i < gaps.size(); ++i) step_.gap(i) = gaps[i];
     to_ = state;
     evaluated_ = true;

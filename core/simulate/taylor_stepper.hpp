@@ -36,9 +36,9 @@ class TaylorStepper : public Stepper {
         SeriesEvaluator<double> series;
         AdaptiveOrder order;
         std::span<const FrictionEvent> friction;  // the event functions after those of the contacts
-        std::size_t jumps = 0;                    // how many watched jumps follow
+        std::size_t guards = 0;                   // how many watched guards follow
         std::size_t powers = 0;                   // how many powers follow
-        std::size_t further_events() const { return friction.size() + jumps; }
+        std::size_t further_events() const { return friction.size() + guards; }
     };
     StepFailure expand(double longest);
     double far_term(int k, std::size_t component, double t) const;

@@ -70,6 +70,12 @@ inline bool is_body(DrawingDescription::Shape shape) {
 // a curve, then the width if given.
 std::vector<Text> texts_of(const DrawingDescription& drawing);
 
+// What starts a jump or ends a latch: the impacts of a contact, or a zero of an expression.
+struct Trigger {
+    Text on;                             // the name of the contact, or the expression; empty: none
+    std::optional<std::size_t> contact;  // empty: `on` is an expression
+};
+
 struct ConstraintDescription {
     std::string name;  // "contact" if a file with one constraint names none
     Text gap, restitution;
@@ -81,6 +87,7 @@ struct ConstraintDescription {
     std::optional<Text> static_friction{};  // default: friction at slip 0
     bool never_slides = false;              // friction = "inf"
     Text when{};                            // a closing gap is a contact only where this is positive; empty: always
+    Trigger latch{};  // what ends its latch: another contact, or an expression that rises through zero
 
     bool has_friction() const { return !friction.text.empty(); }
 };
@@ -97,9 +104,8 @@ inline constexpr std::size_t max_frictions = 8;
 // A jump of the state at an event (theory-modes.md 2).
 struct JumpDescription {
     std::string name;
-    Text on;                             // the name of a contact, or an expression that falls through zero
-    std::optional<std::size_t> contact;  // right after whose impacts; empty: `on` is an expression
-    Text when;                           // the jump happens only where this is positive; empty: always
+    Trigger on;  // right after the impacts of a contact, or where an expression falls through zero
+    Text when;   // the jump happens only where this is positive; empty: always
     struct Assignment {
         std::size_t place;  // of the coordinate, or of its rate after all coordinates
         Text value;         // in terms of the state before the jump

@@ -173,7 +173,7 @@ class MechanismExpander {
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
-            for (const char* key : {"restitution", "when"}) substitute_in(*table, key);
+            for (const char* key : {"restitution", "when", "latch"}) substitute_in(*table, key);
             substitute_in_slip(*table);
             TomlValue* typed = find_entry(*table, "gap");
             if (typed != nullptr && !substitute_in(*typed)) remove_entry(*table, "gap");  // 0 would be a second mistake

@@ -72,8 +72,10 @@ std::span<const FileTable> file_tables() {
           {"restitution", "expression, needed", "e, a function of the parameters, from 0 (plastic) to 1 (elastic)"},
           {"when", "expression",
            "a closing gap is a contact only where this is positive before the impact: a function of coordinates, "
-           "rates, "
-           "t and parameters"},
+           "rates, t and parameters"},
+          {"latch", "a contact, or an expression",
+           "once held, the contact is held against any force until an impact of this contact, or until the expression "
+           "rises through zero"},
           {"begins", "text", "the text printed when contact begins, as in \"knee locks\""},
           {"ends", "text", "the text printed when it ends, as in \"knee opens\""},
           {"drawing", "tables", "[[constraint.drawing]]: the contact surface, with the keys of [[drawing]]"}}},
@@ -216,6 +218,7 @@ std::string other_key(std::string_view word, const std::vector<std::string>& key
         {"level", "friction F tau torque force amplitude"},
         {"slip", "sliding sliding_velocity tangential_velocity slip_velocity tangent"},
         {"when", "if condition only_if enabled active"},
+        {"latch", "lock locked sticks_until hold_until"},
         {"on", "trigger event guard at after"},
         {"set", "reset map then assign to update"},
         {"kinetic", "T kinetic_energy T_kin ke KE Ekin"},

@@ -27,7 +27,8 @@ struct PlacedShape;
 // The coordinates and parameters of a file as symbols of a graph, with their values at the start of the file.
 class MechanismSymbols {
  public:
-    explicit MechanismSymbols(const SystemDescription& system);
+    // `contacts`: the names in held(NAME).
+    MechanismSymbols(const SystemDescription& system, const std::vector<std::string>& contacts);
 
     enum class Allowed { constants, constants_and_time, positions, rates, curve };  // curve: x, t and parameters
     const Scope& scope(Allowed allowed) const { return scopes_[static_cast<std::size_t>(allowed)]; }

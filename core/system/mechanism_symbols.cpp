@@ -15,7 +15,8 @@ constexpr double no_value = std::numeric_limits<double>::quiet_NaN();
 
 }  // namespace
 
-MechanismSymbols::MechanismSymbols(const SystemDescription& system) : graph_(std::make_unique<Graph>()) {
+MechanismSymbols::MechanismSymbols(const SystemDescription& system, const std::vector<std::string>& contacts)
+    : graph_(std::make_unique<Graph>()) {
     using Rank = ProductSumWriter::Rank;
     std::vector<std::string> names;
     std::vector<Rank> ranks;
@@ -60,6 +61,12 @@ MechanismSymbols::MechanismSymbols(const SystemDescription& system) : graph_(std
     curve.allowed.insert_or_assign("x", symbol(abscissa_));
     constants.forbidden.emplace("t", "'t' is not allowed here: use only parameters");
     Scope positions = timed, rates = timed;
+    for (Scope* scope : {&constants, &timed, &curve, &positions})
+        scope->forbidden.emplace("held",
+                                 "held(NAME) is allowed only in a force, a torque and a damper; write what else "
+                                 "depends on contact as a [[force]]");
+    for (const std::string& contact : contacts)
+        rates.of_contact["held"].emplace(contact, symbol(add("held(" + contact + ")", Rank::constant, 0.0)));
     allow_units(positions, "rad", *graph_);
     allow_units(rates, "rad", *graph_);
     for (std::size_t i = 0; i < q.size(); ++i) {

@@ -1,4 +1,4 @@
-// Reads [[jump]]: what a jump follows, and what it sets.
+// Reads [[jump]], and the latches of contacts: what starts a jump or ends a latch, and what a jump sets.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -19,32 +19,28 @@ std::vector<std::string> names_of_contacts(const SystemDescription& system) {
 
 namespace {
 
-// What a jump follows: one word is the name of a contact. Throws Mistake.
-void read_on(const SystemDescription& system, const Names& known, const Fields& fields, JumpDescription& jump) {
-    const Text on = fields.expression("on");
+// The value of a key that starts a jump or ends a latch: one word is the name of a contact. `direction`: in which an
+// expression passes through zero. Throws Mistake.
+Trigger read_trigger(const SystemDescription& system, const Names& known, const Fields& fields, const char* key,
+                     const char* direction) {
+    const Text on = fields.expression(key);
     std::string word = on.text;
     word.erase(0, word.find_first_not_of(' '));
     word.erase(word.find_last_not_of(' ') + 1);
-    if (!is_name(word)) {
-        jump.on = on;
-        return;
-    }
+    if (!is_name(word)) return {on, {}};
     const std::vector<std::string> names = names_of_contacts(system);
     const auto found = std::find(names.begin(), names.end(), word);
-    if (found != names.end()) {
-        jump.on = on;
-        jump.contact = static_cast<std::size_t>(found - names.begin());
-        return;
-    }
+    if (found != names.end()) return {on, static_cast<std::size_t>(found - names.begin())};
     if (known.places.contains(word))
-        throw Mistake{on.at, fmt::format("'{}' in [[jump]] is no contact", word),
+        throw Mistake{on.at, fmt::format("'{}' in {} is no contact", word, fields.where()),
                       fmt::format("one word is the name of a contact; an expression that is one name stands in "
-                                  "parentheses: on = \"({})\"",
-                                  word)};
+                                  "parentheses: {} = \"({})\"",
+                                  key, word)};
     if (!known.complete) throw ErrorAlreadyReported{};  // the contact's own table has a mistake
     throw Mistake{on.at, fmt::format("no [[constraint]] is named '{}'{}", word, did_you_mean(word, names)),
-                  names.empty() ? "write an expression that falls through zero, as on = \"x - 1\""
-                                : fmt::format("the contacts are {}", listed(names))};
+                  names.empty()
+                      ? fmt::format("write an expression that {} through zero, as {} = \"x - 1\"", direction, key)
+                      : fmt::format("the contacts are {}", listed(names))};
 }
 
 // One entry of `set`. Throws Mistake.
@@ -87,7 +83,7 @@ void read_jumps(std::vector<Fields> tables, SystemDescription& system, const Nam
             if (!is_new) throw used_twice(name, other->second);
             jump.name = name.text;
         });
-        mistakes.attempt([&] { read_on(system, known, fields, jump); });
+        mistakes.attempt([&] { jump.on = read_trigger(system, known, fields, "on", "falls"); });
         mistakes.attempt([&] { jump.when = fields.expression_or_none("when"); });
         mistakes.attempt([&] {
             const TomlValue& value = fields.need("set");
@@ -98,6 +94,27 @@ void read_jumps(std::vector<Fields> tables, SystemDescription& system, const Nam
             const Fields set(value, "set");
             for (const TomlEntry& entry : value.entries)
                 mistakes.attempt([&] { jump.set.push_back(read_assignment(system, known, set, entry)); });
+        });
+    }
+}
+
+void read_latches(const std::vector<Fields>& tables, SystemDescription& system, const Names& known,
+                  ErrorCollector& mistakes) {
+    for (std::size_t i = 0; i < tables.size(); ++i) {
+        const TomlValue* const value = tables[i].find("latch");
+        if (value == nullptr) continue;
+        mistakes.attempt([&] {
+            if (system.has_friction())
+                throw Mistake{value->at, "a latch in a system with friction",
+                              "a latch needs contacts without friction: leave out one of the two"};
+            Trigger latch = read_trigger(system, known, tables[i], "latch", "rises");
+            if (latch.contact == i)
+                throw Mistake{
+                    value->at,
+                    fmt::format("the latch of '{0}' ends with an impact of '{0}' itself", system.constraints[i].name),
+                    "a held contact has no impact: name another contact, or write an expression that rises "
+                    "through zero"};
+            system.constraints[i].latch = std::move(latch);
         });
     }
 }

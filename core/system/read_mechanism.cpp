@@ -70,11 +70,24 @@ Mistake unknown_point(const Text& name, const std::string& point, const PlacedSh
             fmt::format("points of '{}' are: {}", shape.name, listed(known))};
 }
 
+// The names of the contacts, before their tables are read.
+std::vector<std::string> contacts_named_in(const TomlValue& root) {
+    std::vector<std::string> names;
+    ErrorCollector reported_later;
+    const std::vector<Fields> list = tables(root, "constraint", reported_later);
+    for (const Fields& fields : list) {
+        const TomlValue* const name = fields.find("name");
+        if (name != nullptr && name->kind == TomlValue::Kind::string) names.push_back(name->text.text);
+        if (name == nullptr && list.size() == 1) names.emplace_back("contact");
+    }
+    return names;
+}
+
 }  // namespace
 
 PlacedMechanism::PlacedMechanism(const TomlValue& root, const SystemDescription& system, Names& names,
                                  ErrorCollector& mistakes)
-    : symbols_(system), names_(names), mistakes_(mistakes), system_(system) {
+    : symbols_(system, contacts_named_in(root)), names_(names), mistakes_(mistakes), system_(system) {
     world_.name = "world";
     list_names(root, "ground");
     list_names(root, "body");

@@ -527,6 +527,7 @@ ParsedFile read_tables(std::string text, std::string name, std::string* expanded
     mistakes.attempt([&] { read_lagrangian(reading, fields); });
     read_constraints(reading);
     read_frictions(reading);
+    read_latches(reading.constraints, system, read.names, mistakes);
     read_jumps(limited_tables(reading, "jump", max_jumps), system, read.names, mistakes);
     if (const TomlValue* table = fields.find("orbit")) mistakes.attempt([&] { read_orbit(reading, *table); });
     read.has_system = mistakes.count() == 0;

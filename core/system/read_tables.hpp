@@ -36,13 +36,17 @@ struct ParsedFile {
 };
 
 // Reads the tables of a system file from its text; `name` is the file's name in messages. Throws InputError if nothing
-// can be read (the text is not TOML, or too large). `expanded` returns the file with energies and gaps in place of bodies.
+// can be read (the text is not TOML, or too large). `expanded` returns the file with energies and gaps in place of
+// bodies.
 ParsedFile read_tables(std::string text, std::string name, std::string* expanded = nullptr);
 
 // The contacts by name, for messages and look-ups.
 std::vector<std::string> names_of_contacts(const SystemDescription& system);
 // Reads the tables of [[jump]]; coordinates, parameters and constraints must be there. Adds to the mistakes.
 void read_jumps(std::vector<Fields> tables, SystemDescription& system, const Names& known, ErrorCollector& mistakes);
+// Reads the latches of the contacts, whose tables these are. The contacts must be there.
+void read_latches(const std::vector<Fields>& tables, SystemDescription& system, const Names& known,
+                  ErrorCollector& mistakes);
 
 // The text of a system file with its title. A file without one is named after itself; its title is then put into the
 // first line, so that the text describes the same system under any name.

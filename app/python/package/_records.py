@@ -87,7 +87,8 @@ class Event(Record):
 
     A jump has its name, q_before and v_before, q and v_after, its loss of energy, and gains_energy where that is negative.
     A pass is the closing of a gap that does not count. Where contacts may not count, inactive names those that do not
-    count after the event."""
+    count after the event. Where contacts have a latch, latched names those that it holds after the event; a release with
+    ends_latch is due to the end of a latch, not to a force that vanishes."""
 
     kind: str
     t: float
@@ -118,6 +119,8 @@ class Event(Record):
     speed_ratio: float
     gap_ratio: float
     inactive: list[str]
+    latched: list[str]
+    ends_latch: bool
     name: str
     q_before: np.ndarray
     gains_energy: bool

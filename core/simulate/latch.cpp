@@ -1,0 +1,119 @@
+// Latches, and forces that depend on contact (theory-modes.md 4, 5).
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "simulate/execution.hpp"
+
+namespace achilles {
+
+// Every held contact with a latch is latched, unless the latch has ended since the contact was last open.
+void ExecutionAutomaton::latch_held() {
+    const ContactSet held = next_.held();
+    spent_ = spent_.within(held);
+    next_.latched = next_.latched.within(held);
+    for (const std::size_t i : held.without(spent_))
+        if (model_->equations().latches[i]) next_.latched = next_.latched.with(i);
+    record_.set_latched(next_.latched);
+}
+
+// A contact that comes to rest at an impact latches at once, whatever the sign of its force.
+void ExecutionAutomaton::latch_landed(std::size_t contact) {
+    const ContactSet latched = next_.latched.with(contact);
+    if (!model_->equations().latches[contact] || spent_.contains(contact)) return;
+    const ClosedContacts closed = surfaces_->at(next_.state, latched);
+    if (HeldBlock<double>::of(closed.W, closed.places_of(latched))) next_.latched = latched;
+}
+
+// The impulses of latched contacts at an impact that changes the velocity by dv, p = W^-1 (g dv - ...), added to those
+// of the others; their work.
+Exchange ExecutionAutomaton::add_impulses_of_latched(MultiContactInfo& joint, const Vector& dv) {
+    Exchange exchange;
+    if (next_.latched.empty()) return exchange;
+    ContactSet all = next_.latched;
+    for (const auto& [contact, impulse] : joint.impulses) all = all.with(contact);
+    const ClosedContacts closed = surfaces_->at(next_.state, all);
+    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.latched));
+    if (!block) return exchange;
+    ContactVector<double> rest(closed.W.rows());  // the change of the gap rates that the latched contacts prevent
+    for (Eigen::Index k = 0; k < rest.size(); ++k) rest[k] = closed.contacts[static_cast<std::size_t>(k)].g.dot(dv);
+    for (Eigen::Index k = 0; k < rest.size(); ++k)
+        for (const auto& [contact, impulse] : joint.impulses)
+            for (Eigen::Index i = 0; i < rest.size(); ++i)
+                if (closed.which[static_cast<std::size_t>(i)] == contact) rest[k] -= closed.W(k, i) * impulse;
+    const ContactVector<double> p = block->solve(rest);
+    for (Eigen::Index k = 0; k < rest.size(); ++k) {
+        const std::size_t contact = closed.which[static_cast<std::size_t>(k)];
+        if (!next_.latched.contains(contact)) continue;
+        joint.impulses.emplace_back(contact, p[k]);
+        exchange.work += newton::work(p[k], closed.contacts[static_cast<std::size_t>(k)].gap_t);
+    }
+    std::sort(joint.impulses.begin(), joint.impulses.end());
+    return exchange;
+}
+
+// The latched contacts whose latch ends with an impact of one of these.
+ContactSet ExecutionAutomaton::unlatched_by(ContactSet landing) const {
+    ContactSet found;
+    for (const std::size_t i : next_.latched) {
+        const std::optional<std::size_t>& other = model_->equations().latches[i]->contact;
+        if (other && landing.contains(*other)) found = found.with(i);
+    }
+    return found;
+}
+
+void ExecutionAutomaton::unlatch(ContactSet contacts) {
+    next_.latched = next_.latched.without(contacts);
+    spent_ = spent_.with(contacts);
+    record_.set_latched(next_.latched);
+}
+
+// The expression that ends the latch of a contact rises through zero. The contact is then an ordinary held one.
+void ExecutionAutomaton::end_latch(std::size_t contact) {
+    if (completing())
+        return stop(Outcome::Kind::undecided,
+                    fmt::format("the latch of {} ends before the Zeno time of another contact, at {}", name_of(contact),
+                                where(next_.state)));
+    const ContactSet resting = next_.resting().held();
+    unlatch(ContactSet::of(contact));
+    decide(next_.held().with(next_.touching));
+    if (outcome_) return;
+    const ContactSet gone = resting.without(next_.resting().held());
+    gone.empty() ? continue_phase() : leave(gone, gone.contains(contact));
+}
+
+// ---- forces that depend on contact ----
+
+// Ends the run if a held contact, whose held(NAME) is 1 now, is not pressed.
+void ExecutionAutomaton::check_held_forces() {
+    const ContactSet held = next_.held().within(model_->equations().in_forces).without(next_.latched);
+    if (held.empty()) return;
+    const auto values = surfaces_->motion(next_.mode).enclosed(next_.state);
+    for (const std::size_t i : held)
+        if (next_.starts[i].multiplicity == 0 && certainly_positive(values[i].value))
+            return stop(Outcome::Kind::undecided,
+                        fmt::format("held({0}) undoes itself: {1} closes by the forces without it, and opens by those "
+                                    "with it, at {2}",
+                                    model_->description().constraints[i].name, name_of(i), where(next_.state)));
+}
+
+// The starts of the gaps of contacts that are released in the present mode. Their held(NAME) is 0 from here on, which
+// may change their acceleration at once. Ends the run if they would close again.
+void ExecutionAutomaton::start_released(ContactSet contacts) {
+    for (const std::size_t i : contacts.within(model_->equations().in_forces)) {
+        const auto [hddot, jerk] = surfaces_->of(i, next_.mode).normal(next_.state);
+        if (certainly_positive(hddot)) {
+            next_.starts[i] = {{0.0, 0.0}, 2};
+        } else if (!certainly_negative(hddot) && certainly_positive(jerk)) {
+            next_.starts[i] = {{0.0, 0.0}, 3};
+        } else {
+            return stop(Outcome::Kind::undecided,
+                        fmt::format("held({0}) undoes itself: {1} opens by the forces with it, and {2} by those "
+                                    "without it, at {3}",
+                                    model_->description().constraints[i].name, name_of(i),
+                                    certainly_negative(hddot) ? "closes" : "may close", where(next_.state)));
+        }
+    }
+}
+
+}  // namespace achilles
