@@ -192,6 +192,13 @@ void show_release(const Session& session, std::size_t index, PanelState& state, 
     const Event& event = session.trajectory().events[index];
     if (show_card_title(title("Release", session, event, index), time_of(session, index), state))
         commands.emplace_back(command::Select{0});
+    if (event.ends_latch) {
+        show_proved(session, index);
+        return paragraph(
+            "The latch ends here, and the forces do not press: the contact opens at once. Its acceleration need not be "
+            "zero.",
+            remaining().width, text_color());
+    }
     const ReleaseReason reason = explain_release(session.trajectory(), index);
     const Rectangle room = remaining();
     const float words = std::max(units(second_at), 0.45F * room.width);

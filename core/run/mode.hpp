@@ -84,7 +84,7 @@ class Mode {
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
     friend constexpr bool operator<(const Mode& a, const Mode& b) {
-        return a.bits_ != b.bits_ ? a.bits_ < b.bits_ : a.acting_.bits_ < b.acting_.bits_;
+        return a.bits_ != b.bits_ ? a.bits_ < b.bits_ : a.acting_ < b.acting_;
     }
 
  private:

@@ -25,7 +25,8 @@ ContactSet unpressed_at(const Trajectory& trajectory, Mode mode, const State& st
     ContactCache surfaces(*trajectory.model, trajectory.run);
     const State scale = scale_of(trajectory);
     for (const std::size_t i : mode.held())
-        if (surfaces.is_nearly_free(i, mode.without(i), state, scale) && surfaces.never_needs_force(i, mode.without(i)))
+        if (const Mode others = trajectory.model->unconstrained(mode, i);
+            surfaces.is_nearly_free(i, others, state, scale) && surfaces.never_needs_force(i, others))
             found = found.with(i);
     return found;
 }
@@ -74,9 +75,9 @@ ReleaseReason explain_release(const Trajectory& trajectory, std::size_t event) {
     const std::size_t which = reason.contact = first_of(release.contacts, model);
     const Mode mode = mode_before(trajectory, event);
     const bool unique = load_bearing_contacts(trajectory, mode, release.t) == mode.held();
-    ContactKinematics surface(
-        model, trajectory.run, which,
-        unique ? mode.without(which) : release.mode.only(load_bearing_contacts(trajectory, release.mode, release.t)));
+    ContactKinematics surface(model, trajectory.run, which,
+                              unique ? model.unconstrained(mode, which)
+                                     : release.mode.only(load_bearing_contacts(trajectory, release.mode, release.t)));
     const double W = surface.at(state).W;
     reason.lambda = -surface.normal_acceleration(state) / W;
     reason.jerk = surface.jerk(state);
