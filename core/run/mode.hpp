@@ -36,11 +36,16 @@ class Mode {
     // Whether every contact is open. Joints do not count.
     constexpr bool is_free() const { return held().empty(); }
     // Held contacts whose slip stays 0 because that of others does.
-    constexpr ContactSet implied() const {
-        const auto flags = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> first_flag & 0xFFu); };
-        return ContactSet(flags(bits_) | flags(bits_ >> high) << 8u);
+    constexpr ContactSet implied() const { return flagged().within(held()); }
+    // Open contacts that act on the forces as held ones do: held(NAME) is 1 for them (theory-modes.md 5). Only
+    // derivations and decisions have such modes.
+    constexpr ContactSet acting() const { return flagged().without(held()); }
+    constexpr Mode with_acting(ContactSet contacts) const {
+        std::uint64_t bits = bits_;
+        for (const std::size_t i : contacts.without(held())) bits |= flag(i);
+        return Mode(bits);
     }
-    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact), acting_); }
+    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact)); }
     // The contacts that are not open, and those in a given state.
     constexpr ContactSet held() const {
         return ContactSet(static_cast<std::uint32_t>(bits_ | bits_ >> high) & of_contacts);
@@ -60,20 +65,11 @@ class Mode {
             all);
     }
 
-    // Open contacts that act on the forces as held ones do: held(NAME) is 1 for them (theory-modes.md 5). Only
-    // derivations and decisions have such modes.
-    constexpr ContactSet acting() const { return acting_; }
-    constexpr Mode with_acting(ContactSet contacts) const {
-        Mode result = *this;
-        result.acting_ = acting_.with(contacts.without(held()));
-        return result;
-    }
-
     constexpr Mode with(ContactSet contacts, ContactState state) const {
         const std::uint64_t set = contacts.bits_;
         std::uint64_t kept = bits_ & ~(set | set << high);
-        for (const std::size_t i : contacts.within(implied())) kept &= ~flag(i);
-        return Mode(kept | low_bits(set, state) | high_bits(set, state), acting_.without(contacts));
+        for (const std::size_t i : contacts.within(flagged())) kept &= ~flag(i);
+        return Mode(kept | low_bits(set, state) | high_bits(set, state));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
     // This mode with these contacts open.
@@ -83,16 +79,15 @@ class Mode {
     constexpr Mode only(ContactSet contacts) const { return without(held().without(contacts)); }
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
-    friend constexpr bool operator<(const Mode& a, const Mode& b) {
-        return a.bits_ != b.bits_ ? a.bits_ < b.bits_ : a.acting_ < b.acting_;
-    }
+    friend constexpr bool operator<(const Mode& a, const Mode& b) { return a.bits_ < b.bits_; }
 
  private:
     // A state has two bits. The low bits of all contacts and joints are in one half of the word, the high bits in the
     // other.
     static constexpr std::uint32_t high = 32, of_contacts = (1u << max_contacts) - 1u,
                                    all = (1u << (max_contacts + max_joints)) - 1u;
-    static constexpr std::uint32_t first_flag = 24;  // eight flags in each half
+    // Eight flags in each half: the slip of a held contact is implied; an open contact acts.
+    static constexpr std::uint32_t first_flag = 24;
     static constexpr std::uint64_t flag(std::size_t contact) {
         return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8 % 2));
     }
@@ -103,9 +98,13 @@ class Mode {
         return (static_cast<std::uint32_t>(state) & 2u) != 0 ? set << high : 0u;
     }
 
-    constexpr Mode(std::uint64_t bits, ContactSet acting) : bits_(bits), acting_(acting) {}
+    constexpr ContactSet flagged() const {
+        const auto flags = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> first_flag & 0xFFu); };
+        return ContactSet(flags(bits_) | flags(bits_ >> high) << 8u);
+    }
+
+    constexpr explicit Mode(std::uint64_t bits) : bits_(bits) {}
     std::uint64_t bits_ = 0;
-    ContactSet acting_;
 };
 
 // Key of the data of one contact in a mode.

@@ -1,4 +1,4 @@
-// The effect of jumps of the state, and of passes, on a small change (theory-modes.md 4).
+// The effect of jumps of the state, and of passes, on a small change (theory-modes.md 6).
 #include <fmt/format.h>
 
 #include "number/dense.hpp"

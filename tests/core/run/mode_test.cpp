@@ -38,6 +38,20 @@ TEST(Mode, StartsAsFreeFlight) {
     EXPECT_LE(sizeof(Mode), sizeof(std::uint64_t));
 }
 
+TEST(Mode, KnowsWhichOpenContactsAct) {
+    for (const auto& [mode, set] : some_modes()) {
+        const ContactSet two = ContactSet::of(3).with(15);
+        const Mode acting = mode.with_acting(two);
+        EXPECT_EQ(acting.acting(), two.without(set));
+        EXPECT_EQ(acting.held(), set);
+        EXPECT_TRUE(acting.implied().empty());
+        EXPECT_EQ(acting == mode, two.without(set).empty());
+        EXPECT_TRUE(acting.with(two, held).acting().empty());
+        EXPECT_EQ(acting.with(two, held), mode.with(two, held));
+        EXPECT_EQ(acting.without(two), mode.without(two));
+    }
+}
+
 TEST(Mode, KnowsTheStateOfEveryContact) {
     for (const auto& [mode, set] : some_modes()) {
         EXPECT_EQ(mode, Mode::holding(set));

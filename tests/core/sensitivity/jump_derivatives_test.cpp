@@ -1,4 +1,4 @@
-// Derivatives through jumps and passes (theory-modes.md 4) against closed forms and differences of runs.
+// Derivatives through jumps and passes (theory-modes.md 6) against closed forms and differences of runs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -119,6 +119,36 @@ constraint = [{name = "floor", gap = "x", restitution = 0}]
 jump = [{name = "throw", on = "floor", set = {"x'" = "e*y'"}}]
 )toml"),
         3.0, "impact jump impact jump ");
+}
+
+// A knee that a force pulls, until its latch ends by an expression, or by the impact of a foot.
+std::string latched_knee(const std::string& latch) {
+    return R"toml(coordinate = [{name = "x", start = 1, rate = -2, force = "a + t/5 + y/4"}, {name = "y", start = 1}]
+parameter = [{name = "a", value = 1}, {name = "g", value = 0.5}, {name = "e", value = 0.5}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2) + x'*y'/4", potential = "g*y"}
+constraint = [{name = "knee", gap = "x", restitution = 0, latch = ")toml" +
+           latch + R"toml("}, {name = "foot", gap = "y", restitution = "e"}]
+)toml";
+}
+
+TEST(JumpDerivatives, FollowTheEndOfALatch) {
+    expect_jump_differences(typed(latched_knee("y' + g*t/2 + 1/20")), 1.7, "impact zeno release ");
+}
+
+TEST(JumpDerivatives, FollowALatchThatTakesAnImpulse) {
+    expect_jump_differences(typed(latched_knee("foot")), 2.6, "impact zeno impact ");
+}
+
+// The acceleration jumps where the foot is released, and the force acts on both.
+TEST(JumpDerivatives, FollowForcesThatDependOnContact) {
+    expect_jump_differences(
+        typed(R"toml(coordinate = [{name = "x", rate = 0.3, force = "a*x*held(foot)"},
+    {name = "y", start = 0.5, rate = -0.2, force = "-1 + t + x/5 - held(foot)*(t/3 + e*x')"}]
+parameter = [{name = "a", value = 1.2}, {name = "e", value = 0.5}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2) + x'*y'/10", potential = "0"}
+constraint = [{name = "foot", gap = "y", restitution = 0}]
+)toml"),
+        4.0, "impact zeno release ");
 }
 
 TEST(JumpDerivatives, SayWhereThereAreNone) {

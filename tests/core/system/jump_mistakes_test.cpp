@@ -93,6 +93,19 @@ const JumpMistake jump_mistakes[] = {
      "source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, ground, spring, damper, "
      "force, "
      "torque, run, view, drawing, truncation, orbit, extra"},
+    {"LatchOfItself", "restitution = 0.5", "restitution = 0.5\nlatch = \"floor\"", "?"},
+    {"LatchOfAnUnknownContact", "restitution = 0.5", "restitution = 0.5\nlatch = \"flor\"", "?"},
+    {"LatchWithAName", "restitution = 0.5", "restitution = 0.5\nlatch = \"y\"", "?"},
+    {"LatchWithFriction", "restitution = 0.5",
+     "restitution = 0.5\nslip = \"x'\"\nfriction = 0.3\nlatch = \"t - 1\"", "?"},
+    {"HeldInAPotential", "g*y", "g*y*held(floor)", "?"},
+    {"HeldInAGap", "gap = \"y\"", "gap = \"y + held(floor)\"", "?"},
+    {"HeldInWhen", "when = \"x\"", "when = \"held(floor)\"", "?"},
+    {"HeldInARestitution", "restitution = 0.5", "restitution = \"held(floor)\"", "?"},
+    {"HeldOfAnUnknownContact", "start = 0.1", "start = 0.1, force = \"held(flor)\"", "?"},
+    {"HeldWithoutAContact", "start = 0.1", "start = 0.1, force = \"held()\"", "?"},
+    {"HeldOfAnExpression", "start = 0.1", "start = 0.1, force = \"held(floor + 1)\"", "?"},
+    {"HeldAlone", "start = 0.1", "start = 0.1, force = \"held\"", "?"},
     {"InactiveInAnOrbitIsUnknown", "[[jump]]", "[orbit]\nq = [1, 1]\nv = [1, 1]\ninactive = [\"flor\"]\n[[jump]]",
      "f.toml:12:13: no [[constraint]] is named 'flor'; did you mean 'floor'?\n    inactive = [\"flor\"]\n              "
      " "
