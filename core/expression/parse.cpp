@@ -303,8 +303,9 @@ class Parser {
         const auto list = scope_.listed.find(full);
         if (list != scope_.listed.end() && peek() == '(') return list->second(number_in_list(full));
         const auto by_contact = scope_.of_contact.find(full);
-        if (by_contact != scope_.of_contact.end() && peek() == '(') return contact_in_list(full, by_contact->second);
         const auto found = scope_.allowed.find(full);
+        if (by_contact != scope_.of_contact.end() && (peek() == '(' || found == scope_.allowed.end()))
+            return contact_in_list(full, by_contact->second, begin);
         if (found != scope_.allowed.end() || full == "pi") {
             if (peek() == '(') throw ParseError(begin, in_quotes(full) + " is not a function; write '*' for a product");
             return found->second;
@@ -332,21 +333,21 @@ class Parser {
     }
 
     // Reads the name of a contact in parentheses, such as "(foot)".
-    Expression contact_in_list(std::string_view word,
-                               const std::map<std::string, Expression, std::less<>>& of_contact) {
+    Expression contact_in_list(std::string_view word, const std::map<std::string, Expression, std::less<>>& of_contact,
+                               std::size_t where) {
         const std::size_t open = at_;
-        take('(');
+        const std::string needs = std::string(word) + "(NAME) takes the name of a contact, and nothing else";
+        if (!take('(')) throw ParseError(where, needs);
         const std::size_t begin = at_;
         while (is_name_part(peek())) ++at_;
         const std::string_view name = text_.substr(begin, at_ - begin);
         skip_space();
         const auto found = of_contact.find(name);
-        if (name.empty() || !(peek() == ')' || at_end()) || found == of_contact.end()) {
+        if (name.empty() || !(peek() == ')' || at_end())) throw ParseError(begin, needs);
+        if (found == of_contact.end()) {
             std::vector<std::string> contacts;
             for (const auto& [contact, symbol] : of_contact) contacts.push_back(contact);
-            throw ParseError(begin, name.empty() ? std::string(word) + "(NAME) needs the name of a contact"
-                                                 : "no contact is named " + in_quotes(name) +
-                                                       did_you_mean(std::string(name), contacts));
+            throw ParseError(begin, "no contact is named " + in_quotes(name) + did_you_mean(name, contacts));
         }
         close(open);
         return found->second;

@@ -52,6 +52,7 @@ bool ExecutionAutomaton::restart(const Run& run) {
     last_step_ = proving_ = cut_error_ = 0.0;
     stalled_ = load_sharing_changes_ = friction_events_ = jumps_ = jumps_at_once_ = 0;
     impacts_before_ = 0;
+    next_.latched = spent_ = acting_ = located_here_ = {};
     evaluations_ = 0;
     completion_.reset();
     outcome_.reset();

@@ -250,10 +250,14 @@ class ExecutionAutomaton {
     bool does_count(std::size_t contact);
     void start_guards();
     int sign_after_zero(std::size_t watched, Interval rate, EventStart& start);
+    ContactSet passing(ContactSet guards, int sign);
     ContactSet falling_jumps();
+    ContactSet ending_latches();
     bool may_jump(ContactSet landing, ContactSet falling) const;
     Jumps jumps_after(ContactSet landing, ContactSet falling);
+    void locate(ContactSet guards);
     void accept_guard_event(std::size_t event);
+    bool impacts_first(std::size_t watched, bool is_known);
     double resolution(const Interval& rate) const;
     double rounding_of_guard(std::size_t watched);
     double closed_within(ContactKinematics& surface, const Contact& contact) const;
@@ -285,7 +289,7 @@ class ExecutionAutomaton {
     Exchange add_impulses_of_latched(MultiContactInfo& joint, const Vector& dv);
     ContactSet unlatched_by(ContactSet landing) const;
     void unlatch(ContactSet contacts);
-    void end_latch(std::size_t contact);
+    void end_latches(ContactSet contacts);
     void check_held_forces();
     void start_released(ContactSet contacts);
     // ---- linearly dependent gradients (load_sharing.cpp) ----
@@ -369,12 +373,14 @@ class ExecutionAutomaton {
     ContactSet below_;          // watched guards that are negative
     ContactSet known_zeros_;    // those whose zero at the state, if there is one, is no event: the state has jumped
     ContactSet located_zeros_;  // those whose zero has been found at the state
-    long impacts_before_ = 0;   // impacts at the last start of a segment
-    int jumps_ = 0;             // so far
-    int jumps_at_once_ = 0;     // since time last advanced
-    double last_jump_ = 0.0;    // s
-    std::size_t jumped_ = 0;    // jumps just recorded, whose mode is not decided yet
-    bool has_moved_ = false;    // whether the last jumps changed coordinates
+    ContactSet located_here_;   // those found at the time located_at_ (s)
+    double located_at_ = 0.0;
+    long impacts_before_ = 0;  // impacts at the last start of a segment
+    int jumps_ = 0;            // so far
+    int jumps_at_once_ = 0;    // since time last advanced
+    double last_jump_ = 0.0;   // s
+    std::size_t jumped_ = 0;   // jumps just recorded, whose mode is not decided yet
+    bool has_moved_ = false;   // whether the last jumps changed coordinates
     // Time of the last change of load-bearing contacts (s), and the number of changes at that time.
     double load_sharing_since_ = 0.0;
     int load_sharing_changes_ = 0;

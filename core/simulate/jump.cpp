@@ -138,19 +138,35 @@ double ExecutionAutomaton::resolution(const Interval& rate) const {
     return few * 0x1p-52 * std::abs(next_.state.t) * mag(rate);
 }
 
-// The watched jumps whose functions fall through zero at the present state, within rounding.
-ContactSet ExecutionAutomaton::falling_jumps() {
-    ContactSet falling;
-    if (model_->watched_guards().empty()) return falling;
+// Those of these watched guards that pass through zero at the present state, within rounding, with rates of this sign.
+ContactSet ExecutionAutomaton::passing(ContactSet guards, int sign) {
+    ContactSet found;
+    if (guards.empty()) return found;
     ModeKinematics& motion = surfaces_->motion(next_.mode);
     const auto values = motion.enclosed(next_.state);
-    for (const std::size_t k : all_watched_guards().without(below_).without(known_zeros_)) {
-        if (model_->watched_guards()[k].is_latch) continue;
+    for (const std::size_t k : guards.without(known_zeros_)) {
         const auto& [value, rate] = values[motion.first_guard() + k];
-        if (sign_beyond_rounding(value, resolution(rate) + rounding_of_guard(k)) == 0 && sign_of(rate) < 0)
-            falling = falling.with(k);
+        if (sign_beyond_rounding(value, resolution(rate) + rounding_of_guard(k)) == 0 && sign_of(rate) == sign)
+            found = found.with(k);
     }
-    return falling;
+    return found;
+}
+
+// The watched jumps whose functions fall through zero at the present state.
+ContactSet ExecutionAutomaton::falling_jumps() {
+    ContactSet jumps;
+    for (const std::size_t k : all_watched_guards().without(below_))
+        if (!model_->watched_guards()[k].is_latch) jumps = jumps.with(k);
+    return passing(jumps, -1);
+}
+
+// The contacts whose latch ends at the present state by an expression that rises.
+ContactSet ExecutionAutomaton::ending_latches() {
+    ContactSet latches, contacts;
+    for (const std::size_t k : below_)
+        if (model_->watched_guards()[k].is_latch) latches = latches.with(k);
+    for (const std::size_t k : passing(latches, 1)) contacts = contacts.with(model_->watched_guards()[k].number);
+    return contacts.within(next_.latched);
 }
 
 // Whether jumps follow impacts of these contacts, or these watched jumps fall, whatever their `when`.
@@ -182,40 +198,59 @@ ExecutionAutomaton::Jumps ExecutionAutomaton::jumps_after(ContactSet landing, Co
     return jumps;
 }
 
-// A zero of a watched guard: it rises, or falls, which may be the jump; a rise may end a latch.
+// The zeros of these watched guards are found at the state, beside those found there before.
+void ExecutionAutomaton::locate(ContactSet guards) {
+    constexpr double few_ulps = 0x1p-46;
+    const double t = next_.state.t;
+    if (std::abs(t - located_at_) > few_ulps * std::abs(t)) located_here_ = {};
+    located_at_ = t;
+    located_here_ = located_zeros_ = located_here_.with(guards);
+}
+
+// A zero of a watched guard: a jump happens, a latch ends, or a sign changes. Other guards may pass through zero at the
+// same instant.
 void ExecutionAutomaton::accept_guard_event(std::size_t event) {
     const std::size_t watched = event - surfaces_->motion(next_.mode).first_guard();
-    if (below_.contains(watched)) {
-        below_ = below_.without(watched);
-        located_zeros_ = ContactSet::of(watched);
-        const WatchedGuard& guard = model_->watched_guards()[watched];
-        return guard.is_latch && next_.latched.contains(guard.number) ? end_latch(guard.number) : go_on_in_mode();
+    const WatchedGuard& guard = model_->watched_guards()[watched];
+    const bool rises = below_.contains(watched);
+    ContactSet falling = falling_jumps(), ending = ending_latches();
+    const bool is_known = falling.contains(watched);
+    if (!guard.is_latch && !rises) falling = falling.with(watched);
+    if (guard.is_latch && rises) ending = ending.with(guard.number).within(next_.latched);
+    const ContactSet passing_here = passing(below_, 1).with(passing(all_watched_guards().without(below_), -1));
+    if (!falling.empty()) {
+        if (completing())
+            return stop(Outcome::Kind::undecided, fmt::format("{} happens before the Zeno time, at {}",
+                                                              text_of_guard(watched), where(next_.state)));
+        if (impacts_first(watched, is_known)) return;
+        const Jumps jumps = jumps_after({}, falling);
+        if (outcome_) return;
+        unlatch(ending);
+        if (!jumps.empty()) return jump(jumps, {});
     }
-    if (model_->watched_guards()[watched].is_latch) {
-        located_zeros_ = ContactSet::of(watched);
-        return go_on_in_mode();
-    }
-    if (completing())
-        return stop(Outcome::Kind::undecided,
-                    fmt::format("{} happens before the Zeno time, at {}", text_of_guard(watched), where(next_.state)));
-    // Impacts at this instant come first.
-    const ContactSet falling = falling_jumps().with(watched);
+    locate(passing_here.with(falling).with(watched));
+    ending.empty() ? go_on_in_mode() : end_latches(ending);
+}
+
+// Whether an impact happens at the instant of this jump: it comes first. `is_known`: the jump falls within rounding
+// there, too. Also true if the run ends, undecided.
+bool ExecutionAutomaton::impacts_first(std::size_t watched, bool is_known) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i) {
         if (next_.mode.is_held(i) || next_.touching.with(next_.inactive).contains(i)) continue;
         ContactKinematics& surface = surfaces_->of(i);
         const Contact contact = surface.at(next_.state);
         const double error = 4.0 * surface.gap_error(next_.state) + resolution(Interval(contact.hdot));
         if (contact.h > error || !(contact.hdot < -4.0 * surface.hdot_error(next_.state))) continue;
-        if (falling_jumps().contains(watched)) return land(i, contact);
-        return stop(Outcome::Kind::undecided,
-                    fmt::format("cannot decide whether {} happens together with the impact of {}, at {}",
-                                text_of_guard(watched), name_of(i), where(next_.state)));
+        if (is_known) {
+            land(i, contact);
+        } else {
+            stop(Outcome::Kind::undecided,
+                 fmt::format("cannot decide whether {} happens together with the impact of {}, at {}",
+                             text_of_guard(watched), name_of(i), where(next_.state)));
+        }
+        return true;
     }
-    const Jumps jumps = jumps_after({}, falling);
-    if (outcome_) return;
-    if (!jumps.empty()) return jump(jumps, {});
-    located_zeros_ = falling;
-    go_on_in_mode();
+    return false;
 }
 
 // Begins a segment at the present state, in the present mode.
@@ -237,6 +272,7 @@ void ExecutionAutomaton::jump_after_impact(const Jumps& jumps, ContactSet landin
 // Sets the state by these jumps, in the order of the file, and decides the mode of every contact anew.
 void ExecutionAutomaton::jump(const Jumps& jumps, ContactSet landing) {
     if (is_endless(jumps.size())) return;
+    unlatch(ending_latches());
     const Vector q_before = next_.state.q;
     for (const std::size_t number : jumps)
         if (!apply_jump(number, landing)) return;

@@ -68,18 +68,18 @@ void ExecutionAutomaton::unlatch(ContactSet contacts) {
     record_.set_latched(next_.latched);
 }
 
-// The expression that ends the latch of a contact rises through zero. The contact is then an ordinary held one.
-void ExecutionAutomaton::end_latch(std::size_t contact) {
+// The expressions that end the latches of these contacts rise through zero. They are then ordinary held contacts.
+void ExecutionAutomaton::end_latches(ContactSet contacts) {
     if (completing())
         return stop(Outcome::Kind::undecided,
-                    fmt::format("the latch of {} ends before the Zeno time of another contact, at {}", name_of(contact),
-                                where(next_.state)));
+                    fmt::format("the latch of {} ends before the Zeno time of another contact, at {}",
+                                names_of(contacts), where(next_.state)));
     const ContactSet resting = next_.resting().held();
-    unlatch(ContactSet::of(contact));
+    unlatch(contacts);
     decide(next_.held().with(next_.touching));
     if (outcome_) return;
     const ContactSet gone = resting.without(next_.resting().held());
-    gone.empty() ? continue_phase() : leave(gone, gone.contains(contact));
+    gone.empty() ? continue_phase() : leave(gone, !gone.within(contacts).empty());
 }
 
 // ---- forces that depend on contact ----

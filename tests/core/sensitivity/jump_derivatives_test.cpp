@@ -132,7 +132,7 @@ constraint = [{name = "knee", gap = "x", restitution = 0, latch = ")toml" +
 }
 
 TEST(JumpDerivatives, FollowTheEndOfALatch) {
-    expect_jump_differences(typed(latched_knee("y' + g*t/2 + 1/20")), 1.7, "impact zeno release ");
+    expect_jump_differences(typed(latched_knee("t - 1.3 + y/20 - a/50")), 1.45, "impact zeno release ");
 }
 
 TEST(JumpDerivatives, FollowALatchThatTakesAnImpulse) {
@@ -141,14 +141,13 @@ TEST(JumpDerivatives, FollowALatchThatTakesAnImpulse) {
 
 // The acceleration jumps where the foot is released, and the force acts on both.
 TEST(JumpDerivatives, FollowForcesThatDependOnContact) {
-    expect_jump_differences(
-        typed(R"toml(coordinate = [{name = "x", rate = 0.3, force = "a*x*held(foot)"},
-    {name = "y", start = 0.5, rate = -0.2, force = "-1 + t + x/5 - held(foot)*(t/3 + e*x')"}]
+    expect_jump_differences(typed(R"toml(coordinate = [{name = "x", rate = 0.3, force = "a*x*held(foot)"},
+    {name = "y", start = 0.5, rate = -0.2, force = "-1 + t/3 + x/5 - held(foot)*(t/6 - e*x'/4)"}]
 parameter = [{name = "a", value = 1.2}, {name = "e", value = 0.5}]
 lagrangian = {kinetic = "1/2*(x'^2 + y'^2) + x'*y'/10", potential = "0"}
 constraint = [{name = "foot", gap = "y", restitution = 0}]
 )toml"),
-        4.0, "impact zeno release ");
+                            4.0, "impact zeno release ");
 }
 
 TEST(JumpDerivatives, SayWhereThereAreNone) {

@@ -228,10 +228,36 @@ set = {y = "y + 5"}
     EXPECT_NEAR(run.end.q[0], 0.125, 1e-12);
 }
 
+// The jump at the same zero does not hide it: afterwards the contact is decided by its force, which pulls.
+TEST(Latch, EndsWithAJumpAtTheSameInstant) {
+    for (const Method method : both_methods)
+        for (const bool ends : {true, false}) {
+            const std::string latch = ends ? "latch = \"0.5 - y\"" : "latch = \"t - 100\"";
+            const Trajectory run = run_of(pulled(latch, R"toml([[jump]]
+name = "reset"
+on = "y - 0.5"
+set = {y = "3"}
+)toml"),
+                                          3.0, method);
+            EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+            ASSERT_EQ(run.events.size(), 3u);
+            EXPECT_TRUE(run.events[2].is_jump());
+            EXPECT_NEAR(run.events[2].t, std::sqrt(2.0), closeness(method));
+            EXPECT_EQ(run.events[2].latched, ends ? ContactSet() : ContactSet::of(0));
+            EXPECT_NEAR(run.end.q[0], ends ? 0.5 * std::pow(3.0 - std::sqrt(2.0), 2) : 0.0, closeness(method));
+        }
+}
+
 TEST(Latch, StandsInTheJson) {
     const Trajectory run = run_of(on_floor(0.0, "3*t - 4.5", "latch = \"t - 2\""), 3.0);
     const std::string text = to_json(run);
-    EXPECT_NE(text.find("\"latched\": [\"foot\"]"), std::string::npos) << text.substr(0, 2000);
+    std::size_t lists = 0, names = 0;  // of the start, the event and the end; the start has the only name
+    for (auto at = text.find("\"latched\": ["); at != std::string::npos; at = text.find("\"latched\": [", at + 1)) {
+        ++lists;
+        if (text.substr(at, text.find(']', at) - at).find("foot") != std::string::npos) ++names;
+    }
+    EXPECT_EQ(lists, 3u);
+    EXPECT_EQ(names, 1u);
     EXPECT_NE(text.find("\"ends_latch\": true"), std::string::npos);
 }
 

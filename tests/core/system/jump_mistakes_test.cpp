@@ -93,19 +93,46 @@ const JumpMistake jump_mistakes[] = {
      "source, coordinate, parameter, lagrangian, constraint, friction, jump, world, body, ground, spring, damper, "
      "force, "
      "torque, run, view, drawing, truncation, orbit, extra"},
-    {"LatchOfItself", "restitution = 0.5", "restitution = 0.5\nlatch = \"floor\"", "?"},
-    {"LatchOfAnUnknownContact", "restitution = 0.5", "restitution = 0.5\nlatch = \"flor\"", "?"},
-    {"LatchWithAName", "restitution = 0.5", "restitution = 0.5\nlatch = \"y\"", "?"},
-    {"LatchWithFriction", "restitution = 0.5",
-     "restitution = 0.5\nslip = \"x'\"\nfriction = 0.3\nlatch = \"t - 1\"", "?"},
-    {"HeldInAPotential", "g*y", "g*y*held(floor)", "?"},
-    {"HeldInAGap", "gap = \"y\"", "gap = \"y + held(floor)\"", "?"},
-    {"HeldInWhen", "when = \"x\"", "when = \"held(floor)\"", "?"},
-    {"HeldInARestitution", "restitution = 0.5", "restitution = \"held(floor)\"", "?"},
-    {"HeldOfAnUnknownContact", "start = 0.1", "start = 0.1, force = \"held(flor)\"", "?"},
-    {"HeldWithoutAContact", "start = 0.1", "start = 0.1, force = \"held()\"", "?"},
-    {"HeldOfAnExpression", "start = 0.1", "start = 0.1, force = \"held(floor + 1)\"", "?"},
-    {"HeldAlone", "start = 0.1", "start = 0.1, force = \"held\"", "?"},
+    {"LatchOfItself", "restitution = 0.5", "restitution = 0.5\nlatch = \"floor\"",
+     "f.toml:9:9: the latch of 'floor' ends with an impact of 'floor' itself\n    latch = \"floor\"\n            ^\na "
+     "held contact has no impact: name another contact, or write an expression that rises through zero"},
+    {"LatchOfAnUnknownContact", "restitution = 0.5", "restitution = 0.5\nlatch = \"flor\"",
+     "f.toml:9:10: no [[constraint]] is named 'flor'; did you mean 'floor'?\n    latch = \"flor\"\n             ^\nthe "
+     "contacts are floor"},
+    {"LatchWithAName", "restitution = 0.5", "restitution = 0.5\nlatch = \"y\"",
+     "f.toml:9:10: 'y' in [[constraint]] is no contact\n    latch = \"y\"\n             ^\none word is the name of a "
+     "contact; an expression that is one name stands in parentheses: latch = \"(y)\""},
+    {"LatchWithFriction", "restitution = 0.5", "restitution = 0.5\nslip = \"x'\"\nfriction = 0.3\nlatch = \"t - 1\"",
+     "f.toml:11:9: a latch in a system with friction\n    latch = \"t - 1\"\n            ^\na latch needs contacts "
+     "without friction: leave out one of the two"},
+    {"HeldInAPotential", "g*y", "g*y*held(floor)",
+     "f.toml:3:61: held(NAME) is allowed only in a force and in the dissipation; write what else depends on contact as "
+     "a force\n    ...angian = {kinetic = \"(x'^2 + y'^2)/2\", potential = \"g*y*held(floor)\"}\n                      "
+     "                                         ^"},
+    {"HeldInAGap", "gap = \"y\"", "gap = \"y + held(floor)\"",
+     "f.toml:6:12: held(NAME) is allowed only in a force and in the dissipation; write what else depends on contact as "
+     "a force\n    gap = \"y + held(floor)\"\n               ^"},
+    {"HeldInWhen", "when = \"x\"", "when = \"held(floor)\"",
+     "f.toml:7:9: held(NAME) is allowed only in a force and in the dissipation; write what else depends on contact as "
+     "a force\n    when = \"held(floor)\"\n            ^"},
+    {"HeldInARestitution", "restitution = 0.5", "restitution = \"held(floor)\"",
+     "f.toml:8:16: held(NAME) is allowed only in a force and in the dissipation; write what else depends on contact as "
+     "a force\n    restitution = \"held(floor)\"\n                   ^"},
+    {"HeldOfAnUnknownContact", "start = 0.1", "start = 0.1, force = \"held(flor)\"",
+     "f.toml:1:55: no contact is named 'flor'; did you mean 'floor'?\n    coordinate = [{name = \"x\", start = 0.1, "
+     "force = \"held(flor)\"}, {name = \"y\", start = 2}]\n                                                          "
+     "^"},
+    {"HeldWithoutAContact", "start = 0.1", "start = 0.1, force = \"held()\"",
+     "f.toml:1:55: held(NAME) takes the name of a contact, and nothing else\n    coordinate = [{name = \"x\", start = "
+     "0.1, force = \"held()\"}, {name = \"y\", start = 2}]\n                                                          "
+     "^"},
+    {"HeldOfAnExpression", "start = 0.1", "start = 0.1, force = \"held(floor + 1)\"",
+     "f.toml:1:55: held(NAME) takes the name of a contact, and nothing else\n    coordinate = [{name = \"x\", start = "
+     "0.1, force = \"held(floor + 1)\"}, {name = \"y\", start = 2}]\n                                                  "
+     "        ^"},
+    {"HeldAlone", "start = 0.1", "start = 0.1, force = \"held\"",
+     "f.toml:1:50: held(NAME) takes the name of a contact, and nothing else\n    coordinate = [{name = \"x\", start = "
+     "0.1, force = \"held\"}, {name = \"y\", start = 2}]\n                                                     ^"},
     {"InactiveInAnOrbitIsUnknown", "[[jump]]", "[orbit]\nq = [1, 1]\nv = [1, 1]\ninactive = [\"flor\"]\n[[jump]]",
      "f.toml:12:13: no [[constraint]] is named 'flor'; did you mean 'floor'?\n    inactive = [\"flor\"]\n              "
      " "
