@@ -45,9 +45,12 @@ struct Transport {
             const auto G = (link.by_place.size() > 0 ? link.by_place : link.G).head(size);
             const double rate = link.G.head(size).dot(F);
             error -= F * ((G.dot(error) + link.residual) / rate);
-            const VectorXd cross = covariance * G.transpose() / rate;  // covariance with the event time
-            const double variance = G.dot(cross) / rate;
-            covariance += variance * F * F.transpose() - F * cross.transpose() - cross * F.transpose();
+            // The covariance with the event time, as a row and as a column: roundings that are not symmetric would
+            // double at every crossing if one stood for both.
+            const Eigen::RowVectorXd row = G * covariance / rate;
+            const VectorXd column = covariance * G.transpose() / rate;
+            const double variance = G.dot(column) / rate;
+            covariance += variance * F * F.transpose() - F * row - column * F.transpose();
             return;
         }
         const auto J = link.J.topLeftCorner(size, size);

@@ -132,7 +132,7 @@ constraint = [{name = "knee", gap = "x", restitution = 0, latch = ")toml" +
 }
 
 TEST(JumpDerivatives, FollowTheEndOfALatch) {
-    expect_jump_differences(typed(latched_knee("t - 1.3 + y/20 - a/50")), 1.45, "impact zeno release ");
+    expect_jump_differences(typed(latched_knee("t - 1.3 + y/20 - a/50")), 1.45, "impact zeno release impact ");
 }
 
 TEST(JumpDerivatives, FollowALatchThatTakesAnImpulse) {
@@ -182,6 +182,22 @@ TEST(JumpDerivatives, GiveAnErrorEstimate) {
     error << rough.end.q - exact.end.q, rough.end.v - exact.end.v;
     EXPECT_LT((error + Eigen::VectorXd::Zero(4)).norm(), 10.0 * estimate.end->reach());
     EXPECT_LT(estimate.end->reach(), 1e-6);
+}
+
+// A thousand steps: the rounding of the estimate itself must not grow, and the walker keeps its period.
+TEST(JumpDerivatives, EstimateTheErrorOfALongWalk) {
+    const auto model = load("simplest_walker");
+    achilles::Run run = model->default_run();
+    run.options.tolerance = 1e-13;
+    run.options.end_time = 3890.0;
+    const Trajectory walk = simulate(model, run);
+    ASSERT_EQ(walk.outcome.kind, Outcome::Kind::end_time) << walk.outcome.message;
+    ASSERT_GT(walk.events.size(), 1000u);
+    for (std::size_t k = 50; k < walk.events.size(); ++k)
+        EXPECT_NEAR(walk.events[k].t - walk.events[k - 1].t, 3.882463752851374138, 1e-9) << k;
+    const ErrorEstimate estimate = estimate_error(walk);
+    ASSERT_TRUE(estimate.end) << estimate.no_estimate_reason;
+    EXPECT_LT(estimate.end->reach(), 1e-9);
 }
 
 }  // namespace
