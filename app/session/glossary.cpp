@@ -113,7 +113,7 @@ std::span<const GalleryGroup> gallery() {
          {"ball_on_floor", "ball_on_incline", "ball_in_bowl", "ball_on_hills", "ball_down_a_wave", "ball_on_cylinder",
           "bead_in_ring", "ball_on_string", "ball_on_egg_crate", "disc_on_waves", "cart_pendulum", "triple_pendulum",
           "falling_rod"}},
-        {"robots and walkers", {"swinging_leg", "kneed_leg", "simplest_walker", "arm_at_wall"}},
+        {"robots and walkers", {"swinging_leg", "kneed_leg", "simplest_walker", "kneed_walker", "arm_at_wall"}},
         {"driven",
          {"impact_oscillator", "ball_on_table", "ball_on_vibrating_table", "two_mass_oscillator",
           "driven_double_pendulum", "ball_in_gusts", "bouncing_wheel", "slider_crank", "kapitza_pendulum"}},

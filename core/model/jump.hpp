@@ -1,4 +1,4 @@
-// Jumps of the state, latches, and contacts that count only sometimes (theory-modes.md).
+// Jumps of the state, latches, and contacts that count only sometimes (theory-modes.md 1, 2, 4).
 #pragma once
 
 #include <cstdint>

@@ -257,8 +257,7 @@ class Tracer {
         sampler_.walk(request_.from, request_.to, request_.with_work,
                       [&](const Sample& sample, const DenseSegment* piece) {
                           read_node(sample, next_);
-                          if (is_torn(sample.j))
-                              for (const auto& thinner : thinners_) thinner->lift();
+                          if (is_torn(sample.j)) tear();
                           if (piece != nullptr && has_last_)
                               step(*piece);
                           else
@@ -283,6 +282,11 @@ class Tracer {
             if (event.q_before() != event.q) return true;
         }
         return false;
+    }
+    // A path in a plane ends where the position jumps; over time a jump is a vertical line.
+    void tear() {
+        for (const auto& thinner : thinners_) thinner->lift();
+        if (!request_.over_time) has_taken_ = false;
     }
     void read_node(const Sample& sample, TraceNode& node) {
         node.t = sample.t;

@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "contacts/complementarity.hpp"
 #include "model/model.hpp"
@@ -71,11 +72,23 @@ class Probe {
     }
     // Tolerance for h = 0.
     static double off(const State& state) { return 1e-12 * std::max(1.0, state.q.norm()); }
-    // The contact forces that hold these contacts: W lambda = -hddot, with hddot of the free motion.
+    // hddot of a contact without constraints, where these contacts act on the forces.
+    double acceleration_of(std::size_t contact, const State& state, const ClosedContacts& held) {
+        const Mode acting = Mode().with_acting(held.contacts_at(held.places_of(model.equations().in_forces)));
+        return surfaces.of(contact, acting).normal_acceleration(state);
+    }
+    // The smallest of these forces but for those of latched contacts, which may pull.
+    static double least_force(const Eigen::VectorXd& forces, const ClosedContacts& held, ContactSet latched) {
+        double least = std::numeric_limits<double>::infinity();
+        for (std::size_t i = 0; i < held.which.size(); ++i)
+            if (!latched.contains(held.which[i])) least = std::min(least, forces[static_cast<Eigen::Index>(i)]);
+        return least;
+    }
+    // The contact forces that hold these contacts: W lambda = -hddot.
     Eigen::VectorXd forces(const State& state, const ClosedContacts& held) {
         Eigen::VectorXd hddot(static_cast<Eigen::Index>(held.which.size()));
         for (Eigen::Index i = 0; i < hddot.size(); ++i)
-            hddot[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
+            hddot[i] = acceleration_of(held.which[static_cast<std::size_t>(i)], state, held);
         return least(held.W, -hddot);
     }
 
@@ -91,7 +104,7 @@ class Probe {
     double off_balance(const State& state, const ClosedContacts& held, ContactForces& told) {
         Eigen::VectorXd left(static_cast<Eigen::Index>(held.which.size())), lambda = left;
         for (Eigen::Index i = 0; i < left.size(); ++i) {
-            left[i] = surfaces.of(held.which[static_cast<std::size_t>(i)]).normal_acceleration(state);
+            left[i] = acceleration_of(held.which[static_cast<std::size_t>(i)], state, held);
             lambda[i] = told.force(held.which[static_cast<std::size_t>(i)]);
         }
         const double size = 1e-300 + left.cwiseAbs().maxCoeff() + (held.W.cwiseAbs() * lambda.cwiseAbs()).maxCoeff();
@@ -453,7 +466,8 @@ class PhaseCheck {
         check(event.mode.held() == phase.mode.held().with(event.contacts) && event.mode.held() != phase.mode.held(),
               "a Zeno point holds", event.t);
         const ClosedContacts held = probe_.surfaces.at(after(event), event.mode.held());
-        check(probe_.surfaces.has_friction() || probe_.forces(after(event), held).minCoeff() >= 0.0,
+        check(probe_.surfaces.has_friction() ||
+                  Probe::least_force(probe_.forces(after(event), held), held, event.latched) >= 0.0,
               "a force pulls at a Zeno point", event.t);
         check(event.impacts == impacts_, "a Zeno point counts other impacts", event.t);
         if (is_plastic_landing(event)) return;
@@ -562,11 +576,11 @@ Violations contact_force(const Trajectory& trajectory) {
         }
         const Eigen::VectorXd forces = probe.forces(sample.state, held);
         strongest = std::max(strongest, forces.maxCoeff());
-        complain(violations, forces.minCoeff() > 0.0,
-                 fmt::format("in contact a force is {:.3g} at t = {:.17g}", forces.minCoeff(), sample.t));
+        const double least = Probe::least_force(forces, held, sample.latched);
+        complain(violations, least > 0.0, fmt::format("in contact a force is {:.3g} at t = {:.17g}", least, sample.t));
     }
     for (const Event& event : trajectory.events) {
-        if (event.kind != Event::Kind::release) continue;
+        if (event.kind != Event::Kind::release || event.ends_latch) continue;
         const ClosedContacts held = probe.surfaces.at(after(event), event.mode.held().with(event.contacts));
         const Eigen::VectorXd forces = probe.pressing(after(event), held);
         for (std::size_t i = 0; i < held.which.size(); ++i) {

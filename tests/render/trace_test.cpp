@@ -54,6 +54,19 @@ TEST(Trace, ShowsAForceToItsHighestWhereItJumps) {
     EXPECT_GT(drawn::worst_over_time(run, picture), 0.7);
 }
 
+// Where the state jumps a path in a plane ends, also if the phase changes there.
+TEST(Trace, PathsEndWhereTheStateJumps) {
+    const Trajectory run = run_until("kneed_walker", 1.2);
+    const drawn::Picture picture(run, view("q1", "q1'"));
+    for (const Curve& curve : picture.figure.panels[0].curves)
+        for (std::size_t i = 1; i < curve.points.size(); ++i) {
+            const Point &a = curve.points[i - 1], &b = curve.points[i];
+            if (std::isfinite(a.x) && std::isfinite(b.x)) {
+                EXPECT_LT(b.x - a.x, 5.0) << a.x;  // degrees; q1 falls between the jumps
+            }
+        }
+}
+
 TEST(Trace, PhasePlaneOfALongRunIsNoPolygon) {
     for (const double end : {1.0, 100.0, 500.0}) {
         const Trajectory run = run_until("ball_on_vibrating_table", end);

@@ -56,7 +56,8 @@ const FileEdit with_advice[] = {
      "^\nwrite one [[constraint]] for each"},
     {"gap = \"x", "h = \"x",
      "f.toml:18:1: unknown key 'h' in [[constraint]]; did you mean 'gap'?\n    h = \"x - sin(theta)/9\"\n    ^\nknown "
-     "keys: name, gap, between, longest, normal, slip, friction, static_friction, restitution, when, begins, ends, "
+     "keys: name, gap, between, longest, normal, slip, friction, static_friction, restitution, when, latch, begins, "
+     "ends, "
      "drawing"},
     {"rate = 0.5", "velocity = 0.5",
      "f.toml:5:1: unknown key 'velocity' in [[coordinate]]; did you mean 'rate'?\n    velocity = 0.5\n    ^\nknown "

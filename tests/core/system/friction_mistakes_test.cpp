@@ -158,11 +158,12 @@ const FrictionMistake friction_mistakes[] = {
      "keys: name, slip, level, static_level"},
     {"LevelOfAContact", "friction = \"mu\"", "level = \"mu\"",
      "f.toml:8:1: unknown key 'level' in [[constraint]]; did you mean 'friction'?\n    level = \"mu\"\n    ^\nknown "
-     "keys: name, gap, between, longest, normal, slip, friction, static_friction, restitution, when, begins, ends, "
+     "keys: name, gap, between, longest, normal, slip, friction, static_friction, restitution, when, latch, begins, "
+     "ends, "
      "drawing"},
     {"WordOfAnotherProgram", "friction = \"mu\"", "mu = 0.3",
      "f.toml:8:1: unknown key 'mu' in [[constraint]]; did you mean 'friction'?\n    mu = 0.3\n    ^\nknown keys: name, "
-     "gap, between, longest, normal, slip, friction, static_friction, restitution, when, begins, ends, drawing"},
+     "gap, between, longest, normal, slip, friction, static_friction, restitution, when, latch, begins, ends, drawing"},
     {"FrictionOfACoordinate", "{name = \"phi\"}", "{name = \"phi\", friction = 1}",
      "f.toml:1:94: unknown key 'friction' in [[coordinate]]\n    ...1, rate = 0.7}, {name = \"y\", start = 2}, {name = "
      "\"phi\", friction = 1}]\n                                                               ^\nfriction is a key of "
