@@ -209,7 +209,7 @@ std::optional<Certificate> SharpConditions::prove(const Collision& collision, Ce
         if (!time) return std::nullopt;
         if (!contain(*time)) continue;
         std::optional<Certificate::OtherContactBounds> others;
-        if (!prove_other_contacts_stay(variables_, others)) return std::nullopt;
+        if (!prove_other_contacts_stay(variables_, others, e_)) return std::nullopt;
         find_shadow(*time);
         std::optional<Certificate> certificate;
         if (scope == CertificateScope::decision) certificate = certificate_of(collision, *time, trend);

@@ -22,6 +22,8 @@ StickingConditions::StickingConditions(const Model& model, const Run& run, const
                                        ContactSet unpressed, const FloatEnvironmentGuard& ground)
     : TruncationConditions(model, run, e, key, unpressed, ground),
       never_slides_(model.equations().friction.at(key.contact).never_slides),
+      holds_others_(!key.mode.is_free()),
+      beside_slip_(!key.mode.slipping().within(key.mode.held()).empty()),
       second_sigma_(model.layout().second_sigma()),
       speed_(model.layout().sliding_speed()),
       terms_(model.evaluator<Interval>(model.bouncing(key).sticking, run.parameters)),
@@ -42,14 +44,36 @@ void StickingConditions::evaluate_point(const Collision& collision) {
     point_.run();
 }
 
+// The restitution of the impacts to leading order, after evaluate_point().
+double StickingConditions::restitution_at_point(const Collision& collision) const {
+    if (!collision.is_capped) return mid(e_);
+    const double x = -2.0 * point_.hddot(1) / point_.hddot(0);
+    const double squared = 1.0 + x * (2.0 * point_.W(0, 1) + point_.W(0, 0) * x) / point_.W(1, 1);
+    return squared > 0.0 ? std::min(std::sqrt(squared), mid(e_)) : 0.0;
+}
+
 // I_u to leading order, after evaluate_point().
-double StickingConditions::slip_integral(double w) const {
-    return estimated_slip_integral(-point_.hddot(0), point_.hddot(1), mid(e_), w);
+double StickingConditions::slip_integral(const Collision& collision) const {
+    return estimated_slip_integral(-point_.hddot(0), point_.hddot(1), restitution_at_point(collision), collision.speed);
+}
+
+// The energy that an impact with u = x w loses, times 2 det/w^2, after terms_ has run.
+Interval StickingConditions::energy_loss(const Interval& x) const {
+    const Interval one(1.0), W_NN = terms_.W(0, 0), W_NT = terms_.W(0, 1), W_TT = terms_.W(1, 1), W_TN = terms_.W_10();
+    if (!beside_slip_) return (one - square(e_)) * W_TT + Interval(2.0) * x * W_NT + square(x) * W_NN;
+    return (one - square(e_)) * W_TT + x * ((one - e_) * W_NT + (one + e_) * W_TN) + square(x) * W_NN;
+}
+
+// The restitution with which it loses none; undefined if it is not proved to gain energy with e.
+Interval StickingConditions::capped_restitution(const Interval& x) const {
+    if (beside_slip_ || !certainly_negative(energy_loss(x))) return Interval::undefined();
+    const Interval squared = Interval(1.0) + x * (Interval(2.0) * terms_.W(0, 1) + terms_.W(0, 0) * x) / terms_.W(1, 1);
+    return certainly_positive(squared) ? sqrt(squared) : Interval::undefined();
 }
 
 State StickingConditions::restart_at(const Collision& collision) {
     evaluate_point(collision);
-    const double I_u = slip_integral(collision.speed);
+    const double I_u = slip_integral(collision);
     State state = collision.with(collision.tangential);
     for (std::size_t i = 0; i < dof_; ++i) {
         const auto k = static_cast<Eigen::Index>(i);
@@ -63,9 +87,9 @@ State StickingConditions::restart_at(const Collision& collision) {
 bool StickingConditions::fails_at_point(const Collision& collision) {
     if (fails_by_speed(collision.speed)) return true;
     evaluate_point(collision);
-    const double a = -point_.hddot(0), e = mid(e_), w = collision.speed;
+    const double a = -point_.hddot(0), e = restitution_at_point(collision), w = collision.speed;
     if (!(a > 0.0) || !(e < 1.0)) return true;
-    const double drift = std::abs(slip_integral(w)), height = e * w * e * w / (2.0 * a);
+    const double drift = std::abs(slip_integral(collision)), height = e * w * e * w / (2.0 * a);
     double uniform = 0.0;
     for (std::size_t i = 0; i < dof_; ++i) {
         const double off = std::abs(point_.N(0, i)) * height + std::abs(point_.N(1, i)) * drift;
@@ -108,9 +132,10 @@ bool StickingConditions::begin_box(const Collision& collision) {
     // Radii near those that contain() will require; any may be tried.
     const Interval a = -terms_.hddot(0), alpha = terms_.hddot(1);
     if (!certainly_positive(a) || !certainly_less(e_, Interval(1.0))) return false;
-    const Interval two(2.0), one(1.0), T = two * e_ * box_.w / (a * (one - e_));
+    const Interval two(2.0), one(1.0), e = collision.is_capped ? Interval(restitution_at_point(collision)) : e_,
+                                       T = two * e * box_.w / (a * (one - e));
     box_.duration = inflated(T.hi());
-    box_.slip = inflated((abs(alpha) * two * e_ * box_.w / a).hi());
+    box_.slip = inflated((abs(alpha) * two * e * box_.w / a).hi());
     for (std::size_t i = 0; i < dof_; ++i) {
         const Interval slip(box_.slip);
         box_.q_radius[i] = inflated(
@@ -121,14 +146,14 @@ bool StickingConditions::begin_box(const Collision& collision) {
     return box_.u.is_defined();
 }
 
-std::optional<StickingConditions::Bounds> StickingConditions::bounds_over_box() {
+std::optional<StickingConditions::Bounds> StickingConditions::bounds_over_box(const Collision& collision) {
     box_.put_into(variables_);
     variables_[2 * dof_] = Interval(-box_.w.hi(), box_.w.hi());
     variables_[2 * dof_ + 1] = Interval(-box_.slip, box_.slip);
     if (!autonomous_) variables_.back() = box_.time();
     set_box(terms_, variables_);
     terms_.run();
-    const Interval one(1.0), two(2.0), half(0.5), four(4.0), e2 = square(e_);
+    const Interval one(1.0), two(2.0), half(0.5), four(4.0);
     Bounds b;
     b.a = -terms_.hddot(0);
     b.alpha = terms_.hddot(1);
@@ -136,17 +161,19 @@ std::optional<StickingConditions::Bounds> StickingConditions::bounds_over_box() 
     b.a_min = Interval(b.a.lo());
     b.a_max = Interval(b.a.hi());
     b.r = b.a_max / b.a_min;
+    b.x = b.alpha * Interval((two / b.a_max).lo(), (two / b.a_min).hi());
+    const Interval e = box_.e = collision.is_capped ? capped_restitution(hull(b.x, box_.u / box_.w)) : e_,
+                   e2 = square(e);
     if (!certainly_less(e2 * b.r, one)) return std::nullopt;
-    b.accumulation_time = accumulation_time_bounds(e_, b.a_min, b.a_max, box_.w);
+    b.accumulation_time = accumulation_time_bounds(e, b.a_min, b.a_max, box_.w);
     b.T = Interval(b.accumulation_time.latest.hi());
-    const Interval u2 = square(e_ * box_.w);
+    const Interval u2 = square(e * box_.w);
     b.height = u2 / (two * b.a_min);
     const Interval least = four * u2 / (square(b.a_max) * (one - e2 / b.r)),
                    most = four * u2 / (square(b.a_min) * (one - e2 * b.r));
     b.S_2 = Interval(least.lo(), most.hi());
     b.U_m = half * abs(b.alpha) * Interval(most.hi());
     b.I_u = half * b.alpha * b.S_2;
-    b.x = b.alpha * Interval((two / b.a_max).lo(), (two / b.a_min).hi());
     return b;
 }
 
@@ -154,7 +181,7 @@ std::optional<StickingConditions::Bounds> StickingConditions::bounds_over_box() 
 bool StickingConditions::contain(const Bounds& b) {
     bool inside = autonomous_ || b.T.hi() < box_.duration;
     if (!inside) box_.duration = inflated(b.T.hi());
-    inside = fits((abs(b.alpha) * Interval(2.0) * e_ * box_.w / b.a_min).hi(), box_.slip) && inside;
+    inside = fits((abs(b.alpha) * Interval(2.0) * box_.e * box_.w / b.a_min).hi(), box_.slip) && inside;
     const Interval &sigma = variables_[2 * dof_], &u = variables_[2 * dof_ + 1];
     for (std::size_t i = 0; i < dof_; ++i) {
         const Interval rate = variables_[dof_ + i] + terms_.N(0, i) * sigma + terms_.N(1, i) * u;
@@ -172,39 +199,52 @@ bool StickingConditions::contain(const Bounds& b) {
 
 // What is proved: the impact at the cut and all later ones stick without a gain of energy, and the contact at rest
 // sticks or slides.
-Certificate::Tail StickingConditions::tail_over_box(const Bounds& b) {
-    const Interval one(1.0), two(2.0), W_NN = terms_.W(0, 0), W_NT = terms_.W(0, 1), W_TT = terms_.W(1, 1);
-    if (!certainly_positive(W_NN) || !certainly_positive(W_NN * W_TT - square(W_NT))) return Certificate::Tail::none;
+Certificate::Tail StickingConditions::tail_over_box(const Collision& collision, const Bounds& b) {
+    const Interval one(1.0), e = box_.e, W_NN = terms_.W(0, 0), W_NT = terms_.W(0, 1), W_TT = terms_.W(1, 1),
+                             W_TN = terms_.W_10();
+    if (!certainly_positive(W_NN) ||
+        !certainly_positive(beside_slip_ ? W_NN * W_TT - W_NT * W_TN : W_NN * W_TT - square(W_NT)))
+        return Certificate::Tail::none;
     for (std::size_t i = 0; i < 2 * dof_; ++i) slip_.input(i) = variables_[i];
     if (!autonomous_) slip_.clock() = variables_.back();
     // Whether an impact at these rates sticks: the impulses times det are inside the cone.
     const auto sticks = [&](const Interval& w, const Interval& u) {
-        slip_.input(speed_) = Interval(0.0, (e_ * abs(u) / (one + e_)).hi());
+        slip_.input(speed_) = Interval(0.0, (e * abs(u) / (one + e)).hi());
         slip_.run();
-        const Interval p = (one + e_) * w * W_TT + u * W_NT, p_T = (one + e_) * w * W_NT + u * W_NN;
+        const Interval p = (one + e) * w * W_TT + u * W_NT, p_T = (one + e) * w * W_TN + u * W_NN;
         return certainly_positive(never_slides_ ? p : slip_.coefficient() * p - abs(p_T));
     };
     if (!sticks(box_.w, box_.u)) return Certificate::Tail::none;
     // Later impacts: u = x w' with w' <= w. The cone scales with w', the speed in mu is at most that of w.
     if (!sticks(Interval(box_.w.hi()), b.x * Interval(box_.w.hi()))) return Certificate::Tail::none;
-    const Interval gain = (one - square(e_)) * W_TT + two * b.x * W_NT + square(b.x) * W_NN;
-    if (!(gain.lo() >= 0.0)) return Certificate::Tail::none;
-    const Interval lambda = W_NT * b.alpha + W_TT * b.a, tau = W_NT * b.a + W_NN * b.alpha;  // times det
+    if (!collision.is_capped && !(energy_loss(b.x).lo() >= 0.0)) return Certificate::Tail::none;
+    const Interval lambda = W_NT * b.alpha + W_TT * b.a, tau = W_TN * b.a + W_NN * b.alpha;  // times det
     if (!certainly_positive(lambda)) return Certificate::Tail::none;
     const Interval room = slip_.static_coefficient() * lambda - abs(tau);
     if (never_slides_ || certainly_positive(room)) return Certificate::Tail::stick;
     return certainly_negative(room) ? Certificate::Tail::stick_then_slip : Certificate::Tail::none;
 }
 
+bool StickingConditions::prove_others_stay(const Bounds& b, std::optional<Certificate::OtherContactBounds>& others) {
+    if (!holds_others_) return prove_other_contacts_stay(variables_, others);
+    const Interval x = hull(b.x, box_.u / box_.w), once = Interval(1.0) + box_.e;
+    const Interval ratio =
+        -((once * terms_.W_10() + x * terms_.W(0, 0)) / (once * terms_.W(1, 1) + x * terms_.W(0, 1)));
+    Interval& slip = variables_[2 * dof_ + 1];
+    slip = hull(slip, box_.u);
+    return prove_other_contacts_stay(variables_, others, box_.e, ratio);
+}
+
 std::optional<Certificate> StickingConditions::prove(const Collision& collision) {
+    obstacle_.reset();
     if (!begin_box(collision)) return std::nullopt;
     for (int round = 0; round < 25; ++round) {
-        const auto bounds = bounds_over_box();
+        const auto bounds = bounds_over_box(collision);
         if (!bounds) return std::nullopt;
         if (!contain(*bounds)) continue;
         std::optional<Certificate::OtherContactBounds> others;
-        const Certificate::Tail tail = tail_over_box(*bounds);
-        if (tail == Certificate::Tail::none || !prove_other_contacts_stay(variables_, others)) return std::nullopt;
+        const Certificate::Tail tail = tail_over_box(collision, *bounds);
+        if (tail == Certificate::Tail::none || !prove_others_stay(*bounds, others)) return std::nullopt;
         auto certificate = certificate_of(collision, *bounds);
         if (!certificate) return std::nullopt;
         certificate->tail = tail;
@@ -216,10 +256,11 @@ std::optional<Certificate> StickingConditions::prove(const Collision& collision)
 
 std::optional<Certificate> StickingConditions::certificate_of(const Collision& collision, const Bounds& b) {
     const PairTerms<Evaluator<Interval>>& x = terms_;
-    const Interval one(1.0), two(2.0), three(3.0), w = box_.w, e2 = e_ * sqrt(b.r), e3 = one - e2 * square(e2);
-    const Interval I_h = two * e_ * square(e_) * w * square(w) / (three * square(b.a_min) * e3);
-    const Interval first = two * e_ * w / b.a_min;  // the first flight at most
-    const Interval speeds = b.a_max * I_h;          // the integrals of hdot^2, u^2 and |hdot u|
+    const Interval one(1.0), two(2.0), three(3.0), w = box_.w, e_k = box_.e, e2 = e_k * sqrt(b.r),
+                                                   e3 = one - e2 * square(e2);
+    const Interval I_h = two * e_k * square(e_k) * w * square(w) / (three * square(b.a_min) * e3);
+    const Interval first = two * e_k * w / b.a_min;  // the first flight at most
+    const Interval speeds = b.a_max * I_h;           // the integrals of hdot^2, u^2 and |hdot u|
     const Interval slips = square(abs(b.alpha)) / three * first * square(first) / e3;
     const Interval products = sqrt(max(speeds * slips, Interval(0.0)));
     double lipschitz = 1.0, largest = 0.0;
@@ -253,7 +294,7 @@ std::optional<Certificate> StickingConditions::certificate_of(const Collision& c
         velocity = velocity + square(Interval(need_s_[i]) + Interval(box_.d_s[i]));
     }
     const AccelerationTrend trend = trend_at(collision);
-    const double e = mid(e_);
+    const double e = restitution_at_point(collision);
     Certificate c =
         certificate_at(collision.before.t, b.accumulation_time,
                        estimated_accumulation_time(trend, e, collision.speed) +
@@ -266,7 +307,7 @@ std::optional<Certificate> StickingConditions::certificate_of(const Collision& c
     c.a_min = b.a_min.lo();
     c.a_max = b.a_max.hi();
     decide(c, b.half_width());
-    c.assumptions = {{"e^2 a_max/a_min", (square(e_) * b.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
+    c.assumptions = {{"e^2 a_max/a_min", (square(e_k) * b.r).hi(), 1.0}, {"normal acceleration", -c.a_min, 0.0}};
     return c;
 }
 

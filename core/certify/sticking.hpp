@@ -12,6 +12,13 @@
 //                mu_s (W_NT alpha + W_TT a) > |W_NT a + W_NN alpha|
 //            and slides if this is certainly false; until tau_inf u = 0 is kept in either case
 //
+// others     They are held, so W is that of the contact in their mode; W_TN is not W_NT if some of them slide. An impulse
+//            has p_T/p = -(W_TN (1+e) + W_NN x)/(W_TT (1+e) + W_NT x), from which what they feel follows
+//            (ConditionsBase::prove_other_contacts_stay)
+//
+// cap        If every impact would gain energy, e is e' = sqrt(1 + x (2 W_NT + W_NN x)/W_TT) at each, enclosed over X
+//            and x (theory-friction.md 4.2). None of the others may slide then.
+//
 // restart    u does not cancel over the flights. Its integral I_u is in [alpha] S_2/2, where S_2 is the sum of the
 //            squares of the flight times. The motion in contact starts at q + n_T I_u, s + C I_u.
 //
@@ -48,21 +55,26 @@ class StickingConditions : public TruncationConditions {
     struct Bounds;
     struct StickingBox : CollisionBox {
         Interval w, u;                 // the speed of the impact, and the slip before it
+        Interval e;                    // the restitution of the impacts
         double slip = 0.0;             // u_m, assumed
         std::vector<Interval> n_T, C;  // at the collision
         std::vector<double> d_q, d_s;  // distances of the restart from the collision
         explicit StickingBox(std::size_t dof) : CollisionBox(dof), n_T(dof), C(dof), d_q(dof), d_s(dof) {}
     };
     void evaluate_point(const Collision& collision);
-    double slip_integral(double w) const;
+    double restitution_at_point(const Collision& collision) const;
+    double slip_integral(const Collision& collision) const;
+    Interval energy_loss(const Interval& x) const;
+    Interval capped_restitution(const Interval& x) const;
     std::optional<Certificate> prove(const Collision& collision);
     bool begin_box(const Collision& collision);
-    std::optional<Bounds> bounds_over_box();
+    std::optional<Bounds> bounds_over_box(const Collision& collision);
     bool contain(const Bounds& bounds);
-    Certificate::Tail tail_over_box(const Bounds& bounds);
+    Certificate::Tail tail_over_box(const Collision& collision, const Bounds& bounds);
+    bool prove_others_stay(const Bounds& bounds, std::optional<Certificate::OtherContactBounds>& others);
     std::optional<Certificate> certificate_of(const Collision& collision, const Bounds& bounds);
 
-    bool never_slides_;
+    bool never_slides_, holds_others_, beside_slip_;
     std::uint32_t second_sigma_, speed_;
     PairTerms<Evaluator<Interval>> terms_;  // over X
     PairTerms<Evaluator<double>> point_;    // at the collision

@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "certify/impact_law_proof.hpp"
 #include "certify/paper.hpp"
 #include "certify/range.hpp"
 #include "certify/sharp.hpp"
@@ -136,18 +137,33 @@ ConditionsBase::ConditionsBase(const Model& model, const Run& run, const OtherCo
       variables_(std::move(variables)),
       is_alone_(model.contacts() == 1),
       unpressed_(unpressed),
-      other_contact_terms_(others) {
-    if (other_contact_terms_ != nullptr)
-        other_contact_program_ = model.evaluator<Interval>(other_contact_terms_->program, run.parameters);
+      other_contact_terms_(others),
+      impulse_ratio_(model.layout().impulse_ratio()),
+      sliding_speed_(model.layout().sliding_speed()) {
+    if (other_contact_terms_ == nullptr) return;
+    other_contact_program_ = model.evaluator<Interval>(other_contact_terms_->program, run.parameters);
+    if (!other_contact_terms_->impact_law.elements.empty())
+        impact_law_program_ = model.evaluator<Interval>(other_contact_terms_->impact_law.program, run.parameters);
 }
 
 bool ConditionsBase::prove_other_contacts_stay(const std::vector<Interval>& box,
-                                               std::optional<Certificate::OtherContactBounds>& proved) {
+                                               std::optional<Certificate::OtherContactBounds>& proved,
+                                               const Interval& e, const Interval& ratio) {
+    obstacle_.reset();
     if (other_contact_terms_ == nullptr) return true;
     set_box(other_contact_program_, box);
+    if (!other_contact_terms_->cones.empty()) other_contact_program_.input(sliding_speed_) = Interval(0.0);
+    const ImpactLawTerms& law = other_contact_terms_->impact_law;
+    if (!law.elements.empty()) other_contact_program_.input(impulse_ratio_) = ratio;
     other_contact_program_.run();
-    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_, inactive_, latched_);
+    proved = bounds_on_other_contacts(*other_contact_terms_, other_contact_program_, unpressed_, inactive_, latched_,
+                                      &obstacle_);
     if (!proved) return false;
+    if (!law.elements.empty()) {
+        set_box(impact_law_program_, box);
+        obstacle_ = doubt_of_impact_law(law, impact_law_program_, sliding_speed_, e);
+        if (obstacle_) return false;
+    }
     if (is_alone_) proved.reset();
     return true;
 }
@@ -198,21 +214,28 @@ AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
 std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
                                                                         const Evaluator<Interval>& program,
                                                                         ContactSet unpressed, ContactSet inactive,
-                                                                        ContactSet latched) {
+                                                                        ContactSet latched,
+                                                                        std::optional<BouncingObstacle>* obstacle) {
     Certificate::OtherContactBounds others;
+    const auto fail = [obstacle](std::size_t which, std::string_view text) {
+        if (obstacle != nullptr) *obstacle = BouncingObstacle{which, text};
+        return std::nullopt;
+    };
     const std::size_t bouncing = other_contact_terms.bouncing.size();
     std::size_t next = bouncing;
     for (const std::size_t contact : other_contact_terms.held) {
         const Interval hddot = program.output(next), W = program.output(next + 1);
         next += 2;
         const bool is_unpressed = unpressed.contains(contact), is_latched = latched.contains(contact);
-        if (!(is_unpressed || is_latched || certainly_negative(hddot)) || !certainly_positive(W)) return std::nullopt;
+        if (!(is_unpressed || is_latched || certainly_negative(hddot)) || !certainly_positive(W))
+            return fail(contact, "is not proved to stay pressed");
         Certificate::OtherContactBounds::HeldContactBound held{contact, 0.0, 0.0,
                                                                is_unpressed ? 0.0 : (-hddot / W).lo()};
         for (std::size_t k = 0; k < bouncing; ++k) {
             const Interval kappa = program.output(next++);
             if (!is_latched && !(kappa.lo() >= 0.0)) {
-                if (!counts_as_zero(kappa, std::sqrt(mid(program.output(k)) / mid(W)))) return std::nullopt;
+                if (!counts_as_zero(kappa, std::sqrt(mid(program.output(k)) / mid(W))))
+                    return fail(contact, "is not proved to stay closed under the impulses");
                 others.rounded_zero = true;
             }
             held.transmission_low = k == 0 ? kappa.lo() : std::min(held.transmission_low, kappa.lo());
@@ -223,17 +246,31 @@ std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const Ot
     for (const std::size_t contact : other_contact_terms.open) {
         const Interval gap = program.output(next++);
         if (inactive.contains(contact)) {
-            if (!certainly_negative(gap)) return std::nullopt;
+            if (!certainly_negative(gap)) return fail(contact, "is not proved to stay closed without counting");
             continue;
         }
-        if (!certainly_positive(gap)) return std::nullopt;
+        if (!certainly_positive(gap)) return fail(contact, "is not proved to stay open");
         others.least_gap = std::min(others.least_gap.value_or(std::numeric_limits<double>::infinity()), gap.lo());
     }
-    for (std::size_t i = 0; i < other_contact_terms.positive; ++i)
-        if (!certainly_positive(program.output(next++))) return std::nullopt;
+    for (std::size_t i = 0; i < other_contact_terms.positive; ++i) {
+        if (certainly_positive(program.output(next++))) continue;
+        if (i >= other_contact_terms.conditions.size()) return std::nullopt;
+        return fail(other_contact_terms.conditions[i].which, other_contact_terms.conditions[i].text);
+    }
     for (std::size_t i = 0; i < other_contact_terms.nonzero; ++i) {
         const Interval on = program.output(next++);
         if (!certainly_positive(on) && !certainly_negative(on)) return std::nullopt;
+    }
+    for (const std::size_t contact : other_contact_terms.cones) {
+        const auto place = std::find(other_contact_terms.held.begin(), other_contact_terms.held.end(), contact) -
+                           other_contact_terms.held.begin();
+        const Interval W = program.output(bouncing + static_cast<std::size_t>(place) * (2 + bouncing) + 1);
+        const double size = std::sqrt(mid(program.output(0)) / mid(W));
+        for (int side = 0; side < 2; ++side) {
+            const Interval room = program.output(next++);
+            if (!(room.lo() >= 0.0) && !counts_as_zero(room, size))
+                return fail(contact, "is not proved to stick under the impulses");
+        }
     }
     return others;
 }

@@ -89,11 +89,12 @@ inline bool sticks_at_impacts(const Model& model, const BouncingKey& key) {
 
 // A collision, with all quantities that the conditions may use.
 struct Collision {
-    State before;          // (q, v-) at tau_k, h(q) = 0
-    double speed = 0.0;    // w = |hdot| before
-    Vector tangential;     // s = v- - n hdot
-    Vector restart;        // after reinitialization: s, or v*
-    Vector position = {};  // q at the restart of a contact that sticks at its impacts; else empty
+    State before;            // (q, v-) at tau_k, h(q) = 0
+    double speed = 0.0;      // w = |hdot| before
+    Vector tangential;       // s = v- - n hdot
+    Vector restart;          // after reinitialization: s, or v*
+    Vector position = {};    // q at the restart of a contact that sticks at its impacts; else empty
+    bool is_capped = false;  // with friction: the restitution of the impact was reduced, so that no energy is gained
     // The same position and time with another velocity.
     State with(const Vector& v) const { return {before.q, v, before.t}; }
 };
@@ -137,6 +138,8 @@ class ConditionsBase {
                    std::vector<std::uint32_t> variables, ContactSet unpressed, const FloatEnvironmentGuard&);
 
  public:
+    // Which contact or joint is not proved to keep its state, since the last proof failed for that reason.
+    const std::optional<BouncingObstacle>& obstacle() const { return obstacle_; }
     // The contacts that do not count, from the next proof on: their gaps must stay below zero; and those held by a
     // latch, which nothing need press (theory-modes.md 3, 4).
     void set_states(ContactSet inactive, ContactSet latched) {
@@ -150,9 +153,12 @@ class ConditionsBase {
     }
     // Whether the other contacts are proved to keep their states (theory-gaps.md 2.3): over the box every held contact
     // is pressed, impulses press it further, and every other gap is open; and whether no jump happens, no latch ends and
-    // the bouncing contacts count. If there are others, `proved` receives their bounds.
+    // the bouncing contacts count. If there are others, `proved` receives their bounds. With friction: also that all
+    // contacts and joints stick or slide as they do, for the restitution e; `ratio` encloses p_T/p of the impulses of a
+    // contact that sticks at its impacts.
     bool prove_other_contacts_stay(const std::vector<Interval>& box,
-                                   std::optional<Certificate::OtherContactBounds>& proved);
+                                   std::optional<Certificate::OtherContactBounds>& proved,
+                                   const Interval& e = Interval(0.0), const Interval& ratio = Interval(0.0));
     // A certificate with tau_inf in [tau_k + earliest, tau_k + latest]. Its estimate of tau_inf is clamped to that
     // interval, and to at least tau_k.
     Certificate certificate_at(double tau_k, const AccumulationTime& accumulation_time, double estimated) const;
@@ -161,13 +167,15 @@ class ConditionsBase {
 
     std::size_t dof_;
     Truncation truncation_;
+    std::optional<BouncingObstacle> obstacle_;
 
  private:
     std::vector<std::uint32_t> variables_;
     bool is_alone_;  // there is no other contact; there may be joints
     ContactSet unpressed_, inactive_, latched_;
     const OtherContactTerms* other_contact_terms_;
-    Evaluator<Interval> other_contact_program_;
+    Evaluator<Interval> other_contact_program_, impact_law_program_;
+    std::uint32_t impulse_ratio_, sliding_speed_;  // inputs
 };
 
 // How much a certificate must contain. `decision`: what decides the truncation, and what the further motion depends on.
@@ -176,6 +184,7 @@ enum class CertificateScope { full, decision };
 
 class TruncationConditions : protected ConditionsBase {
  public:
+    using ConditionsBase::obstacle;
     using ConditionsBase::set_states;
     TruncationConditions(const Model& model, const Run& run, const Interval& e, const BouncingKey& key,
                          ContactSet unpressed, const FloatEnvironmentGuard& ground);
@@ -239,11 +248,10 @@ Interval instant_of(const Collision& collision, ContactTerms<Evaluator<Interval>
 // The bounds on the other contacts from the outputs of their program, which must have run. Returns nullopt if one of
 // them is not proved pressed, or open, a function is not proved positive, or a jump is not excluded. Contacts in
 // `unpressed`, which need no force (theory-gaps.md 2.7), need not be pressed; `latched` ones may pull; the gaps of
-// `inactive` ones must be negative.
-std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(const OtherContactTerms& other_contact_terms,
-                                                                        const Evaluator<Interval>& program,
-                                                                        ContactSet unpressed, ContactSet inactive = {},
-                                                                        ContactSet latched = {});
+// `inactive` ones must be negative. `obstacle`, if not null, receives what is not proved.
+std::optional<Certificate::OtherContactBounds> bounds_on_other_contacts(
+    const OtherContactTerms& other_contact_terms, const Evaluator<Interval>& program, ContactSet unpressed,
+    ContactSet inactive = {}, ContactSet latched = {}, std::optional<BouncingObstacle>* obstacle = nullptr);
 
 // kappa of held contact i for the bouncing contact, from a program that has run.
 Interval transmission(const OtherContactTerms& other_contact_terms, const Evaluator<Interval>& program, std::size_t i);

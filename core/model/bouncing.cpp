@@ -103,7 +103,7 @@ BouncingModel derive_bouncing(const BouncingContact& contact, const Equations& e
 
 OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
                                         const Expressions& velocity, ContactModes& motions, const Layout& layout,
-                                        const Expressions& positive) {
+                                        const FrictionConditions& friction) {
     const std::vector<ContactEquations>& contacts = motions.of(mode).contacts;
     std::vector<std::uint32_t> v;
     for (std::size_t i = 0; i < layout.dof; ++i) v.push_back(layout.v(i));
@@ -114,6 +114,10 @@ OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing
     for (std::size_t j = 0; j < contacts.size(); ++j) {
         if (mode.is_held(j)) {
             result.held.push_back(j);
+            if (const auto known = friction.held.find(j); known != friction.held.end()) {
+                outputs.insert(outputs.end(), {known->second.hddot, known->second.W, known->second.kappa});
+                continue;
+            }
             outputs.push_back(substitute(contacts[j].hddot, v, velocity));
             outputs.push_back(contacts[j].W);
             for (const std::size_t k : bouncing) outputs.push_back(-(contacts[j].delassus[k] / contacts[j].W));
@@ -122,13 +126,15 @@ OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing
             gaps.push_back(contacts[j].gap);
         }
     }
-    Row conditions = positive, nonzero;
+    Row conditions = friction.positive, nonzero;
     for (const std::size_t k : bouncing)
         if (const auto& when = motions.when()[k]) conditions.push_back(substitute(*when, v, velocity));
     for (const Expression guard : motions.watched_guards()) nonzero.push_back(substitute(guard, v, velocity));
     result.positive = conditions.size();
     result.nonzero = nonzero.size();
-    result.program = Program(joined({outputs, gaps, conditions, nonzero}), layout.slots());
+    result.conditions = friction.conditions;
+    result.cones = friction.contacts_with_cone;
+    result.program = Program(joined({outputs, gaps, conditions, nonzero, friction.cones}), layout.slots());
     return result;
 }
 
@@ -151,7 +157,7 @@ Expressions pair_velocity(const std::array<Expressions, 2>& N, const Layout& lay
 
 TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array<Expressions, 2>& N,
                                           const Expressions& accelerations, const Expressions& delassus, bool bent,
-                                          const Layout& layout) {
+                                          const Layout& layout, const Expressions& skew) {
     const std::size_t n = layout.dof;
     Graph& graph = A.front().graph();
     const std::array<Expression, 2> sigma{graph.symbol(layout.sigma()), graph.symbol(layout.second_sigma())};
@@ -183,7 +189,7 @@ TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array
     }
     return TypedProgram<PairTerms>::of(layout.slots(), accelerations, delassus, A, joined({N[0], N[1]}),
                                        joined({B[0], B[1]}), joined({Ndot[0], Ndot[1]}), joined({Bdot[0], Bdot[1]}),
-                                       joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v));
+                                       joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v), skew);
 }
 
 PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,

@@ -13,6 +13,8 @@
 #pragma once
 
 #include <array>
+#include <map>
+#include <string_view>
 
 #include "model/derive.hpp"
 #include "program/program.hpp"
@@ -96,12 +98,12 @@ class PairTerms : public Terms<Base> {
  public:
     using Terms<Base>::Terms;
     // For the contacts k = 0, 1: hddot while both are open, N, B and their time derivatives; W_00, W_01, W_11; D_00,
-    // 2 D_01, D_11.
+    // 2 D_01, D_11. `skew` is W_10, if it may differ from W_01.
     static Expressions list(const Expressions& hddot, const Expressions& delassus, const Expressions& A,
                             const Expressions& N, const Expressions& B, const Expressions& Ndot,
                             const Expressions& Bdot, const Expressions& D, const Expressions& dA_dq,
-                            const Expressions& dA_ds) {
-        return joined({hddot, delassus, A, N, B, Ndot, Bdot, D, dA_dq, dA_ds});
+                            const Expressions& dA_ds, const Expressions& skew = {}) {
+        return joined({hddot, delassus, A, N, B, Ndot, Bdot, D, dA_dq, dA_ds, skew});
     }
     decltype(auto) hddot(std::size_t k) const { return this->output(k); }
     decltype(auto) W(std::size_t k, std::size_t l) const { return this->output(2 + k + l); }
@@ -113,6 +115,8 @@ class PairTerms : public Terms<Base> {
     decltype(auto) D(std::size_t k, std::size_t i) const { return row(9 + k, i); }
     decltype(auto) dA_dq(std::size_t i, std::size_t j) const { return row(12 + i, j); }
     decltype(auto) dA_ds(std::size_t i, std::size_t j) const { return row(12 + this->dof_ + i, j); }
+    // W_10 of a contact that sticks at its impacts. Other contacts that slide make W unsymmetric.
+    decltype(auto) W_10() const { return row(12 + 2 * this->dof_, 0); }
 
  private:
     decltype(auto) row(std::size_t k, std::size_t i) const { return this->output(5 + k * this->dof_ + i); }
@@ -138,6 +142,30 @@ struct BouncingModel {
     TypedProgram<PairTerms> sticking;
 };
 
+// Why a bouncing motion is not completed: what a contact or joint does, or is not proved to do. The text follows its
+// name.
+struct BouncingObstacle {
+    std::size_t which = 0;  // contact or joint
+    std::string_view text;
+};
+
+// The rows of contacts that are closed at the impacts, and of joints that stick, while one of the contacts bounces:
+// from them certify/impact_law_proof.hpp proves that the laws of impact and force have one solution. The program
+// returns W, row by row; the rates of the rows before an impact; for every element with a slip its mu, at the speed
+// Layout::sliding_speed(), and mu_s; and twice the kinetic energy.
+struct ImpactLawTerms {
+    struct Element {
+        std::size_t which;        // contact or joint
+        int gap = -1, slip = -1;  // rows; -1: none
+        bool slides = false, never_slides = false;
+        bool depends_on_speed = false;  // mu does
+        bool has_moving_surface = false;
+    };
+    std::vector<Element> elements;  // none: nothing needs a proof
+    std::size_t rows = 0;
+    Program program;
+};
+
 // Conditions on the other contacts while one contact (theory-gaps.md 2.3) or two contacts (3) bounce. Every other
 // contact is held or open. `velocity` has an expression for each slot of v. The program returns:
 //   for every bouncing contact: W;
@@ -146,14 +174,32 @@ struct BouncingModel {
 //   for every open contact: its gap;
 //   functions that must stay positive: of friction (theory-friction.md 4.1), and `when` of the bouncing contacts;
 //   `on` of the watched jumps, which must not vanish (theory-modes.md 3).
+//   for every held contact that sticks: the distances of its impulse from the two sides of its friction cone, which must
+//       not be negative (theory-friction.md 4.3).
 struct OtherContactTerms {
     std::vector<std::size_t> bouncing, held, open;
     Program program;
     std::size_t positive = 0, nonzero = 0;  // the numbers of these functions
+    // With friction: what the first of the positive functions prove, and the contacts with a cone.
+    std::vector<BouncingObstacle> conditions;
+    std::vector<std::size_t> cones;
+    ImpactLawTerms impact_law;
+};
+// What friction adds: conditions, with functions that must be positive; for held contacts, which are none without
+// friction, hddot (minus the force times W), W and kappa; and the cones.
+struct FrictionConditions {
+    struct HeldContact {
+        Expression hddot, W, kappa;
+    };
+    Expressions positive;
+    std::vector<BouncingObstacle> conditions;
+    std::map<std::size_t, HeldContact> held;
+    Expressions cones;
+    std::vector<std::size_t> contacts_with_cone;
 };
 OtherContactTerms derive_other_contacts(const std::vector<std::size_t>& bouncing, Mode mode,
                                         const Expressions& velocity, ContactModes& motions, const Layout& layout,
-                                        const Expressions& positive = {});
+                                        const FrictionConditions& friction = {});
 OtherContactTerms derive_other_contacts(std::size_t contact, Mode mode, ContactModes& motions, const Layout& layout);
 
 // Derives and compiles the programs of a contact, in a copy of its graph.
@@ -163,7 +209,7 @@ BouncingModel derive_bouncing(const BouncingContact& contact, const Equations& e
 // at this velocity, and W. If A is `bent`, it is not a polynomial of degree 2 in the velocity.
 TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array<Expressions, 2>& N,
                                           const Expressions& accelerations, const Expressions& delassus, bool bent,
-                                          const Layout& layout);
+                                          const Layout& layout, const Expressions& skew = {});
 // The velocity s + N sigma of these terms.
 Expressions pair_velocity(const std::array<Expressions, 2>& N, const Layout& layout);
 

@@ -38,8 +38,10 @@ struct Layout {
     std::uint32_t sliding_speed() const { return force(contacts); }
     std::uint32_t heat() const { return force(contacts) + 1; }
     std::uint32_t friction_force(std::size_t k) const { return force(contacts) + 2 + static_cast<std::uint32_t>(k); }
+    // p_T/p of the impulses of a contact that sticks at its impacts.
+    std::uint32_t impulse_ratio() const { return friction_force(frictions); }
     std::uint32_t held(std::size_t i) const {
-        return (frictions == 0 ? force(contacts) : friction_force(frictions)) + static_cast<std::uint32_t>(i);
+        return (frictions == 0 ? force(contacts) : impulse_ratio() + 1) + static_cast<std::uint32_t>(i);
     }
     // Whether views read the accelerations of gaps and the forces as inputs: they depend on the mode.
     bool has_contact_inputs() const { return contacts != 1 || frictions > 0 || forces_see_contact; }

@@ -141,30 +141,58 @@ void add_to_mode(ModeEquations& e, std::size_t which, Mode mode, const FrictionL
     }
 }
 
-FrictionForce friction_force(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
-                             const Layout& layout) {
+FrictionForce reaction(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
+                       const Layout& layout, const RowAccelerations& a) {
     const auto law = laws.find(which);
     const int sign = slip_sign(mode.state(which));
     if (is_joint(which)) {
         const SlipEquations& s = before.slips.at(which);
-        Graph& graph = s.u.graph();
-        if (sign == 0) return {s.on_slips.at(which), -s.udot, s.on_slips.at(which)};
-        return {graph.number(1), graph.number(-sign) * sliding_coefficient(law->second, sign, layout), graph.number(1)};
+        return {s.on_slips.at(which), -a.slip, s.on_slips.at(which)};
     }
     const ContactEquations& c = before.contacts[which];
     Graph& graph = c.hddot.graph();
-    if (law == laws.end() || mode.implied().contains(which)) return {-c.hddot, graph.number(0), c.delassus[which]};
+    if (law == laws.end() || mode.implied().contains(which)) return {-a.gap, graph.number(0), c.delassus[which]};
     if (sign != 0) {
         const Expression mu = sliding_coefficient(law->second, sign, layout);
-        return {-c.hddot, graph.number(sign) * mu * c.hddot,
+        return {-a.gap, graph.number(sign) * mu * a.gap,
                 sliding_column(before, which, sign, law->second, layout).on_gaps[which]};
     }
     const SlipEquations& s = before.slips.at(which);
     const Expression W_NN = c.delassus[which], W_NT = s.on_gaps[which], W_TN = c.on_slips.at(which),
                      W_TT = s.on_slips.at(which);
     // With uncoupled rows each force follows from its own row.
-    if (W_NT.is_zero() && W_TN.is_zero()) return {-c.hddot * W_TT, -s.udot * W_NN, W_NN * W_TT};
-    return {W_NT * s.udot - W_TT * c.hddot, W_TN * c.hddot - W_NN * s.udot, W_NN * W_TT - W_NT * W_TN};
+    if (W_NT.is_zero() && W_TN.is_zero()) return {-a.gap * W_TT, -a.slip * W_NN, W_NN * W_TT};
+    return {W_NT * a.slip - W_TT * a.gap, W_TN * a.gap - W_NN * a.slip, W_NN * W_TT - W_NT * W_TN};
+}
+
+RowAccelerations by_normal_force(const ModeEquations& before, std::size_t which, std::size_t contact) {
+    const ContactEquations& c = before.contacts[contact];
+    RowAccelerations result;
+    if (!is_joint(which)) result.gap = c.delassus[which];
+    if (before.slips.contains(which)) result.slip = c.on_slips.at(which);
+    return result;
+}
+
+RowAccelerations by_friction_force(const ModeEquations& before, std::size_t which, std::size_t contact) {
+    const SlipEquations& s = before.slips.at(contact);
+    RowAccelerations result;
+    if (!is_joint(which)) result.gap = s.on_gaps[which];
+    if (before.slips.contains(which)) result.slip = s.on_slips.at(which);
+    return result;
+}
+
+FrictionForce friction_force(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
+                             const Layout& layout) {
+    const int sign = slip_sign(mode.state(which));
+    if (is_joint(which) && sign != 0) {
+        Graph& graph = before.slips.at(which).u.graph();
+        return {graph.number(1), graph.number(-sign) * sliding_coefficient(laws.at(which), sign, layout),
+                graph.number(1)};
+    }
+    RowAccelerations accelerations;
+    if (!is_joint(which)) accelerations.gap = before.contacts[which].hddot;
+    if (before.slips.contains(which)) accelerations.slip = before.slips.at(which).udot;
+    return reaction(before, which, mode, laws, layout, accelerations);
 }
 
 Expression negative_force(const ModeEquations& before, std::size_t contact, Mode mode, const FrictionLaws& laws) {

@@ -60,6 +60,17 @@ struct FrictionForce {
 FrictionForce friction_force(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
                              const Layout& layout);
 
+// The forces by which a contact or joint that is held, or a contact that slides, cancels these accelerations of its gap and
+// slip. A joint has no gap.
+struct RowAccelerations {
+    Expression gap, slip;
+};
+FrictionForce reaction(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
+                       const Layout& layout, const RowAccelerations& accelerations);
+// The accelerations of gap and slip of `which` by a unit force along the gap of a contact, or along its slip.
+RowAccelerations by_normal_force(const ModeEquations& before, std::size_t which, std::size_t contact);
+RowAccelerations by_friction_force(const ModeEquations& before, std::size_t which, std::size_t contact);
+
 // The contacts with an implied slip (Mode) whose friction force this sticking contact carries.
 ContactSet sharing_with(Mode mode, std::size_t contact, const FrictionLaws& laws);
 

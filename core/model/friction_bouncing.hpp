@@ -1,6 +1,7 @@
 // Contacts that bounce in a system with dry friction (theory-friction.md 4): what their programs need.
 #pragma once
 
+#include <optional>
 #include <tuple>
 
 #include "model/bouncing.hpp"
@@ -18,14 +19,15 @@ struct BouncingKey {
     }
 };
 
-// Whether the impacts leave the others in their states: no contact is held, and joints that stick feel no impulse. A
-// joint that sticks and feels the impulses slides and sticks again in every flight, forever.
-bool has_bouncing(const BouncingKey& key, ContactModes& modes);
+// Why the bouncing has no programs: a joint that sticks and feels the impulses slides and sticks again in every flight,
+// forever; a contact that slides and feels them must have a coefficient that does not depend on the slip.
+std::optional<BouncingObstacle> obstacle_to_bouncing(const BouncingKey& key, ContactModes& modes, const Layout& layout);
 
 // The programs of such a contact. If it sticks at its impacts, `sticking` is set.
 BouncingModel derive_bouncing(const BouncingKey& key, ContactModes& modes, const Equations& equations,
                               const Layout& layout);
-// The conditions on the others, and on the slip of this contact.
-OtherContactTerms derive_other_contacts(const BouncingKey& key, ContactModes& modes, const Layout& layout);
+// The conditions on the others, and on the slip of this contact (theory-friction.md 4.1, 4.3).
+OtherContactTerms derive_other_contacts(const BouncingKey& key, ContactModes& modes, const Equations& equations,
+                                        const Layout& layout);
 
 }  // namespace achilles

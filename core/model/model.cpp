@@ -247,12 +247,13 @@ const BouncingModel& Model::bouncing(const BouncingKey& key) const {
 }
 
 const OtherContactTerms& Model::other_contact_terms(const BouncingKey& key) const {
-    return derived(other_contact_terms_, key, [&] { return derive_other_contacts(key, contact_modes(), layout_); });
+    return derived(other_contact_terms_, key,
+                   [&] { return derive_other_contacts(key, contact_modes(), equations_, layout_); });
 }
 
-bool Model::has_bouncing(const BouncingKey& key) const {
-    if (!has_friction()) return true;
-    return derived(has_bouncing_, key, [&] { return achilles::has_bouncing(key, contact_modes()); });
+std::optional<BouncingObstacle> Model::obstacle_to_bouncing(const BouncingKey& key) const {
+    if (!has_friction()) return std::nullopt;
+    return derived(obstacles_, key, [&] { return achilles::obstacle_to_bouncing(key, contact_modes(), layout_); });
 }
 
 const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode mode) const {

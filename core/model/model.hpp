@@ -129,11 +129,11 @@ class Model {
     const OtherContactTerms& other_contact_terms(std::size_t contact, Mode mode) const {
         return other_contact_terms({contact, mode});
     }
-    // The same for a contact with friction, which slides or sticks at its impacts; the second tells whether the
-    // bouncing has such programs. Without friction it has.
+    // The same for a contact with friction, which slides or sticks at its impacts. The third tells why the bouncing has no
+    // such programs; empty if it has them, as without friction.
     const BouncingModel& bouncing(const BouncingKey& key) const;
     const OtherContactTerms& other_contact_terms(const BouncingKey& key) const;
-    bool has_bouncing(const BouncingKey& key) const;
+    std::optional<BouncingObstacle> obstacle_to_bouncing(const BouncingKey& key) const;
     // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
 
@@ -240,7 +240,7 @@ class Model {
     std::vector<DomainBoundary> edges_;
     TypedProgram<EnergyTerms> energy_;
     TypedProgram<StartTerms> start_;
-    mutable std::map<BouncingKey, bool> has_bouncing_;
+    mutable std::map<BouncingKey, std::optional<BouncingObstacle>> obstacles_;
 };
 
 // The kinds of events that runs of a system may have, in the order of the kinds.

@@ -226,13 +226,15 @@ class ExecutionAutomaton {
     struct ImpactWithFriction {
         ContactSet landing;
         const ContactRows& rows;
-        const Eigen::VectorXd& impulses;  // by row
-        Mode mode;                        // open: no impulse; held: the slip stops
-        bool is_capped;
+        const FrictionImpactProblem& problem;
+        const FrictionImpact& solved;
         std::shared_ptr<const MultiContactInfo> joint;
         std::shared_ptr<const Event::FrictionImpulses> friction;
     };
     bool complete_with_friction(const ImpactWithFriction& impact);
+    std::optional<BouncingObstacle> change_at_impact(const ImpactWithFriction& impact) const;
+    std::optional<BouncingObstacle> obstacle_to_completion(const ImpactWithFriction& impact);
+    std::string obstacle_text() const;
     Exchange exchange_of_cut(const ImpactWithFriction& impact, const Eigen::VectorXd& plastic,
                              const Collision& collision);
     void record_plastic_landing(std::size_t contact, const State& before, double speed);
@@ -359,6 +361,7 @@ class ExecutionAutomaton {
         std::string_view inequality;  // empty: no pair could collapse
         ContactSet pair;
     } collapse_failure_;                          // at the last impact
+    std::optional<BouncingObstacle> obstacle_;    // why the bouncing after the last impact with friction goes on
     TruncationConditions* conditions_ = nullptr;  // the entry for which_ in the current mode; null until needed
     std::size_t which_ = 0;                       // the contact of the current event
     bool not_unique_ = false;                     // whether the contact forces are not unique

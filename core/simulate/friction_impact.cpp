@@ -111,9 +111,8 @@ std::optional<Mode> ExecutionAutomaton::mode_after_impact(const ContactRows& row
         if (hdot > 0.0) {
             if (!too_short_to_resolve(i, hdot)) continue;
             stop(Outcome::Kind::undecided,
-                 fmt::format("the flights of {} became shorter than double precision resolves, and bouncing with "
-                             "friction is not completed, at {}",
-                             name_of(i), where(next_.state)));
+                 fmt::format("the flights of {} became shorter than double precision resolves, and {}, at {}",
+                             name_of(i), obstacle_text(), where(next_.state)));
             return std::nullopt;
         }
         mode = mode.with(i, ContactState::held);
@@ -161,9 +160,7 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         friction->energy_cap = factor;
         friction->capped = friction->capped.with(problem.elements[element].which);
     }
-    if (landing == all &&
-        complete_with_friction({landing, rows, impact.impulses, impact.mode, !impact.caps.empty(), joint, friction}))
-        return;
+    if (complete_with_friction({landing, rows, problem, impact, joint, friction})) return;
     record_.impact(next_.state, v_after, speed, energy_of_impact(rows, impact.impulses), landing, std::move(joint));
     record_.friction_at_impact(std::move(friction));
     if (!landing.has_one() || impact.mode.state(landing.only()) != ContactState::held)
