@@ -9,8 +9,8 @@
 
 namespace achilles {
 
-// What is not proved, or nothing. `program` is that of the terms, with the inputs of a box that contains the state at all
-// impacts; `speed` is its input Layout::sliding_speed(), which this sets, and e encloses the restitution.
+// What is not proved, or nothing. `program` is that of the terms, with the inputs of a box that contains the state at
+// all impacts; `speed` is its input Layout::sliding_speed(), which this sets, and e encloses the restitution.
 //
 // A contact rests (its slip is 0 after every impact) or slides (u is not 0). Its states are
 //     rests     open; sticks; slides with either sign

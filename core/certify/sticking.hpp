@@ -12,8 +12,8 @@
 //                mu_s (W_NT alpha + W_TT a) > |W_NT a + W_NN alpha|
 //            and slides if this is certainly false; until tau_inf u = 0 is kept in either case
 //
-// others     They are held, so W is that of the contact in their mode; W_TN is not W_NT if some of them slide. An impulse
-//            has p_T/p = -(W_TN (1+e) + W_NN x)/(W_TT (1+e) + W_NT x), from which what they feel follows
+// others     They are held, so W is that of the contact in their mode; W_TN is not W_NT if some of them slide. An
+//            impulse has p_T/p = -(W_TN (1+e) + W_NN x)/(W_TT (1+e) + W_NT x), from which what they feel follows
 //            (ConditionsBase::prove_other_contacts_stay)
 //
 // cap        If every impact would gain energy, e is e' = sqrt(1 + x (2 W_NT + W_NN x)/W_TT) at each, enclosed over X

@@ -174,8 +174,8 @@ struct ImpactLawTerms {
 //   for every open contact: its gap;
 //   functions that must stay positive: of friction (theory-friction.md 4.1), and `when` of the bouncing contacts;
 //   `on` of the watched jumps, which must not vanish (theory-modes.md 3).
-//   for every held contact that sticks: the distances of its impulse from the two sides of its friction cone, which must
-//       not be negative (theory-friction.md 4.3).
+//   for every held contact that sticks: the distances of its impulse from the two sides of its friction cone, which
+//       must not be negative (theory-friction.md 4.3).
 struct OtherContactTerms {
     std::vector<std::size_t> bouncing, held, open;
     Program program;

@@ -60,8 +60,8 @@ struct FrictionForce {
 FrictionForce friction_force(const ModeEquations& before, std::size_t which, Mode mode, const FrictionLaws& laws,
                              const Layout& layout);
 
-// The forces by which a contact or joint that is held, or a contact that slides, cancels these accelerations of its gap and
-// slip. A joint has no gap.
+// The forces by which a contact or joint that is held, or a contact that slides, cancels these accelerations of its gap
+// and slip. A joint has no gap.
 struct RowAccelerations {
     Expression gap, slip;
 };

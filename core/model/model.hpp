@@ -129,8 +129,8 @@ class Model {
     const OtherContactTerms& other_contact_terms(std::size_t contact, Mode mode) const {
         return other_contact_terms({contact, mode});
     }
-    // The same for a contact with friction, which slides or sticks at its impacts. The third tells why the bouncing has no
-    // such programs; empty if it has them, as without friction.
+    // The same for a contact with friction, which slides or sticks at its impacts. The third tells why the bouncing has
+    // no such programs; empty if it has them, as without friction.
     const BouncingModel& bouncing(const BouncingKey& key) const;
     const OtherContactTerms& other_contact_terms(const BouncingKey& key) const;
     std::optional<BouncingObstacle> obstacle_to_bouncing(const BouncingKey& key) const;

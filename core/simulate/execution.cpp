@@ -331,11 +331,14 @@ std::string ExecutionAutomaton::ambiguity_text(const StepResult& result) const {
             "cannot decide whether the gap of '{}' rises above zero: it is within integration error of "
             "zero just after {}",
             model_->description().constraints[result.which].name, place);
-    if (result.which >= surfaces_->count())
+    if (result.which >= surfaces_->count()) {
+        const bool is_short = last_step_ < 1e-6 * (1.0 + next_.state.t);
         return fmt::format(
             "cannot decide whether {} starts to slide, stops or reverses: its slip or its friction force is "
-            "within integration error of the limit just after {}",
-            name_of(model_->motion(next_.mode).friction[result.which - surfaces_->count()].contact), place);
+            "within integration error of the limit just after {}{}",
+            name_of(model_->motion(next_.mode).friction[result.which - surfaces_->count()].contact), place,
+            obstacle_ && is_short ? "; " + obstacle_text() : "");
+    }
     if (next_.mode.is_held(result.which))
         return "cannot decide whether the contact is released: the contact force is within integration error of zero "
                "just after " +

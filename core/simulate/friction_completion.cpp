@@ -12,8 +12,8 @@ namespace achilles {
 
 namespace {
 
-// The impulses after which the gaps stay closed (restitution 0) in the branches of an impact: what slides keeps its sign,
-// and what sticks stops.
+// The impulses after which the gaps stay closed (restitution 0) in the branches of an impact: what slides keeps its
+// sign, and what sticks stops.
 Eigen::VectorXd plastic_impulses(const FrictionImpactProblem& problem, const FrictionImpact& impact, double e,
                                  bool sticks) {
     if (!sticks) return impact.impulses / (1.0 + e);

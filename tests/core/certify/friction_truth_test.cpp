@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "certify/friction_beside.hpp"
 #include "certify/friction_tails.hpp"
 
 namespace achilles::test {
@@ -31,5 +32,37 @@ TEST(FrictionTruth, DISABLED_ManyCertificatesHold) {
                                    tails.violations, tails.closest));
     }
 }
+
+// A contact that bounces while another one is held: how each of them behaves, and whether its impacts are capped.
+struct Beside {
+    const char* name;
+    Rubbing held, bouncing;
+    int trials, proved, capped;  // at least so many
+};
+void PrintTo(const Beside& beside, std::ostream* stream) { *stream << beside.name; }
+class FrictionBeside : public testing::TestWithParam<Beside> {};
+
+TEST_P(FrictionBeside, CertificatesHold) {
+    const Beside& beside = GetParam();
+    const BesideHeld tally = check_bouncing_beside(beside.held, beside.bouncing, beside.trials, 1, beside.capped > 0);
+    EXPECT_EQ(tally.violations, 0) << tally.first_failure;
+    EXPECT_GE(tally.proved, beside.proved);
+    EXPECT_GE(tally.capped, beside.capped);
+    EXPECT_LE(tally.closest, 1.0);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, FrictionBeside,
+                         testing::Values(Beside{"smooth_beside_smooth", Rubbing::none, Rubbing::none, 50, 30, 0},
+                                         Beside{"slip_beside_smooth", Rubbing::none, Rubbing::slides, 60, 30, 0},
+                                         Beside{"stick_beside_smooth", Rubbing::none, Rubbing::sticks, 60, 30, 0},
+                                         Beside{"smooth_beside_slip", Rubbing::slides, Rubbing::none, 60, 30, 0},
+                                         Beside{"slip_beside_slip", Rubbing::slides, Rubbing::slides, 60, 30, 0},
+                                         Beside{"stick_beside_slip", Rubbing::slides, Rubbing::sticks, 60, 30, 0},
+                                         Beside{"smooth_beside_stick", Rubbing::sticks, Rubbing::none, 80, 30, 0},
+                                         Beside{"slip_beside_stick", Rubbing::sticks, Rubbing::slides, 120, 30, 0},
+                                         Beside{"stick_beside_stick", Rubbing::sticks, Rubbing::sticks, 160, 25, 0},
+                                         Beside{"capped_beside_smooth", Rubbing::none, Rubbing::sticks, 100, 10, 6},
+                                         Beside{"capped_beside_stick", Rubbing::sticks, Rubbing::sticks, 100, 4, 3}),
+                         [](const auto& beside) { return std::string(beside.param.name); });
 
 }  // namespace achilles::test

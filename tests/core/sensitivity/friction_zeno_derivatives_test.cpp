@@ -103,6 +103,59 @@ Eigen::MatrixXd derivatives_of(const Trajectory& run) {
     return all;
 }
 
+// A contact bounces while another one is held, which slides or sticks: derivatives by the parameters.
+struct Beside {
+    const char* name;
+    const char* text;
+    double end;
+};
+void PrintTo(const Beside& beside, std::ostream* stream) { *stream << beside.name; }
+const Beside beside_held[] = {
+    {"bead_carries_a_mass", R"-(coordinate = [
+  {name = "x", start = -1, rate = 0.5}, {name = "y", start = "-0.5*sin(1)", rate = "0.25*cos(1)"},
+  {name = "z", start = 0.5}]
+parameter = [{name = "mu", value = 0.2}, {name = "e", value = 0.5}, {name = "g", value = 9.81}]
+lagrangian.kinetic = "(x'^2 + y'^2)/2 + (x'^2 + z'^2)/4"
+lagrangian.potential = "g*y + g/2*z"
+constraint = [
+  {name = "wire", gap = "y - 0.5*sin(x)", slip = "x' + 0.5*cos(x)*y'", friction = "mu", restitution = 0},
+  {name = "seat", gap = "z - y - 0.2", restitution = "e"}]
+)-",
+     1.4},
+    {"load_sticks_to_a_block", R"-(coordinate = [{name = "x"}, {name = "y"}, {name = "s"}, {name = "z", start = 0.5}]
+parameter = [{name = "al", value = 0.2}, {name = "mu", value = 0.8}, {name = "e", value = 0.3}]
+lagrangian.kinetic = "(x'^2 + y'^2 + s'^2 + z'^2)/2"
+lagrangian.potential = "y + z*(1 + s/4) - al*(x + s)"
+constraint = [
+  {name = "incline", gap = "y", slip = "x'", friction = 0.9, restitution = 0},
+  {name = "seat", gap = "z - y", slip = "s' - x'", friction = "mu", restitution = "e"}]
+)-",
+     3.0},
+};
+class FrictionDerivativesBeside : public testing::TestWithParam<Beside> {};
+
+TEST_P(FrictionDerivativesBeside, AreThoseOfDifferences) {
+    const auto model = typed(GetParam().text);
+    const achilles::Run start = start_of(*model, GetParam().end, 1e-11);
+    const Eigen::MatrixXd found = derivatives_of(run_of(model, start));
+    const Eigen::Index first = 2 * start.q.size();
+    ASSERT_EQ(found.cols(), first + 3);
+    for (Eigen::Index k = first; k < found.cols(); ++k) {
+        const auto at = [&](double change) {
+            achilles::Run other = start;
+            other.parameters[static_cast<std::size_t>(k - first)] += change;
+            return results_of(run_of(model, other));
+        };
+        const double step = 2e-4;
+        const Eigen::VectorXd near = at(step) - at(-step), far = at(2.0 * step) - at(-2.0 * step);
+        const Eigen::VectorXd differences = (8.0 * near - far) / (12.0 * step);
+        EXPECT_LT((found.col(k) - differences).norm(), 1e-7 * (1.0 + differences.norm()))
+            << k << "\nfound " << found.col(k).transpose() << "\ndifferences " << differences.transpose();
+    }
+}
+INSTANTIATE_TEST_SUITE_P(Systems, FrictionDerivativesBeside, testing::ValuesIn(beside_held),
+                         [](const auto& beside) { return std::string(beside.param.name); });
+
 class FrictionTailDerivatives : public testing::TestWithParam<Tail> {};
 
 TEST_P(FrictionTailDerivatives, AreThoseOfDifferences) {
