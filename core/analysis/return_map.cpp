@@ -261,6 +261,13 @@ ConvergedOrbit ShootingSolver::close(ShootingPoint lap, const VectorXd& normal, 
                 "equilibrium");
         // Converged to the rounding of the runs: steps do not become smaller.
         if (size < 1e-15 || (size < 1e-10 && size > 0.25 * last)) {
+            // A least-squares step also vanishes where the equations contradict each other, as in a flight without events.
+            constexpr double closes = 1e-6;
+            if (const double miss = r.norm(); !(miss <= closes))
+                throw OrbitNotFound(
+                    fmt::format("Newton's method ends at a run that does not return: it misses its start or its period "
+                                "by a relative {:.2g}; try another guess (--from, --set)",
+                                miss));
             closed = {lap, shot, round, size, {}};
             VectorXd along = VectorXd::Zero(m + 2);
             along[m + 1] = 1.0;
