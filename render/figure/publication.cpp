@@ -31,9 +31,11 @@ int columns_for(const std::vector<Panel>& panels) {
 }
 
 // Markers smaller than on a screen. Impact markers have no edges, because edges of covered markers would leave odd
-// shapes.
-Markers for_print(Markers markers) {
-    const bool is_impact = markers.shape == Markers::MarkerShape::square;
+// shapes. The squares of collapses are hollow: their edge is what is seen.
+Markers for_print(Markers markers, const Theme& theme) {
+    const Color &fill = markers.fill, &paper = theme.background;
+    const bool is_hollow = fill.r == paper.r && fill.g == paper.g && fill.b == paper.b;
+    const bool is_impact = markers.shape == Markers::MarkerShape::square && !is_hollow;
     markers.size = is_impact ? 5.5 : 9.0;
     if (is_impact) markers.edge.a = 0, markers.apart = 1.3 * markers.size;
     if (markers.lift > 0.0) markers.lift = markers.size;
@@ -89,13 +91,13 @@ std::vector<Key> keys_of(std::span<const Trajectory* const> runs, const std::vec
         std::string name = events_name(runs, names.kind);
         if (const std::size_t at = name.find(zeno); at != std::string::npos)
             name.insert(at + zeno.size(), ", \U0001D70F_{\u221E}");
-        keys.push_back({name, for_print(event_markers(theme, names.kind))});
+        keys.push_back({name, for_print(event_markers(theme, names.kind), theme)});
     }
     const auto opens = [](const Event& event) { return event.is_impact() && !event.opened.empty(); };
     if (std::any_of(runs.begin(), runs.end(), [&](const Trajectory* run) {
             return std::any_of(run->events.begin(), run->events.end(), opens);
         })) {
-        const Markers markers = for_print(opened_markers(theme));
+        const Markers markers = for_print(opened_markers(theme), theme);
         keys.push_back({markers.label, markers});
     }
     for (const Panel& panel : panels) {
@@ -189,12 +191,12 @@ void apply_print_style(Figure& figure, std::span<const Trajectory* const> runs, 
     for (Panel& panel : figure.panels) {
         panel.legend_above = panel.legend;
         for (Markers& markers : panel.markers) {
-            markers = for_print(markers);
+            markers = for_print(markers, theme);
             markers.label.clear();
         }
         for (Markers& markers : panel.beyond.markers) {
             const auto alpha = markers.fill.a;
-            markers = for_print(markers);
+            markers = for_print(markers, theme);
             markers.fill.a = alpha;
         }
     }

@@ -65,6 +65,28 @@ TEST_F(Publication, PanelsHaveLettersAndALoneOneHasNone) {
     EXPECT_EQ(of(many, 4).columns, 4);
 }
 
+// The square of a collapse is hollow, and that of an impact has no edge in print. Both are seen on paper.
+TEST_F(Publication, TheSquaresOfImpactsAndCollapsesAreSeen) {
+    const auto balls = test::load("three_balls");
+    const Trajectory collapse = simulate(balls, balls->default_run());
+    const Figure figure = publication(collapse, std::vector{view("balls", "t", {"x1"})}, {});
+    int impacts = 0, collapses = 0;
+    const auto look = [&](const Markers& markers) {
+        if (markers.shape != Markers::MarkerShape::square) return;
+        const bool is_hollow = markers.fill == figure.background;
+        ++(is_hollow ? collapses : impacts);
+        EXPECT_EQ(markers.edge.a, is_hollow ? 255 : 0);
+        EXPECT_TRUE(!is_hollow || !(markers.edge == figure.background));
+    };
+    for (const Markers& markers : figure.panels[0].markers) look(markers);
+    EXPECT_EQ(impacts, 1);
+    EXPECT_EQ(collapses, 1);
+    for (const Key& key : figure.keys)
+        if (const auto* const markers = std::get_if<Markers>(&key.sign)) look(*markers);
+    EXPECT_EQ(impacts, 2);
+    EXPECT_EQ(collapses, 2);
+}
+
 TEST_F(Publication, TheLegendTellsWhatOccursAndNothingElse) {
     const ViewDescription y = view("height", "t", {"y"});
     std::string labels;
