@@ -203,6 +203,7 @@ class ExecutionAutomaton {
     bool is_pivot(std::size_t event) const;
     void end_slip(std::size_t which);
     void start_slip(const SlipStart& start, std::size_t event);
+    bool open_together(ContactSet together);
     void release_with_friction(std::size_t which);
     bool decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start = {});
     FrictionProblem friction_problem(const ContactRows& rows, ContactSet decided, Mode sliding, Mode base,

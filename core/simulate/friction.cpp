@@ -39,6 +39,18 @@ std::optional<std::pair<std::size_t, std::size_t>> joints_with_one_slip(const Fr
     return std::nullopt;
 }
 
+// Whether all principal minors are positive beyond rounding: those without the first row are, and so are those of its
+// Schur complement.
+bool is_p_matrix(const Eigen::MatrixXd& W) {
+    constexpr double rounding = 1e-12;
+    const Eigen::Index rest = W.rows() - 1;
+    if (rest < 0) return true;
+    if (!(W(0, 0) > rounding * W.row(0).cwiseAbs().maxCoeff())) return false;
+    const Eigen::MatrixXd others = W.bottomRightCorner(rest, rest),
+                          complement = others - W.col(0).tail(rest) * W.row(0).tail(rest) / W(0, 0);
+    return is_p_matrix(others) && is_p_matrix(complement);
+}
+
 }  // namespace
 
 std::string ExecutionAutomaton::name_of(std::size_t which) const {
@@ -184,13 +196,49 @@ void ExecutionAutomaton::start_slip(const SlipStart& start, std::size_t event) {
     enter_friction_mode(before);
 }
 
+// Whether these contacts, whose forces vanish together, all open: they are all that is held, they slide or are smooth, and
+// h''' > 0 for each without their forces. No other choice obeys the laws if W_sigma is a P-matrix, since the rates of the
+// forces solve a complementarity problem with it.
+bool ExecutionAutomaton::open_together(ContactSet together) {
+    const Mode before = next_.mode, open = before.without(together);
+    const ContactSet rough = together.within(surfaces_->rough());
+    if (!(together == before.held()) || !(all_joints().within(open.slipping()) == all_joints())) return false;
+    for (const std::size_t i : together) {
+        if (rough.contains(i) && slip_sign(before.state(i)) == 0) return false;
+        if (!certainly_positive(surfaces_->of(i, open).normal(next_.state).jerk)) return false;
+    }
+    const ContactRows rows = surfaces_->rows(next_.state, together, rough, open);
+    const auto n = static_cast<Eigen::Index>(together.count());
+    Eigen::MatrixXd W(n, n);
+    Eigen::Index row = 0, column = 0;
+    for (const std::size_t i : together) {
+        column = 0;
+        for (const std::size_t j : together) {
+            W(row, column) = rows.W(rows.gap_of(i), rows.gap_of(j));
+            if (rough.contains(j))
+                W(row, column) -=
+                    slip_sign(before.state(j)) * rows.slips.at(j).coefficient * rows.W(rows.gap_of(i), rows.slip_of(j));
+            ++column;
+        }
+        ++row;
+    }
+    return is_p_matrix(W);
+}
+
 // Like release(), for a contact with friction: its friction force vanishes with its force.
 void ExecutionAutomaton::release_with_friction(std::size_t which) {
     which_ = which;
     const Mode before = next_.mode;
     const auto values = surfaces_->motion(before).enclosed(next_.state);
-    bool others = false;
-    for (const std::size_t i : before.held()) others = others || (i != which && !certainly_negative(values[i].value));
+    ContactSet together = ContactSet::of(which);
+    for (const std::size_t i : before.held())
+        if (!certainly_negative(values[i].value)) together = together.with(i);
+    const bool others = together.count() > 1;
+    if (others && open_together(together)) {
+        next_.mode = before.without(together);
+        for (const std::size_t i : together) next_.starts[i] = {{0.0, 0.0}, 3};
+        return enter_friction_mode(before, together);
+    }
     // The friction force of a foot that never slides need not vanish with its contact force.
     if (!others && surfaces_->rough().contains(which) && surfaces_->never_slides(which)) {
         const Interval hddot = surfaces_->of(which, before.without(which)).hddot(next_.state);

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -38,6 +41,56 @@ lagrangian.potential = "y"
 constraint = [{{name = "foot", gap = "y", restitution = 0, slip = "x'", {}}}]
 )",
                        speed, keys);
+}
+
+// The load on a block that lies on two corners falls to 0 at t = 1. Friction shares it unequally, so both forces vanish
+// there at once, and the block flies off: x = 6 - 5 mu/6 and y = 1/6 at t = 2.
+TEST(FrictionRelease, OfTwoCornersAtOnceFollowsTheClosedForm) {
+    const auto run =
+        simulate_text(R"(coordinate = [{name = "x", rate = 3}, {name = "y", force = "t - 1"}, {name = "phi"}]
+body = [{name = "block", mass = 1, box = [2, 1], at = ["x", "y + 1/2"], angle = "phi"}]
+ground = [{name = "floor", line = [[-1, 0], [1, 0]]}]
+constraint = [{name = "left", between = ["block.lower_left", "floor"], friction = 0.2, restitution = 0},
+              {name = "right", between = ["block.lower_right", "floor"], friction = 0.2, restitution = 0}]
+)",
+                      2.0);
+    ASSERT_EQ(run.outcome.kind, Ending::end_time) << run.outcome.message;
+    ASSERT_EQ(run.events.size(), 1u);
+    EXPECT_TRUE(run.events[0].is_release());
+    EXPECT_EQ(run.events[0].contacts.count(), 2);
+    EXPECT_NEAR(run.events[0].t, 1.0, 1e-7);  // the forces touch zero with the error of the state
+    EXPECT_NEAR(run.end.q[0], 6.0 - 0.2 * 5.0 / 6.0, 1e-12);
+    EXPECT_NEAR(run.end.q[1], 1.0 / 6.0, 1e-12);
+    EXPECT_NEAR(run.end.q[2], 0.0, 1e-12);
+}
+
+// The slider of a crank lies on two corners, is pulled off, and lands on the other side, five times. With friction 0 the
+// run is that without friction.
+TEST(FrictionRelease, OfASliderWithClearanceGoesOnToItsEnd) {
+    std::ifstream file(ACHILLES_SOURCE_DIR "/tests/reference/mechanisms/slider_crank_clearance.toml");
+    std::string smooth{std::istreambuf_iterator<char>(file), {}};
+    const auto replace = [](std::string text, const std::string& from, const std::string& to) {
+        for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
+            text.replace(at, from.size(), to);
+        return text;
+    };
+    smooth = replace(smooth, "restitution = \"e\"", "restitution = 0");
+    const auto rough = [&](const std::string& mu) {
+        return replace(replace(smooth, "{name = \"e\"", "{name = \"mu\", value = " + mu + "}, {name = \"e\""),
+                       "restitution = 0", "restitution = 0, friction = \"mu\"");
+    };
+    const Trajectory reference = simulate_text(smooth, 0.0838), zero = simulate_text(rough("0"), 0.0838),
+                     some = simulate_text(rough("0.01"), 0.0838);
+    for (const Trajectory* run : {&reference, &zero, &some}) {
+        EXPECT_EQ(run->outcome.kind, Ending::end_time) << run->outcome.message;
+        EXPECT_EQ(std::count_if(run->events.begin(), run->events.end(),
+                                [](const Event& event) { return event.is_release(); }),
+                  5);
+    }
+    EXPECT_LT((reference.end.q - zero.end.q).norm(), 1e-9);
+    EXPECT_NEAR(reference.end.q[0], 7.588340739596945, 1e-9);  // e = 0.4: its impacts collapse to plastic ones
+    EXPECT_GT((reference.end.q - some.end.q).norm(), 1e-3);
+    EXPECT_GT(some.heat, 0.0);
 }
 
 TEST(FrictionDomain, EndsWhereACoefficientIsNegative) {
