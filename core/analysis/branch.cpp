@@ -126,7 +126,7 @@ class BranchContinuation {
     std::string end_reason(const OrbitNotFound& none) const {
         constexpr double low = 1e-7;  // relative to the distance that the system moves in a period
         const double way = at_.shot.run.run.v.cwiseAbs().maxCoeff() * at_.lap.period, gap = largest_gap();
-        if (!(gap < low * way)) return none.what();
+        if (map_.model()->contacts() == 0 || !(gap < low * way)) return none.what();
         return fmt::format("the flights shrink to zero: the gap never exceeds {:.1e} at {:.6g}", gap, value_of(at_));
     }
 
