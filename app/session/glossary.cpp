@@ -113,16 +113,18 @@ std::span<const GalleryGroup> gallery() {
          {"ball_on_floor", "ball_on_incline", "ball_in_bowl", "ball_on_hills", "ball_down_a_wave", "ball_on_cylinder",
           "bead_in_ring", "ball_on_string", "ball_on_egg_crate", "disc_on_waves", "cart_pendulum", "triple_pendulum",
           "falling_rod"}},
-        {"robots and walkers", {"swinging_leg", "kneed_leg", "simplest_walker", "kneed_walker", "arm_at_wall"}},
+        {"robots", {"swinging_leg", "kneed_leg", "arm_at_wall"}},
+        {"walkers", {"rimless_wheel", "simplest_walker", "compass_gait", "compass_gait_floating", "kneed_walker"}},
         {"driven",
          {"impact_oscillator", "ball_on_table", "ball_on_vibrating_table", "two_mass_oscillator",
           "driven_double_pendulum", "ball_in_gusts", "bouncing_wheel", "slider_crank", "kapitza_pendulum"}},
         {"several contacts",
          {"double_pendulum_two_stops", "ball_in_sloped_box", "ball_round_post", "ball_in_v", "box_dropped_flat",
-          "cart_between_walls", "backlash", "newtons_cradle", "seesaw", "table_on_legs"}},
+          "cart_between_walls", "backlash", "newtons_cradle", "three_balls", "slider_crank_clearance", "seesaw",
+          "table_on_legs"}},
         {"dry friction",
          {"block_on_incline", "stick_slip_belt", "spun_disc", "bead_on_rough_sine", "rough_pendulum", "rocking_block",
-          "woodpecker", "ladder", "spinning_ball_between_walls", "painleve_rod"}}};
+          "woodpecker", "ladder", "spinning_ball_between_walls", "impacting_stick", "bouncing_dimer", "painleve_rod"}}};
     return groups;
 }
 

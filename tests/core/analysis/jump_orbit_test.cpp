@@ -1,7 +1,9 @@
-// Periodic orbits through jumps: the simplest walking model against its published data.
+// Periodic orbits through jumps, and their branches: walkers against published data and closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "analysis/orbit.hpp"
 #include "core/systems.hpp"
@@ -9,18 +11,24 @@
 namespace achilles::test {
 namespace {
 
-TEST(JumpOrbit, OfTheSimplestWalkerIsThePublishedOne) {
-    const auto model = load("simplest_walker");
-    const SystemDescription& system = model->description();
+// The orbit problem of the file's [orbit].
+OrbitProblem gait_of(const Model& model) {
+    const SystemDescription& system = model.description();
     OrbitProblem problem;
-    problem.run = model->default_run();
+    problem.run = model.default_run();
     problem.run.options.tolerance = 1e-15;
     problem.closing = {system.orbit->period, system.orbit->shift};
     problem.is_guess = true;
-    for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t i = 0; i < system.orbit->q.size(); ++i) {
         problem.run.q[static_cast<Eigen::Index>(i)] = system.orbit->q[i];
         problem.run.v[static_cast<Eigen::Index>(i)] = system.orbit->v[i];
     }
+    return problem;
+}
+
+TEST(JumpOrbit, OfTheSimplestWalkerIsThePublishedOne) {
+    const auto model = load("simplest_walker");
+    const OrbitProblem problem = gait_of(*model);
     const OrbitSearchResult found = find_orbit(model, problem);
     ASSERT_TRUE(found.orbit) << found.reason;
     EXPECT_NEAR(found.orbit->period, 3.882463752851374138, 1e-11);
@@ -37,6 +45,68 @@ TEST(JumpOrbit, OfTheSimplestWalkerIsThePublishedOne) {
     EXPECT_LT(nearest(1.0), 1e-12);
     EXPECT_LT(nearest(0.0), 1e-10);
     EXPECT_TRUE(found.orbit->stable);
+}
+
+// The multiplier of the square of the rate is cos(2 alpha)^2 = 1/2, and the rate after a strike has a closed form.
+TEST(JumpOrbit, OfTheRimlessWheelIsItsClosedForm) {
+    const auto model = load("rimless_wheel");
+    const OrbitSearchResult found = find_orbit(model, gait_of(*model));
+    ASSERT_TRUE(found.orbit) << found.reason;
+    const double pi = std::numbers::pi, alpha = pi / 8.0, slope = pi / 30.0, c = std::cos(2.0 * alpha);
+    ASSERT_EQ(found.orbit->run.events.size(), 1u);
+    EXPECT_NEAR(found.orbit->run.events[0].v_after[0],
+                c / std::sin(2.0 * alpha) * std::sqrt(4.0 * 9.81 * std::sin(slope) * std::sin(alpha)), 1e-12);
+    EXPECT_NEAR(found.orbit->multipliers[1].real(), 0.5, 1e-12);
+}
+
+// The first period doubling of the compass gait on a slope.
+TEST(JumpBranch, OfTheCompassGaitFlipsWhereItIsPinned) {
+    const auto model = load("compass_gait");
+    const OrbitProblem problem = gait_of(*model);
+    const OrbitSearchResult found = find_orbit(model, problem);
+    ASSERT_TRUE(found.orbit) << found.reason;
+    EXPECT_NEAR(found.orbit->period, 0.734346391158, 1e-11);
+    const Branch branch = follow(model, problem, *found.orbit, 0, 0.05, 0.08);
+    ASSERT_EQ(branch.flips.size(), 1u);
+    EXPECT_NEAR(branch.value(branch.flips[0]) * 180.0 / std::numbers::pi, 4.390898, 1e-6);
+}
+
+// A system without contacts has no gap that could shrink: its branch ends where the foot no longer counts.
+TEST(JumpBranch, DoesNotEndByGapsWhereThereAreNone) {
+    const auto model = load("simplest_walker");
+    const OrbitProblem problem = gait_of(*model);
+    const OrbitSearchResult found = find_orbit(model, problem);
+    ASSERT_TRUE(found.orbit) << found.reason;
+    const Branch branch = follow(model, problem, *found.orbit, 0, 1e-5, 0.01);
+    EXPECT_GT(branch.value(branch.points.front()), 1e-5);
+    EXPECT_EQ(branch.ends[0].find("gap"), std::string::npos) << branch.ends[0];
+}
+
+// Feet that touch the ground and legs that swap are two descriptions of one walker.
+TEST(CompassGait, WithAFloatingBaseTakesTheStepsOfTheLegsThatSwap) {
+    const auto swap = load("compass_gait"), floating = load("compass_gait_floating");
+    const auto walk = [](const std::shared_ptr<const Model>& model) {
+        achilles::Run run = model->default_run();
+        run.options.tolerance = 1e-13;
+        run.options.end_time = 8.0;
+        return simulate(model, run);
+    };
+    const Trajectory jumps = walk(swap), steps = walk(floating);
+    ASSERT_EQ(jumps.outcome.kind, Outcome::Kind::end_time) << jumps.outcome.message;
+    ASSERT_EQ(steps.outcome.kind, Outcome::Kind::end_time) << steps.outcome.message;
+    std::vector<Event> strikes;
+    for (const Event& event : steps.events)
+        if (event.is_impact()) strikes.push_back(event);
+    ASSERT_EQ(jumps.events.size(), 10u);
+    ASSERT_EQ(strikes.size(), 10u);
+    for (std::size_t i = 0; i < 10; ++i) {
+        EXPECT_NEAR(strikes[i].t, jumps.events[i].t, 1e-9) << i;
+        const Eigen::Index stance = i % 2 == 0 ? 3 : 2, swing = 5 - stance;
+        EXPECT_NEAR(-strikes[i].q[stance], jumps.events[i].q[0], 1e-8) << i;
+        EXPECT_NEAR(strikes[i].q[swing], jumps.events[i].q[1], 1e-8) << i;
+        EXPECT_NEAR(-strikes[i].v_after[stance], jumps.events[i].v_after[0], 1e-8) << i;
+        EXPECT_NEAR(strikes[i].v_after[swing], jumps.events[i].v_after[1], 1e-8) << i;
+    }
 }
 
 TEST(JumpOrbit, KeepsItsPeriodOverAThousandSteps) {
