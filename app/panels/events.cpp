@@ -160,13 +160,11 @@ void show_spreads(PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// Button at x that starts, stops or removes the proof of the current run. A system with friction or jumps has no proofs.
+// Button at x that starts, stops or removes the proof of the current run. Not every system has proofs.
 void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
-    const char* const what = session.model()->has_friction() ? "dry friction"
-                             : session.model()->has_jumps()  ? "jumps"
-                                                             : "contacts that count only sometimes";
-    const bool is_refused = session.model()->has_friction() || session.model()->has_guards();
+    const std::string_view what = not_proved(*session.model());
+    const bool is_refused = !what.empty();
     const std::string refusal =
         fmt::format("runs with {} cannot be proved; the status line has the estimated error", what);
     const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;

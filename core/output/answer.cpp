@@ -16,6 +16,14 @@
 
 namespace achilles {
 
+std::string_view not_proved(const Model& model) {
+    if (model.has_friction()) return "dry friction";
+    if (model.has_jumps()) return "jumps";
+    if (model.has_latches()) return "latches";
+    if (model.has_conditional_contacts()) return "contacts that count only sometimes";
+    return model.do_forces_see_contact() ? "forces that depend on contact" : "";
+}
+
 namespace {
 
 constexpr std::size_t max_state_columns = 4;  // columns of the table
@@ -173,12 +181,10 @@ std::string times_line(const Trajectory& trajectory, const ErrorEstimate& estima
     return text + ".\n";
 }
 
-// Proofs do not cover friction, nor jumps and contacts that count only sometimes.
 std::string end_line(const Trajectory& trajectory, const ErrorEstimate& estimate, const std::string& prove_command) {
     const std::string state = estimate.end ? "estimated error " + estimate_text(estimate.end->size())
                                            : "no error estimate, because " + estimate.no_estimate_reason;
-    if (trajectory.model->has_friction() || trajectory.model->has_guards())
-        return fmt::format("State at the end: {}.\n", state);
+    if (!not_proved(*trajectory.model).empty()) return fmt::format("State at the end: {}.\n", state);
     return fmt::format("State at the end: {}. For a proof of the whole run: {}\n", state, prove_command);
 }
 

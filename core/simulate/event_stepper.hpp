@@ -113,6 +113,7 @@ class EventStepper {
     void make_gap(std::size_t contact, Polynomial& h);
     StepOutcome doubt_gap(double theta);
     bool surely_closes_at_start();
+    bool surely_falls(const Polynomial& h, double remainder, double rate_error) const;
     StepOutcome land_here();
     StepOutcome land_under();
     std::optional<StepOutcome> locate_impact(double theta);
@@ -127,6 +128,8 @@ class EventStepper {
     double value_at(const State& state);
     double rate_at(const State& state);
     // Functions of friction, watched guards, and gaps of inactive contacts (flight.cpp).
+    Polynomial further_function();
+    bool surely_passes_at_start();
     FirstCrossing further_descent();
     StepOutcome vanishing() const;
     bool end_on_surface();

@@ -132,8 +132,13 @@ bool EventStepper::surely_closes_at_start() {
     const EventStart& start = start_of(contact_);
     if (start.multiplicity > 0) return false;
     const Polynomial& h = gap_along(contact_);
-    const double span = flow_->duration(), remainder = flow_->remainder(contact_, h), rate = h.c[1] / span;
-    if (!(h.c[0] <= remainder) || !(rate < -4.0 * start.gap.rate_error)) return false;
+    return surely_falls(h, flow_->remainder(contact_, h), start.gap.rate_error);
+}
+
+// The same of any function along the step, with these bounds on its error and on that of its rate.
+bool EventStepper::surely_falls(const Polynomial& h, double remainder, double rate_error) const {
+    const double span = flow_->duration(), rate = h.c[1] / span;
+    if (!(h.c[0] <= remainder) || !(rate < -4.0 * rate_error)) return false;
     double acceleration = 0.0;  // upper bound over the step
     for (int k = 2; k <= h.degree; ++k) acceleration += k * (k - 1) * std::abs(h.c[static_cast<std::size_t>(k)]);
     const double passage = 2.0 * (std::abs(h.c[0]) + remainder) / -rate;
@@ -221,6 +226,8 @@ std::optional<StepResult::StepOutcome> EventStepper::meet_force(FirstCrossing de
             // As for gaps: an event near the end of this step is then inside the next one.
             if (!was_shortened && end_step_at(descent.theta)) {
                 shortened_ |= bit_of(contact_);
+            } else if (surely_passes_at_start()) {
+                return vanishing();
             } else if (!(has_exact_start() && is_last())) {
                 return doubt_force(descent.theta);
             }
@@ -272,17 +279,32 @@ StepResult::StepOutcome EventStepper::vanishing() const {
     return is_guard(contact_) ? StepOutcome::guard_event : StepOutcome::friction_event;
 }
 
+// The gap of an inactive contact, or a function of friction or of a guard, along the last step.
+Polynomial EventStepper::further_function() {
+    if (is_inactive(contact_)) return gap_along(contact_);
+    Polynomial function;
+    flow_->event_function(contact_, function);
+    return function;
+}
+
+// Whether a guard starts within its remainder of zero and passes through it so fast that it cannot turn around before:
+// the step before has ended just short of its zero.
+bool EventStepper::surely_passes_at_start() {
+    const EventStart& start = start_of(contact_);
+    if (!is_further(contact_) || !is_guard(contact_) || start.multiplicity > 0) return false;
+    Polynomial function = further_function();
+    for (int k = 0; start.is_below && k <= function.degree; ++k) function.c[static_cast<std::size_t>(k)] *= -1.0;
+    const double remainder = flow_->remainder(contact_, function);
+    return surely_falls(function, remainder, remainder / flow_->duration());
+}
+
 // First zero in the last step of a function of friction, of a watched guard, or of the gap of an inactive contact. What is
 // negative is watched for its rise. At a start at 0 that is not a known root, theta is 0.
 FirstCrossing EventStepper::further_descent() {
     const EventStart& start = start_of(contact_);
     const int multiplicity = start.multiplicity;
     const bool is_gap = is_inactive(contact_), rises = is_gap || start.is_below;
-    Polynomial function;
-    if (is_gap)
-        function = gap_along(contact_);
-    else
-        flow_->event_function(contact_, function);
+    Polynomial function = further_function();
     if (!is_gap && !flow_->is_expansion()) {
         State end = flow_->end();
         surfaces_->settle(end, request_->mode);
