@@ -22,7 +22,7 @@ TEST(WalkerWindow, ShowsItsStepsAtOnceUnderTheSlopeSlider) {
     hands.rest(1);
     const Rectangle slider = hands.state.places.at("set slope");
     double last = *hands.session.value("slope");
-    for (double share = 0.52; share < 0.7; share += 0.03) {
+    for (double share = 0.6; share < 0.8; share += 0.04) {
         hands.hand.mouse_x = slider.x + share * slider.width;
         hands.rest(2);
         const double slope = *hands.session.value("slope");

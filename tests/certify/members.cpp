@@ -51,7 +51,8 @@ class Comparison {
             while (at < events.size() && event.kind != Event::Kind::impact && events[at]->kind == Event::Kind::impact)
                 ++at;
             if (at == events.size()) break;
-            if (event.kind == Event::Kind::impact && events[at]->kind == Event::Kind::zeno) continue;  // cut earlier
+            const bool is_cut = events[at]->is_zeno() || events[at]->is_collapse();  // earlier than the proof
+            if (event.kind == Event::Kind::impact && is_cut) continue;
             const Event& there = *events[at++];
             if (there.kind != event.kind || !(there.opened == event.opened))
                 return compare(Interval(0.0), 1.0, 0.0, fmt::format("what event {} is", k));

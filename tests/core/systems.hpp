@@ -50,7 +50,7 @@ inline std::vector<std::string> systems_without_friction() {
     std::vector<std::string> names = all_systems();
     std::erase_if(names, [](const std::string& name) {
         const auto model = load(name);
-        return model->has_friction() || model->has_guards();
+        return model->has_friction() || model->has_guards() || model->do_forces_see_contact();
     });
     return names;
 }
