@@ -39,7 +39,8 @@ class ImpactLawProof {
         if (each.slip < 0 || is_joint(each.which)) {
             in_state(each.gap, Interval(0.0), is_joint(each.which) ? each.slip : -1);
         } else if (each.slides) {
-            in_state(each.gap, Interval(-1.0, 1.0) * mu_[from], -1);
+            in_state(each.gap, Interval(mu_[from].hi()), -1);
+            in_state(each.gap, Interval(-mu_[from].hi()), -1);
         } else {
             in_state(each.gap, Interval(0.0), each.slip);
             if (each.never_slides) return found;

@@ -16,7 +16,8 @@ namespace achilles {
 //     rests     open; sticks; slides with either sign
 //     slides    open; closed, with a friction impulse theta mu p for any theta in [-1, 1]
 // In every combination of states, the matrix that determines the impulses is proved to have a positive determinant. No
-// impulses that obey the law then reverse a slip, which is proved, too; and those are unique.
+// impulses that obey the law then reverse a slip, which is proved, too; and those are unique. The determinants are linear
+// in each theta, and changes of slips are quotients of such functions, so that theta = 1 and -1 suffice.
 std::optional<BouncingObstacle> doubt_of_impact_law(const ImpactLawTerms& terms, Evaluator<Interval>& program,
                                                     std::uint32_t speed, const Interval& e);
 

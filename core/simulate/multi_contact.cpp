@@ -372,8 +372,8 @@ void ExecutionAutomaton::end_chatter(ContactSet contacts) {
     for (std::size_t i = 0; i < surfaces_->count(); ++i)
         if (!next_.inactive.contains(i) && surfaces_->of(i).at(next_.state).h < close) contacts = contacts.with(i);
     stop(Outcome::Kind::undecided,
-         fmt::format("contacts {} chatter together, in flights shorter than double precision resolves, at {}",
-                     names_of(contacts), where(next_.state)) +
+         fmt::format("contacts {} chatter together, in flights shorter than double precision resolves{}, at {}",
+                     names_of(contacts), obstacle_ ? "; " + obstacle_text() : "", where(next_.state)) +
              collapse_failure_text());
 }
 

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "model/read_system.hpp"
+#include "number/float_environment.hpp"
 
 namespace achilles {
 namespace {
