@@ -75,7 +75,8 @@ bool ExecutionAutomaton::complete_collapse(std::size_t which, const Contact& con
     if (completing() || !next_.touching.empty() || !(e > 0.0 && e < 1.0)) return false;
     for (std::size_t j = 0; j < surfaces_->count(); ++j) {
         if (j == which || next_.mode.is_held(j) || !(restitution(j) > 0.0 && restitution(j) < 1.0)) continue;
-        if (next_.inactive.contains(j) || may_jump(ContactSet::of(which).with(j), {})) continue;
+        const ContactSet two = ContactSet::of(which).with(j);
+        if (next_.inactive.contains(j) || may_jump(two, {}) || !may_cut(two)) continue;
         const Contact other = surfaces_->of(j, next_.mode).at(next_.state);
         const double W = other.g.dot(contact.impulse_direction) * contact.W;
         if (!(W < 0.0)) continue;

@@ -76,11 +76,16 @@ void ExecutionAutomaton::land_alone(const Contact& contact) {
                         kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
     if (e == 0.0) {
         capture(contact, collision);
-    } else if (auto certificate = could_truncate(collision)
+    } else if (auto certificate = may_cut(ContactSet::of(which_)) && could_truncate(collision)
                                       ? timed([&] { return conditions_->certify(collision, proof_scope_); })
                                       : std::nullopt) {
         complete(contact, collision, std::move(*certificate));
     } else if (too_short_to_resolve(collision, e)) {
+        if (!may_cut(ContactSet::of(which_)))
+            return stop(Outcome::Kind::undecided,
+                        fmt::format("the flights became shorter than double precision resolves, and a contact that "
+                                    "stands in held(NAME) is never cut, at {}",
+                                    where(next_.state)));
         if (auto proved = timed([&] { return conditions_->prove_any(collision); })) {
             complete(contact, collision, std::move(*proved));
         } else if (surfaces_->count() > 1) {

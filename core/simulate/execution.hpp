@@ -295,6 +295,8 @@ class ExecutionAutomaton {
     void end_latches(ContactSet contacts);
     void check_held_forces();
     void start_released(ContactSet contacts);
+    // Whether impacts of these contacts may be cut: up to the Zeno point forces see them as open.
+    bool may_cut(ContactSet contacts) const { return contacts.within(model_->equations().in_forces).empty(); }
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {

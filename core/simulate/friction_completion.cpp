@@ -70,6 +70,7 @@ bool ExecutionAutomaton::complete_with_friction(const ImpactWithFriction& impact
     const ContactState state = impact.solved.mode.state(which);
     const double e = restitution(which),
                  speed = -impact.rows.rows[static_cast<std::size_t>(impact.rows.gap_of(which))].rate;
+    if (e > 0.0 && !may_cut(impact.landing)) return false;
     const bool sticks = state == ContactState::held && impact.rows.slip_of(which) >= 0,
                is_capped = !impact.solved.caps.empty();
     which_ = which;

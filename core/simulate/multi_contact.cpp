@@ -267,7 +267,7 @@ bool ExecutionAutomaton::complete_pair(ContactSet landing, const Vector& v_after
             const ContactSet two = ContactSet::of(i).with(j);
             // All other closed contacts must be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
-            if (next_.inactive.contains(j)) continue;
+            if (next_.inactive.contains(j) || !may_cut(two)) continue;
             if (model_->has_jumps() && may_jump(two, {})) continue;
             if (complete_pair(std::min(i, j), std::max(i, j), next_.mode.without(two), landing, v_after,
                               cut_at_resolution))

@@ -128,7 +128,7 @@ TEST(TenTasks, ASystemOfSeveralContactsIsFoundByItsGroup) {
     hands.rest(3);
     tell(hands, "gallery", "gallery ball_on_sine");
     hands.point("gallery ball_on_sine");
-    for (int notch = 0; notch < 40; ++notch) {
+    for (int notch = 0; notch < 60 && !hands.says("several contacts"); ++notch) {
         hands.hand.wheel = -1.0;
         hands.rest(1);
         hands.hand.wheel = 0.0;

@@ -273,6 +273,7 @@ inline double worst_in_plane(const Trajectory& run, const Picture& picture, int 
             }
         }
         for (const Event& event : run.events) {
+            if (event.is_jump()) continue;  // the path ends there, and goes on elsewhere
             const Point a = truth.before(event, i), b = truth.after(event, i);
             if (is_there(a) && is_there(b)) add(real, of_real, a, b);
         }

@@ -305,6 +305,17 @@ TEST(HeldForces, ThatUndoThemselvesAreUndecided) {
                    "held(foot) undoes itself: 'foot' opens by the forces with it, and closes by those without it");
 }
 
+// Up to its Zeno point a bouncing contact is open, so a cut would hold it too early.
+TEST(HeldForces, OfAContactThatBouncesAreNeverCut) {
+    const std::string text = on_floor(0.5, "-1 - held(foot)");
+    std::string bouncing = text;
+    bouncing.replace(bouncing.find("restitution = 0"), 15, "restitution = 0.5");
+    const Trajectory run = run_of(bouncing, 4.0);
+    expect_message(run, Outcome::Kind::undecided, "a contact that stands in held(NAME) is never cut");
+    EXPECT_NEAR(run.end.t, 3.0, 1e-6);
+    for (const Event& event : run.events) EXPECT_TRUE(event.is_impact());
+}
+
 // Two feet, each of which pushes the other up while it is held: the decisions of both see the forces of now.
 TEST(HeldForces, OfSeveralContactsAreThoseOfTheMode) {
     for (const Method method : both_methods) {
