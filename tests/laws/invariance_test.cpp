@@ -81,12 +81,19 @@ std::vector<Text*> texts_of(SystemDescription& system) {
     std::vector<Text*> texts{&system.kinetic, &system.potential, &system.dissipation};
     for (CoordinateDescription& coordinate : system.coordinates) texts.push_back(&coordinate.force);
     for (ConstraintDescription& constraint : system.constraints) {
-        for (Text* text : {&constraint.gap, &constraint.slip, &constraint.friction}) texts.push_back(text);
+        for (Text* text : {&constraint.gap, &constraint.slip, &constraint.friction, &constraint.when})
+            texts.push_back(text);
+        if (!constraint.latch.contact) texts.push_back(&constraint.latch.on);
         if (constraint.static_friction) texts.push_back(&*constraint.static_friction);
     }
     for (FrictionDescription& joint : system.frictions) {
         for (Text* text : {&joint.slip, &joint.level}) texts.push_back(text);
         if (joint.static_level) texts.push_back(&*joint.static_level);
+    }
+    for (JumpDescription& jump : system.jumps) {
+        if (!jump.on.contact) texts.push_back(&jump.on.on);
+        texts.push_back(&jump.when);
+        for (JumpDescription::Assignment& set : jump.set) texts.push_back(&set.value);
     }
     texts.erase(std::remove_if(texts.begin(), texts.end(), [](const Text* text) { return text->text.empty(); }),
                 texts.end());
@@ -98,6 +105,13 @@ void multiply_slip(Text& slip, Text& level, const std::string& factor) {
     if (level.text.empty()) return;
     wrap(slip, factor + "*(", ")");
     level.text = with_slip(level.text, "slip/" + factor);
+}
+
+// Multiplies what jumps set: coordinates and rates.
+void multiply_jumps(SystemDescription& system, const std::string& coordinates, const std::string& rates) {
+    for (JumpDescription& jump : system.jumps)
+        for (JumpDescription::Assignment& set : jump.set)
+            wrap(set.value, (set.place < system.coordinates.size() ? coordinates : rates) + "*(", ")");
 }
 
 // Multiplies energies, dissipation and forces by factors.
@@ -152,6 +166,7 @@ TEST_P(Invariance, OtherUnitsOfTime) {
     for (ConstraintDescription& constraint : changed.constraints)
         multiply_slip(constraint.slip, constraint.friction, "60");
     for (FrictionDescription& joint : changed.frictions) multiply_slip(joint.slip, joint.level, "60");
+    multiply_jumps(changed, "1", "60");
     expect_same(rewritten(changed, 60.0), rewritten(description()));
 }
 
@@ -161,8 +176,11 @@ TEST_P(Invariance, OtherUnitsOfTheCoordinates) {
     SystemDescription changed = description();
     for (Text* text : texts_of(changed)) text->text = rescaled(changed, text->text, {"0.01", "0.01", "1"});
     strengthen(changed, "1", "1", "0.01");
+    multiply_jumps(changed, "100", "100");
     const auto changing = [](const SystemDescription& system) {
-        return system.constraints.empty() ? system.frictions[0].slip.text : system.constraints[0].gap.text;
+        return !system.constraints.empty() ? system.constraints[0].gap.text
+               : !system.frictions.empty() ? system.frictions[0].slip.text
+                                           : system.jumps[0].on.on.text;
     };
     ASSERT_NE(changing(changed), changing(description()));
     expect_same(rewritten(changed, 1.0, 100.0), rewritten(description()));
