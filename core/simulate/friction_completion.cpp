@@ -87,8 +87,12 @@ bool ExecutionAutomaton::complete_with_friction(const ImpactWithFriction& impact
     if (sticks) {
         State restart = conditions_->restart_at(collision);
         if (!surfaces_->settle(restart, next_.mode.with(which, state))) {
-            fail_projection();
-            return true;
+            if (is_last)
+                stop(Outcome::Kind::undecided,
+                     fmt::format("the flights of {} became shorter than double precision resolves, and it cannot be "
+                                 "brought to rest beside what is held, at {}",
+                                 name_of(which), where(next_.state)));
+            return is_last;
         }
         collision.position = restart.q;
         collision.restart = restart.v;

@@ -67,8 +67,15 @@ class Truth {
         values_.set(sample);
         return map_({values_[0], values_[quantity + 1]});
     }
+    // An impact at which a collapse is cut goes on from its restart.
     Point after(const Event& event, std::size_t quantity) {
-        values_.set(sample_at(run_, event));
+        Sample sample = sample_at(run_, event);
+        const auto next = static_cast<std::size_t>(&event - run_.events.data()) + 1;
+        if (event.is_impact() && next < run_.events.size() && run_.events[next].is_collapse()) {
+            const auto& cut = run_.events[next].truncation;
+            if (cut && cut->t == event.t) sample.state.v = cut->v;
+        }
+        values_.set(sample);
         return map_({values_[0], values_[quantity + 1]});
     }
 
