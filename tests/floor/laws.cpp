@@ -304,8 +304,9 @@ Violations energy(const Trajectory& trajectory) {
     double scale = 1e-300;
     for (const Sample& sample : samples)
         scale = std::max({scale, probe.energy_scale(sample.state), std::abs(sample.work), sample.loss + sample.heat});
-    // Local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth segment.
-    const double allowed = 100.0 * trajectory.run.options.tolerance * scale;
+    // Local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth segment. So do those of impacts.
+    const double impacts = static_cast<double>(trajectory.statistics.impacts);
+    const double allowed = (100.0 + impacts) * trajectory.run.options.tolerance * scale;
     const auto balance = [&](const State& state, const auto& booked) {
         return probe.energy(state) - booked.work + booked.loss + booked.heat;
     };
