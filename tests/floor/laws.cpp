@@ -301,7 +301,7 @@ Violations energy(const Trajectory& trajectory) {
     Violations violations;
     Probe probe(trajectory);
     const std::vector<Sample> samples = Sampler(trajectory).all();
-    double scale = 1e-300;
+    double scale = 1e-3;  // tolerances are absolute for states below 1: a dimer of grams and millimeters
     for (const Sample& sample : samples)
         scale = std::max({scale, probe.energy_scale(sample.state), std::abs(sample.work), sample.loss + sample.heat});
     // Local errors add up: 4e-10 was measured at tolerance 1e-10 over one smooth segment. So do those of impacts.
