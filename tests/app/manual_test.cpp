@@ -15,6 +15,7 @@
 #include "app/program.hpp"
 #include "cli/assets.hpp"
 #include "cli/manual.hpp"
+#include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "run/options.hpp"
 #include "session/command.hpp"
