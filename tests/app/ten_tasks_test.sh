@@ -125,7 +125,8 @@ back "open ball_on_sine"
 act key ctrl+g
 settle
 point gallery
-act click --repeat 40 --delay 5 5
+notches=$(sed -n 's/^notches //p' "$folder/places")
+act click --repeat "$notches" --delay 5 5
 settle
 click several
 recorded '^open double_pendulum_two_stops$' "the gallery opens no system with several contacts"
