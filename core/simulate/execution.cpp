@@ -369,6 +369,16 @@ void ExecutionAutomaton::stop_at(StepFailure failure) {
 void ExecutionAutomaton::fail_projection() {
     const std::string edge = edge_of_contact(*model_, run_, next_.state), place = where(next_.state);
     if (!edge.empty()) return stop(Outcome::Kind::left_the_domain, fmt::format("{}, at {}", edge, place));
+    bool is_flat = false;  // whether a gap has no slope here
+    for (std::size_t i = 0; i < surfaces_->count(); ++i) {
+        const double slope = surfaces_->of(i).at(next_.state).g.norm();
+        is_flat = is_flat || !(slope > 1e-6);
+    }
+    if (!is_flat)
+        return stop(Outcome::Kind::undecided,
+                    fmt::format("the state cannot be brought onto the contact surfaces{}, at {}; try a smaller "
+                                "--tolerance",
+                                next_.held().empty() ? "" : ", with " + names_of(next_.held()) + " held", place));
     stop(Outcome::Kind::left_the_domain,
          fmt::format("dh = 0 at the contact: the normal is not defined, at {}; {}", place, flat_hint));
 }

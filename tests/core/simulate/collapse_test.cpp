@@ -266,5 +266,18 @@ TEST(Collapse, OfFourBallsIsUndecidedAndNamesTheInequality) {
         << run.outcome.message;
 }
 
+// A step of this run leaves the floor that two corners are held on by more than the projection can mend. The run is then
+// repeated at a smaller tolerance, and does not say that a gap has no normal.
+TEST(Collapse, RepeatsARunThatLeavesItsSurfaces) {
+    const auto model = test::load("slider_crank_clearance");
+    achilles::Run run = model->default_run();
+    run.options.tolerance = 1e-12;
+    run.q << -0.001187884830389254, -0.0013860120405629213, 0.002222037497871605;
+    run.v << 37.286202545065095, 1.349932202400936, 1.794010051864472;
+    const Trajectory trajectory = simulate(model, run);
+    EXPECT_EQ(trajectory.outcome.kind, Outcome::Kind::end_time) << trajectory.outcome.message;
+    EXPECT_TRUE(trajectory.rerun_options);
+}
+
 }  // namespace
 }  // namespace achilles

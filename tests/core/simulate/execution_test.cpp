@@ -212,7 +212,7 @@ TEST_F(Automaton, LandsWithoutAStep) {
 
 TEST_F(Automaton, EndsWhereNoStepFollowsOrTheSurfaceIsNotReached) {
     for (const auto& [end, kind] : {std::pair(StepOutcome::step_failed, Outcome::Kind::not_a_number),
-                                    std::pair(StepOutcome::off_surface, Outcome::Kind::left_the_domain)}) {
+                                    std::pair(StepOutcome::off_surface, Outcome::Kind::undecided)}) {
         auto execution = this->execution();
         ASSERT_NE(execution.next(), nullptr);
         StepResult result = at(0.5, end);
