@@ -35,8 +35,8 @@ struct OrbitMonitor {
 
 // The condition of return: the period, and the shift of the coordinates. Expressions in the parameters.
 struct ReturnCondition {
-    Text period;  // of the drive; a guess without a drive; empty: unknown
-    // By coordinate; may be empty. An empty entry is 0, and free_shift stands for any shift.
+    Text period;  // that of the drive; without a drive it is a guess, and may be empty
+    // One for each coordinate, or none. An empty entry means 0; free_shift means that any shift will do.
     std::vector<Text> shift;
 };
 

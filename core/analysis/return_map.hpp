@@ -35,7 +35,7 @@ struct ShootingPoint {
 struct ShootingResult {
     Trajectory run;
     Eigen::VectorXd defect;  // x(T) - x(0) - shift
-    Eigen::VectorXd shift;   // by coordinate; the run determines those that are free
+    Eigen::VectorXd shift;   // of each coordinate; a free one is what the run gives
     Eigen::MatrixXd M;       // derivative of x(T) by x(0): the monodromy matrix if the defect is 0
     Eigen::MatrixXd P;       // derivative of x(T) - shift by the parameters, at fixed T
     Eigen::VectorXd F0, F1;  // dx/dt at the start and at the end

@@ -105,7 +105,7 @@ class ImpactLawProof {
     const ImpactLawTerms& terms_;
     const Evaluator<Interval>& program_;
     Interval once_;
-    std::vector<Interval> mu_, mu_s_;  // by element
+    std::vector<Interval> mu_, mu_s_;  // of each element
     std::vector<Column> columns_;
 };
 

@@ -9,6 +9,7 @@
 
 #include "enclose/enclosure.hpp"
 #include "expression/expression.hpp"
+#include "model/scopes.hpp"
 #include "number/float_environment.hpp"
 #include "system/input_error.hpp"
 
@@ -177,21 +178,6 @@ Interval restitution_over(const Model& model, const EnclosureProblem& claim, std
     return e;
 }
 
-namespace {
-
-// Where the first force with held(NAME) stands.
-Location place_of_held(const SystemDescription& system) {
-    const auto is_there = [](const Text& text) {
-        const std::vector<std::string> names = names_in(text.text);
-        return std::find(names.begin(), names.end(), "held") != names.end();
-    };
-    for (const CoordinateDescription& coordinate : system.coordinates)
-        if (is_there(coordinate.force)) return coordinate.force.at;
-    return system.dissipation.at;
-}
-
-}  // namespace
-
 void check(const Model& model, const EnclosureProblem& claim) {
     const FloatEnvironmentGuard ground;
     const SystemDescription& description = model.description();
@@ -208,8 +194,8 @@ void check(const Model& model, const EnclosureProblem& claim) {
     for (const ConstraintDescription& constraint : description.constraints)
         if (!constraint.latch.on.text.empty())
             throw description.error(constraint.latch.on.at, "a proof does not cover latches", hint);
-    if (model.do_forces_see_contact())
-        throw description.error(place_of_held(description), "a proof does not cover forces with held(NAME)", hint);
+    if (const Text* text = first_with_held(description))
+        throw description.error(text->at, "a proof does not cover forces with held(NAME)", hint);
     std::vector<InputError> errors;
     for (std::size_t contact = 0; contact < model.contacts(); ++contact) {
         const ConstraintDescription& constraint = description.constraints[contact];

@@ -188,25 +188,25 @@ Scope definition_scope(const SystemDescription& system, const Layout& layout, Gr
     return constant_scope(system, layout, graph, "a derived parameter");
 }
 
-namespace {
-
-// Whether held(NAME) stands in a force or in the dissipation.
-bool do_forces_see_contact(const SystemDescription& system) {
-    const auto sees = [](const Text& text) {
+const Text* first_with_held(const SystemDescription& system) {
+    const auto is_held = [](const auto& named) { return named.name == "held"; };
+    if (std::any_of(system.parameters.begin(), system.parameters.end(), is_held) ||
+        std::any_of(system.derived.begin(), system.derived.end(), is_held) ||
+        std::any_of(system.coordinates.begin(), system.coordinates.end(), is_held))
+        return nullptr;
+    const auto has_it = [](const Text& text) {
         const std::vector<std::string> names = names_in(text.text);
         return std::find(names.begin(), names.end(), "held") != names.end();
     };
-    return sees(system.dissipation) ||
-           std::any_of(system.coordinates.begin(), system.coordinates.end(),
-                       [&](const CoordinateDescription& coordinate) { return sees(coordinate.force); });
+    for (const CoordinateDescription& coordinate : system.coordinates)
+        if (has_it(coordinate.force)) return &coordinate.force;
+    return has_it(system.dissipation) ? &system.dissipation : nullptr;
 }
-
-}  // namespace
 
 Layout layout_of(const SystemDescription& system) {
     const auto count = [](const auto& list) { return static_cast<std::uint32_t>(list.size()); };
     return {count(system.coordinates), count(system.parameters), count(system.constraints),
-            count(sliding_places(system)), do_forces_see_contact(system)};
+            count(sliding_places(system)), first_with_held(system) != nullptr};
 }
 
 std::vector<std::string> slot_names(const SystemDescription& system, const Layout& layout) {

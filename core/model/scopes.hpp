@@ -13,6 +13,10 @@
 
 namespace achilles {
 
+// The first force, or else the dissipation, in which held(NAME) stands; null if there is none, or if a
+// parameter or coordinate has this name.
+const Text* first_with_held(const SystemDescription& system);
+
 // The slots of the inputs of a system's programs.
 Layout layout_of(const SystemDescription& system);
 

@@ -107,6 +107,7 @@ class Chain {
     void handle_event(std::size_t event);
     void land(std::size_t event);
     ContactSet latched_before(std::size_t event) const;
+    std::size_t cross_guard(std::size_t event, bool is_latch, std::size_t number);
     void reach_zeno_point(std::size_t event);
     void release(std::size_t event);
     // With dry friction (chain_friction.cpp, friction_impact_sensitivity.cpp).

@@ -247,10 +247,7 @@ void Chain::release(std::size_t event) {
     const std::size_t i = now.contacts.only();
     set_gaps();
     if (now.ends_latch) {
-        std::size_t watched = 0;
-        while (!model_->watched_guards()[watched].is_latch || model_->watched_guards()[watched].number != i) ++watched;
-        guards().at(state_);
-        cross(event, guards().row(watched), guards().value(watched));
+        cross_guard(event, true, i);
     } else {
         const Mode others = model_->unconstrained(mode_, i);
         auto& normal = normals_[{others, i}];

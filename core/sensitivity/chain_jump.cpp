@@ -1,6 +1,8 @@
 // The effect of jumps of the state, and of passes, on a small change (theory-modes.md 6).
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "number/dense.hpp"
 #include "sensitivity/chain.hpp"
 
@@ -63,6 +65,18 @@ void Chain::keep_zeros(std::optional<std::size_t> watched) {
     since_zeros_.setIdentity(tangent_.size(), tangent_.size());
 }
 
+// Crosses the zero of a watched guard, of this jump or of the latch of this contact. Returns its number.
+std::size_t Chain::cross_guard(std::size_t event, bool is_latch, std::size_t number) {
+    const std::vector<WatchedGuard>& all = model_->watched_guards();
+    const auto guard = std::find_if(all.begin(), all.end(), [&](const WatchedGuard& one) {
+        return one.is_latch == is_latch && one.number == number;
+    });
+    const auto watched = static_cast<std::size_t>(guard - all.begin());
+    guards().at(state_);
+    cross(event, guards().row(watched), guards().value(watched));
+    return watched;
+}
+
 void Chain::jump(std::size_t event) {
     const auto& events = trajectory_->events;
     const Event& now = events[event];
@@ -81,14 +95,8 @@ void Chain::jump(std::size_t event) {
                             "the direction of the perturbation",
                             name));
         if (!follows_jump) {
-            std::size_t watched = 0;
-            while (model_->watched_guards()[watched].is_latch ||
-                   model_->watched_guards()[watched].number != now.jump->number)
-                ++watched;
             set_gaps();
-            guards().at(state_);
-            cross(event, guards().row(watched), guards().value(watched));
-            keep_zeros(watched);
+            keep_zeros(cross_guard(event, false, now.jump->number));
         }
     } else if (!follows_jump) {
         keep_zeros({});

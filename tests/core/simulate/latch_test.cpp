@@ -316,6 +316,14 @@ TEST(HeldForces, OfAContactThatBouncesAreNeverCut) {
     for (const Event& event : run.events) EXPECT_TRUE(event.is_impact());
 }
 
+// A parameter may have the name, as in files older than the word.
+TEST(HeldForces, AreNotMeantByAParameterOfThisName) {
+    const Trajectory run = run_of(on_floor(0.5, "-held", "[[parameter]]\nname = \"held\"\nvalue = 1"), 2.0);
+    EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+    EXPECT_FALSE(run.model->do_forces_see_contact());
+    EXPECT_NEAR(run.events.at(0).t, 1.0, 1e-12);
+}
+
 // Two feet, each of which pushes the other up while it is held: the decisions of both see the forces of now.
 TEST(HeldForces, OfSeveralContactsAreThoseOfTheMode) {
     for (const Method method : both_methods) {
