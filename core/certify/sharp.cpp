@@ -42,7 +42,7 @@ SharpConditions::SharpConditions(const Model& model, const Run& run, const Inter
           dof_),
       guess_(model.evaluator(model.bouncing(key).rates, run.parameters)),
       box_(dof_),
-      shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_)},
+      shadow_{std::vector<Interval>(dof_), std::vector<Interval>(dof_), std::vector<Interval>(dof_), {}},
       variables_(model.bouncing(key).variables.size()),
       need_q_(dof_),
       need_s_(dof_),
@@ -108,6 +108,7 @@ void SharpConditions::sharpen(Time& time, const AccelerationTrend& trend) {
 // motion if it starts from v*. If not, X grows to the required size and a fifth more.
 bool SharpConditions::contain(const Time& time) {
     const Interval &h = time.height, &T = time.longest;
+    find_change(variables_);
     bool inside = autonomous_ || T.hi() < box_.duration;
     if (!inside) box_.duration = inflated(T.hi());
     for (std::size_t i = 0; i < dof_; ++i) {
@@ -115,7 +116,7 @@ bool SharpConditions::contain(const Time& time) {
         need_q_[i] = times(variables_[dof_ + i] + n * box_.sigma, T);
         need_s_[i] = times(A + B * box_.sigma + D * square(box_.sigma), T);
         const double q = need_q_[i] + times(n, h);
-        const double s = std::max(need_s_[i] + times(B, h), mag(box_.d[i]) + times(A, T));
+        const double s = std::max(need_s_[i] + times(B, h), mag(box_.d[i]) + times(A, T)) + times(change_[i], T);
         inside = fits(q, box_.q_radius[i]) && inside;
         inside = fits(s, box_.s_radius[i]) && inside;
     }
@@ -139,7 +140,8 @@ void SharpConditions::find_shadow(const Time& time) {
         largest_c = std::max({largest_c, c_q.hi(), c_s.hi()});
         largest_d = std::max(largest_d, mag(box_.d[i]));
     }
-    const Interval K = exp(Interval(lipschitz) * time.longest) - one;
+    shadow_.growth = exp(Interval(lipschitz) * time.longest);
+    const Interval K = shadow_.growth - one;
     const Interval grown = K * (Interval(largest_c) + Interval(largest_d));
     for (std::size_t i = 0; i < dof_; ++i) {
         shadow_.E_q[i] = shadow_.E_q[i] + grown;
@@ -234,7 +236,14 @@ Certificate SharpConditions::certificate_of(const Collision& collision, const Ti
     }
     c.position_bound = sqrt(q).hi();
     c.velocity_bound = sqrt(v).hi();
-    const Interval position = norm(shadow_.E_q), velocity = norm(shadow_.E_s), uniform = norm(shadow_.uniform);
+    const auto distance = [&](const std::vector<Interval>& sizes, const Interval& factor) {
+        Interval sum(0.0);
+        for (std::size_t i = 0; i < dof_; ++i)
+            sum = sum + square(sizes[i] + late_change(i, c, shadow_.growth) * factor);
+        return sqrt(sum);
+    };
+    const Interval position = distance(shadow_.E_q, time.longest), velocity = distance(shadow_.E_s, Interval(1.0)),
+                   uniform = distance(shadow_.uniform, time.longest);
     // If a derivative is undefined somewhere in X, one of the norms is undefined, although the maximum of several
     // values may have dropped it. No shadowing bound is then certified.
     const bool shadowed = position.is_defined() && velocity.is_defined() && uniform.is_defined();

@@ -34,6 +34,10 @@
 // Euclidean  v* = s + d, d_i = w |n_i - g_i/|g|^2|: |v_inf - v*| gains d, E_q gains K max d, E_s gains d + K max d, if
 //            d_i + max |A_i| T is inside X's radius of s_i.
 //
+// change     Where forces see the contact, the acceleration changes by df at the Zeno point, and the run makes this change
+//            at its estimate of tau_inf. E_s gains |df| W exp(kap T) and E_q that times T, with the width W of the time
+//            interval, if |df| T more fits into X's radius of s.
+//
 // The bouncing is truncated if half of the time interval is within eps_t, the uniform bound within eps_q, and the
 // shadowing bound on the velocity within eps_v.
 #pragma once
@@ -71,6 +75,7 @@ class SharpConditions : public TruncationConditions {
     struct ShadowingBound {
         std::vector<Interval> E_q, E_s;  // at tau_inf
         std::vector<Interval> uniform;   // bound on q at all times
+        Interval growth;                 // exp(kap T)
     };
     std::optional<Certificate> prove(const Collision& collision, CertificateScope scope);
     void begin_box(const Collision& collision);

@@ -183,6 +183,7 @@ bool StickingConditions::contain(const Bounds& b) {
     if (!inside) box_.duration = inflated(b.T.hi());
     inside = fits((abs(b.alpha) * Interval(2.0) * box_.e * box_.w / b.a_min).hi(), box_.slip) && inside;
     const Interval &sigma = variables_[2 * dof_], &u = variables_[2 * dof_ + 1];
+    find_change(variables_);
     for (std::size_t i = 0; i < dof_; ++i) {
         const Interval rate = variables_[dof_ + i] + terms_.N(0, i) * sigma + terms_.N(1, i) * u;
         const Interval F = terms_.A(i) + terms_.B(0, i) * sigma + terms_.B(1, i) * u + terms_.D(0, i) * square(sigma) +
@@ -192,7 +193,8 @@ bool StickingConditions::contain(const Bounds& b) {
         const double shift_q = (abs(terms_.N(0, i)) * b.height + abs(terms_.N(1, i)) * b.U_m).hi(),
                      shift_s = (abs(terms_.B(0, i)) * b.height + abs(terms_.B(1, i)) * b.U_m).hi();
         inside = fits(need_q_[i] + std::max(shift_q, box_.d_q[i]), box_.q_radius[i]) && inside;
-        inside = fits(need_s_[i] + std::max(shift_s, box_.d_s[i]), box_.s_radius[i]) && inside;
+        const double change = (change_[i] * b.T).hi();
+        inside = fits(need_s_[i] + std::max(shift_s, box_.d_s[i]) + change, box_.s_radius[i]) && inside;
     }
     return inside;
 }
@@ -284,21 +286,22 @@ std::optional<Certificate> StickingConditions::certificate_of(const Collision& c
         E_s[i] = Interval(c_s.hi());
         if (!row.is_defined() || !c_q.is_defined() || !c_s.is_defined()) return std::nullopt;
     }
-    const Interval grown = (exp(Interval(lipschitz) * b.T) - one) * Interval(largest);
-    Interval position(0.0), velocity(0.0);
-    for (std::size_t i = 0; i < dof_; ++i) {
-        E_q[i] = E_q[i] + grown;
-        E_s[i] = E_s[i] + grown;
-        uniform[i] = E_q[i] + abs(x.N(0, i)) * b.height + abs(x.N(1, i)) * b.U_m;
-        position = position + square(Interval(need_q_[i]) + Interval(box_.d_q[i]));
-        velocity = velocity + square(Interval(need_s_[i]) + Interval(box_.d_s[i]));
-    }
     const AccelerationTrend trend = trend_at(collision);
     const double e = restitution_at_point(collision);
     Certificate c =
         certificate_at(collision.before.t, b.accumulation_time,
                        estimated_accumulation_time(trend, e, collision.speed) +
                            estimated_delay_by_slip(trend.a, point_.hddot(1), -trend_.by_slip(), e, collision.speed));
+    const Interval growth = exp(Interval(lipschitz) * b.T), grown = (growth - one) * Interval(largest);
+    Interval position(0.0), velocity(0.0);
+    for (std::size_t i = 0; i < dof_; ++i) {
+        const Interval late = late_change(i, c, growth);
+        E_q[i] = E_q[i] + grown + late * b.T;
+        E_s[i] = E_s[i] + grown + late;
+        uniform[i] = E_q[i] + abs(x.N(0, i)) * b.height + abs(x.N(1, i)) * b.U_m;
+        position = position + square(Interval(need_q_[i]) + Interval(box_.d_q[i]));
+        velocity = velocity + square(Interval(need_s_[i]) + Interval(box_.d_s[i]));
+    }
     c.position_bound = sqrt(position).hi();
     c.velocity_bound = sqrt(velocity).hi();
     c.shadowing_position = norm(E_q).hi();

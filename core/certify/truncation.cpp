@@ -203,7 +203,22 @@ TruncationConditions::TruncationConditions(const Model& model, const Run& run, c
       e_(e),
       state_(key.state),
       contact_(model.evaluator<Interval>(model.programs_of(key.contact, key.mode).contact_terms, run.parameters)),
-      trend_(model.evaluator(model.bouncing(key).trend, run.parameters)) {}
+      trend_(model.evaluator(model.bouncing(key).trend, run.parameters)),
+      change_(dof_, Interval(0.0)) {
+    if (model.equations().in_forces.contains(key.contact))
+        change_program_ = model.evaluator<Interval>(model.change_at_zeno_point(key), run.parameters);
+}
+
+void TruncationConditions::find_change(const std::vector<Interval>& box) {
+    if (!change_program_) return;
+    set_box(*change_program_, box);
+    change_program_->run();
+    for (std::size_t i = 0; i < dof_; ++i) change_[i] = abs(change_program_->output(i));
+}
+
+Interval TruncationConditions::late_change(std::size_t i, const Certificate& c, const Interval& growth) const {
+    return change_program_ ? change_[i] * (Interval(c.zeno_high) - Interval(c.zeno_low)) * growth : Interval(0.0);
+}
 
 AccelerationTrend TruncationConditions::trend_at(const Collision& collision) {
     set_state(trend_, collision.with(collision.tangential));

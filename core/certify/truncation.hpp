@@ -218,6 +218,12 @@ class TruncationConditions : protected ConditionsBase {
     virtual std::optional<Certificate> do_prove_any(const Collision& collision) = 0;
     // The variation of -hddot at a collision.
     AccelerationTrend trend_at(const Collision& collision);
+    // Encloses over a box by how much each acceleration changes at the Zeno point, where forces begin to see the contact
+    // (theory-modes.md 5).
+    void find_change(const std::vector<Interval>& box);
+    // What this change adds to the distance of a velocity, because the run makes it at the estimated Zeno time of the
+    // certificate. `growth` bounds how distances grow until then.
+    Interval late_change(std::size_t i, const Certificate& certificate, const Interval& growth) const;
 
     std::uint32_t sigma_;
     bool autonomous_;
@@ -225,6 +231,10 @@ class TruncationConditions : protected ConditionsBase {
     ContactState state_;
     ContactTerms<Evaluator<Interval>> contact_;
     TrendTerms<Evaluator<double>> trend_;
+    std::vector<Interval> change_;  // sizes, of every acceleration; 0 if no force sees the contact
+
+ private:
+    std::optional<Evaluator<Interval>> change_program_;
 };
 
 // The conditions selected by the options of the run, for a contact with restitution e; Model::has_bouncing() must be

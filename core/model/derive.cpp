@@ -422,7 +422,7 @@ WatchedFriction ContactModes::watched_friction(const ModeEquations& motion) {
 
 Expressions ContactModes::powers(Mode mode, Expression work) {
     const ModeEquations& motion = of(mode);
-    work = forces_of({work}, mode.held().with(mode.acting()), layout_).front();
+    work = forces_of({work}, mode.seen_by_forces(), layout_).front();
     for (const std::size_t i : contacts_keeping(mode, Constraint::gap)) {
         const Expression gap_t = motion.contacts[i].gap_t;
         if (friction_.empty()) {

@@ -81,9 +81,9 @@ struct GivenTerms {
     std::vector<Expression> Q;
 };
 
-// A mode in which this held contact is open, but goes on acting if it is one of those in the forces.
+// A mode in which this held contact is open, but goes on acting if it is one of those in the forces that acts now.
 inline Mode unconstrained(Mode mode, std::size_t contact, ContactSet in_forces) {
-    return mode.without(contact).with_acting(ContactSet::of(contact).within(in_forces));
+    return mode.without(contact).with_acting(ContactSet::of(contact).within(in_forces).without(mode.silent()));
 }
 
 // The derived equations, as expressions. Vectors have n entries; M and H are full, row by row.

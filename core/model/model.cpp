@@ -251,6 +251,16 @@ const OtherContactTerms& Model::other_contact_terms(const BouncingKey& key) cons
                    [&] { return derive_other_contacts(key, contact_modes(), equations_, layout_); });
 }
 
+const Program& Model::change_at_zeno_point(const BouncingKey& key) const {
+    return derived(changes_at_zeno_points_, key, [&] {
+        const Mode after = key.mode.with(key.contact, key.state);
+        Expressions change = contact_modes().of(after).f;
+        const Expressions before = contact_modes().of(after.with_silent(ContactSet::of(key.contact))).f;
+        for (std::size_t i = 0; i < change.size(); ++i) change[i] = change[i] - before[i];
+        return Program(change, layout_.slots());
+    });
+}
+
 std::optional<BouncingObstacle> Model::obstacle_to_bouncing(const BouncingKey& key) const {
     if (!has_friction()) return std::nullopt;
     return derived(obstacles_, key, [&] { return achilles::obstacle_to_bouncing(key, contact_modes(), layout_); });

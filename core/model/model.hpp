@@ -133,6 +133,9 @@ class Model {
     // no such programs; empty if it has them, as without friction.
     const BouncingModel& bouncing(const BouncingKey& key) const;
     const OtherContactTerms& other_contact_terms(const BouncingKey& key) const;
+    // How the acceleration changes at the Zeno point of a contact that forces see: from there on it acts on them. One
+    // output for each coordinate, with v = s (theory-modes.md 5).
+    const Program& change_at_zeno_point(const BouncingKey& key) const;
     std::optional<BouncingObstacle> obstacle_to_bouncing(const BouncingKey& key) const;
     // The same for two contacts that bounce together while others are held; first < second.
     const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
@@ -224,6 +227,7 @@ class Model {
     mutable std::map<ContactInMode, ContactPrograms> programs_;
     mutable std::map<BouncingKey, BouncingModel> bouncings_;
     mutable std::map<BouncingKey, OtherContactTerms> other_contact_terms_;
+    mutable std::map<BouncingKey, Program> changes_at_zeno_points_;
     mutable std::map<ContactInMode, bool> closed_without_force_;
     mutable std::map<std::pair<Mode, ContactSet>, PairPrograms> pairs_;
     mutable std::map<ContactInMode, TypedProgram<SlipTerms>> slip_terms_;

@@ -36,16 +36,25 @@ class Mode {
     // Whether every contact is open. Joints do not count.
     constexpr bool is_free() const { return held().empty(); }
     // Held contacts whose slip stays 0 because that of others does.
-    constexpr ContactSet implied() const { return flagged().within(held()); }
-    // Open contacts that act on the forces as held ones do: held(NAME) is 1 for them (theory-modes.md 5). Only
-    // derivations and decisions have such modes.
-    constexpr ContactSet acting() const { return flagged().without(held()); }
-    constexpr Mode with_acting(ContactSet contacts) const {
-        std::uint64_t bits = bits_;
-        for (const std::size_t i : contacts.without(held())) bits |= flag(i);
-        return Mode(bits);
+    constexpr ContactSet implied() const {
+        const auto flags = [this](std::uint32_t shift) {
+            return static_cast<std::uint32_t>(bits_ >> (first_flag + shift) & 0xFFu);
+        };
+        return ContactSet(flags(0) | flags(high) << 8u);
     }
-    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact)); }
+    constexpr Mode with_implied_slip(std::size_t contact) const { return Mode(bits_ | flag(contact), exceptions_); }
+    // The contacts for which held(NAME) is 1 in the forces (theory-modes.md 5): the held ones, with two exceptions.
+    constexpr ContactSet seen_by_forces() const { return held().without(silent()).with(acting()); }
+    // Open contacts that act on the forces as held ones do. Only derivations and decisions have such modes.
+    constexpr ContactSet acting() const { return exceptions_.without(held()); }
+    constexpr Mode with_acting(ContactSet contacts) const {
+        return Mode(bits_, exceptions_.with(contacts.without(held())));
+    }
+    // Held contacts that do not act on the forces: from the cut of their bouncing to the Zeno point.
+    constexpr ContactSet silent() const { return exceptions_.within(held()); }
+    constexpr Mode with_silent(ContactSet contacts) const {
+        return Mode(bits_, exceptions_.without(held()).with(contacts.within(held())));
+    }
     // The contacts that are not open, and those in a given state.
     constexpr ContactSet held() const {
         return ContactSet(static_cast<std::uint32_t>(bits_ | bits_ >> high) & of_contacts);
@@ -68,8 +77,8 @@ class Mode {
     constexpr Mode with(ContactSet contacts, ContactState state) const {
         const std::uint64_t set = contacts.bits_;
         std::uint64_t kept = bits_ & ~(set | set << high);
-        for (const std::size_t i : contacts.within(flagged())) kept &= ~flag(i);
-        return Mode(kept | low_bits(set, state) | high_bits(set, state));
+        for (const std::size_t i : contacts.within(implied())) kept &= ~flag(i);
+        return Mode(kept | low_bits(set, state) | high_bits(set, state), exceptions_.without(contacts));
     }
     constexpr Mode with(std::size_t contact, ContactState state) const { return with(ContactSet::of(contact), state); }
     // This mode with these contacts open.
@@ -79,14 +88,16 @@ class Mode {
     constexpr Mode only(ContactSet contacts) const { return without(held().without(contacts)); }
 
     friend constexpr bool operator==(const Mode&, const Mode&) = default;
-    friend constexpr bool operator<(const Mode& a, const Mode& b) { return a.bits_ < b.bits_; }
+    friend constexpr bool operator<(const Mode& a, const Mode& b) {
+        return a.bits_ != b.bits_ ? a.bits_ < b.bits_ : a.exceptions_ < b.exceptions_;
+    }
 
  private:
     // A state has two bits. The low bits of all contacts and joints are in one half of the word, the high bits in the
     // other.
     static constexpr std::uint32_t high = 32, of_contacts = (1u << max_contacts) - 1u,
                                    all = (1u << (max_contacts + max_joints)) - 1u;
-    // Eight flags in each half: the slip of a held contact is implied; an open contact acts.
+    // Eight flags in each half: the slip of a held contact is implied.
     static constexpr std::uint32_t first_flag = 24;
     static constexpr std::uint64_t flag(std::size_t contact) {
         return std::uint64_t{1} << (first_flag + contact % 8 + high * (contact / 8 % 2));
@@ -98,13 +109,9 @@ class Mode {
         return (static_cast<std::uint32_t>(state) & 2u) != 0 ? set << high : 0u;
     }
 
-    constexpr ContactSet flagged() const {
-        const auto flags = [](std::uint64_t bits) { return static_cast<std::uint32_t>(bits >> first_flag & 0xFFu); };
-        return ContactSet(flags(bits_) | flags(bits_ >> high) << 8u);
-    }
-
-    constexpr explicit Mode(std::uint64_t bits) : bits_(bits) {}
+    constexpr explicit Mode(std::uint64_t bits, ContactSet exceptions) : bits_(bits), exceptions_(exceptions) {}
     std::uint64_t bits_ = 0;
+    ContactSet exceptions_;  // contacts that forces see in another state: acting() or silent()
 };
 
 // Key of the data of one contact in a mode.

@@ -109,19 +109,21 @@ class Chain {
     ContactSet latched_before(std::size_t event) const;
     std::size_t cross_guard(std::size_t event, bool is_latch, std::size_t number);
     void reach_zeno_point(std::size_t event);
+    Mode mode_after_cut(Mode held) const;
     void release(std::size_t event);
     // With dry friction (chain_friction.cpp, friction_impact_sensitivity.cpp).
     void find_critical_slips();
     void begin_with_friction();
     void end_with_friction();
     void change_friction(std::size_t event);
+    void end_latch_with_friction(std::size_t event);
     std::optional<std::size_t> vanishing_function(std::size_t event);
     double slip_residual(std::size_t which, double at_event);
     void move_onto(RowMatrix& J, ContactSet surfaces);
     void settle(RowMatrix& J, Mode onto);
     void land_with_friction(std::size_t event);
     struct ImpactRows;
-    bool add_loaded_contacts(const Event& now, ImpactRows& impact);
+    bool add_loaded_contacts(const Event& now, ContactSet latched, ImpactRows& impact);
     bool add_slip(const Event& now, std::size_t contact, ImpactRows& impact);
     RowMatrix after_impact(const ImpactRows& impact, const RowMatrix& J) const;
     void bounce_with_friction(const Event& now, const ImpactRows& impact, RowMatrix& J);

@@ -153,7 +153,7 @@ void Chain::land(std::size_t event) {
         J.row(tangent_.u(i)) = newton::rate_after(e, before).row;
         retract(J, rests ? others.with(i, ContactState::held) : others);
     }
-    mode_ = completes ? others.with(i, ContactState::held) : now.mode;
+    mode_ = completes ? mode_after_cut(others.with(i, ContactState::held)) : now.mode;
     if (completes && others != now.mode.without(i))
         return break_off("the impact sequence is cut at an impact that opens a contact");
     for (std::size_t k = 0; k < tangent_.contacts; ++k) {
@@ -220,9 +220,19 @@ RowVectorXd Chain::accumulation_time_row(const RowMatrix& J, const BouncingKey& 
     return row - accumulation_time.slope[4] * J.row(tangent_.u(key.contact));
 }
 
+// The mode of the motion after a cut that holds these contacts. Until the Zeno point forces may not see one of them.
+Mode Chain::mode_after_cut(Mode held) const {
+    const auto& pieces = trajectory_->pieces;
+    const bool follows = next_piece_ < pieces.size() && pieces[next_piece_].start == state_.t;
+    return follows ? held.with_silent(pieces[next_piece_].mode.silent()) : held;
+}
+
 void Chain::reach_zeno_point(std::size_t event) {
-    const Event& now = trajectory_->events[event];
+    const auto& events = trajectory_->events;
+    const Event& now = events[event];
     if (!waiting_ || now.contacts.count() != 1) return break_off(several_at_zeno_point);
+    if (!mode_.silent().empty() && event + 1 < events.size() && events[event + 1].t == now.t)
+        return break_off("forces begin to see a contact at its Zeno point, and another one changes its state there");
     waiting_ = false;
     set_gaps();
     const std::size_t i = now.contacts.only();
@@ -235,7 +245,8 @@ void Chain::reach_zeno_point(std::size_t event) {
     link.J.col(tangent_.accumulation_time()) += link.F;
     link.J.row(tangent_.accumulation_time()).setZero();
     retract(link.J, mode_);
-    if (model_->has_friction()) mode_ = now.mode;  // a contact that sticks at its impacts may slide from here
+    // A contact that sticks at its impacts may slide from here, and forces see the contact.
+    if (model_->has_friction() || !mode_.silent().empty()) mode_ = now.mode;
 }
 
 void Chain::release(std::size_t event) {

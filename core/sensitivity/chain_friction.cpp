@@ -179,6 +179,20 @@ std::optional<std::size_t> Chain::vanishing_function(std::size_t event) {
     return std::nullopt;
 }
 
+// A contact leaves because its latch has ended by an expression.
+void Chain::end_latch_with_friction(std::size_t event) {
+    const Event& now = trajectory_->events[event];
+    const ContactSet released = mode_.held().without(now.mode.held());
+    if (!released.has_one() || mode_.without(released) != now.mode)
+        return break_off("the end of a latch changes other contacts, too: no derivatives are computed past it");
+    cross_guard(event, true, released.only());
+    ChainLink& link = add(ChainLink::Kind::jump, event);
+    settle(link.J, mode_);
+    mode_ = now.mode;
+    set_gaps();
+    h_[released.only()] = u_[released.only()] = 0.0;
+}
+
 void Chain::change_friction(std::size_t event) {
     const Event& now = trajectory_->events[event];
     if (waiting_) return break_off("the friction changes before the Zeno time of a contact");
@@ -187,6 +201,7 @@ void Chain::change_friction(std::size_t event) {
         return;
     }
     set_gaps();
+    if (now.ends_latch) return end_latch_with_friction(event);
     const auto number = vanishing_function(event);
     if (!number) return;
     Mode at_event = mode_;  // in which the slip that ends is 0

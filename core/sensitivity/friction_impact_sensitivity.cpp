@@ -156,7 +156,7 @@ double Chain::coefficient_rate(std::size_t which, double speed) {
 
 // Adds the gap of the landing contact and of those that the impact loads, with their slips. Breaks off and returns
 // false where a small change may load others.
-bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
+bool Chain::add_loaded_contacts(const Event& now, ContactSet latched, ImpactRows& impact) {
     double scale = 0.0;
     for (const auto& [contact, impulse] : now.joint->impulses) scale = std::max(scale, impulse);
     for (const auto& [contact, impulse] : now.joint->impulses) {
@@ -165,7 +165,8 @@ bool Chain::add_loaded_contacts(const Event& now, ImpactRows& impact) {
             break_off("a contact that is closed without a force takes part in an impact");
             return false;
         }
-        if (!lands && !(impulse > branch_tolerance * scale)) {
+        const bool is_latched = latched.contains(contact);  // loaded by an impulse of either sign
+        if (!lands && !is_latched && !(impulse > branch_tolerance * scale)) {
             if (surfaces_.of(contact).at({now.q, now.v_after, now.t}).hdot > branch_tolerance * now.impact_speed)
                 continue;
             break_off("an impact neither loads a held contact nor opens it");
@@ -259,7 +260,7 @@ void Chain::land_with_friction(std::size_t event) {
     to_surface[tangent_.h(i)] = 1.0;
     ChainLink& crossing = cross(event, to_surface, 0.0);
     ImpactRows impact{i, {}, {}};
-    if (!add_loaded_contacts(now, impact)) return;
+    if (!add_loaded_contacts(now, latched_before(event), impact)) return;
     if (options_.errors) meet_surface(i, {}, crossing);
     ChainLink& link = add(ChainLink::Kind::jump, event);
     RowMatrix& J = link.J;
@@ -322,12 +323,8 @@ void Chain::come_to_rest(std::size_t event, const ImpactRows& impact, ChainLink&
 // The state in which a contact is held by the motion that replaces its bouncing after this impact.
 ContactState Chain::state_of_bouncing(std::size_t event, std::size_t contact) const {
     const auto& events = trajectory_->events;
-    if (event + 1 < events.size() && events[event + 1].is_zeno()) {
-        const Event& zeno = events[event + 1];
-        using enum Certificate::Tail;
-        return zeno.certificate->tail == stick_then_slip ? ContactState::held : zeno.mode.state(contact);
-    }
-    return trajectory_->pieces[next_piece_].mode.state(contact);  // the run ends before the Zeno point
+    const bool waits = event + 1 == events.size() || events[event + 1].t > events[event].t;
+    return (waits ? trajectory_->pieces[next_piece_].mode : events[event + 1].mode).state(contact);
 }
 
 // The cut of a bouncing sequence that slides or sticks (theory-friction.md 4): the rows of q and s, and of the
@@ -340,7 +337,7 @@ void Chain::truncate_with_friction(const BouncingKey& key, double speed, const I
     link.completion = ChainLink::PendingCompletion{key, state_, speed, std::move(newton)};
     link.J.row(tangent_.accumulation_time()) = accumulation_time_row(link.J, key, speed);
     if (sticks_at_impacts(*model_, key)) add_drift_of_slip(link.J, key, speed);
-    mode_ = key.mode.with(key.contact, key.state);
+    mode_ = mode_after_cut(key.mode.with(key.contact, key.state));
     waiting_ = true;
 }
 

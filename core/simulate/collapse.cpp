@@ -76,7 +76,7 @@ bool ExecutionAutomaton::complete_collapse(std::size_t which, const Contact& con
     for (std::size_t j = 0; j < surfaces_->count(); ++j) {
         if (j == which || next_.mode.is_held(j) || !(restitution(j) > 0.0 && restitution(j) < 1.0)) continue;
         const ContactSet two = ContactSet::of(which).with(j);
-        if (next_.inactive.contains(j) || may_jump(two, {}) || !may_cut(two)) continue;
+        if (next_.inactive.contains(j) || may_jump(two, {}) || do_forces_see(two)) continue;
         const Contact other = surfaces_->of(j, next_.mode).at(next_.state);
         const double W = other.g.dot(contact.impulse_direction) * contact.W;
         if (!(W < 0.0)) continue;

@@ -76,15 +76,15 @@ void ExecutionAutomaton::land_alone(const Contact& contact) {
                         kinetic ? tangential : reinitialize(contact, next_.state.v, kind)};
     if (e == 0.0) {
         capture(contact, collision);
-    } else if (auto certificate = may_cut(ContactSet::of(which_)) && could_truncate(collision)
+    } else if (auto certificate = may_cut(which_) && could_truncate(collision)
                                       ? timed([&] { return conditions_->certify(collision, proof_scope_); })
                                       : std::nullopt) {
         complete(contact, collision, std::move(*certificate));
     } else if (too_short_to_resolve(collision, e)) {
-        if (!may_cut(ContactSet::of(which_)))
+        if (!may_cut(which_))
             return stop(Outcome::Kind::undecided,
-                        fmt::format("the flights became shorter than double precision resolves, and a contact that "
-                                    "stands in held(NAME) is never cut, at {}",
+                        fmt::format("the flights became shorter than double precision resolves, and bouncing of a "
+                                    "contact that stands in held(NAME) is cut under the sharp conditions only, at {}",
                                     where(next_.state)));
         if (auto proved = timed([&] { return conditions_->prove_any(collision); })) {
             complete(contact, collision, std::move(*proved));
@@ -210,7 +210,11 @@ void ExecutionAutomaton::complete(const Contact& contact, const Collision& colli
 void ExecutionAutomaton::continue_to_zeno_point(const Collision& collision, ContactState state, Certificate certificate,
                                                 int sticks_from) {
     next_.state = collision.with(collision.restart);
-    const Mode mode = next_.mode.with(which_, state);
+    const Mode held = next_.mode.with(which_, state);
+    // Until the Zeno point the contact is open for the forces.
+    const bool waits = certificate.zeno_time > next_.state.t;
+    const Mode mode =
+        held.with_silent(waits ? ContactSet::of(which_).within(model_->equations().in_forces) : ContactSet());
     if (collision.position.size() > 0) {
         next_.state.q = collision.position;
         for (std::size_t i = 0; i < surfaces_->count(); ++i) {
@@ -231,7 +235,7 @@ void ExecutionAutomaton::continue_to_zeno_point(const Collision& collision, Cont
     event.certificate = std::move(certificate);
     event.sticks_from = sticks_from;
     event.contacts = ContactSet::of(which_);
-    event.mode = mode;
+    event.mode = held;
     begin_stretch(mode, std::min(event.t, run_.options.end_time));
     next_.keeps_stick = event.certificate->tail == Certificate::Tail::stick_then_slip;
 }
@@ -242,15 +246,34 @@ void ExecutionAutomaton::pass_zeno_point() {
     completion_.reset();
     next_.state.t = event.t;
     if (event.is_collapse()) return pass_collapse(std::move(event));
-    if (next_.keeps_stick) {
-        if (!decide_with_friction(next_.held(), next_.mode)) return;
-        event.mode = next_.mode;
+    ContactSet gone;
+    if (next_.keeps_stick || !next_.mode.silent().empty()) {
+        gone = decide_at_zeno_point();
+        if (outcome_) return;
+        event.mode = gone.empty() ? next_.resting() : event.mode;
     }
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;
     record_.event(std::move(event));
+    if (!gone.empty()) return leave(gone);
     enter_phase();
     begin_stretch(next_.mode, run_.options.end_time);
+}
+
+// Decides the mode at a Zeno point where sticking ends, or where forces begin to see the contact. Returns the other
+// contacts that then leave at once.
+ContactSet ExecutionAutomaton::decide_at_zeno_point() {
+    const Mode before = next_.mode.with_silent({});
+    const ContactSet closed = before.held().with(next_.touching);
+    acting_ = before.held().within(model_->equations().in_forces);
+    if (surfaces_->has_friction()) {
+        if (!decide_with_friction(closed, before)) return {};
+    } else {
+        decide(closed);
+    }
+    const ContactSet gone = before.held().without(next_.resting().held());
+    if (!outcome_ && surfaces_->has_friction()) start_released(gone);
+    return gone;
 }
 
 // Starts a new phase after a change of the mode.

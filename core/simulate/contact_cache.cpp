@@ -169,7 +169,7 @@ ContactCache::FrictionLevels ContactCache::friction_levels(std::size_t which, co
 ContactRows ContactCache::rows(const State& state, ContactSet gaps, ContactSet sliding, Mode mode) {
     ContactRows result;
     for (const std::size_t i : gaps) {
-        const Contact c = free_[i].at(state);
+        const Contact c = (mode.is_free() ? free_[i] : of(i, mode)).at(state);
         result.rows.push_back(
             {i, false, c.hdot, c.gap_t, of(i, mode).normal_acceleration(state), c.g, c.W * c.impulse_direction});
     }

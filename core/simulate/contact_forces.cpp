@@ -61,7 +61,7 @@ void ContactForces::share() {
     ContactVector<double> hddot(closed.W.rows());
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         hddot[static_cast<Eigen::Index>(i)] =
-            all_->of(closed.which[i], Mode().with_acting(mode_.held().within(model_->equations().in_forces)))
+            all_->of(closed.which[i], Mode().with_acting(mode_.seen_by_forces().within(model_->equations().in_forces)))
                 .normal_acceleration(state_);
     const Eigen::MatrixXd W = closed.W;
     const Eigen::VectorXd least = least_solution(W, Eigen::VectorXd(-hddot));
@@ -120,7 +120,7 @@ void ContactForces::run_view(Evaluator<double>& view, const Sample& sample, cons
         for (std::size_t i = 0; i < layout.contacts; ++i) {
             if (is_read(layout.acceleration(i))) view.input(layout.acceleration(i)) = acceleration(i);
             if (is_read(layout.force(i))) view.input(layout.force(i)) = force(i);
-            if (layout.forces_see_contact) view.input(layout.held(i)) = mode_.is_held(i) ? 1.0 : 0.0;
+            if (layout.forces_see_contact) view.input(layout.held(i)) = mode_.seen_by_forces().contains(i) ? 1.0 : 0.0;
         }
         if (layout.frictions > 0) view.input(layout.heat()) = sample.heat;
         std::size_t k = 0;

@@ -223,7 +223,7 @@ double ExecutionAutomaton::state_error() const {
 void ExecutionAutomaton::accept(const StepResult& result) {
     using StepOutcome = StepResult::StepOutcome;
     evaluations_ += result.evaluations;
-    acting_ = next_.held().within(model_->equations().in_forces);
+    acting_ = next_.mode.seen_by_forces().within(model_->equations().in_forces);
     const bool shared = result.end == StepOutcome::ambiguous && !surfaces_->has_friction() &&
                         result.which < surfaces_->count() && continue_without(result.which, *result.state);
     if (result.end == StepOutcome::ambiguous && !shared && can_retry_tight()) return retry_tight();

@@ -141,6 +141,7 @@ class ExecutionAutomaton {
                                 int sticks_from = 0);
     void capture(const Contact& contact, const Collision& collision);
     void pass_zeno_point();
+    ContactSet decide_at_zeno_point();
     void release(std::size_t which);
     void leave(ContactSet contacts, bool ends_latch = false);
     void enter_phase();
@@ -213,8 +214,8 @@ class ExecutionAutomaton {
     bool is_proved(Mode mode, ContactSet closed, Mode sliding);
     ContactSet at_zero_slip(ContactSet contacts_and_joints);
     Mode sliding_mode(ContactSet contacts_and_joints);
-    void enter_friction_mode(Mode before, ContactSet released = {});
-    void record_friction(Event::Kind kind, ContactSet contacts);
+    void enter_friction_mode(Mode before, ContactSet released = {}, ContactSet unlatched = {});
+    void record_friction(Event::Kind kind, ContactSet contacts, bool ends_latch = false);
     bool check_friction_levels(ContactSet contacts_and_joints);
     std::string slips_text(const ContactRows& rows, Mode sliding) const;
     void collide_with_friction(ContactSet landing);
@@ -289,14 +290,19 @@ class ExecutionAutomaton {
     Mode with_forces_of_now(Mode mode, ContactSet closed) const { return mode.with_acting(acting_.within(closed)); }
     void latch_held();
     void latch_landed(std::size_t contact);
-    Exchange add_impulses_of_latched(MultiContactInfo& joint, const Vector& dv);
+    Exchange add_impulses_of_latched(MultiContactInfo& joint, const Event::FrictionImpulses* friction,
+                                     const Vector& dv);
     ContactSet unlatched_by(ContactSet landing) const;
     void unlatch(ContactSet contacts);
     void end_latches(ContactSet contacts);
     void check_held_forces();
     void start_released(ContactSet contacts);
-    // Whether impacts of these contacts may be cut: up to the Zeno point forces see them as open.
-    bool may_cut(ContactSet contacts) const { return contacts.within(model_->equations().in_forces).empty(); }
+    bool do_forces_see(ContactSet contacts) const { return !contacts.within(model_->equations().in_forces).empty(); }
+    // Whether bouncing of this contact may be cut. The conditions of the paper assume that the motion in contact has one
+    // and the same acceleration before and after the Zeno point.
+    bool may_cut(std::size_t contact) const {
+        return !do_forces_see(ContactSet::of(contact)) || run_.options.truncation.conditions == Conditions::sharp;
+    }
     // ---- linearly dependent gradients (load_sharing.cpp) ----
     ContactVector<double> rounding_of(const ClosedContacts& closed);
     struct LoadSharing {

@@ -87,7 +87,7 @@ Mode ExecutionAutomaton::sliding_mode(ContactSet contacts_and_joints) {
 void ExecutionAutomaton::begin_with_friction(ContactSet landing, ContactSet resting,
                                              const UncountedContacts& uncounted) {
     const Mode mode = sliding_mode(resting.with(all_joints()));
-    if (!surfaces_->settle(next_.state, mode)) return fail_projection();
+    if (!surfaces_->settle(next_.state, mode.with(next_.latched, ContactState::held))) return fail_projection();
     if (landing.empty()) {
         decide_with_friction(resting, mode);
     } else {
@@ -202,7 +202,8 @@ void ExecutionAutomaton::start_slip(const SlipStart& start, std::size_t event) {
 bool ExecutionAutomaton::open_together(ContactSet together) {
     const Mode before = next_.mode, open = before.without(together);
     const ContactSet rough = together.within(surfaces_->rough());
-    if (!(together == before.held()) || !(all_joints().within(open.slipping()) == all_joints())) return false;
+    if (!(together == before.held().without(next_.latched))) return false;
+    if (!(all_joints().within(open.slipping()) == all_joints())) return false;
     for (const std::size_t i : together) {
         if (rough.contains(i) && slip_sign(before.state(i)) == 0) return false;
         if (!certainly_positive(surfaces_->of(i, open).normal(next_.state).jerk)) return false;
@@ -231,7 +232,7 @@ void ExecutionAutomaton::release_with_friction(std::size_t which) {
     const Mode before = next_.mode;
     const auto values = surfaces_->motion(before).enclosed(next_.state);
     ContactSet together = ContactSet::of(which);
-    for (const std::size_t i : before.held())
+    for (const std::size_t i : before.held().without(next_.latched))
         if (!certainly_negative(values[i].value)) together = together.with(i);
     const bool others = together.count() > 1;
     if (others && open_together(together)) {
@@ -267,8 +268,8 @@ void ExecutionAutomaton::release_with_friction(std::size_t which) {
 }
 
 // Records what has changed since a mode, and begins a segment in the present one. The contacts in `released` are known
-// to be released by a vanishing force.
-void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
+// to be released by a vanishing force, those in `unlatched` by the end of their latch.
+void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released, ContactSet unlatched) {
     const Mode mode = next_.mode;
     start_released(released);
     if (outcome_) return;
@@ -287,13 +288,13 @@ void ExecutionAutomaton::enter_friction_mode(Mode before, ContactSet released) {
     record_friction(Event::Kind::stick, stick);
     record_friction(Event::Kind::slip, slip);
     record_friction(Event::Kind::reversal, reversal);
-    record_friction(Event::Kind::release, released);
+    record_friction(Event::Kind::release, released, !released.within(unlatched).empty());
     if (outcome_) return;
     enter_phase();
     begin_stretch(mode, run_.options.end_time);
 }
 
-void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) {
+void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts, bool ends_latch) {
     if (contacts.empty() || outcome_) return;
     if (kind != Event::Kind::release && ++friction_events_ > run_.options.max_events)
         return stop(Outcome::Kind::too_many_events, fmt::format("{} sticks, slips and reversals by t = {:.9g}",
@@ -301,6 +302,7 @@ void ExecutionAutomaton::record_friction(Event::Kind kind, ContactSet contacts) 
     Event event;
     event.kind = kind;
     event.contacts = contacts;
+    event.ends_latch = ends_latch;
     event.mode = next_.mode;
     event.t = next_.state.t;
     event.q = next_.state.q;
@@ -424,9 +426,10 @@ void ExecutionAutomaton::stop_in_doubt(const FrictionProblem& problem, bool are_
 // slip. With `start`, that one must slip with this sign. Sets the mode and the starts of next_; false if the run ends.
 bool ExecutionAutomaton::decide_with_friction(ContactSet closed, Mode sliding, std::optional<SlipStart> start) {
     forget_held();
+    closed = closed.without(next_.latched);
     const ContactSet joints = all_joints(), rough = closed.with(joints).within(surfaces_->rough());
     if (!check_friction_levels(rough)) return false;
-    Mode base;  // joints that slip: their forces are known
+    Mode base = latched_mode();  // with the joints that slip: their forces are known
     for (const std::size_t i : joints)
         if (slip_sign(sliding.state(i)) != 0) base = base.with(i, sliding.state(i));
     base = with_forces_of_now(base, closed);

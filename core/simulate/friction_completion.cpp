@@ -57,6 +57,7 @@ Exchange ExecutionAutomaton::exchange_of_cut(const ImpactWithFriction& impact, c
 // What keeps the bouncing after this impact from being completed, as far as it can be said without a proof.
 std::optional<BouncingObstacle> ExecutionAutomaton::obstacle_to_completion(const ImpactWithFriction& impact) {
     const std::size_t which = impact.landing.only();
+    if (!next_.latched.empty()) return BouncingObstacle{*next_.latched.begin(), "is held by a latch"};
     if (!next_.touching.empty()) return BouncingObstacle{*next_.touching.begin(), "touches without a force"};
     if (auto change = change_at_impact(impact)) return change;
     return model_->obstacle_to_bouncing({which, next_.mode, impact.solved.mode.state(which)});
@@ -70,7 +71,7 @@ bool ExecutionAutomaton::complete_with_friction(const ImpactWithFriction& impact
     const ContactState state = impact.solved.mode.state(which);
     const double e = restitution(which),
                  speed = -impact.rows.rows[static_cast<std::size_t>(impact.rows.gap_of(which))].rate;
-    if (e > 0.0 && !may_cut(impact.landing)) return false;
+    if (e > 0.0 && !may_cut(which)) return false;
     const bool sticks = state == ContactState::held && impact.rows.slip_of(which) >= 0,
                is_capped = !impact.solved.caps.empty();
     which_ = which;

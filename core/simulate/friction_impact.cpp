@@ -38,7 +38,7 @@ ContactSet ExecutionAutomaton::closing_with(ContactSet landing) {
 // The gaps and slips of these contacts before an impact. The rate is 0 for a gap that is `still` closed, and for a slip
 // that sticks.
 ContactRows ExecutionAutomaton::rows_before_impact(ContactSet contacts, ContactSet still) {
-    ContactRows rows = surfaces_->rows(next_.state, contacts, contacts.within(surfaces_->rough()), {});
+    ContactRows rows = surfaces_->rows(next_.state, contacts, contacts.within(surfaces_->rough()), latched_mode());
     for (ContactRows::Row& row : rows.rows) {
         const bool is_kept =
             row.is_slip ? next_.mode.state(row.which) == ContactState::held : still.contains(row.which);
@@ -104,7 +104,7 @@ bool ExecutionAutomaton::check_impact(const FrictionImpact& impact, ContactSet l
 // others stay closed. Sets the starts of next_. nullopt if the run ends.
 std::optional<Mode> ExecutionAutomaton::mode_after_impact(const ContactRows& rows, const FrictionImpact& impact,
                                                           ContactSet contacts) {
-    Mode mode = sliding_mode(all_joints());
+    Mode mode = sliding_mode(all_joints()).with(next_.latched, ContactState::held);
     for (const std::size_t i : contacts) {
         const double hdot = impact.after[rows.gap_of(i)];
         next_.starts[i] = {{0.0, hdot, 0.0, 0.0, state_error()}, 1};
@@ -130,17 +130,17 @@ std::optional<Mode> ExecutionAutomaton::mode_after_impact(const ContactRows& row
 
 // Contacts that land, with those that are held or touch. Joints take no impulse, because their level is finite.
 void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
-    const ContactSet held = next_.held(), still = held.with(next_.touching);
+    const ContactSet latched = next_.latched, held = next_.held().without(latched), still = held.with(next_.touching);
     landing = closing_with(landing);
     if (outcome_) return;
     const Jumps jumps = jumps_after(landing, falling_jumps());
     if (outcome_) return;
     const ContactSet all = still.with(landing);
-    if (all.count() > max_closed_contacts)
+    if (all.with(latched).count() > max_closed_contacts)
         return stop(Outcome::Kind::redundant_contacts,
                     fmt::format("{} contacts are closed at once, and at most {} can be resolved: {}, at {}",
                                 all.count(), max_closed_contacts, names_of(all), where(next_.state)));
-    if (!surfaces_->project(next_.state, all, {})) return fail_projection();
+    if (!surfaces_->project(next_.state, all.with(latched), {})) return fail_projection();
     if (!check_friction_levels(all)) return;
     const ContactRows rows = rows_before_impact(all, still);
     const FrictionImpactProblem problem = impact_problem(rows, all);
@@ -160,29 +160,39 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         friction->energy_cap = factor;
         friction->capped = friction->capped.with(problem.elements[element].which);
     }
-    if (complete_with_friction({landing, rows, problem, impact, joint, friction})) return;
-    record_.impact(next_.state, v_after, speed, energy_of_impact(rows, impact.impulses), landing, std::move(joint));
+    const ContactSet unlatched = unlatched_by(landing);
+    if (unlatched.empty() && complete_with_friction({landing, rows, problem, impact, joint, friction})) return;
+    Exchange exchange = energy_of_impact(rows, impact.impulses);
+    exchange.work += add_impulses_of_latched(*joint, friction.get(), v_after - v_before).work;
+    record_.impact(next_.state, v_after, speed, exchange, landing, std::move(joint));
     record_.friction_at_impact(std::move(friction));
     if (!landing.has_one() || impact.mode.state(landing.only()) != ContactState::held)
         last_sliding_impact_ = record_.impacts_of_phase();
     const State before = next_.state;
     next_.state.v = v_after;
+    unlatch(unlatched);
     if (!jumps.empty()) {
         ContactSet opened;
         for (const std::size_t i : held)
             if (impact.after[rows.gap_of(i)] > 0.0) opened = opened.with(i);
         return jump_after_impact(jumps, landing, opened);
     }
-    const std::optional<Mode> after = mode_after_impact(rows, impact, all);
-    if (!after) return;
-    if (!surfaces_->settle(next_.state, *after)) return fail_projection();
-    change_other_rates(v_before, all);
-    if (!decide_with_friction(after->held(), *after)) return;
-    const ContactSet opened = held.without(next_.held());
+    for (const std::size_t i : landing)
+        if (!(impact.after[rows.gap_of(i)] > 0.0)) latch_landed(i);
+    const std::optional<Mode> stays = mode_after_impact(rows, impact, all);
+    if (!stays) return;
+    const Mode after = stays->with(unlatched, ContactState::held);
+    if (!surfaces_->settle(next_.state, after)) return fail_projection();
+    change_other_rates(v_before, all.with(latched));
+    if (!decide_with_friction(after.held(), after)) return;
+    const ContactSet opened = held.with(unlatched).without(next_.held());
     const bool is_plastic = landing.has_one() && restitution(landing.only()) == 0.0 && opened.empty() &&
-                            next_.mode.is_held(landing.only()) && still == held;
+                            next_.mode.is_held(landing.only()) && still == held && unlatched.empty();
     record_.after_impact(opened, is_plastic ? record_.mode() : next_.mode);
-    if (is_plastic) record_plastic_landing(landing.only(), before, speed);
+    if (is_plastic) {
+        record_.set_latched(next_.latched);
+        record_plastic_landing(landing.only(), before, speed);
+    }
     if (!(next_.mode == record_.mode())) enter_phase();
     begin_stretch(next_.mode, run_.options.end_time);
 }
@@ -198,7 +208,7 @@ void ExecutionAutomaton::record_plastic_landing(std::size_t contact, const State
     certificate.a_min = -force.hi();
     certificate.a_max = -force.lo();
     certificate.tightest_bound = "restitution 0: no impact sequence is truncated";
-    certificate.assumptions = {{"normal acceleration", force.hi(), 0.0}};
+    if (!next_.latched.contains(contact)) certificate.assumptions = {{"normal acceleration", force.hi(), 0.0}};
     Event event;
     event.kind = Event::Kind::zeno;
     event.t = next_.state.t;

@@ -25,28 +25,35 @@ void ExecutionAutomaton::latch_landed(std::size_t contact) {
     if (HeldBlock<double>::of(closed.W, closed.places_of(latched))) next_.latched = latched;
 }
 
-// The impulses of latched contacts at an impact that changes the velocity by dv, p = W^-1 (g dv - ...), added to those
-// of the others; their work.
-Exchange ExecutionAutomaton::add_impulses_of_latched(MultiContactInfo& joint, const Vector& dv) {
+// The impulses p = W^-1 (g dv - ...) of latched contacts at an impact that changes the velocity by dv, added to those of
+// the others, which may have tangential ones; their work.
+Exchange ExecutionAutomaton::add_impulses_of_latched(MultiContactInfo& joint, const Event::FrictionImpulses* friction,
+                                                     const Vector& dv) {
     Exchange exchange;
     if (next_.latched.empty()) return exchange;
-    ContactSet all = next_.latched;
-    for (const auto& [contact, impulse] : joint.impulses) all = all.with(contact);
-    const ClosedContacts closed = surfaces_->at(next_.state, all);
-    const auto block = HeldBlock<double>::of(closed.W, closed.places_of(next_.latched));
+    ContactSet gaps = next_.latched, slips;
+    for (const auto& [contact, impulse] : joint.impulses) gaps = gaps.with(contact);
+    if (friction != nullptr)
+        for (const auto& [contact, impulse] : friction->tangential) slips = slips.with(contact);
+    const ContactRows rows = surfaces_->rows(next_.state, gaps, slips, {});
+    Eigen::VectorXd others = Eigen::VectorXd::Zero(rows.size());
+    for (const auto& [contact, impulse] : joint.impulses) others[rows.gap_of(contact)] = impulse;
+    if (friction != nullptr)
+        for (const auto& [contact, impulse] : friction->tangential) others[rows.slip_of(contact)] = impulse;
+    Eigen::VectorXd rest = -rows.W * others;  // the change of the rates that the latched contacts prevent
+    ContactSet places;
+    for (const std::size_t i : next_.latched) {
+        const Eigen::Index place = rows.gap_of(i);
+        rest[place] += rows.rows[static_cast<std::size_t>(place)].gradient.dot(dv);
+        places = with(places, place);
+    }
+    const auto block = HeldBlock<double>::of(rows.W, places);
     if (!block) return exchange;
-    ContactVector<double> rest(closed.W.rows());  // the change of the gap rates that the latched contacts prevent
-    for (Eigen::Index k = 0; k < rest.size(); ++k) rest[k] = closed.contacts[static_cast<std::size_t>(k)].g.dot(dv);
-    for (Eigen::Index k = 0; k < rest.size(); ++k)
-        for (const auto& [contact, impulse] : joint.impulses)
-            for (Eigen::Index i = 0; i < rest.size(); ++i)
-                if (closed.which[static_cast<std::size_t>(i)] == contact) rest[k] -= closed.W(k, i) * impulse;
-    const ContactVector<double> p = block->solve(rest);
-    for (Eigen::Index k = 0; k < rest.size(); ++k) {
-        const std::size_t contact = closed.which[static_cast<std::size_t>(k)];
-        if (!next_.latched.contains(contact)) continue;
-        joint.impulses.emplace_back(contact, p[k]);
-        exchange.work += newton::work(p[k], closed.contacts[static_cast<std::size_t>(k)].gap_t);
+    const Eigen::VectorXd p = block->solve(rest);
+    for (const std::size_t i : next_.latched) {
+        const Eigen::Index place = rows.gap_of(i);
+        joint.impulses.emplace_back(i, p[place]);
+        exchange.work += newton::work(p[place], rows.rows[static_cast<std::size_t>(place)].drift);
     }
     std::sort(joint.impulses.begin(), joint.impulses.end());
     return exchange;
@@ -74,8 +81,14 @@ void ExecutionAutomaton::end_latches(ContactSet contacts) {
         return stop(Outcome::Kind::undecided,
                     fmt::format("the latch of {} ends before the Zeno time of another contact, at {}",
                                 names_of(contacts), where(next_.state)));
+    const Mode before = next_.mode;
     const ContactSet resting = next_.resting().held();
     unlatch(contacts);
+    if (surfaces_->has_friction()) {
+        if (!decide_with_friction(before.held(), before)) return;
+        if (next_.mode == before) return go_on_in_mode();
+        return enter_friction_mode(before, {}, contacts);
+    }
     decide(next_.held().with(next_.touching));
     if (outcome_) return;
     const ContactSet gone = resting.without(next_.resting().held());
@@ -86,7 +99,7 @@ void ExecutionAutomaton::end_latches(ContactSet contacts) {
 
 // Ends the run if a held contact, whose held(NAME) is 1 now, is not pressed.
 void ExecutionAutomaton::check_held_forces() {
-    const ContactSet held = next_.held().within(model_->equations().in_forces).without(next_.latched);
+    const ContactSet held = next_.mode.seen_by_forces().within(model_->equations().in_forces).without(next_.latched);
     if (held.empty()) return;
     const auto values = surfaces_->motion(next_.mode).enclosed(next_.state);
     for (const std::size_t i : held)

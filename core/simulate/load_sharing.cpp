@@ -143,7 +143,7 @@ bool ExecutionAutomaton::share(const ClosedContacts& closed, const ContactVector
 // Ends the time during which load-bearing contacts are not checked.
 void ExecutionAutomaton::end_sharing() {
     const Mode resting = next_.resting();
-    acting_ = next_.held().within(model_->equations().in_forces);
+    acting_ = next_.mode.seen_by_forces().within(model_->equations().in_forces);
     decide(next_.held().with(next_.touching));
     if (outcome_) return;
     if (next_.resting() == resting) return continue_phase();

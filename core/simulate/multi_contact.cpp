@@ -179,7 +179,7 @@ void ExecutionAutomaton::collide(ContactSet landing) {
     joint->is_nonunique = !impact->unique;
     for (std::size_t i = 0; i < closed.which.size(); ++i)
         joint->impulses.emplace_back(closed.which[i], impact->impulses[static_cast<Eigen::Index>(i)]);
-    const Exchange by_latches = add_impulses_of_latched(*joint, v_after - v_before);
+    const Exchange by_latches = add_impulses_of_latched(*joint, nullptr, v_after - v_before);
     // An unpressed contact with e > 0 would be opened by an impact just before, so for the order it counts as
     // impacting.
     ContactSet loose;
@@ -267,7 +267,7 @@ bool ExecutionAutomaton::complete_pair(ContactSet landing, const Vector& v_after
             const ContactSet two = ContactSet::of(i).with(j);
             // All other closed contacts must be held.
             if (j == i || !next_.touching.without(two).empty() || !landing.without(two).empty()) continue;
-            if (next_.inactive.contains(j) || !may_cut(two)) continue;
+            if (next_.inactive.contains(j) || do_forces_see(two)) continue;
             if (model_->has_jumps() && may_jump(two, {})) continue;
             if (complete_pair(std::min(i, j), std::max(i, j), next_.mode.without(two), landing, v_after,
                               cut_at_resolution))

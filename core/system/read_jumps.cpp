@@ -104,9 +104,10 @@ void read_latches(const std::vector<Fields>& tables, SystemDescription& system, 
         const TomlValue* const value = tables[i].find("latch");
         if (value == nullptr) continue;
         mistakes.attempt([&] {
-            if (system.has_friction())
-                throw Mistake{value->at, "a latch in a system with friction",
-                              "a latch needs contacts without friction: leave out one of the two"};
+            if (system.constraints[i].has_friction())
+                throw Mistake{value->at, fmt::format("'{}' has a latch and friction", system.constraints[i].name),
+                              "a latched contact is held against any force, which leaves its friction undetermined: "
+                              "leave out one of the two"};
             Trigger latch = read_trigger(system, known, tables[i], "latch", "rises");
             if (latch.contact == i)
                 throw Mistake{

@@ -33,6 +33,9 @@ ColumnView::ColumnView(const SweepData& data, std::size_t column) : data_(&data)
             break;
         case ColumnKind::modes:
             kind_ = Kind::modes;
+            modes_ = data.rows.modes;
+            std::sort(modes_.begin(), modes_.end());
+            modes_.erase(std::unique(modes_.begin(), modes_.end()), modes_.end());
             break;
     }
     name_ = one.name;
@@ -96,7 +99,9 @@ std::optional<std::uint64_t> ColumnView::code(std::size_t row) const {
     const RunEnd end = data_->rows.ends[row];
     if (kind_ == Kind::outcome) return end.code();
     if (end == RunEnd()) return std::nullopt;  // the row has no run
-    if (kind_ == Kind::modes) return std::bit_cast<std::uint64_t>(data_->rows.modes[row]);
+    if (kind_ == Kind::modes)
+        return static_cast<std::uint64_t>(std::lower_bound(modes_.begin(), modes_.end(), data_->rows.modes[row]) -
+                                          modes_.begin());
     return kind_ == Kind::held ? std::bit_cast<std::uint32_t>(data_->rows.held[row]) : data_->rows.signatures[row];
 }
 
@@ -108,7 +113,7 @@ std::string ColumnView::class_name(std::uint64_t code, std::size_t place, double
     if (kind_ == Kind::outcome) return std::string(RunEnd::from(static_cast<std::uint8_t>(code)).text());
     if (kind_ == Kind::sequence) return fmt::format("{}. ({:.{}f} %)", place + 1, 100.0 * share, share < 0.095 ? 1 : 0);
     std::string names;
-    if (kind_ == Kind::modes) names = modes_text(data_->sliding, std::bit_cast<Mode>(code));
+    if (kind_ == Kind::modes) names = modes_text(data_->sliding, modes_[code]);
     for (std::size_t i = 0; i < data_->contacts.size() && kind_ == Kind::held; ++i)
         if ((code >> i & 1u) != 0) names += (names.empty() ? "" : " + ") + data_->contacts[i];
     return names.empty() ? "no contact" : names;

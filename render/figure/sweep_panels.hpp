@@ -50,6 +50,7 @@ class ColumnView {
     std::string quantity_, by_;  // of a derivative
     ShownUnit unit_;
     std::optional<std::size_t> number_;
+    std::vector<Mode> modes_;  // those that occur; the class of a row is its place
 };
 
 // The classes of a column with their colors. Classes beyond the palette share one color.

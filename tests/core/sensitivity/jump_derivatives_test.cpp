@@ -139,6 +139,20 @@ TEST(JumpDerivatives, FollowALatchThatTakesAnImpulse) {
     expect_jump_differences(typed(latched_knee("foot")), 2.6, "impact zeno impact ");
 }
 
+// The same knee in a system with friction.
+TEST(JumpDerivatives, FollowLatchesBesideFriction) {
+    const auto with_brake = [](std::string text) {
+        const auto insert = [&](const std::string& before, const std::string& more) {
+            text.insert(text.find(before) + before.size(), more);
+        };
+        insert("coordinate = [", R"({name = "s", rate = 1}, )");
+        insert("kinetic = \"", "s'^2/2 + s'*x'/10 + ");
+        return typed("friction = [{name = \"brake\", slip = \"s'\", level = 0.05}]\n" + text);
+    };
+    expect_jump_differences(with_brake(latched_knee("t - 1.3 + y/20 - a/50")), 1.45, "impact zeno release impact ");
+    expect_jump_differences(with_brake(latched_knee("foot")), 2.6, "impact zeno impact ");
+}
+
 // The acceleration jumps where the foot is released, and the force acts on both.
 TEST(JumpDerivatives, FollowForcesThatDependOnContact) {
     expect_jump_differences(typed(R"toml(coordinate = [{name = "x", rate = 0.3, force = "a*x*held(foot)"},
@@ -148,6 +162,19 @@ lagrangian = {kinetic = "1/2*(x'^2 + y'^2) + x'*y'/10", potential = "0"}
 constraint = [{name = "foot", gap = "y", restitution = 0}]
 )toml"),
                             4.0, "impact zeno release ");
+}
+
+// The forces see the foot from its Zeno point on, whose time depends on everything before it.
+TEST(JumpDerivatives, FollowForcesThatSeeABouncingContactRest) {
+    const auto model = typed(R"toml(coordinate = [{name = "x", rate = 0.3, force = "a*x*held(foot)"},
+    {name = "y", start = 0.5, rate = -0.2, force = "-1 + t/30 + x/9 - held(foot)*(t/6 - e*x'/4)"}]
+parameter = [{name = "a", value = 1.2}, {name = "e", value = 0.5}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2) + x'*y'/10", potential = "0"}
+constraint = [{name = "foot", gap = "y", restitution = "e"}]
+)toml");
+    const std::string expected = words(simulate(model, tight(*model, 4.0)));
+    EXPECT_NE(expected.find("zeno"), std::string::npos);
+    expect_jump_differences(model, 4.0, expected, 1e-4);
 }
 
 TEST(JumpDerivatives, SayWhereThereAreNone) {

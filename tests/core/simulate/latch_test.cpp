@@ -8,6 +8,7 @@
 
 #include "core/systems.hpp"
 #include "output/output.hpp"
+#include "sensitivity/derivatives.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/sampler.hpp"
 
@@ -27,6 +28,17 @@ restitution = 0
 {}
 )toml",
                        y, force, more);
+}
+
+// A ball (x, y) that bounces on a floor and feels a drag c x' only while it is held there; `weight` is its own.
+std::string rolling(const std::string& weight) {
+    return fmt::format(R"toml(coordinate = [
+{{name = "x", rate = 1, force = "-c*held(floor)*x'"}}, {{name = "y", start = 0.5, force = "-({})"}}]
+parameter = [{{name = "c", value = 1}}]
+lagrangian = {{kinetic = "1/2*(x'^2 + y'^2)", potential = "0"}}
+constraint = [{{name = "floor", gap = "y", restitution = 0.5}}]
+)toml",
+                       weight);
 }
 
 // Two unit masses that the kinetic energy couples by c, pressed on the two gaps x and y.
@@ -261,6 +273,69 @@ TEST(Latch, StandsInTheJson) {
     EXPECT_NE(text.find("\"ends_latch\": true"), std::string::npos);
 }
 
+// ---- latches beside friction ----
+
+// The same system with a further mass on a brake, which nothing couples with the rest.
+std::string with_brake(std::string text) {
+    const auto insert = [&](const std::string& before, const std::string& more) {
+        text.insert(text.find(before) + before.size(), more);
+    };
+    insert("coordinate = [", R"({name = "s", rate = 1}, )");
+    insert("kinetic = \"1/2*(", "s'^2 + ");
+    return "friction = [{name = \"brake\", slip = \"s'\", level = 0.3}]\n" + text;
+}
+
+// The engine with friction decides modes and impacts by other code, and the events must be the same.
+TEST(LatchBesideFriction, ActsAsWithoutFriction) {
+    const std::string jump = R"toml([[jump]]
+name = "reset"
+on = "1.5 - t"
+set = {y = "y + 5"}
+)toml";
+    for (const Method method : both_methods)
+        for (const std::string& text :
+             {pulled("latch = \"foot\""), pulled("latch = \"t - 1.3\""), pulled("latch = \"t - 2.5\"", jump),
+              coupled(-0.5, "latch = \"foot\"", 0.7), coupled(0.5, "latch = \"t - 100\"", 0.7)}) {
+            const Trajectory plain = run_of(text, 1.9, method), braked = run_of(with_brake(text), 1.9, method);
+            EXPECT_EQ(plain.outcome.kind, Outcome::Kind::end_time) << plain.outcome.message;
+            EXPECT_EQ(braked.outcome.kind, Outcome::Kind::end_time) << braked.outcome.message;
+            ASSERT_EQ(plain.events.size(), braked.events.size()) << text;
+            for (std::size_t i = 0; i < plain.events.size(); ++i) {
+                const Event &one = plain.events[i], &other = braked.events[i];
+                EXPECT_EQ(one.kind, other.kind) << text;
+                EXPECT_NEAR(one.t, other.t, closeness(method));
+                EXPECT_EQ(one.latched, other.latched) << text;
+                EXPECT_EQ(one.ends_latch, other.ends_latch) << text;
+                EXPECT_EQ(one.opened, other.opened) << text;
+                EXPECT_LT((one.v_after - other.v_after.tail(2)).norm(), 10.0 * closeness(method)) << text;
+                for (std::size_t k = 0; one.joint && k < one.joint->impulses.size(); ++k)
+                    EXPECT_NEAR(one.joint->impulses[k].second, other.joint->impulses.at(k).second, closeness(method));
+            }
+            EXPECT_LT((plain.end.q - braked.end.q.tail(2)).norm(), 10.0 * closeness(method)) << text;
+            EXPECT_EQ(plain.end_latched, braked.end_latched);
+            EXPECT_NEAR(braked.end.q[0], 1.9 - 0.15 * 1.9 * 1.9, closeness(method));
+        }
+}
+
+// A block slides on a foot with friction; its knee, held by a latch, takes part of the friction impulse.
+TEST(LatchBesideFriction, TakesItsPartOfTheFrictionImpulse) {
+    const std::string text = R"toml(coordinate = [{name = "x", rate = 3}, {name = "y", start = 0.5}, {name = "k"}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2 + k'^2) + x'*k'/2", potential = "y + k"}
+constraint = [{name = "foot", gap = "y", slip = "x'", friction = 0.4, restitution = 0},
+    {name = "knee", gap = "k", restitution = 0, latch = "t - 10"}]
+)toml";
+    const Trajectory run = run_of(text, 1.5);
+    EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+    ASSERT_GE(run.events.size(), 1u);
+    // While k is held the mass of x is 1: p = 1 at the foot, -0.4 along it; p_k holds k' = 0, p_k = x'/2 after - before.
+    EXPECT_NEAR(run.events[0].v_after[0], 2.6, 1e-12);
+    EXPECT_NEAR(run.events[0].v_after[2], 0.0, 1e-15);
+    ASSERT_TRUE(run.events[0].joint);
+    ASSERT_EQ(run.events[0].joint->impulses.size(), 2u);
+    EXPECT_NEAR(run.events[0].joint->impulses[1].second, -0.2, 1e-12);
+    EXPECT_NEAR(run.end.v[0], 2.6 - 0.4 * 0.5, 1e-12);
+}
+
 // ---- held(NAME) ----
 
 TEST(HeldForces, ActWhileTheContactIsHeld) {
@@ -305,15 +380,96 @@ TEST(HeldForces, ThatUndoThemselvesAreUndecided) {
                    "held(foot) undoes itself: 'foot' opens by the forces with it, and closes by those without it");
 }
 
-// Up to its Zeno point a bouncing contact is open, so a cut would hold it too early.
-TEST(HeldForces, OfAContactThatBouncesAreNeverCut) {
-    const std::string text = on_floor(0.5, "-1 - held(foot)");
-    std::string bouncing = text;
+// A ball that rolls against a drag while it is on the floor. Up to the Zeno point at t = 3 it flies, although its bouncing
+// is cut before.
+TEST(HeldForces, BeginAtTheZenoPointOfTheirContact) {
+    for (const Method method : both_methods) {
+        const Trajectory run = run_of(rolling("1"), 5.0, method);
+        EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+        const Event& zeno = run.events.back();
+        ASSERT_TRUE(zeno.is_zeno());
+        EXPECT_NEAR(zeno.t, 3.0, 1e-9);
+        EXPECT_LT(zeno.truncation->t, 2.9999);
+        EXPECT_NEAR(run.end.q[0], 4.0 - std::exp(-2.0), 1e-9 + closeness(method));
+        EXPECT_NEAR(run.end.v[0], std::exp(-2.0), 1e-9 + closeness(method));
+        EXPECT_NEAR(run.work, 0.5 * std::exp(-4.0), 1e-9 + closeness(method));  // with the work of the weight, 1/2
+        const double before = 0.5 * (zeno.truncation->t + zeno.t);
+        EXPECT_NEAR(run(before).state.v[0], 1.0, closeness(method));
+        EXPECT_TRUE(run(before).mode.is_held(0));
+    }
+}
+
+// Without the time that the run may begin the drag too early or too late, the certificate would not cover the speed.
+TEST(HeldForces, HaveCertificatesThatCoverTheTimeAtWhichTheyBegin) {
+    const auto model = typed(rolling("1 + x/4 + y"));
+    achilles::Run tight = model->default_run(), loose = tight;
+    tight.options.end_time = loose.options.end_time = 5.0;
+    tight.options.tolerance = loose.options.tolerance = 1e-13;
+    tight.options.truncation.eps_q = tight.options.truncation.eps_v = tight.options.truncation.eps_t = 1e-10;
+    loose.options.truncation.eps_q = loose.options.truncation.eps_v = loose.options.truncation.eps_t = 0.02;
+    loose.parameters[0] = tight.parameters[0] = 40.0;
+    const Trajectory exact = simulate(model, tight), cut = simulate(model, loose);
+    ASSERT_TRUE(exact.events.back().is_zeno());
+    ASSERT_TRUE(cut.events.back().is_zeno());
+    const Event& zeno = cut.events.back();
+    const double t = std::max(exact.events.back().t, zeno.t) + 1e-9;
+    const double off = (exact(t).state.v - cut(t).state.v).norm();
+    EXPECT_GT(off, 1e-9);
+    EXPECT_LE(off, *zeno.certificate->shadowing_velocity);
+    EXPECT_GT(*zeno.certificate->shadowing_velocity, 40.0 * (zeno.certificate->zeno_high - zeno.certificate->zeno_low));
+}
+
+TEST(HeldForces, ThatUndoThemselvesAfterBouncingAreUndecided) {
+    std::string bouncing = on_floor(0.5, "-1 + 2*held(foot)");
     bouncing.replace(bouncing.find("restitution = 0"), 15, "restitution = 0.5");
     const Trajectory run = run_of(bouncing, 4.0);
-    expect_message(run, Outcome::Kind::undecided, "a contact that stands in held(NAME) is never cut");
-    EXPECT_NEAR(run.end.t, 3.0, 1e-6);
-    for (const Event& event : run.events) EXPECT_TRUE(event.is_impact());
+    expect_message(run, Outcome::Kind::undecided,
+                   "held(foot) undoes itself: 'foot' opens by the forces with it, and closes by those without it");
+    EXPECT_NEAR(run.end.t, 3.0, 1e-9);
+}
+
+TEST(HeldForces, AreNotCutByTheConditionsOfThePaper) {
+    const auto model = typed(rolling("1"));
+    achilles::Run run = model->default_run();
+    run.options.end_time = 4.0;
+    run.options.truncation.conditions = Conditions::paper;
+    expect_message(simulate(model, run), Outcome::Kind::undecided, "is cut under the sharp conditions only");
+}
+
+// A wheel that bounces, slides on from its Zeno point, and is driven only while it stands on the floor.
+TEST(HeldForces, BeginAtZenoPointsWithFriction) {
+    for (const Method method : both_methods) {
+        const Trajectory run = run_of(R"toml(coordinate = [
+{name = "x", rate = 10, force = "-held(foot)*x'"}, {name = "y", start = 0.5}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2)", potential = "y"}
+constraint = [{name = "foot", gap = "y", slip = "x'", friction = 0.1, restitution = 0.5}]
+)toml",
+                                      4.0, method);
+        EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+        ASSERT_TRUE(run.events.back().is_zeno());
+        EXPECT_NEAR(run.events.back().t, 3.0, 1e-9);
+        // Every impact takes mu (1 + e) w from the slip: 0.1 * 1.5 * 2 in all; then x'' = -x' - 0.1.
+        EXPECT_NEAR(run.end.v[0], 9.8 * std::exp(-1.0) - 0.1, 1e-8 + closeness(method));
+    }
+}
+
+// Another foot that stands: its force changes at the Zeno point, too, and it is released if that falls below 0.
+TEST(HeldForces, MayReleaseAnotherContactAtTheZenoPoint) {
+    for (const Method method : both_methods) {
+        const Trajectory run = run_of(R"toml(coordinate = [
+{name = "x", start = 0, force = "-1 + 2*held(foot)"}, {name = "y", start = 0.5, force = "-1"}]
+lagrangian = {kinetic = "1/2*(x'^2 + y'^2)", potential = "0"}
+constraint = [{name = "other", gap = "x", restitution = 0}, {name = "foot", gap = "y", restitution = 0.5}]
+)toml",
+                                      4.0, method);
+        EXPECT_EQ(run.outcome.kind, Outcome::Kind::end_time) << run.outcome.message;
+        const Event& last = run.events.back();
+        EXPECT_EQ(last.kind, Event::Kind::release);
+        EXPECT_EQ(last.contacts, ContactSet::of(0));
+        EXPECT_NEAR(last.t, 3.0, 1e-9);
+        EXPECT_NEAR(run.end.q[0], 0.5, 1e-8);
+        EXPECT_NE(differentiate(run).broken.find("forces begin to see a contact at its Zeno point"), std::string::npos);
+    }
 }
 
 // A parameter may have the name, as in files older than the word.

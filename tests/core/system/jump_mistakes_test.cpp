@@ -103,8 +103,8 @@ const JumpMistake jump_mistakes[] = {
      "f.toml:9:10: 'y' in [[constraint]] is no contact\n    latch = \"y\"\n             ^\none word is the name of a "
      "contact; an expression that is one name stands in parentheses: latch = \"(y)\""},
     {"LatchWithFriction", "restitution = 0.5", "restitution = 0.5\nslip = \"x'\"\nfriction = 0.3\nlatch = \"t - 1\"",
-     "f.toml:11:9: a latch in a system with friction\n    latch = \"t - 1\"\n            ^\na latch needs contacts "
-     "without friction: leave out one of the two"},
+     "f.toml:11:9: 'floor' has a latch and friction\n    latch = \"t - 1\"\n            ^\na latched contact is held "
+     "against any force, which leaves its friction undetermined: leave out one of the two"},
     {"HeldInAPotential", "g*y", "g*y*held(floor)",
      "f.toml:3:61: held(NAME) is allowed only in a force and in the dissipation; write what else depends on contact as "
      "a force\n    ...angian = {kinetic = \"(x'^2 + y'^2)/2\", potential = \"g*y*held(floor)\"}\n                      "
