@@ -261,14 +261,24 @@ ConvergedOrbit search(const ReturnMap& map, int periods) {
     return closed;
 }
 
-// Projects a guess with a negative gap onto the contact surface.
+// Projects a guess with a negative gap of a contact that counts onto its surface. A foot that never slides comes to rest.
 void lift(const Model& model, Run& run) {
     State state = run.start();
     ContactCache surfaces(model, run);
-    ContactSet below;
-    for (std::size_t i = 0; i < model.contacts(); ++i)
-        if (surfaces.of(i).at(state).h < 0.0) below = below.with(i);
-    if (below.empty() || !surfaces.project(state, below, below)) return;
+    const auto counts = [&](std::size_t contact) {
+        if (!model.is_conditional(contact)) return true;
+        auto guards = model.evaluator(model.guards(), run.parameters);
+        set_state(guards, state);
+        guards.run();
+        return guards.output(model.guard_of_contact(contact)) > 0.0;
+    };
+    Mode below;
+    for (std::size_t i = 0; i < model.contacts(); ++i) {
+        if (!(surfaces.of(i).at(state).h < 0.0) || !counts(i)) continue;
+        const bool slides = surfaces.rough().contains(i) && !surfaces.never_slides(i);
+        below = below.with(i, slides ? ContactState::slip_plus : ContactState::held);
+    }
+    if (below.is_free() || !surfaces.settle(state, below)) return;
     run.q = state.q;
     run.v = state.v;
 }

@@ -10,6 +10,7 @@
 #include "model/read_expressions.hpp"
 #include "number/dense.hpp"
 #include "sensitivity/gradient.hpp"
+#include "simulate/contact_cache.hpp"
 #include "simulate/sampler.hpp"
 #include "simulate/simulate.hpp"
 #include "system/input_error.hpp"
@@ -133,6 +134,67 @@ Trajectory ReturnMap::run_of(const ShootingPoint& lap, double length) const {
     }
 }
 
+void ReturnMap::settle(ShootingPoint& lap) const {
+    if (lap.mode.is_free()) return;
+    Run run = run_;
+    run.parameters = lap.parameters;
+    ContactCache surfaces(*model_, run);
+    State state{lap.x.head(dof()), lap.x.tail(dof()), lap.start_time};
+    if (!surfaces.settle(state, lap.mode))
+        throw OrbitNotFound(
+            "the search left the contact surfaces on which its run starts; try another guess (--from, --set)");
+    lap.x << state.q, state.v;
+}
+
+// Whether the run begins and ends as its start is meant: in a flight with sliding joints, or in the mode of the start.
+void ReturnMap::check_mode(const ShootingPoint& lap, Mode begins, Mode ends) const {
+    if (!lap.mode.is_free()) {
+        if (begins == lap.mode && ends == lap.mode) return;
+        throw OrbitNotFound(
+            "the search reached a period that does not begin and end with the same contacts held; try another guess "
+            "(--from, --set)");
+    }
+    if (is_flight(begins) && is_flight(ends)) return;
+    throw OrbitNotFound(
+        begins.is_free() && ends.is_free()
+            ? "the search reached a start at which a joint sticks, but needs one at which all of them slide; try "
+              "another guess (--from, --set)"
+            : "the search reached a start in contact, but needs one in free flight; try another guess (--from, --set)");
+}
+
+// The changes of q, v and the parameters, one per column, for which derivatives are computed: all of them in a flight. In
+// contact G dx + G_p dp = 0 for the gaps, gap rates and slips that the mode keeps at 0, so
+//     dx <- (1 - G^+ G) dx,   dp <- (-G^+ G_p, 1) dp
+MatrixXd ReturnMap::directions_at(const ShootingPoint& lap) const {
+    const Index n = dof(), P = static_cast<Index>(lap.parameters.size());
+    MatrixXd directions = MatrixXd::Identity(2 * n + P + 1, 2 * n + P);
+    if (lap.mode.is_free()) return directions;
+    const TangentLayout tangent{static_cast<std::size_t>(n), model_->contacts(), lap.parameters.size()};
+    const State state{lap.x.head(n), lap.x.tail(n), lap.start_time};
+    std::vector<RowVectorXd> kept;
+    const auto keep = [&](const RowVectorXd& row) {
+        RowVectorXd by(2 * n + P);
+        by << row.segment(tangent.q(0), 2 * n), row.segment(tangent.p(0), P);
+        kept.push_back(by);
+    };
+    for (const std::size_t i : lap.mode.held()) {
+        ContactGradient contact(*model_, model_->programs_of(i).contact_terms, tangent, lap.parameters);
+        contact.at(state);
+        keep(contact.h_row());
+        keep(contact.hdot_row());
+    }
+    for (const std::size_t i : lap.mode.elements_in(ContactState::held).without(lap.mode.implied())) {
+        if (!model_->equations().friction.contains(i)) continue;
+        SlipGradient slip(*model_, model_->slip_terms(i), tangent, lap.parameters);
+        slip.at(state, 0.0);
+        keep(slip.u_row());
+    }
+    MatrixXd G(static_cast<Index>(kept.size()), 2 * n + P);
+    for (Index k = 0; k < G.rows(); ++k) G.row(k) = kept[static_cast<std::size_t>(k)];
+    directions.topRows(2 * n) -= least_solution(MatrixXd(G.leftCols(2 * n)), G);
+    return directions;
+}
+
 ShootingResult ReturnMap::shoot(const ShootingPoint& lap, std::optional<std::size_t> parameter) const {
     const Index n = dof();
     if (!(lap.period > 0.0) || !lap.x.allFinite())
@@ -143,15 +205,9 @@ ShootingResult ReturnMap::shoot(const ShootingPoint& lap, std::optional<std::siz
         throw OrbitNotFound(
             fmt::format("a trial run stopped at t = {:.10g} s: {}", shot.run.end_time, shot.run.outcome.message));
     const Mode begins = shot.run.phases.front().mode, ends = shot.run.end_mode;
-    if (!is_flight(begins) || !is_flight(ends))
-        throw OrbitNotFound(
-            begins.is_free() && ends.is_free()
-                ? "the search reached a start at which a joint sticks, but needs one at which all of them slide; try "
-                  "another guess (--from, --set)"
-                : "the search reached a start in contact, but needs one in free flight; try another guess (--from, "
-                  "--set)");
+    check_mode(lap, begins, ends);
     const auto P = static_cast<Index>(lap.parameters.size());
-    MatrixXd directions = MatrixXd::Identity(2 * n + P + 1, 2 * n + P);
+    MatrixXd directions = directions_at(lap);
     for (Index k = 0; parameter && k < P; ++k)
         if (k != static_cast<Index>(*parameter)) directions.col(2 * n + k).setZero();
     shot.derivatives = differentiate(shot.run, directions);
@@ -235,6 +291,7 @@ MatrixXd ShootingSolver::matrix(const ShootingResult& shot, const ShootingPoint&
 ConvergedOrbit ShootingSolver::close(ShootingPoint lap, const VectorXd& normal, const VectorXd& predicted,
                                      const VectorXd& before, int most) const {
     const Index m = lap.x.size();
+    map_.settle(lap);
     ConvergedOrbit closed;
     ShootingResult shot = map_.shoot(lap, parameter_);
     const VectorXd F_ref = shot.F0;  // the section is perpendicular to the flow at the first guess
@@ -282,6 +339,7 @@ ConvergedOrbit ShootingSolver::close(ShootingPoint lap, const VectorXd& normal, 
             ShootingPoint tried = lap_at(lap, scaled(lap) + part * step);
             if (normal.size() == 0) tried.parameters = lap.parameters;  // exactly equal
             try {
+                map_.settle(tried);
                 ShootingResult there = map_.shoot(tried, parameter_);
                 if (size_of(there) < 2.0 * size_of(shot) + 1e-9 || half == 6) {
                     lap = tried;
@@ -311,18 +369,55 @@ VectorXd stacked(const State& state) {
     return x;
 }
 
-// A flight between two events.
-struct FlightPhase {
+State state_at(const Trajectory& run, double t) {
+    State state = Sampler(run).at(t).state;
+    state.t = t;
+    return state;
+}
+
+// A motion between two events.
+struct MotionPhase {
     double start = 0.0, end = 0.0;
     bool after_release = false;
+    Mode mode;
 };
-std::vector<FlightPhase> flights_of(const Trajectory& run) {
-    std::vector<FlightPhase> flights;
+// The longest part of a motion in contact in which its held contacts count: elsewhere a start would not be held. False if
+// there is none.
+bool keep_where_contacts_count(const Trajectory& run, MotionPhase& phase) {
+    const Model& model = *run.model;
+    ContactSet conditional;
+    for (const std::size_t i : phase.mode.held())
+        if (model.is_conditional(i)) conditional = conditional.with(i);
+    if (conditional.empty()) return true;
+    auto guards = model.evaluator(model.guards(), run.run.parameters);
+    constexpr int instants = 64;
+    int first = 0, best_first = 0, best = 0;  // instants that count in succession
+    const double length = phase.end - phase.start;
+    for (int k = 0; k <= instants; ++k) {
+        set_state(guards, state_at(run, phase.start + length * k / instants));
+        guards.run();
+        bool counts = true;
+        for (const std::size_t i : conditional) counts = counts && guards.output(model.guard_of_contact(i)) > 0.0;
+        if (!counts) {
+            first = k + 1;
+        } else if (k - first > best) {
+            best_first = first;
+            best = k - first;
+        }
+    }
+    phase.end = phase.start + length * (best_first + best) / instants;
+    phase.start += length * best_first / instants;
+    return best > 0;
+}
+
+// The flights of a run; if there are none but short ones, as of a foot that is put down, the motions in contact.
+std::vector<MotionPhase> flights_of(const Trajectory& run) {
+    std::vector<MotionPhase> flights, in_contact;
     double from = run.run.options.start_time;
     Mode mode = run.phases.front().mode;
     bool released = false;
     const auto add = [&](double to) {
-        if (is_flight(mode) && to > from) flights.push_back({from, to, released});
+        if (to > from) (is_flight(mode) ? flights : in_contact).push_back({from, to, released, mode});
     };
     for (const Event& event : run.events) {
         // The last impact before a truncation is followed by its Zeno point; there is no flight between them.
@@ -332,42 +427,42 @@ std::vector<FlightPhase> flights_of(const Trajectory& run) {
         released = event.is_release();
     }
     add(run.end_time);
-    return flights;
+    const double shortest = 1e-3 * (run.end_time - run.run.options.start_time);
+    const bool flies = std::any_of(flights.begin(), flights.end(),
+                                   [&](const MotionPhase& flight) { return flight.end - flight.start > shortest; });
+    if (flies || in_contact.empty()) return flights;
+    std::erase_if(in_contact, [&](MotionPhase& phase) { return !keep_where_contacts_count(run, phase); });
+    return in_contact;
 }
 
-State state_at(const Trajectory& run, double t) {
-    State state = Sampler(run).at(t).state;
-    state.t = t;
-    return state;
-}
-
-ShootingPoint lap_from(const ReturnMap& map, const State& state, double period) {
-    return {stacked(state), state.t, period, map.run().parameters};
+ShootingPoint lap_from(const ReturnMap& map, const State& state, double period, Mode mode = {}) {
+    return {stacked(state), state.t, period, map.run().parameters, mode.is_free() ? Mode() : mode};
 }
 
 // The longest flight that starts before this time.
-std::optional<FlightPhase> longest(const std::vector<FlightPhase>& flights, double before) {
-    std::optional<FlightPhase> best;
-    for (const FlightPhase& flight : flights)
+std::optional<MotionPhase> longest(const std::vector<MotionPhase>& flights, double before) {
+    std::optional<MotionPhase> best;
+    for (const MotionPhase& flight : flights)
         if (flight.start < before && (!best || flight.end - flight.start > best->end - best->start)) best = flight;
     return best;
 }
 
 // Whether the run starts in a flight that is not too short.
-bool begins_in_flight(const std::vector<FlightPhase>& flights, const Trajectory& run, double period) {
+bool begins_in_flight(const std::vector<MotionPhase>& flights, const Trajectory& run, double period) {
     return !flights.empty() && flights.front().start == run.run.options.start_time &&
            flights.front().end - flights.front().start > 1e-3 * period;
 }
 
 // A guess at the start, or in the middle of the longest flight that starts in [from, from + period].
 ShootingPoint in_flight(const ReturnMap& map, const Trajectory& run, double period, double from) {
-    std::vector<FlightPhase> flights = flights_of(run);
+    std::vector<MotionPhase> flights = flights_of(run);
     const bool at_start = from == run.run.options.start_time;
-    if (at_start && begins_in_flight(flights, run, period)) return lap_from(map, run.run.start(), period);
-    std::erase_if(flights, [&](const FlightPhase& flight) { return flight.start < from; });
+    if (at_start && begins_in_flight(flights, run, period) && flights.front().mode.is_free())
+        return lap_from(map, run.run.start(), period);
+    std::erase_if(flights, [&](const MotionPhase& flight) { return flight.start < from; });
     const auto flight = longest(flights, from + period);
-    if (!flight) throw OrbitNotFound("the run never leaves contact, but the section must lie in free flight");
-    return lap_from(map, state_at(run, 0.5 * (flight->start + flight->end)), period);
+    if (!flight) throw OrbitNotFound("the run has no motion between its events in which a period could begin");
+    return lap_from(map, state_at(run, 0.5 * (flight->start + flight->end)), period, flight->mode);
 }
 
 // The distance between state b and state a moved by the shift, relative to the size of the states.
@@ -473,9 +568,9 @@ ShootingPoint guess_of(const ReturnMap& map, int periods) {
     if (map.is_driven()) return earlier(map, in_flight(map, run, T, options.start_time + periods * T));
     if (T > 0.0) {
         int before = periods;
-        for (const FlightPhase& flight : flights_of(run))
+        for (const MotionPhase& flight : flights_of(run))
             if (flight.after_release && before-- == 0)
-                return lap_from(map, state_at(run, 0.5 * (flight.start + flight.end)), T);
+                return lap_from(map, state_at(run, 0.5 * (flight.start + flight.end)), T, flight.mode);
         return in_flight(map, run, T, options.start_time + periods * T);
     }
     if (auto found = from_releases(map, run)) return *found;
@@ -486,8 +581,8 @@ ShootingPoint rebased(const ReturnMap& map, const ShootingPoint& lap, bool past_
     // Two periods, so that a flight that extends into the next period is complete.
     const Trajectory run = map.run_of(lap, 2.0 * lap.period);
     const double end = lap.start_time + lap.period;
-    std::optional<FlightPhase> best;
-    for (const FlightPhase& flight : flights_of(run)) {
+    std::optional<MotionPhase> best;
+    for (const MotionPhase& flight : flights_of(run)) {
         if (flight.start == lap.start_time || flight.start >= end) continue;
         constexpr double too_short = 1e-3;
         if (!past_a_release && flight.end > end && flight.end - flight.start > too_short * lap.period) {
@@ -500,7 +595,7 @@ ShootingPoint rebased(const ReturnMap& map, const ShootingPoint& lap, bool past_
         if (better) best = flight;
     }
     if (!best) return lap;
-    ShootingPoint moved = lap_from(map, state_at(run, 0.5 * (best->start + best->end)), lap.period);
+    ShootingPoint moved = lap_from(map, state_at(run, 0.5 * (best->start + best->end)), lap.period, best->mode);
     moved.parameters = lap.parameters;
     return moved;
 }

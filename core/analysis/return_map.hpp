@@ -1,6 +1,7 @@
 // The return map over one period and its derivatives, for Newton's method (theory-derivatives.md 9): the state to which
 // a run returns, as a function of its start, period and parameters. The start is in a flight, so that every direction
-// has a derivative. The equations are not affected by the two dimensions that a Zeno point forgets.
+// has a derivative. The equations are not affected by the two dimensions that a Zeno point forgets. If the run never
+// leaves contact, as of a walker, the start is in contact, and its changes are those along the surfaces.
 #pragma once
 
 #include <Eigen/Core>
@@ -29,6 +30,7 @@ struct ShootingPoint {
     Eigen::VectorXd x;  // q, v
     double start_time = 0.0, period = 0.0;
     std::vector<double> parameters;
+    Mode mode;  // of the start
 };
 
 // A run over one period, with its derivatives.
@@ -38,6 +40,7 @@ struct ShootingResult {
     Eigen::VectorXd shift;   // of each coordinate; a free one is what the run gives
     Eigen::MatrixXd M;       // derivative of x(T) by x(0): the monodromy matrix if the defect is 0
     Eigen::MatrixXd P;       // derivative of x(T) - shift by the parameters, at fixed T
+                             // In contact x(0) is projected onto the surfaces first.
     Eigen::VectorXd F0, F1;  // dx/dt at the start and at the end
     Derivatives derivatives;
     std::uint64_t event_signature = 0;  // signature of its events (analysis/measures.hpp)
@@ -73,15 +76,19 @@ class ReturnMap {
     Eigen::MatrixXd without_free(Eigen::MatrixXd rows) const;
 
     // Simulates one period and differentiates it by all parameters, or by only one. Throws OrbitNotFound if the run
-    // stops early, starts in contact, or has no derivative.
+    // stops early, starts or ends in another mode, or has no derivative.
     ShootingResult shoot(const ShootingPoint& lap, std::optional<std::size_t> parameter = {}) const;
     // The run without derivatives. Throws OrbitNotFound if it cannot start or the search was stopped.
     Trajectory run_of(const ShootingPoint& lap, double length) const;
     Eigen::VectorXd rate(const std::vector<double>& parameters, const State& state, Mode mode) const;
+    // Moves a start onto the surfaces of the contacts that its mode holds, if it is in contact.
+    void settle(ShootingPoint& lap) const;
 
  private:
     Value value(std::size_t output, const std::vector<double>& parameters) const;
     void check_repeats() const;
+    void check_mode(const ShootingPoint& lap, Mode begins, Mode ends) const;
+    Eigen::MatrixXd directions_at(const ShootingPoint& lap) const;
 
     std::shared_ptr<const Model> model_;
     Run run_;

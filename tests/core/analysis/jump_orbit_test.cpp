@@ -102,11 +102,35 @@ TEST(CompassGait, WithAFloatingBaseTakesTheStepsOfTheLegsThatSwap) {
     for (std::size_t i = 0; i < 10; ++i) {
         EXPECT_NEAR(strikes[i].t, jumps.events[i].t, 1e-9) << i;
         const Eigen::Index stance = i % 2 == 0 ? 3 : 2, swing = 5 - stance;
-        EXPECT_NEAR(-strikes[i].q[stance], jumps.events[i].q[0], 1e-8) << i;
-        EXPECT_NEAR(strikes[i].q[swing], jumps.events[i].q[1], 1e-8) << i;
+        const double slope = std::numbers::pi / 60.0;  // the legs of one are measured from the vertical
+        EXPECT_NEAR(slope - strikes[i].q[stance], jumps.events[i].q[0], 1e-8) << i;
+        EXPECT_NEAR(strikes[i].q[swing] - slope, jumps.events[i].q[1], 1e-8) << i;
         EXPECT_NEAR(-strikes[i].v_after[stance], jumps.events[i].v_after[0], 1e-8) << i;
         EXPECT_NEAR(strikes[i].v_after[swing], jumps.events[i].v_after[1], 1e-8) << i;
     }
+}
+
+// Its period of two steps starts in contact. The multipliers are those of one step, squared; three more are 0.
+TEST(CompassGait, WithAFloatingBaseHasTheOrbitOfTheLegsThatSwap) {
+    const auto swap = load("compass_gait"), floating = load("compass_gait_floating");
+    const OrbitSearchResult step = find_orbit(swap, gait_of(*swap)), both = find_orbit(floating, gait_of(*floating));
+    ASSERT_TRUE(step.orbit) << step.reason;
+    ASSERT_TRUE(both.orbit) << both.reason;
+    EXPECT_NEAR(both.orbit->period, 2.0 * step.orbit->period, 1e-11);
+    ASSERT_EQ(both.orbit->free.size(), 1u);
+    EXPECT_NEAR(both.orbit->free[0].second, 2.0 * 0.53544541543, 1e-10);
+    EXPECT_EQ(both.orbit->zero_multipliers, 3u);
+    ASSERT_EQ(both.orbit->multipliers.size(), 8u);
+    EXPECT_TRUE(both.orbit->stable);
+    for (std::size_t i = 1; i < 4; ++i) {
+        const std::complex<double> expected = step.orbit->multipliers[i] * step.orbit->multipliers[i];
+        const auto near = std::min_element(
+            both.orbit->multipliers.begin(), both.orbit->multipliers.end(),
+            [&](const auto& a, const auto& b) { return std::abs(a - expected) < std::abs(b - expected); });
+        EXPECT_LT(std::abs(*near - expected), 1e-9) << expected;
+    }
+    // The period's derivative by the slope, the first parameter of both.
+    EXPECT_NEAR(both.orbit->parameter_derivatives(8, 0), 2.0 * step.orbit->parameter_derivatives(4, 0), 1e-8);
 }
 
 TEST(JumpOrbit, KeepsItsPeriodOverAThousandSteps) {
