@@ -64,7 +64,8 @@ class MechanismExpander {
             for (const char* key : {"level", "static_level"}) substitute_in(*friction, key, "slip");
         }
         for (TomlValue* jump : tables_of(root_, "jump")) {
-            for (const char* key : {"on", "when"}) substitute_in(*jump, key);
+            substitute_in_trigger(*jump, "on");
+            substitute_in(*jump, "when");
             if (TomlValue* set = find_entry(*jump, "set"))
                 for (TomlEntry& entry : set->entries) substitute_in(entry.value);
         }
@@ -102,6 +103,17 @@ class MechanismExpander {
     void substitute_in(TomlValue& table, const char* key, const std::string& own = "",
                        const std::string& own_value = "") {
         if (TomlValue* value = find_entry(table, key)) substitute_in(*value, own, own_value);
+    }
+
+    // What starts a jump or ends a latch: one word that is the name of a contact stays, even if a ground or a body has
+    // the same name.
+    void substitute_in_trigger(TomlValue& table, const char* key) {
+        TomlValue* const value = find_entry(table, key);
+        if (value == nullptr) return;
+        for (TomlValue* constraint : tables_of(root_, "constraint"))
+            if (const TomlValue* name = find_entry(*constraint, "name"); name && name->text.text == value->text.text)
+                return;
+        substitute_in(*value);
     }
 
     // The slip of a contact or a [[friction]]. One with a mistake becomes a rate, which is a slip.
@@ -173,7 +185,8 @@ class MechanismExpander {
     void expand_constraints() {
         for (TomlValue* table : tables_of(root_, "constraint")) {
             std::optional<ShapeContact>& contact = contacts_.emplace_back();
-            for (const char* key : {"restitution", "when", "latch"}) substitute_in(*table, key);
+            for (const char* key : {"restitution", "when"}) substitute_in(*table, key);
+            substitute_in_trigger(*table, "latch");
             substitute_in_slip(*table);
             TomlValue* typed = find_entry(*table, "gap");
             if (typed != nullptr && !substitute_in(*typed)) remove_entry(*table, "gap");  // 0 would be a second mistake

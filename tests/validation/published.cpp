@@ -136,6 +136,9 @@ Topic compass_gait() {
                 11},
                {"multipliers of two steps, size", "eq. (3.44)", "0.332", squared_multiplier("1"), 9, map},
                {"third multiplier of two steps", "eq. (3.44)", "0.014", squared_multiplier("3"), 9, map}}},
+             {"orbit compass_gait_floating --json -",
+              {{"time of two steps, s", "twice the above", "1.46869278231", at("/period"), 12},
+               {"way of two steps, m", "twice the above", "1.07089083086", at("/shift/x"), 11}}},
              {"orbit compass_gait --continue slope=0.05:0.08 --json -",
               {{"slope of the first period doubling, degrees", "Sec. 4.2.4", "4.37",
                 times(1.0 / degree, at("/branch/flips/0/value")), 10, diagram},
@@ -284,6 +287,80 @@ Topic three_balls() {
             event("collapse", 0, "/gap_ratio"), 11}}}}};
 }
 
+// The number of steps after which a walk repeats, by the stance angle of its last strikes.
+int steps_per_period(const Output& output) {
+    constexpr int most = 32;
+    constexpr double same = 1e-6;
+    const auto stance = [&](int from_end) { return event_of(output, "jump", -from_end).at("q").at(0).get<double>(); };
+    for (int steps = 1; steps < most; ++steps) {
+        bool repeats = true;
+        for (int i = 1; i <= most && repeats; ++i) repeats = std::abs(stance(i) - stance(i + steps)) < same;
+        if (repeats) return steps;
+    }
+    return 0;
+}
+
+Topic cascade() {
+    std::vector<Command> commands;
+    const std::string start = " --set stance=0.029 --set swing=0.3758 --set \"stance'=0.5505\" --set \"swing'=1.6328\"";
+    const std::string diagram =
+        "`achilles sweep compass_gait --over slope=0.07:0.0899:600 --at jump --after 150 --end 180 "
+        "--print stance" +
+        start + " --out cascade.svg` draws the whole diagram.";
+    for (const auto& [slope, steps] : {std::pair{"4.3", "1"}, {"4.6", "2"}, {"4.95", "4"}, {"5.03", "8"}}) {
+        const bool last = std::string(steps) == "8";
+        commands.push_back(
+            {std::string("simulate compass_gait --tolerance 1e-12 --end 240 --json - --set slope=") + slope +
+                 "*pi/180" + start,
+             {{"steps in a period", "Sec. 4.2.4", steps,
+               [](const Output& output) { return double{1} * steps_per_period(output); }, 12, last ? diagram : ""}}});
+    }
+    return {"The compass gait on steeper slopes",
+            "The same sources: the gait doubles its period again and again as the slope grows, until it is chaotic.",
+            commands};
+}
+
+Topic impact_oscillator() {
+    return {
+        "Impact oscillator",
+        "S. W. Shaw & P. J. Holmes, J. Sound Vib. 90 (1983) 129-155: one impact in each cycle of the drive, in closed "
+        "form. With c = cos(2 pi omega/om): mu1 mu2 = e^2, mu1 + mu2 = -2 e c - (1 + e)^2 (1 + c) (om^2/omega^2 - "
+        "1)/2.",
+        {{"orbit impact_oscillator --from end --set om=25 --period 2*pi/om --continue om=24:26 --json -",
+          {{"impact speed, m/s", "closed form", "3.1955181441076620425", event("impact", 0, "/impact_speed"), 12},
+           {"multiplier", "closed form", "-0.92348494032063168969", at("/multipliers/0/0"), 12},
+           {"the other one", "closed form", "-0.38982768887926736458", at("/multipliers/1/0"), 12},
+           {"frequency of the period doubling, rad/s", "mu = -1", "24.68892981308790991", at("/branch/flips/0/value"),
+            10}}}}};
+}
+
+Topic superball() {
+    return {"Superball",
+            "R. L. Garwin, American J. Physics 37 (1969) 88-92: a ball thrown under a table comes back after three "
+            "impacts with 333/343 of its speed and the spin 130/343 v/r.",
+            {{"simulate superball --json -",
+              {{"speed after the third impact, m/s", "-333/343 v", "-2.9125364431486880466",
+                event("jump", 2, "/v_after/0"), 12},
+               {"its spin, rad/s", "130/343 v/r", "45.481049562682215743", event("jump", 2, "/v_after/2"), 12}}}}};
+}
+
+Topic bouncing_balls() {
+    return {
+        "Bouncing balls of other programs",
+        "HyPro, benchmark Bouncing ball: 10 m above the floor, c = 0.75. heyoka.py, example The wavy ramp, which it "
+        "stops where the impacts come too fast; the reference bounces in 50 digits until its flights take 1e-20 s.",
+        {{"simulate ball_on_floor --eps 1e-12 --set y=10.06 --set e=0.75 --set \"x'=0\" --end 12 --json -",
+          {{"speed of the first impact times c, m/s", "c sqrt(2 g h)", "10.505355776935876816",
+            times(0.75, event("impact", 0, "/impact_speed")), 12},
+           {"Zeno time, s", "sqrt(2 h/g) (1 + c)/(1 - c)", "9.9949018604894512688", event("zeno", 0, "/t"), 11}}},
+         {"simulate wavy_ramp --eps 1e-11 --tolerance 1e-13 --json -",
+          {{"third impact, s", "50 digits", "0.5291839436819040729627", event("impact", 2, "/t"), 12},
+           {"tenth impact, s", "50 digits", "2.231877267322334167864", event("impact", 9, "/t"), 11},
+           {"Zeno time, s", "50 digits", "4.739023057207340706034", event("zeno", 0, "/t"), 10},
+           {"place at the Zeno point, m", "50 digits", "3.704001422523984322947", event("zeno", 0, "/q/0"), 10},
+           {"speed from there on, m/s", "50 digits", "1.137311845513256657", at("/end/v/0"), 10}}}}};
+}
+
 Topic ball_on_sine() {
     const char* const numbers[4][4] = {{"0.35", "2.548936", "3.700511", "10.080307"},
                                        {"0.46", "2.674176", "3.721844", "11.893891"},
@@ -304,8 +381,9 @@ Topic ball_on_sine() {
 }  // namespace
 
 std::vector<Topic> topics() {
-    return {rimless_wheel(), simplest_walker(), compass_gait(), rocking_block(), woodpecker(),  stick_slip_belt(),
-            friction(),      vibrating_table(), collapses(),    three_balls(),   ball_on_sine()};
+    return {rimless_wheel(),   simplest_walker(), compass_gait(), cascade(),     rocking_block(),
+            woodpecker(),      stick_slip_belt(), friction(),     superball(),   impact_oscillator(),
+            vibrating_table(), bouncing_balls(),  collapses(),    three_balls(), ball_on_sine()};
 }
 
 }  // namespace achilles::validation

@@ -2,10 +2,13 @@
 // results in quadruple precision (tests/reference/collapse.json).
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
 
 #include "contacts/collapse.hpp"
 #include "core/systems.hpp"
+#include "simulate/sampler.hpp"
 
 namespace achilles {
 namespace {
@@ -74,6 +77,54 @@ TEST(Collapse, FourPairsOfPlanesHaveTheReferenceResults) {
             EXPECT_NEAR(run.end.v[1], pair["vy"].get<double>(), 1e-10) << name;
         }
     }
+}
+
+// Two curved gaps, forces of position and velocity, and a third coordinate along them: random numbers, but W12 < 0.
+std::shared_ptr<const Model> random_pair(std::mt19937& random) {
+    const auto draw = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const double gamma = draw(0.90, 0.97), root = std::sqrt(1.0 - gamma * gamma), speed = draw(0.9, 1.1);
+    const double y = (0.0108 * draw(0.9, 1.1) + gamma * 0.01) / root, fall = -(gamma + draw(0.4, 0.6)) / root;
+    return test::typed(fmt::format(
+        R"toml(coordinate = [{{name = "x", start = 0.01, rate = {}, force = "{}*z' + {}*x'"}}, {{name = "y", start = {}, rate = {}}},
+    {{name = "z", rate = {}, force = "{}*x'*y'"}}]
+lagrangian = {{kinetic = "(x'^2 + y'^2 + z'^2)/2 + {}*z*x'*z'", potential = "{}*x + {}*y + {}*z^2"}}
+constraint = [{{name = "p", gap = "x + {}*z^2 + {}*x*z", restitution = {}}},
+    {{name = "r", gap = "{}*y - {}*x + {}*z^2 + {}*y*z", restitution = {}}}]
+)toml",
+        -speed, draw(-2, 2), draw(-2, 2), y, fall, draw(-1, 1), draw(-1, 1), draw(-0.3, 0.3), draw(-3, 3), draw(-3, 3),
+        draw(-1, 1), draw(-0.5, 0.5), draw(-0.3, 0.3), draw(0.03, 0.2), root, gamma, draw(-0.5, 0.5), draw(-0.3, 0.3),
+        draw(0.03, 0.2)));
+}
+
+// The certificates of early cuts, against runs that are cut at the resolution of double precision: the time of the
+// collapse is in its interval, and the states just after both collapses differ by no more than the shadowing bounds.
+TEST(Collapse, CertificatesOfEarlyCutsContainTheTrueMotion) {
+    std::mt19937 random(43);
+    int compared = 0, resolved = 0;
+    double closest = 0.0;
+    for (int i = 0; i < 100; ++i) {
+        const auto model = random_pair(random);
+        const Trajectory early = run_with(model, 0.01, Method::taylor), late = run_with(model, 1e-12, Method::taylor);
+        const auto rough = collapses_of(early), exact = collapses_of(late);
+        if (rough.empty() || exact.empty() || !rough[0].certificate->decision) continue;
+        const Certificate& certificate = *rough[0].certificate;
+        ++compared;
+        EXPECT_LE(certificate.zeno_low, exact[0].t + 1e-13) << i;
+        EXPECT_GE(certificate.zeno_high, exact[0].t - 1e-13) << i;
+        EXPECT_EQ(rough[0].mode, exact[0].mode) << i;
+        const double t = std::max(rough[0].t, exact[0].t);
+        const Sample one = early(t), other = late(t);
+        const double q = (one.state.q - other.state.q).norm(), v = (one.state.v - other.state.v).norm();
+        EXPECT_LE(q, *certificate.shadowing_position + 1e-13) << i;
+        EXPECT_LE(v, *certificate.shadowing_velocity + 1e-12) << i;
+        if (q + v > 1e-9) ++resolved;
+        closest = std::max({closest, q / *certificate.shadowing_position, v / *certificate.shadowing_velocity});
+    }
+    EXPECT_GE(compared, 40);
+    EXPECT_GE(resolved, 20);   // else the cuts were not early
+    EXPECT_GT(closest, 1e-4);  // else the bounds would say nothing
 }
 
 // The impulses are those of the plastic impact on both, and the energy balance closes.
