@@ -111,7 +111,8 @@ class Mode {
 
     constexpr explicit Mode(std::uint64_t bits, ContactSet exceptions) : bits_(bits), exceptions_(exceptions) {}
     std::uint64_t bits_ = 0;
-    ContactSet exceptions_;  // contacts that forces see in another state: acting() or silent()
+    ContactSet exceptions_;     // contacts that forces see in another state: acting() or silent()
+    std::uint32_t unused_ = 0;  // in place of padding: sweeps write modes as bytes
 };
 
 // Key of the data of one contact in a mode.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <type_traits>
 #include <vector>
 
 namespace achilles {
@@ -35,7 +36,7 @@ TEST(Mode, StartsAsFreeFlight) {
         EXPECT_FALSE(Mode().is_held(i));
     }
     EXPECT_EQ(Mode::holding({}), Mode());
-    EXPECT_LE(sizeof(Mode), sizeof(std::uint64_t));
+    EXPECT_TRUE(std::has_unique_object_representations_v<Mode>);  // no padding
 }
 
 TEST(Mode, KnowsWhichOpenContactsAct) {
@@ -49,6 +50,23 @@ TEST(Mode, KnowsWhichOpenContactsAct) {
         EXPECT_TRUE(acting.with(two, held).acting().empty());
         EXPECT_EQ(acting.with(two, held), mode.with(two, held));
         EXPECT_EQ(acting.without(two), mode.without(two));
+    }
+}
+
+TEST(Mode, KnowsWhichHeldContactsAreSilent) {
+    for (const auto& [mode, set] : some_modes()) {
+        const ContactSet two = ContactSet::of(3).with(15);
+        const Mode silent = mode.with_silent(two);
+        EXPECT_EQ(silent.silent(), two.within(set));
+        EXPECT_EQ(silent.held(), set);
+        EXPECT_TRUE(silent.acting().empty());
+        EXPECT_EQ(silent.seen_by_forces(), set.without(two));
+        EXPECT_EQ(mode.with_acting(two).seen_by_forces(), set.with(two));
+        EXPECT_EQ(silent == mode, two.within(set).empty());
+        EXPECT_EQ(silent.with_silent({}), mode);
+        EXPECT_EQ(silent.without(two), mode.without(two));
+        EXPECT_EQ(silent.with(two, held), mode.with(two, held));
+        EXPECT_EQ(silent < mode || mode < silent, silent != mode);
     }
 }
 
