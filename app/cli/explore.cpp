@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <algorithm>
 #include <chrono>
+#include <cstdio>
+#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <future>
@@ -21,6 +23,7 @@
 #include "panels/panels.hpp"
 #include "panels/widgets.hpp"
 #include "pictures/origin.hpp"
+#include "pictures/picture_format.hpp"
 #include "pictures/thumbnails.hpp"
 #include "session/glossary.hpp"
 #include "session/replay_script.hpp"
@@ -300,6 +303,21 @@ class Explorer {
     double waited_ = 0.0;
 };
 
+// Puts a PNG on the clipboard. A program that stays in the background serves it, since the window's library copies text
+// only.
+void copy_picture(const std::string& png) {
+    const bool is_wayland = std::getenv("WAYLAND_DISPLAY") != nullptr && !find_program("wl-copy").empty();
+    if (!is_wayland && find_program("xclip").empty())
+        throw InputError("copy picture", {}, "copying a picture needs xclip or wl-copy, and neither is installed",
+                         "install the package xclip, or write a file: export figure.png");
+    const char* const line =
+        is_wayland ? "wl-copy --type image/png" : "xclip -selection clipboard -t image/png >/dev/null";
+    std::FILE* const pipe = ::popen(line, "w");
+    const bool is_written = pipe != nullptr && std::fwrite(png.data(), 1, png.size(), pipe) == png.size();
+    if (pipe == nullptr || ::pclose(pipe) != 0 || !is_written)
+        throw InputError("copy picture", {}, "the picture could not be put on the clipboard");
+}
+
 // If there is no display, the message names what works without one.
 Window window_for(const ExploreOptions& options, const std::string& system) {
     try {
@@ -329,6 +347,7 @@ int explore(const ExploreOptions& options) {
     library.budget = trust.budget;
     std::error_code no_folder;
     library.folder = std::filesystem::current_path(no_folder).string();
+    library.copy_picture = copy_picture;
     CurrentFilmJob film;
     library.film = [&film](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
     // Opening the window takes time; read the gallery on another thread meanwhile.
@@ -404,6 +423,9 @@ std::vector<SystemEntry> known_tours() {
             entries.push_back({name, name});  // opening it shows the error
         }
     }
+    // The tour of the window comes first; the others are about systems.
+    std::stable_partition(entries.begin(), entries.end(),
+                          [](const SystemEntry& entry) { return entry.name == "the_explorer"; });
     return entries;
 }
 

@@ -14,6 +14,7 @@
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "output/output.hpp"
+#include "panels/actions.hpp"
 #include "session/command.hpp"
 #include "session/glossary.hpp"
 #include "simulate/simulate.hpp"
@@ -94,9 +95,10 @@ std::string words_table() {
 }
 
 std::string shortcuts_table() {
-    std::vector<std::vector<std::string>> rows{{"keys", "action"}};
+    std::vector<std::vector<std::string>> rows{{"in", "keys, mouse", "action"}};
     for (const Shortcut& shortcut : shortcuts())
-        rows.push_back({std::string(shortcut.keys), std::string(shortcut.does)});
+        rows.push_back({shortcut.group == "Keys" ? "" : std::string(shortcut.group), std::string(shortcut.keys),
+                        std::string(shortcut.does)});
     return table(rows);
 }
 

@@ -65,9 +65,8 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     if (scene.presents()) return arrange_presented(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
-    const bool has_sweep = scene.shows("sweep"), has_plots = scene.shows("plots") || has_sweep;
-    const std::string lower_panel = scene.below();
-    const bool has_events = !lower_panel.empty();
+    const bool has_plots = scene.shows("plots");
+    const bool has_events = !scene.below().empty();
     const float top = m.bar, bottom = std::max(top, m.height - m.status - 0.6F * between);
     Arrangement parts;
     parts.bar = {0.0F, 0.0F, m.width, m.bar};
@@ -81,10 +80,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
     const float left = has_left ? size_of(scene.share(left_panel), m.width, fitting, min_left, inside - others) : 0.0F;
-    // Space for a certificate without scrolling, if available. Equations and plots are taller than lines of text.
-    const float fitting_events = lower_panel == "equations" || lower_panel == "orbit"
-                                     ? std::max(180.0F * u, 0.38F * m.height)
-                                     : std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
+    // Space for a certificate without scrolling, if available. The same for the events and for every study, so that
+    // nothing jumps when another one is shown.
+    const float fitting_events = std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
     const float low =
         has_events ? size_of(scene.share("events"), m.height, fitting_events, min_events * u, all - min_top * u) : 0.0F;
     const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));
@@ -130,21 +128,6 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float plots_at = over_plots ? below(top, beside) : top;
     const float plots_height = top + height - plots_at;
     parts.plots = {x + center + between, plots_at, right, plots_height};
-    if (has_sweep) {
-        // The sweep alone, if the plots are hidden or there is no room for both.
-        const bool with_plots = scene.shows("plots") && plots_height > 2.0F * min_plot * u + between;
-        const float sweep = with_plots ? size_of(scene.share("sweep"), m.height, 0.5F * (plots_height - between),
-                                                 min_plot * u, plots_height - between - min_plot * u)
-                                       : plots_height;
-        parts.sweep = {parts.plots.x, plots_at + plots_height - sweep, right, sweep};
-        parts.plots.height = with_plots ? plots_height - sweep - between : 0.0F;
-        if (with_plots)
-            parts.splitters.push_back({"sweep",
-                                       {parts.plots.x, parts.sweep.y - between, right, between},
-                                       false,
-                                       double{top} + double{height} + 0.5 * double{between},
-                                       -double{m.height}});
-    }
     const float events_x = events_below ? edge : x;
     parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
 

@@ -5,15 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <functional>
 #include <string>
 #include <utility>
 
 #include "output/proof.hpp"
 #include "paint/paint.hpp"
+#include "panels/actions.hpp"
 #include "panels/widgets.hpp"
-#include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
 
 namespace achilles {
@@ -22,104 +21,14 @@ namespace achilles {
 
 namespace {
 
-struct PanelSwitch {
-    const char *what, *name;
-    int key;
-};
-constexpr std::array<PanelSwitch, 6> panels{{{"controls", "Controls", '1'},
-                                             {"plots", "Plots", '2'},
-                                             {"events", "Events", '3'},
-                                             {"sweep", "Sweep", '4'},
-                                             {"depend", "Sensitivities", '5'},
-                                             {"orbit", "Periodic run", '6'}}};
-
 template <class Content>
 void menu(const char* name, PanelState& state, const Content& content) {
     const bool open = ImGui::BeginMenu(name);
-    remember(state, std::string("menu ") + name);
+    remember(state, std::string("bar ") + name);
     if (!open) return;
     content();
     close_by_escape(state);
     ImGui::EndMenu();
-}
-
-// The next interface scale; the same steps as in browsers.
-double next_size(double now, int step) {
-    constexpr std::array sizes{0.5, 0.67, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 1.75, 2.0, 2.5, 3.0};
-    if (step > 0) {
-        const auto* const larger = std::upper_bound(sizes.begin(), sizes.end(), now);
-        return larger == sizes.end() ? now : *larger;
-    }
-    const auto* const here = std::lower_bound(sizes.begin(), sizes.end(), now);
-    return here == sizes.begin() ? now : *(here - 1);
-}
-
-void enlarge(const Session& session, int step, Commands& commands) {
-    const double now = session.scene().enlarged(), next = step == 0 ? 1.0 : next_size(now, step);
-    if (next != now) commands.emplace_back(command::Enlarge{next});
-}
-
-// Menu of recently opened files.
-void show_recent(const Session& session, PanelState& state, Commands& commands) {
-    if (state.recent.empty()) return;
-    ImGui::Separator();
-    for (const std::string& path : state.recent) {
-        const std::string name = std::filesystem::path(path).filename().string();
-        if (ImGui::MenuItem(fmt::format("{}##{}", name, path).c_str()))
-            request(session, state, command::Open{path}, commands);
-        remember(state, "menu " + path);
-        tooltip(path);
-    }
-}
-
-void show_file_menu(const Session& session, PanelState& state, Commands& commands) {
-    if (menu_item("New", state)) request(session, state, command::New{}, commands);
-    if (menu_item("Open\u2026", state)) ask_to_open(state);
-    if (menu_item("Gallery\u2026", state)) commands.emplace_back(command::Show{"gallery", true});
-    if (menu_item("Save", state)) save_or_ask(session, state, commands);
-    if (menu_item("Save as\u2026", state)) ask_to_save(session, state);
-    show_recent(session, state, commands);
-    ImGui::Separator();
-    show_export_items(session, state, commands);
-}
-
-void show_edit_menu(const Session& session, PanelState& state, Commands& commands) {
-    if (menu_item("Undo", state, false, session.can_undo())) commands.emplace_back(command::Undo{});
-    if (menu_item("Redo", state, false, session.can_redo())) commands.emplace_back(command::Redo{});
-    ImGui::Separator();
-    if (menu_item("Reset all values", state)) commands.emplace_back(command::Reset{});
-    ImGui::Separator();
-    if (menu_item("Command\u2026", state)) commands.emplace_back(command::Show{"palette", true});
-    if (menu_item("Edit System File", state, session.shows_editor())) toggle_editor(session, state, commands);
-}
-
-void show_view_menu(const Session& session, PanelState& state, Commands& commands) {
-    const Scene& scene = session.scene();
-    for (const PanelSwitch& panel : panels)
-        if (menu_item(panel.name, state, scene.shows(panel.what)))
-            commands.emplace_back(command::Show{panel.what, !scene.shows(panel.what)});
-    if (menu_item("Automatic panel sizes", state))
-        for (const std::string& panel : command::sized_panels)
-            if (scene.share(panel) > 0.0) commands.emplace_back(command::SetPanelSize{panel, 0.0});
-    ImGui::Separator();
-    for (const auto& [what, name] : {std::pair{"trail", "Trail"}, std::pair{"velocity", "Velocity"},
-                                     std::pair{"force", "Contact force"}, std::pair{"strobe", "Poses at events"}})
-        if (menu_item(name, state, scene.shows(what))) commands.emplace_back(command::Show{what, !scene.shows(what)});
-    const bool plane = scene.shows("plane");
-    if (menu_item("Configuration plane", state, plane)) commands.emplace_back(command::Show{"plane", !plane});
-    const bool energy = scene.shows("energy");
-    if (menu_item("Energy", state, energy)) commands.emplace_back(command::Show{"energy", !energy});
-    if (menu_item("Fit whole run", state, false, scene.look().has_value())) commands.emplace_back(command::LookAll{});
-    ImGui::Separator();
-    const bool loops = scene.loops();
-    if (menu_item("Loop playback", state, loops)) commands.emplace_back(command::Loop{!loops});
-    if (menu_item("Presentation", state, scene.presents())) commands.emplace_back(command::Present{!scene.presents()});
-    ImGui::Separator();
-    if (menu_item("Larger", state)) enlarge(session, 1, commands);
-    if (menu_item("Smaller", state)) enlarge(session, -1, commands);
-    if (menu_item("Reset Zoom", state)) enlarge(session, 0, commands);
-    if (menu_item("Dark theme", state, session.theme().dark))
-        commands.emplace_back(command::SetTheme{!session.theme().dark});
 }
 
 // A square button with a picture. Returns true if pressed; `area` is where to draw.
@@ -136,32 +45,31 @@ bool switch_button(const std::string& name, const std::string& about, PanelState
     return pressed;
 }
 
-// A small window icon whose left, right, lower or lower right part is filled if the panel is shown.
-void panel_switch(const Session& session, const PanelSwitch& panel, PanelState& state, Commands& commands) {
-    const bool shown = session.scene().shows(panel.what);
+// A small window icon whose left, right or lower part is filled if the panel is shown.
+void panel_switch(const Action& panel, const Session& session, PanelState& state, Commands& commands) {
+    const bool shown = is_on(panel, session);
     Rectangle r;
-    if (switch_button(std::string("switch ") + panel.what,
-                      std::string(shown ? "hide the " : "show the ") + panel.what + " (" +
-                          std::string(shortcut_of(panel.name)) + ")",
-                      state, r))
-        commands.emplace_back(command::Show{panel.what, !shown});
+    if (switch_button("switch " + std::string(panel.name),
+                      fmt::format("{} {} ({})", shown ? "hide" : "show", panel.about, panel.keys), state, r))
+        perform(panel, session, state, commands);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImU32 ink = packed(shown ? text_color() : faint_color());
     stroke_rectangle(list, {r.x + 0.5F, r.y + 0.5F}, {r.x + r.width - 0.5F, r.y + r.height - 0.5F}, ink, units(2.0F),
                      units(1.2F));
     const float across = 0.38F * r.width, down = 0.4F * r.height, inset = units(2.5F);
     ImVec2 low{r.x + inset, r.y + inset}, high{r.x + r.width - inset, r.y + r.height - inset};
-    if (panel.key == '1') high.x = r.x + across;
-    if (panel.key == '2' || panel.key == '4') low.x = r.x + r.width - across;
-    if (panel.key == '3' || panel.key == '4') low.y = r.y + r.height - down;
+    if (panel.name == "Controls") high.x = r.x + across;
+    if (panel.name == "Plots") low.x = r.x + r.width - across;
+    if (panel.name == "Events") low.y = r.y + r.height - down;
     list->AddRectFilled(low, high, packed(shown ? text_color() : faint_color(), shown ? 1.0F : 0.35F));
 }
 
 void theme_switch(const Session& session, PanelState& state, Commands& commands) {
-    const bool dark = session.theme().dark;
+    const Action& theme = action("Dark theme");
     Rectangle r;
-    if (switch_button("switch theme", dark ? "light theme (Ctrl+D)" : "dark theme (Ctrl+D)", state, r))
-        commands.emplace_back(command::SetTheme{!dark});
+    if (switch_button("switch theme",
+                      fmt::format("{} theme ({})", is_on(theme, session) ? "light" : "dark", theme.keys), state, r))
+        perform(theme, session, state, commands);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const ImVec2 c{r.x + 0.5F * r.width, r.y + 0.5F * r.height};
     const float radius = units(6.5F);
@@ -173,28 +81,16 @@ void theme_switch(const Session& session, PanelState& state, Commands& commands)
 
 }  // namespace
 
-void use_view_keys(const Session& session, PanelState& state, Commands& commands) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (takes_key(state, key::f11, false)) commands.emplace_back(command::Present{!session.scene().presents()});
-    if (!io.KeyCtrl || io.KeyAlt) return;
-    for (const PanelSwitch& panel : panels)
-        if (takes_key(state, panel.key, false))
-            commands.emplace_back(command::Show{panel.what, !session.scene().shows(panel.what)});
-    if (takes_key(state, 'D', false)) commands.emplace_back(command::SetTheme{!session.theme().dark});
-    if (takes_key(state, '=', false)) enlarge(session, 1, commands);
-    if (takes_key(state, '-', false)) enlarge(session, -1, commands);
-    if (takes_key(state, '0', false)) enlarge(session, 0, commands);
-}
-
 void show_bar(const Session& session, PanelState& state, Commands& commands) {
     if (!ImGui::BeginMenuBar()) return;
-    menu("File", state, [&] { show_file_menu(session, state, commands); });
-    menu("Edit", state, [&] { show_edit_menu(session, state, commands); });
-    menu("View", state, [&] { show_view_menu(session, state, commands); });
-    menu("Tours", state, [&] { show_tour_items(session, state, commands); });
-    menu("Help", state, [&] { show_help_items(state, commands); });
+    for (const char* name : {"File", "Edit", "View", "Time", "Plots", "Tours", "Help"})
+        menu(name, state, [&] {
+            show_menu_entries(name, session, state, commands);
+            if (std::string_view(name) == "Tours") show_tour_items(session, state, commands);
+            if (std::string_view(name) == "Help") show_help_items(state);
+        });
     const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
-    const float width = 5.0F * size + 4.0F * space + edge;
+    const float width = 4.0F * size + 3.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;
     const float title_at = ImGui::GetCursorPosX() + units(16.0F);
     // Show the system's title if no panel does.
@@ -206,7 +102,7 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     if (left < title_at) return ImGui::EndMenuBar();
     ImGui::SetCursorPosX(left);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {space, 0.0F});
-    for (const std::size_t i : {0U, 2U, 1U, 3U}) panel_switch(session, panels[i], state, commands);
+    for (const char* panel : {"Controls", "Events", "Plots"}) panel_switch(action(panel), session, state, commands);
     theme_switch(session, state, commands);
     ImGui::PopStyleVar();
     ImGui::EndMenuBar();
@@ -315,7 +211,7 @@ void show_progress(const Session& session, const PanelState& state, const RunMon
 }
 
 // Progress or result of the proof.
-void show_proof(const Session& session) {
+void show_proof_status(const Session& session) {
     const Options& options = session.run().options;
     if (const ProofMonitor* watch = session.proof_under_way()) {
         const double time = watch->time;
@@ -334,13 +230,7 @@ void show_proof(const Session& session) {
         fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
             .c_str());
     ImGui::PopStyleColor();
-    tooltip(
-        enclosure.end
-            ? "The exact motion lies in the tubes of the plots, and its events in the intervals shown. This assumes " +
-                  enclosure.assumptions + "."
-            : "Until then the exact motion lies in the tubes of the plots, and its events in the intervals shown. "
-              "After that, nothing is proved: " +
-                  enclosure.outcome.message + ".");
+    tooltip(proof_sentence(*proof));
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
@@ -372,6 +262,19 @@ std::string time_left(double seconds, double share) {
     return "more than a day left";
 }
 
+std::string proof_sentence(const Proof& proof) {
+    const Enclosure& enclosure = proof.enclosure;
+    if (!enclosure.end)
+        return fmt::format(
+            "Proved to t = {} s: until then the exact motion lies in the tubes of the plots, and its "
+            "events in the intervals shown. After that, nothing is proved: {}.",
+            reach_text(enclosure), enclosure.outcome.message);
+    return fmt::format(
+        "Proved to t = {} s: the exact motion lies in the tubes of the plots, and its events in the "
+        "intervals shown. This assumes {}.",
+        reach_text(enclosure), enclosure.assumptions);
+}
+
 void show_status(const Session& session, const PanelState& state) {
     const Trajectory& trajectory = session.trajectory();
     const Statistics& s = trajectory.statistics;
@@ -380,7 +283,7 @@ void show_status(const Session& session, const PanelState& state) {
                                         ImGui::GetColorU32(ImGuiCol_Border));
     ImGui::SetCursorPos({units(edge), std::floor(0.5F * (ImGui::GetWindowHeight() - ImGui::GetTextLineHeight()))});
     if (const RunMonitor* watch = session.under_way()) return show_progress(session, state, *watch);
-    show_proof(session);
+    show_proof_status(session);
     if (trajectory.outcome.kind != Outcome::Kind::end_time) {
         const std::string early =
             fmt::format("stopped early at t = {:.6g}: {}", trajectory.end_time, to_text(trajectory.outcome.kind));

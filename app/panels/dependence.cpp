@@ -92,8 +92,6 @@ std::string remark(const Session& session) {
 }
 
 void show_head(const Session& session, PanelState& state, Commands& commands) {
-    show_lower_tabs(session, state, commands);
-    ImGui::SameLine(0.0F, units(24.0F));
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
     const float right = ImGui::GetWindowPos().x + content_right(), y = at.y + ImGui::GetStyle().FramePadding.y;
@@ -242,14 +240,10 @@ void put_bar(const Session& session, Slider& slider) {
 }
 
 void show_dependence(const Session& session, PanelState& state, Commands& commands) {
+    begin_study("dependence");
     show_head(session, state, commands);
-    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(6.0F)});
-    begin_padded_child("dependence", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
     show_bars(session, state, commands);
     ImGui::EndChild();
-    ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
 }
 
 }  // namespace achilles

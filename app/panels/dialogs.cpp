@@ -272,15 +272,6 @@ void go_on_if_saved(const Session& session, EditorState& editor, Commands& comma
     editor.is_closing = false;
 }
 
-void take_keys(const Session& session, PanelState& state, Commands& commands) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (!io.KeyCtrl || io.KeyAlt || state.editor.asking != EditorState::OpenDialog::nothing) return;
-    if (takes_key(state, 'S', false)) save_or_ask(session, state, commands);
-    if (takes_key(state, 'O', false)) ask_to_open(state);
-    if (takes_key(state, 'N', false)) request(session, state, command::New{}, commands);
-    if (takes_key(state, 'E', false)) toggle_editor(session, state, commands);
-}
-
 }  // namespace
 
 void ask_to_open(PanelState& state) {
@@ -333,7 +324,6 @@ bool request_close(const Session& session, PanelState& state) {
 void show_dialogs(const Session& session, PanelState& state, Commands& commands) {
     EditorState& editor = state.editor;
     go_on_if_saved(session, editor, commands);
-    take_keys(session, state, commands);
     using OpenDialog = EditorState::OpenDialog;
     const bool wants_export = session.scene().shows("export");
     if (wants_export && editor.asking == OpenDialog::nothing) ask_to_export(session, state, "svg");

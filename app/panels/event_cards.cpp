@@ -14,6 +14,7 @@
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
+#include "session/certificate_text.hpp"
 #include "simulate/contact_cache.hpp"
 #include "simulate/contact_forces.hpp"
 #include "simulate/explain.hpp"
@@ -304,45 +305,26 @@ void show_friction(const Session& session, std::size_t index, PanelState& state,
 
 namespace {
 
-// The ratio left/right of an inequality left < right, within [0, 1]: a small ratio means a wide margin, 1 means none
-// is left. A sign condition has 0 on its right side; its ratio is taken as 0.
-double share_of(const Inequality& inequality) {
-    return inequality.right > 0.0 ? std::clamp(inequality.left / inequality.right, 0.0, 1.0) : 0.0;
-}
-
 void quiet(const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, packed(faint_color()));
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopStyleColor();
 }
 
-// One row: name, left < right, and a bar for left/right. The tightest inequality is marked.
-void show_inequality(const Inequality& inequality, bool decisive) {
+// A bar for the used share of a limit. The one nearest to its limit is marked.
+void show_share(double share, bool is_nearest) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    const float width = ImGui::GetContentRegionAvail().x, line = ImGui::GetTextLineHeight();
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const Color color = decisive ? text_color() : faint_color();
-    std::string name(inequality.name);
-    if (const std::size_t at_power = name.find("^2"); at_power != std::string::npos)
-        name.replace(at_power, 2, "\u00b2");
-    list->AddText(at, packed(color), name.c_str());
-    const std::string sides = with_minus(fmt::format("{:.3g} < {:.3g}", inequality.left, inequality.right));
-    const ImVec2 middle{std::floor(at.x + units(138.0F)), at.y};
-    // It may extend into the margin.
-    cell(middle, sides, std::min(units(150.0F), at.x + width + units(6.0F) - middle.x), color);
-    const float left = std::floor(at.x + units(292.0F)), room = std::min(at.x + width - left, units(180.0F));
+    const float line = ImGui::GetTextLineHeight(), width = std::min(remaining().width, units(180.0F));
+    ImGui::Dummy({std::max(width, 1.0F), line});
+    tooltip(is_nearest ? "nearest to its limit" : "share of what is allowed");
+    if (width < units(12.0F)) return;
     const float top = at.y + 0.35F * line, bottom = at.y + 0.7F * line;
-    if (room > units(12.0F) && inequality.right > 0.0) {
-        list->AddRectFilled({left, top}, {left + room, bottom}, packed(faint_color(), 0.25F), units(2.0F));
-        const float used = std::max(units(2.0F), room * static_cast<float>(share_of(inequality)));
-        list->AddRectFilled({left, top}, {left + used, bottom},
-                            decisive ? ImGui::GetColorU32(ImGuiCol_SliderGrabActive) : packed(faint_color()),
-                            units(2.0F));
-    }
-    ImGui::Dummy({width, line});
-    tooltip(decisive ? inequality.left < inequality.right ? "the tightest of these inequalities"
-                                                          : "this does not hold: shorter flights cannot be resolved"
-                     : "the bar shows the left side as a share of the right side");
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddRectFilled({at.x, top}, {at.x + width, bottom}, packed(faint_color(), 0.25F), units(2.0F));
+    const float used = std::max(units(2.0F), width * static_cast<float>(share));
+    list->AddRectFilled({at.x, top}, {at.x + used, bottom},
+                        is_nearest ? ImGui::GetColorU32(ImGuiCol_SliderGrabActive) : packed(faint_color()),
+                        units(2.0F));
 }
 
 }  // namespace
@@ -365,86 +347,86 @@ bool show_card_title(const std::string& title, const std::string& more, PanelSta
     return close;
 }
 
-std::vector<std::string> certificate_lines(const Event& event) {
-    constexpr int digits = 6;
-    const Certificate& c = *event.certificate;
-    std::vector<std::string> lines;
-    if (is_plastic_landing(event)) {
-        lines.emplace_back("stays in contact without a bounce");
-        lines.push_back(
-            with_minus("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits)));
-        return lines;
-    }
-    lines.push_back("Zeno time \u03c4\u221e in " + interval_text(c.zeno_low, c.zeno_high));
-    lines.push_back(fmt::format("cut to \u03c4\u221e: q moves < {}, v < {}", bound_text(c.position_bound),
-                                bound_text(c.velocity_bound)));
-    if (c.uniform_position)
-        lines.push_back(fmt::format("error until \u03c4\u221e: q \u2264 {}", bound_text(*c.uniform_position)));
-    if (c.shadowing_position)
-        lines.push_back(fmt::format("error at \u03c4\u221e: q \u2264 {}, v \u2264 {}",
-                                    bound_text(*c.shadowing_position), bound_text(*c.shadowing_velocity)));
-    lines.push_back("gap'' from " + rounded_down(-c.a_max, digits) + " to " + rounded_up(-c.a_min, digits));
-    if (c.cut_at_resolution) lines.emplace_back("cut below rounding: no shorter flight is resolved");
-    for (std::string& line : lines) line = with_minus(std::move(line));
-    return lines;
-}
-
 namespace {
 
-// A button that opens and closes the lens.
-void lens_button(const Session& session, PanelState& state, Commands& commands) {
-    const bool open = session.scene().shows("lens");
-    const char* const name = open ? "close the Zeno lens" : "open the Zeno lens";
+// An underlined text button.
+bool link_button(const char* name, const std::string& place, const char* about, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos(), size = ImGui::CalcTextSize(name);
-    if (ImGui::InvisibleButton("lens", size)) commands.emplace_back(command::Show{"lens", !open});
-    remember(state, "open lens");
+    const bool pressed = ImGui::InvisibleButton(place.c_str(), size);
+    remember(state, place);
     const ImU32 color = ImGui::GetColorU32(ImGui::IsItemHovered() ? ImGuiCol_Text : ImGuiCol_SliderGrab);
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText(at, color, name);
     list->AddLine({at.x, at.y + size.y}, {at.x + size.x, at.y + size.y}, color, units(1.0F));
-    tooltip("show the bouncing before this Zeno point in logarithmic time, in place of the plots");
+    tooltip(about);
+    return pressed;
+}
+
+void lens_button(const Session& session, PanelState& state, Commands& commands) {
+    const bool open = session.scene().shows("lens");
+    if (link_button(open ? "close the Zeno lens" : "open the Zeno lens", "open lens",
+                    "the bouncing before this Zeno point in logarithmic time, in place of the plots", state))
+        commands.emplace_back(command::Show{"lens", !open});
+}
+
+// The table error | bound | allowed, with a bar for the used share of each limit; below it the details.
+void show_certificate(const CertificateText& text, const Event& event) {
+    if (!text.rows.empty() && ImGui::BeginTable("certificate", 4, ImGuiTableFlags_SizingFixedFit)) {
+        ImGui::TableSetupColumn("error");
+        ImGui::TableSetupColumn("bound");
+        ImGui::TableSetupColumn("allowed");
+        ImGui::TableSetupColumn("", ImGuiTableColumnFlags_WidthStretch);
+        ImGui::TableNextRow();
+        for (const char* title : {"error", "bound", "allowed"}) ImGui::TableNextColumn(), quiet(title);
+        for (const CertificateText::Row& row : text.rows) {
+            ImGui::TableNextRow();
+            const Color color = row.is_nearest ? text_color() : faint_color();
+            for (const std::string* words : {&row.error, &row.bound, &row.allowed}) {
+                ImGui::TableNextColumn();
+                paragraph(*words, units(400.0F), color);
+            }
+            ImGui::TableNextColumn();
+            show_share(row.share, row.is_nearest);
+        }
+        ImGui::EndTable();
+    }
+    for (const std::string& line : certificate_lines(event)) quiet(line);
+    for (const Inequality& inequality : event.certificate->assumptions)
+        quiet(with_minus(fmt::format("{}: {:.3g} < {:.3g}", inequality.name, inequality.left, inequality.right)));
 }
 
 }  // namespace
 
-// "; q in rad, v in rad/s": units of the bounds that follow.
-std::string bound_units_text(const SystemDescription& description) {
-    const NormUnits unit = norm_units(description);
-    return unit.position.empty() ? "" : fmt::format("; q in{}, v in{}", unit.position, unit.velocity);
-}
-
 void show_zeno(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
     const Event& event = session.trajectory().events[index];
     const Certificate& certificate = *event.certificate;
-    const bool is_plastic = is_plastic_landing(event);
-    const std::string contacts = event_contacts_text(session.trajectory(), event);
-    const bool close =
-        show_card_title(fmt::format("{}{}{}, event {}: {}", is_plastic ? "Landing" : "Zeno point",
-                                    contacts.empty() ? "" : " of ", contacts, index + 1,
-                                    is_plastic              ? "plastic"
-                                    : certificate.certified ? "certified"
-                                                            : "not certified"),
-                        fmt::format("{} conditions, {} restart{}", to_text(certificate.conditions),
-                                    to_text(certificate.reinitialization), bound_units_text(session.description())),
-                        state);
-    if (close) commands.emplace_back(command::Select{0});
-    if (!is_plastic) lens_button(session, state, commands);
-    if (const std::string proved = proved_text(session, index); !proved.empty()) {
-        if (!is_plastic) ImGui::SameLine(0.0F, units(24.0F));
-        ImGui::TextUnformatted(proved.c_str());
-        tooltip(
-            "bounds for the whole run from its start, including integration errors and all cuts of impact sequences; "
-            "the bounds below are for this cut alone");
-    }
+    const CertificateText text = certificate_text(session, index);
+    const std::string time = time_text(session.trajectory(), index, session.precision().of_event(index));
+    const std::string verdict = text.verdict.empty() ? "" : ", " + text.verdict;
+    if (show_card_title(fmt::format("{}, time {} s{}", text.title, time, verdict), "", state))
+        commands.emplace_back(command::Select{0});
+    const float width = remaining().width;
     if (const auto horizon = session.horizon(); horizon && event.t > *horizon)
         return paragraph(fmt::format("The run is not trusted after t = {:.6g} s: this certificate is about the "
                                      "computed motion, which no longer follows the motion of this system.",
                                      *horizon),
-                         remaining().width, text_color());
-    show_certificate(event);
+                         width, text_color());
+    if (!text.sentence.empty()) paragraph(text.sentence, width, text_color());
+    const std::string proved = proved_text(session, index);
+    paragraph(proved.empty() ? text.not_covered : proved + ". " + text.not_covered, width, faint_color());
+    if (!is_plastic_landing(event)) lens_button(session, state, commands);
+    const bool can_prove = not_proved(*session.model()).empty() && session.proof() == nullptr;
+    if (can_prove && session.proof_under_way() == nullptr) {
+        if (!is_plastic_landing(event)) ImGui::SameLine(0.0F, units(24.0F));
+        if (link_button("Prove this run", "prove run", "prove bounds on the exact motion of the whole run", state))
+            commands.emplace_back(command::Prove{});
+    }
+    show_certificate(text, event);
+    quiet(fmt::format("{} conditions, {} restart", to_text(certificate.conditions),
+                      to_text(certificate.reinitialization)));
     const auto& others = certificate.others;
     const std::string other_contacts = others ? other_contacts_text(*session.model(), *others) : "";
-    if (!other_contacts.empty()) paragraph("Until then " + other_contacts + ".", remaining().width, text_color());
+    if (!other_contacts.empty()) paragraph("Until then " + other_contacts + ".", width, text_color());
 }
 
 void show_collapse(const Session& session, std::size_t index, PanelState& state, Commands& commands) {
@@ -461,28 +443,7 @@ void show_collapse(const Session& session, std::size_t index, PanelState& state,
         "faster, until both have lost their speeds. The limit is a plastic impact on both. " +
             typeset_sentence(session.sentences().of(index)) + ".",
         remaining().width, text_color());
-    if (event.truncation && event.certificate) show_certificate(event);
-}
-
-void show_certificate(const Event& event) {
-    const std::vector<std::string> lines = certificate_lines(event);
-    float half = 0.44F * ImGui::GetContentRegionAvail().x;
-    for (const std::string& line : lines) half = std::max(half, ImGui::CalcTextSize(line.c_str()).x + units(14.0F));
-    half = std::floor(half);
-    const float top = ImGui::GetCursorPosY(), left = ImGui::GetCursorPosX();
-    for (const std::string& line : lines) ImGui::TextUnformatted(line.c_str());
-    const float below = ImGui::GetCursorPosY();
-    ImGui::SetCursorPos({left + half, top});
-    ImGui::BeginGroup();
-    for (const Inequality& inequality : event.certificate->inequalities())
-        show_inequality(inequality, inequality.name == event.certificate->tightest_bound);
-    ImGui::EndGroup();
-    ImGui::SetCursorPosY(std::max(below, ImGui::GetCursorPosY()));
-    ImGui::PushTextWrapPos(0.0F);
-    quiet(is_plastic_landing(event) ? "Not covered: integration and rounding errors before it."
-                                    : "For the exact motion from the computed state at the cut. Not covered: "
-                                      "integration and rounding errors, and the combined effect of several cuts.");
-    ImGui::PopTextWrapPos();
+    if (event.truncation && event.certificate) show_certificate(certificate_text(session, index), event);
 }
 
 }  // namespace achilles

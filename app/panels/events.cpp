@@ -1,4 +1,4 @@
-// The event list, below the plots, and the proof of the run.
+// The event list, below the plots.
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -12,6 +12,7 @@
 #include "output/output.hpp"
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
+#include "panels/actions.hpp"
 #include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -71,41 +72,6 @@ std::string event_name(const Session& session, const Event& event) {
     return contacts.empty() ? std::string(names.name) : fmt::format("{} {}", names.label, contacts);
 }
 
-// Factor for gap rates of angles: degrees per second, like the other rates.
-double speed_factor(const Session& session, const Event& event) {
-    const std::vector<std::string> rates = output_names(session.description(), "gap'");
-    std::size_t first = 0;
-    while (first + 1 < rates.size() && !event.contacts.contains(first)) ++first;
-    return shown_unit(unit_of_expression(session.description(), rates[first])).factor;
-}
-
-// Tab-separated table of all events, or of the selected one, with all digits, in the units of the list.
-std::string table(const Session& session) {
-    const std::vector<StateColumn> columns = state_columns(session);
-    const bool several = session.model()->contacts() > 1;
-    std::string text = several ? "#\tevent\tcontacts\topened\theld\tt\timpact speed" : "#\tevent\tt\timpact speed";
-    for (const StateColumn& column : columns) text += "\t" + column.name;
-    text += "\tenergy lost\tsentence";
-    const bool is_proved = session.proof() != nullptr;
-    if (is_proved) text += "\tt proved from\tt proved to";
-    const auto& events = session.trajectory().events;
-    for (std::size_t i = 0; i < events.size(); ++i) {
-        if (chosen(session).value_or(i) != i) continue;
-        const Event& event = events[i];
-        text += fmt::format("\n{}\t{}", i + 1, names_of(event).name);
-        for (const ContactSet& set : {event.contacts, event.opened, event.mode.held()})
-            if (several) text += "\t" + joined_names(*session.model(), set, "+");
-        text +=
-            fmt::format("\t{}\t{}", event.t,
-                        event.is_impact() ? fmt::format("{}", event.impact_speed * speed_factor(session, event)) : "");
-        for (const StateColumn& column : columns) text += fmt::format("\t{}", column.of(event));
-        text += fmt::format("\t{}\t{}", energy_lost(session.trajectory(), i), session.sentences().of(i));
-        const EnclosedEvent* const enclosed = session.enclosed(i);
-        if (is_proved) text += enclosed ? fmt::format("\t{}\t{}", enclosed->t.lo(), enclosed->t.hi()) : "\t\t";
-    }
-    return text + "\n";
-}
-
 constexpr const char* both_ways = "paper | sharp";
 constexpr float button_gap = 6.0F;
 
@@ -137,61 +103,6 @@ void show_comparing(float x, const Session& session, PanelState& state, Commands
     tooltip("keep the present run in the plots, in its own color, to compare with later runs");
 }
 
-constexpr const char *prove_word = "Prove this run", *stop_word = "Stop proving", *forget_word = "Forget proof";
-
-float proving_width() {
-    return std::max({button_width(prove_word), button_width(stop_word), button_width(forget_word)}) + units(2.0F) +
-           ImGui::GetFrameHeight();
-}
-
-// Menu of the half-widths of the start interval.
-void show_spreads(PanelState& state, Commands& commands) {
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(8.0F), units(8.0F)});
-    const bool is_open = ImGui::BeginPopup("spreads");
-    ImGui::PopStyleVar();
-    if (!is_open) return;
-    ImGui::TextDisabled("for all starts within");
-    for (const double width : {0.0, 1e-8, 1e-6, 1e-4}) {
-        const std::string name = width == 0.0 ? "this start only" : fmt::format("± {:g}", width);
-        if (ImGui::MenuItem(name.c_str())) commands.emplace_back(command::Prove{width, {}});
-        remember(state, fmt::format("prove {:g}", width));
-    }
-    close_by_escape(state);
-    ImGui::EndPopup();
-}
-
-// Button at x that starts, stops or removes the proof of the current run. Not every system has proofs.
-void show_proving(float x, const Session& session, PanelState& state, Commands& commands) {
-    const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
-    const std::string_view what = not_proved(*session.model());
-    const bool is_refused = !what.empty();
-    const std::string refusal =
-        fmt::format("runs with {} cannot be proved; the status line has the estimated error", what);
-    const float arrow = ImGui::GetFrameHeight(), width = proving_width() - units(2.0F) - arrow;
-    ImGui::BeginDisabled(is_refused);
-    ImGui::SameLine(x + width + units(2.0F));
-    if (ImGui::Button("##spread", {arrow, 0.0F})) ImGui::OpenPopup("spreads");
-    remember(state, "prove more");
-    const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    paint_menu_arrow(low.x + 0.5F * (high.x - low.x) - units(4.0F), 0.5F * (low.y + high.y), ImGui::IsItemHovered());
-    tooltip(is_refused ? refusal : "prove more than the present run: all starts in a box around its start");
-    show_spreads(state, commands);
-    ImGui::SameLine(x);
-    if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word, {width, 0.0F})) {
-        if (is_under_way || is_there)
-            commands.emplace_back(command::StopProof{});
-        else
-            commands.emplace_back(command::Prove{});
-    }
-    remember(state, "prove");
-    ImGui::EndDisabled();
-    tooltip(is_refused     ? refusal
-            : is_under_way ? "stop the proof"
-            : is_there     ? "remove the proof from the plots and the events"
-                           : "prove bounds on the exact trajectory, through every impact and Zeno point, with all "
-                             "integration and rounding errors");
-}
-
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
     number_cell(at, number_at, "#", faint_color());
     number_cell(at, time_at, "t (s)", faint_color());
@@ -205,17 +116,16 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
         ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
     const float copy_width = button_width("copy");
     const float buttons = right - width - units(16.0F) - copy_width - units(button_gap) - comparing_width();
-    show_lower_tabs(session, state, commands);
-    const float tabs = ImGui::GetItemRectMax().x - ImGui::GetWindowPos().x,
-                proving = buttons - proving_width() - units(16.0F);
-    if (proving > tabs + units(16.0F)) show_proving(proving, session, state, commands);
-    ImGui::SameLine(right - width - units(4.0F));
+    // On the line of the tabs, if there is room beside them; the actions are in the menus, too.
+    const Rectangle& last = state.places["tab proof"];
+    if (buttons < last.x + last.width + units(16.0F) - ImGui::GetWindowPos().x) return;
+    ImGui::SetCursorPosY(last.y - ImGui::GetWindowPos().y);
+    ImGui::SetCursorPosX(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
     tooltip("list every impact; otherwise consecutive impacts share one line, which a click opens");
     ImGui::SameLine(right - width - units(16.0F) - copy_width);
-    const bool by_key = !ImGui::GetIO().WantTextInput && ImGui::GetIO().KeyCtrl && takes_key(state, 'C', false);
-    if (ImGui::Button("copy") || by_key) ImGui::SetClipboardText(table(session).c_str());
+    if (ImGui::Button("copy")) perform(action("Copy events"), session, state, commands);
     remember(state, "copy events");
     tooltip("copy the selected event, or all events, as a table with all digits, for a spreadsheet (Ctrl+C)");
     show_comparing(buttons, session, state, commands);
@@ -313,17 +223,15 @@ void show_end(const Session& session, bool is_start, const EventColumns& columns
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const double t = is_start ? session.trajectory().run.options.start_time : session.trajectory().end_time;
     const bool is_present = session.selected() == 0 && session.time() == t;
-    if (ImGui::Selectable("##row", is_present)) {
-        if (session.selected() > 0) commands.emplace_back(command::Select{0});
-        commands.emplace_back(command::Seek{t});
-    }
+    if (ImGui::Selectable("##row", is_present)) move_time(session, t, commands);
     remember(state, is_start ? "event start" : "event end");
     if (!is_start && session.shows_start()) return columns.put_words(at, "still under way", faint_color());
     time_cell(at, t, 0.0, faint_color());
     // The time is in its own column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");
-    text = (is_start ? "start" : "end") + text.substr(colon);
+    // Beside a card there is room for the word alone.
+    text = (is_start ? "start" : "end") + (has_card(session) ? "" : text.substr(colon));
     columns.put_words(at, typeset_sentence(text), faint_color());
 }
 

@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "panels/actions.hpp"
 #include "panels/arrangement.hpp"
 #include "panels/widgets.hpp"
 #include "session/history.hpp"
@@ -113,15 +114,6 @@ void show_card(const Session& session, const std::string& message) {
     if (!is_good && message[0] == '/') tooltip(message);  // with the folder of the file
 }
 
-// Ctrl+Z and Ctrl+Shift+Z or Ctrl+Y, unless a text field has them.
-void use_keys(const Session& session, const PanelState& state, Commands& commands) {
-    const ImGuiIO& io = ImGui::GetIO();
-    if (io.WantTextInput || !io.KeyCtrl) return;
-    const bool z = takes_key(state, 'Z'), again = takes_key(state, 'Y') || (z && io.KeyShift);
-    if (again && session.can_redo()) commands.emplace_back(command::Redo{});
-    if (z && !io.KeyShift && session.can_undo()) commands.emplace_back(command::Undo{});
-}
-
 // Copies the text of the last `copy` command to the clipboard, once.
 void copy(const Session& session, PanelState& state) {
     if (session.copies() == state.copies) return;
@@ -147,7 +139,7 @@ void show_highlight(const std::string& panel, const Arrangement& parts) {
     const std::pair<const char*, const Rectangle*> all[] = {
         {"bar", &parts.bar},          {"controls", &parts.controls},   {"energy", &parts.energy},
         {"events", &parts.events},    {"mechanism", &parts.mechanism}, {"plots", &parts.plots},
-        {"results", &parts.results},  {"status", &parts.status},       {"sweep", &parts.sweep},
+        {"results", &parts.results},  {"status", &parts.status},       {"sweep", &parts.events},
         {"timeline", &parts.timeline}};
     for (const auto& [name, area] : all) {
         if (panel != name || area->width < 1.0F || area->height < 1.0F || is_covered()) continue;
@@ -173,6 +165,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     begin_change(state, commands);
     state.escape = escape_pressed(state);
     begin_focus(state);
+    follow_views(session, state);
+    use_action_keys(session, state, commands);
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
     // Discard a click on a slider that is no longer shown.
@@ -208,25 +202,13 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
             show_plots(session, state, commands);
     });
     part("sweep", parts.sweep, still_window, [&] { show_sweep(session, state, commands); });
-    part("events", parts.events, still_window, [&] {
-        const std::string below = session.scene().below();
-        if (below == "depend")
-            show_dependence(session, state, commands);
-        else if (below == "orbit")
-            show_orbit(session, state, commands);
-        else if (below == "equations")
-            show_equations(session, state, commands);
-        else
-            show_events(session, state, commands);
-    });
+    part("events", parts.events, still_window, [&] { show_lower_panel(session, state, commands); });
     part("status", parts.status, still_window, [&] { show_status(session, state); });
     for (const Arrangement::Splitter& splitter : parts.splitters)
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
     show_highlight(session.scene().highlight(), parts);
     use_focus(state);
-    use_keys(session, state, commands);
-    use_view_keys(session, state, commands);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);
     copy(session, state);

@@ -1,4 +1,4 @@
-// Exports and tours: menus, the export dialog, and the caption of a tour.
+// Exports and tours: the export dialog, the menu of the tours, and the caption of a tour.
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -114,6 +114,12 @@ void choose_what(const Session& session, PanelState& state) {
 void choose_kind(PanelState& state) {
     const std::string& ending = state.export_form.ending;
     row("format");
+    if (is_data(ending)) {
+        for (const auto& [kind, about] :
+             {std::pair{"csv", "a table: one row per instant"}, std::pair{"json", "phases, events and certificates"}})
+            if (word(kind, ending == kind, state, about)) end_in(state, kind);
+        return ImGui::NewLine();
+    }
     if (state.export_form.what == ExportSubject::film) {
         const std::string by = find_program("ffmpeg").empty() ? "ffmpeg is not installed" : "made with ffmpeg";
         for (const char* kind : {"mp4", "gif"})
@@ -214,7 +220,8 @@ void use_path(PanelState& state, const std::string& path) {
 void show_export_form(const Session& session, PanelState& state) {
     ExportForm& form = state.export_form;
     if (const std::string typed = ending_of(state.editor.path); fits(form, typed)) form.ending = typed;
-    if (is_data(form.ending)) return;
+    if (form.ending == "journal") return;
+    if (is_data(form.ending)) return choose_kind(state);
     choose_what(session, state);
     choose_kind(state);
     if (form.what == ExportSubject::film)
@@ -313,16 +320,9 @@ void show_film(PanelState& state) {
     ImGui::PopStyleColor();
 }
 
-// ---- menus for exports and tours; caption of a tour ----
+// ---- menu of the tours; caption of a tour ----
 
 namespace {
-
-bool item(const char* name, const char* about, PanelState& state, bool enabled = true) {
-    const bool chosen = ImGui::MenuItem(name, nullptr, false, enabled);
-    remember(state, std::string("menu ") + name);
-    tooltip(about);
-    return chosen;
-}
 
 constexpr float tour_padding = 12.0F, accent_width = 4.0F, buttons_width = 76.0F, close_width = 26.0F;
 
@@ -344,27 +344,6 @@ bool word_button(const char* word, const char* about, PanelState& state, bool en
 }
 
 }  // namespace
-
-void show_export_items(const Session& session, PanelState& state, Commands& commands) {
-    struct ExportItem {
-        const char *name, *ending, *about;
-    };
-    constexpr ExportItem kinds[] = {
-        {"Film as MP4\u2026", "mp4", "the mechanism in motion beside the plots (needs ffmpeg)"},
-        {"Figure as SVG\u2026", "svg", "the plots for print; achilles reproduce can make them again"},
-        {"Figure as PNG\u2026", "png", "the plots as an image in pixels"},
-        {"Run as JSON\u2026", "json", "phases, events and certificates"},
-        {"Run as CSV\u2026", "csv", "one row per instant"},
-        {"Session as journal\u2026", "journal", "the commands that lead here, to replay anywhere"}};
-    const bool is_idle = session.under_way() == nullptr;
-    for (const ExportItem& kind : kinds)
-        if (item(kind.name, kind.about, state, is_idle)) ask_to_export(session, state, kind.ending);
-    ImGui::Separator();
-    constexpr std::pair<const char*, const char*> lines[] = {
-        {"Copy explorer command", "explorer"}, {"Copy figure command", "figure"}, {"Copy run command", "run"}};
-    for (const auto& [name, what] : lines)
-        if (item(name, "shell command that reproduces this", state)) commands.emplace_back(command::Copy{what});
-}
 
 void show_tour_items(const Session& session, PanelState& state, Commands& commands) {
     if (state.tours.empty()) ImGui::TextDisabled("no tours are installed");

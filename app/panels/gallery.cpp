@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "paint/paint.hpp"
+#include "panels/actions.hpp"
 #include "panels/widgets.hpp"
 #include "pictures/thumbnails.hpp"
 #include "surface/imgui_version.hpp"
@@ -69,8 +70,6 @@ void show_cards(const Session& session, PanelState& state, Commands& commands) {
 void show_gallery(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("gallery");
     const ImGuiIO& io = ImGui::GetIO();
-    const auto is_shortcut = [&] { return io.KeyCtrl && !io.KeyAlt && takes_key(state, 'G', false); };
-    if (!shown && is_shortcut()) commands.emplace_back(command::Show{"gallery", true});
     if (shown && !is_covered()) {
         ImGui::OpenPopup(gallery_title);
         state.focus.at = "gallery " + session.system();  // arrow keys start here
@@ -86,8 +85,9 @@ void show_gallery(const Session& session, PanelState& state, Commands& commands)
             ImGui::CloseCurrentPopup();
         else
             show_cards(session, state, commands);
-        if (shown && (takes_key(state, key::escape, false) || is_shortcut()))
+        if (shown && (takes_key(state, key::escape, false) || takes_key_of(action("Gallery\u2026"), state)))
             commands.emplace_back(command::Show{"gallery", false});
+        if (shown && takes_key_of(action("Find\u2026"), state)) commands.emplace_back(command::Show{"palette", true});
         ImGui::EndPopup();
     }
     ImGui::PopStyleVar();

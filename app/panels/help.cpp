@@ -7,6 +7,7 @@
 
 #include "figure/label.hpp"
 #include "paint/paint.hpp"
+#include "panels/actions.hpp"
 #include "panels/widgets.hpp"
 #include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
@@ -19,8 +20,8 @@ namespace achilles {
 namespace {
 
 constexpr const char* help_title = "Keys and words";
-constexpr float keys_width = 280.0F, keys_column = 104.0F, word_column = 158.0F, narrow_indent = 16.0F,
-                widest_help = 1240.0F, highest_help = 940.0F;
+constexpr float keys_width = 340.0F, keys_column = 142.0F, word_column = 158.0F, narrow_indent = 16.0F,
+                widest_help = 1240.0F, highest_help = 1100.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
@@ -36,11 +37,12 @@ void heading(const char* text) {
 }
 
 void show_keys() {
-    heading("Keys");
+    std::string_view group;
     for (const Shortcut& shortcut : shortcuts()) {
-        if (shortcut.keys == "double click") {
-            ImGui::Dummy({0.0F, units(6.0F)});
-            heading("Mouse");
+        if (shortcut.group != group) {
+            if (!group.empty()) ImGui::Dummy({0.0F, units(6.0F)});
+            group = shortcut.group;
+            heading(std::string(group).c_str());
         }
         const float left = ImGui::GetCursorPosX();
         ImGui::TextUnformatted(shortcut.keys.data(), shortcut.keys.data() + shortcut.keys.size());
@@ -111,7 +113,6 @@ void column(const char* name, const ImVec2& size, const Content& content) {
 
 void show_help(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("help");
-    if (!shown && takes_key(state, key::f1, false)) commands.emplace_back(command::Show{"help", true});
     if (shown && !is_covered()) ImGui::OpenPopup(help_title);
     const ImVec2 all = ImGui::GetIO().DisplaySize;
     ImGui::SetNextWindowPos({std::floor(0.5F * all.x), std::floor(0.5F * all.y)}, ImGuiCond_Always, {0.5F, 0.5F});
@@ -126,9 +127,10 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     column("keys", {units(keys_width), height}, show_keys);
     ImGui::SameLine(0.0F, units(24.0F));
     column("words", {0.0F, height}, show_words);
-    const bool is_closed = takes_key(state, key::escape, false) || takes_key(state, key::f1, false);
+    const bool is_closed = takes_key(state, key::escape, false) || takes_key_of(action("Keys and words"), state);
     if (ImGui::Button("Close", {units(96.0F), 0.0F}) || is_closed) commands.emplace_back(command::Show{"help", false});
     remember(state, "Close the help");
+    if (takes_key_of(action("Find\u2026"), state)) commands.emplace_back(command::Show{"palette", true});
     ImGui::EndPopup();
 }
 
@@ -159,18 +161,20 @@ void show_page(PanelState& state) {
 
 }  // namespace
 
-void show_help_items(PanelState& state, Commands& commands) {
-    if (menu_item("Keys and words", state)) commands.emplace_back(command::Show{"help", true});
+void show_help_items(PanelState& state) {
     ImGui::Separator();
     // Shown even without pages, so that a picture does not depend on the location of the assets.
     if (state.manual.empty()) ImGui::MenuItem("The manual is missing", nullptr, false, false);
     for (const SystemEntry& page : state.manual) {
         const bool chosen = ImGui::MenuItem(page.title.c_str());
         remember(state, "menu " + page.name);
-        if (!chosen) continue;
-        state.manual_text = state.manual_page(page.name);
-        state.opens_manual = true;
+        if (chosen) open_manual(state, page.name);
     }
+}
+
+void open_manual(PanelState& state, const std::string& page) {
+    state.manual_text = state.manual_page(page);
+    state.opens_manual = true;
 }
 
 void show_manual(PanelState& state) {

@@ -99,7 +99,9 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
              {CameraMode::follow, "follow: move with the body"},
              {CameraMode::zeno, "zeno: zoom in on the next Zeno point"}}};
         for (const auto& [camera, says] : cameras) {
-            if (!menu_item(says, state, camera == mode)) continue;
+            const bool chosen = ImGui::MenuItem(says, nullptr, camera == mode);
+            remember(state, std::string("menu ") + says);
+            if (!chosen) continue;
             if (camera == CameraMode::fixed)
                 commands.emplace_back(command::LookAt{0.5 * (seen.x_low + seen.x_high),
                                                       0.5 * (seen.y_low + seen.y_high), seen.x_high - seen.x_low});
@@ -423,7 +425,7 @@ void drag(const Session& session, const Picture& picture, MechanismDrag& held, C
     }
     held.has_moved = true;
     const double start_time = session.run().options.start_time;
-    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});  // the drag changes the start
+    if (session.time() > start_time) move_time(session, start_time, commands);  // the drag changes the start
     if (held.what == DragTarget::body) drag_body(session, picture, held, commands);
     if (held.what == DragTarget::arrow) drag_arrow(session, picture, held, commands);
 }

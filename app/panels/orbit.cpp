@@ -144,8 +144,6 @@ std::string remark(const Session& session) {
 }
 
 void show_head(const Session& session, OrbitView& view, PanelState& state, Commands& commands) {
-    show_lower_tabs(session, state, commands);
-    ImGui::SameLine(0.0F, units(24.0F));
     const bool is_busy = session.orbit_under_way() != nullptr;
     if (ImGui::Button(is_busy ? "Stop" : "Make periodic")) {
         view.goes = !is_busy;
@@ -341,14 +339,10 @@ void show_orbit(const Session& session, PanelState& state, Commands& commands) {
         view.goes = false;
         if (found->count() > 0) commands.emplace_back(command::SelectBranchPoint{static_cast<int>(found->first()) + 1});
     }
+    begin_study("orbit");
     show_head(session, view, state, commands);
-    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(session.theme().background));
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(6.0F)});
-    begin_padded_child("orbit", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
     show_found(session, view, state, commands);
     ImGui::EndChild();
-    ImGui::PopStyleVar();
-    ImGui::PopStyleColor();
 }
 
 }  // namespace achilles

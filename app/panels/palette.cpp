@@ -1,4 +1,6 @@
-// The command palette (Ctrl+Shift+P), which finds commands by a few letters, while the scene shows it.
+// The palette (Ctrl+Shift+P), which finds actions, systems, values, plots, pages and commands by a few letters, while
+// the scene shows it.
+#include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
@@ -6,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "panels/actions.hpp"
 #include "panels/widgets.hpp"
 #include "session/command_search.hpp"
 #include "surface/imgui_version.hpp"
@@ -15,7 +18,7 @@ namespace achilles {
 
 namespace {
 
-constexpr const char* palette_title = "Command";
+constexpr const char* palette_title = "Find";
 constexpr float wide = 620.0F;
 constexpr int max_rows = 10;
 
@@ -36,6 +39,64 @@ std::vector<Completions> completions(const Session& session, const PanelState& s
     for (const std::string& thing : command::shown_things)
         (session.scene().shows(thing) ? hide : show).values.emplace_back(thing, "");
     return {std::move(open), std::move(replay), std::move(set), std::move(show), std::move(hide)};
+}
+
+// "ball_on_sine" is also found as "ball on sine".
+std::string spaced(std::string name) {
+    std::replace(name.begin(), name.end(), '_', ' ');
+    return name;
+}
+
+// "Save as" for "Save as\u2026".
+std::string plain_name(const Action& action) {
+    const std::string name(action.name);
+    return name.substr(0, name.find("\u2026"));
+}
+
+// "e = 0.3" sets e; "e" alone is completed to "e = ".
+void add_values(const std::string& typed, const Session& session, std::vector<NamedEntry>& entries) {
+    const SystemDescription& system = session.description();
+    const std::size_t equals = typed.find('=');
+    const auto trimmed = [](std::string text) {
+        text.erase(0, text.find_first_not_of(' '));
+        return text.erase(text.find_last_not_of(' ') + 1);
+    };
+    const std::string name = trimmed(typed.substr(0, equals));
+    const std::string value = equals == std::string::npos ? "" : trimmed(typed.substr(equals + 1));
+    for (const std::string& known : settable_names(system)) {
+        const auto parameter = std::find_if(system.parameters.begin(), system.parameters.end(),
+                                            [&](const ParameterDescription& one) { return one.name == known; });
+        const std::string about = parameter == system.parameters.end() ? "start of the run" : parameter->about;
+        if (!value.empty() && name == known)
+            entries.insert(entries.begin(), {typed, "", "set " + known + " " + value, "set " + known + " " + value});
+        else if (value.empty())
+            entries.push_back({fmt::format("{} = {:.6g}", known, *session.value(known)), about,
+                               "set " + known + " VALUE", known + " = ", false});
+    }
+}
+
+// What is found by words, in this order: actions, values, systems, tours, plots, pages. The first `actions().size()`
+// entries are the actions, the last ones the pages.
+std::vector<NamedEntry> named_entries(const std::string& typed, const Session& session, const PanelState& state) {
+    std::vector<NamedEntry> entries;
+    for (const Action& action : actions())
+        if (is_enabled(action, session) && (action.flags & Action::submenu) == 0)
+            entries.push_back({plain_name(action), std::string(action.about),
+                               action.keys.empty() ? std::string(action.effect.command) : std::string(action.keys),
+                               "action " + std::string(action.name)});
+    add_values(typed, session, entries);
+    for (const SystemEntry& system : state.systems)
+        entries.push_back({system.title, spaced(system.name), "open " + system.name, "open " + system.name});
+    for (const SystemEntry& tour : state.tours)
+        entries.push_back({tour.title, "tour " + spaced(tour.name), "replay " + tour.name, "replay " + tour.name});
+    for (const ViewDescription& view : session.plotted().choices()) {
+        command::PlotView plot{1, view.x.text, {}};
+        for (const Text& y : view.y) plot.y.push_back(y.text);
+        entries.push_back({"Plot: " + view.name, "curve over " + view.x.text, to_text(plot), to_text(plot)});
+    }
+    for (const SystemEntry& page : state.manual)
+        entries.push_back({"Manual: " + page.title, "help " + page.name, "help " + page.name, "page " + page.name});
+    return entries;
 }
 
 // ImGui callback, the only way to change the field while it is active: puts the cursor at the end of a completed line.
@@ -77,14 +138,20 @@ void run(const std::string& line, const Session& session, PanelState& state, Com
     palette.focuses = palette.to_end = true;
 }
 
-// Chooses a row of the list: executes it, or completes the line with it.
+// Chooses a row of the list: does it, or completes the line with it.
 void take(const CommandMatch& found, const Session& session, PanelState& state, Commands& commands) {
-    if (found.runs) {
-        write_line(state.palette, found.line);
-        run(found.line, session, state, commands);
-    } else {
-        write_line(state.palette, found.line);
+    constexpr std::string_view act = "action ", page = "page ";
+    const auto close = [&] { commands.emplace_back(command::Show{"palette", false}); };
+    if (found.entry >= 0 && found.line.starts_with(act)) {
+        close();
+        return perform(action(found.line.substr(act.size())), session, state, commands);
     }
+    if (found.entry >= 0 && found.line.starts_with(page)) {
+        close();
+        return open_manual(state, found.line.substr(page.size()));
+    }
+    write_line(state.palette, found.line);
+    if (found.runs) run(found.line, session, state, commands);
 }
 
 void choose(PanelState& state, int count) {
@@ -104,8 +171,9 @@ bool show_line(PanelState& state) {
     constexpr ImGuiInputTextFlags flags = ImGuiInputTextFlags_EnterReturnsTrue |
                                           ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackAlways;
     ImGui::PushID(palette.revision);
-    const bool entered = ImGui::InputTextWithHint("##command", "a command, or a few letters of it", &palette.text,
-                                                  flags, put_cursor, &palette);
+    const bool entered =
+        ImGui::InputTextWithHint("##command", "words of a menu, a system, a value (e = 0.3), a plot, a page, a command",
+                                 &palette.text, flags, put_cursor, &palette);
     if (ImGui::IsItemEdited()) {
         palette.chosen = 0;
         palette.wrong.clear();
@@ -128,14 +196,13 @@ int show_rows(const std::vector<CommandMatch>& found, PanelState& state) {
         ImGui::PopID();
         const CommandMatch& row = found[static_cast<std::size_t>(i)];
         remember(state, "command " + row.line);
-        // The name is brighter than the rest.
-        const std::string name = row.usage.substr(0, row.usage.find(' '));
-        const float name_width = ImGui::CalcTextSize((name + " ").c_str()).x;
-        ImDrawList* list = ImGui::GetWindowDrawList();
-        list->AddText(at, packed(text_color()), name.c_str());
-        if (name.size() < row.usage.size())
-            list->AddText({at.x + name_width, at.y}, packed(faint_color()),
-                          fitted(row.usage.substr(name.size() + 1), width - name_width).c_str());
+        // What it is at the left; the command or key that does the same, fainter, at the right.
+        const std::string label = row.label.empty() ? row.usage.substr(0, row.usage.find(' ')) : row.label;
+        const std::string syntax = row.label.empty() || row.label != row.usage ? row.usage : "";
+        const float half = std::min(0.6F * width, width_of(label));
+        cell(at, label, half + 1.0F, text_color());
+        const float room = width - half - units(24.0F), syntax_width = std::min(width_of(syntax), room);
+        cell({std::floor(at.x + width - syntax_width), at.y}, syntax, syntax_width + 1.0F, faint_color());
     }
     return clicked;
 }
@@ -145,20 +212,16 @@ int show_rows(const std::vector<CommandMatch>& found, PanelState& state) {
 void show_answer(const std::vector<CommandMatch>& found, const PaletteState& palette) {
     const float width = ImGui::GetContentRegionAvail().x;
     if (!palette.wrong.empty()) return show_message(palette.wrong, width);
-    if (found.empty()) {
-        const std::string usage = usage_of(palette.text);
-        return paragraph(usage.empty() ? "no matching command" : usage, width, faint_color());
-    }
+    const std::string usage = usage_of(palette.text);
+    if (found.empty() && !usage.empty()) return paragraph(usage, width, faint_color());
+    if (found.empty())
+        return paragraph(
+            "Nothing found. Type words of a menu (energy), a system (ball on sine), a value (e = 0.3), a plot, a page "
+            "of the manual, or a command (seek 3.2).",
+            width, faint_color());
     const CommandMatch& chosen = found[static_cast<std::size_t>(palette.chosen)];
-    if (ImGui::CalcTextSize(chosen.usage.c_str()).x > width) paragraph(chosen.usage, width, faint_color());
+    if (ImGui::CalcTextSize(chosen.usage.c_str()).x > 0.6F * width) paragraph(chosen.usage, width, faint_color());
     paragraph(chosen.runs ? "Enter runs it" : "Enter or Tab completes it", width, faint_color());
-}
-
-// Also works on the card of keys and in the gallery, which the palette replaces.
-bool is_shortcut(const PanelState& state) {
-    const ImGuiIO& io = ImGui::GetIO();
-    const bool is_card = ImGui::IsPopupOpen("Keys and words") || ImGui::IsPopupOpen("Gallery");
-    return io.KeyCtrl && io.KeyShift && is_pressed('P', false) && (is_card || is_in_front(state));
 }
 
 void show_content(const Session& session, PanelState& state, Commands& commands) {
@@ -176,7 +239,8 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
         if (palette.wrong.empty()) commands.emplace_back(command::Show{"palette", false});
     }
     const bool entered = show_line(state);
-    const std::vector<CommandMatch> found = find_commands(palette.text, completions(session, state));
+    const std::vector<CommandMatch> found =
+        find_anything(palette.text, named_entries(palette.text, session, state), completions(session, state));
     choose(state, static_cast<int>(found.size()));
     const int clicked = show_rows(found, state);
     ImGui::Separator();
@@ -184,13 +248,15 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
     const bool completes = std::exchange(palette.completes, false) && !found.empty();
     if (clicked >= 0)
         take(found[static_cast<std::size_t>(clicked)], session, state, commands);
-    else if (completes)
+    else if (completes && found[static_cast<std::size_t>(palette.chosen)].entry < 0)
         write_line(palette, found[static_cast<std::size_t>(palette.chosen)].line);
+    else if (completes)
+        take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
     else if (entered && !found.empty())
         take(found[static_cast<std::size_t>(palette.chosen)], session, state, commands);
     else if (entered)
         run(palette.text, session, state, commands);
-    else if (takes_key(state, key::escape, false) || is_shortcut(state))
+    else if (takes_key(state, key::escape, false) || takes_key_of(action("Find\u2026"), state))
         commands.emplace_back(command::Show{"palette", false});
 }
 
@@ -199,7 +265,6 @@ void show_content(const Session& session, PanelState& state, Commands& commands)
 void show_palette(const Session& session, PanelState& state, Commands& commands) {
     const bool shown = session.scene().shows("palette");
     const ImGuiIO& io = ImGui::GetIO();
-    if (!shown && is_shortcut(state)) commands.emplace_back(command::Show{"palette", true});
     if (shown && !is_covered()) ImGui::OpenPopup(palette_title);
     const float width = std::min(units(wide), io.DisplaySize.x - units(24.0F));
     ImGui::SetNextWindowPos({std::floor(0.5F * (io.DisplaySize.x - width)), std::floor(0.1F * io.DisplaySize.y)});

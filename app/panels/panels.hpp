@@ -81,6 +81,13 @@ struct FilmProgress {
     bool is_given_up = false;
 };
 
+// The choices and axes of the plots so far, newest last, and which of them is shown.
+struct ViewHistory {
+    std::vector<Plots> views;
+    std::size_t at = 0;
+    double changed = -1e9;  // s, ImGui time of the last change; changes that follow soon belong to it
+};
+
 // The menu of one plot with the expressions being typed.
 struct PlotMenu {
     int plot = -1;
@@ -234,6 +241,7 @@ struct PanelState {
     TypedValue typed;
     PressedSlider pressed;
     PlotMenu plot_menu;
+    ViewHistory views;
     PaletteState palette;
     PlotBox box;
     MechanismDrag held;
@@ -260,8 +268,6 @@ std::vector<Command> explorer(const Session& session, PanelState& state);
 
 // Parts of the frame. Each draws into a window already begun by explorer().
 using Commands = std::vector<Command>;
-// Handles the shortcuts that change the view.
-void use_view_keys(const Session& session, PanelState& state, Commands& commands);
 void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
@@ -270,11 +276,10 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
 void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,
                   Commands& commands);
 void show_editor(const Session& session, PanelState& state, Commands& commands);
-// Menu entries: exports, and shell commands to copy.
-void show_export_items(const Session& session, PanelState& state, Commands& commands);
+// Menu entries that depend on the installed files: tours and pages of the manual; and the window with a page.
 void show_tour_items(const Session& session, PanelState& state, Commands& commands);
-// Menu entries for the pages of the manual, and the window with the selected page.
-void show_help_items(PanelState& state, Commands& commands);
+void show_help_items(PanelState& state);
+void open_manual(PanelState& state, const std::string& page);
 // The card of keys and terms (F1), while the scene shows "help".
 void show_help(const Session& session, PanelState& state, Commands& commands);
 void show_manual(PanelState& state);
@@ -332,9 +337,12 @@ float timeline_height();
 void show_plots(const Session& session, PanelState& state, Commands& commands);
 // Above the plots: the grid selection; and the menu opened by a plot's title.
 void show_grid_bar(const Session& session, PanelState& state, Commands& commands);
+// Records the choices and axes of the plots, and goes back (-1) or forward (1) in that record.
+void follow_views(const Session& session, PanelState& state);
+void go_to_view(const Session& session, PanelState& state, int step, Commands& commands);
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state);
 void show_plot_menu(const Session& session, std::size_t plot, PanelState& state, Commands& commands);
-// The sweep around the current run.
+// The sweep around the current run. Shown instead of the events.
 void show_sweep(const Session& session, PanelState& state, Commands& commands);
 void show_events(const Session& session, PanelState& state, Commands& commands);
 // The equations of motion, those of each contact, and the Zeno conditions with their current values. Shown instead of
@@ -344,14 +352,15 @@ void show_equations(const Session& session, PanelState& state, Commands& command
 void show_dependence(const Session& session, PanelState& state, Commands& commands);
 // The periodic orbit near the current run, and its branch. Shown instead of the events.
 void show_orbit(const Session& session, PanelState& state, Commands& commands);
-// Tabs that select one of these.
-void show_lower_tabs(const Session& session, PanelState& state, Commands& commands);
+// The proof of the run. Shown instead of the events. Until when, for what, and what it assumes.
+std::string proof_sentence(const Proof& proof);
+void show_proof(const Session& session, PanelState& state, Commands& commands);
+// Tabs that select the events or one of these studies, and what is selected.
+void show_lower_panel(const Session& session, PanelState& state, Commands& commands);
+// The padded area of a study, ended by ImGui::EndChild().
+void begin_study(const char* name);
 // True while equations are being derived, so that frames must continue.
 bool derives_equations(const PanelState& state);
-// The certificate at a Zeno event: its bounds, line by line, and every inequality with both sides, marking the
-// tightest.
-std::vector<std::string> certificate_lines(const Event& event);
-void show_certificate(const Event& event);
 // Cards beside the event list, about one event: the certificate of a Zeno point; the loss of an impact and why the
 // sequence was not cut there; the reason for a release; the forces of friction. Another card compares the runs;
 // comparison_width() is its preferred width. show_card_title() returns true if the user closes the card.

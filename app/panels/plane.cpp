@@ -456,7 +456,7 @@ void use_mouse(const Session& session, const Panel& panel, const PanelMap& map, 
     }
     if (!plane.is_held || (delta.x == 0.0F && delta.y == 0.0F)) return;
     const double start_time = session.run().options.start_time;
-    if (session.time() > start_time) commands.emplace_back(command::Seek{start_time});
+    if (session.time() > start_time) move_time(session, start_time, commands);
     const Point to = map.data({mouse.x + plane.offset.x, mouse.y + plane.offset.y});
     const PlaneAxis &x = plane.plane->x(), &y = plane.plane->y();
     State wanted{session.run().q, session.run().v};

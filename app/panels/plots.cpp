@@ -225,7 +225,7 @@ void use_click(const Session& session, const PlotPlace& place, Commands& command
     if (!place.over_time) return;
     const PanelMap& map = place.map;
     const double time = map.x.value(ImGui::GetIO().MousePos.x);
-    if (time != session.time()) commands.emplace_back(command::Seek{time});
+    if (time != session.time()) move_time(session, time, commands);
 }
 
 // A part of the card that reacts to the mouse. It uses the wheel, so that no panel scrolls.
@@ -357,14 +357,10 @@ void show_plots(const Session& session, PanelState& state, Commands& commands) {
         return;
     }
     const float gap = units(8.0F);
-    // Above a sweep there may be no room for all rows: show as many as are readable.
-    const int rows_shown = session.scene().shows("sweep")
-                               ? std::clamp(static_cast<int>(area.height / units(120.0F)), 1, plots.rows())
-                               : plots.rows();
-    const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(rows_shown);
+    const auto columns = static_cast<float>(plots.columns()), rows = static_cast<float>(plots.rows());
     const float width = std::floor((area.width - gap * (columns - 1.0F)) / columns);
     const float height = std::floor((area.height - gap * (rows - 1.0F)) / rows);
-    for (int i = 0; i < std::min(static_cast<int>(session.plots().size()), rows_shown * plots.columns()); ++i) {
+    for (int i = 0; i < static_cast<int>(session.plots().size()); ++i) {
         const int column = i % plots.columns(), row = i / plots.columns();
         const Rectangle cell{area.x + static_cast<float>(column) * (width + gap),
                              area.y + static_cast<float>(row) * (height + gap), width, height};
@@ -459,6 +455,29 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
         "box; double click: fit all");
 }
 
+// Changes in quick succession, such as turns of the wheel, are one entry.
+void follow_views(const Session& session, PanelState& state) {
+    constexpr double pause = 0.5;  // s
+    ViewHistory& history = state.views;
+    const Plots& now = session.plotted();
+    if (history.views.empty() || history.views.front().model() != now.model()) history = {{now}, 0, -1e9};
+    if (history.views[history.at] == now) return;
+    const double time = ImGui::GetTime();
+    if (time - std::exchange(history.changed, time) > pause || history.at == 0) ++history.at;
+    history.views.resize(history.at, now);
+    history.views.push_back(now);
+}
+
+void go_to_view(const Session& session, PanelState& state, int step, Commands& commands) {
+    ViewHistory& history = state.views;
+    const std::size_t last = history.views.empty() ? 0 : history.views.size() - 1;
+    if (step < 0 ? history.at == 0 : history.at >= last) return;
+    history.at = step < 0 ? history.at - 1 : history.at + 1;
+    history.changed = -1e9;
+    for (Command& command : steps_between(session.plotted(), history.views[history.at]))
+        commands.push_back(std::move(command));
+}
+
 void open_plot_menu(const Session& session, std::size_t plot, PanelState& state) {
     const ViewDescription& view = session.plotted().list()[plot].view;
     state.plot_menu = {static_cast<int>(plot), view.x.text, joined(view.y)};
@@ -500,6 +519,9 @@ void show_plot_menu(const Session& session, std::size_t plot, PanelState& state,
         ask_to_export(session, state, "svg", number);
     remember(state, "menu Save figure\u2026");
     tooltip("save this plot alone, for print, as SVG, PNG or PDF");
+    if (ImGui::MenuItem("Copy data", nullptr, false, session.under_way() == nullptr))
+        commands.emplace_back(command::Copy{"plots", number});
+    remember(state, "menu Copy data of plot");
     if (was_entered && !menu.is_wrong) ImGui::CloseCurrentPopup();
     close_by_escape(state);
     ImGui::EndPopup();

@@ -55,7 +55,7 @@ void show_heading(const Session& session, PanelState& state, Commands& commands)
         commands.emplace_back(command::Show{"runs", !open});
         // It shares the place of the event cards and lower panels.
         if (!open && session.selected() > 0) commands.emplace_back(command::Select{0});
-        for (const std::string& other : command::shown_below)
+        for (const std::string& other : command::studies)
             if (!open && session.scene().shows(other)) commands.emplace_back(command::Show{other, false});
         if (!open && !session.scene().shows("events")) commands.emplace_back(command::Show{"events", true});
     }

@@ -334,8 +334,7 @@ void show_energy(const Session& session, PanelState& state, Commands& commands) 
                                std::clamp(start + share * (end - start), start, session.trajectory().end_time)),
                 area);
     double time = 0.0;
-    if (dragged_to(start, end, rest.x, rest.width, time) && time != session.time())
-        commands.emplace_back(command::Seek{time});
+    if (dragged_to(start, end, rest.x, rest.width, time) && time != session.time()) move_time(session, time, commands);
 }
 
 }  // namespace achilles

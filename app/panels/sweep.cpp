@@ -1,4 +1,4 @@
-// The sweep panel below the plots. A cross hair marks the current run; a click or drag makes the run under the mouse
+// The study of many runs. A cross hair marks the current run; a click or drag makes the run under the mouse
 // the current one.
 #include "panels/sweep.hpp"
 
@@ -492,26 +492,16 @@ void use_mouse(const Session& session, const SweepData& data, const Rectangle& a
     if (ImGui::IsItemHovered() && !ImGui::IsItemActive()) tell(session, data, values, state.sweep);
 }
 
-// Progress, and the button that hides the panel.
-float show_progress(const Session& session, const Rectangle& row, PanelState& state, Commands& commands) {
-    const float size = ImGui::GetFontSize(), cross = row.height;
-    ImGui::SetCursorScreenPos({row.x + row.width - cross, row.y});
-    if (ImGui::InvisibleButton("hide sweep", {cross, row.height})) commands.emplace_back(command::Show{"sweep", false});
-    remember(state, "hide sweep");
-    const bool lit = ImGui::IsItemHovered();
-    tooltip("hide the sweep");
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    const ImVec2 middle{row.x + row.width - 0.5F * cross, row.y + 0.5F * row.height};
-    const float arm = units(4.0F);
-    for (const float sign : {1.0F, -1.0F})
-        list->AddLine({middle.x - arm, middle.y - sign * arm}, {middle.x + arm, middle.y + sign * arm},
-                      packed(lit ? text_color() : faint_color()), units(1.3F));
-    float right = row.x + row.width - cross - units(6.0F);
+// Progress, at the right end of the row. Returns its left end.
+float show_progress(const Session& session, const Rectangle& row) {
     const SweepJob& job = session.sweep_job();
+    float right = row.x + row.width;
     if (!job.is_busy()) return right;
+    const float size = ImGui::GetFontSize();
     const std::string text = fmt::format("{:.0f} %", 100.0 * job.share());
     right -= label_width(text, size);
-    paint_label(list, right, row.y + 0.5F * (row.height - 1.2F * size), text, faint_color(), size);
+    paint_label(ImGui::GetWindowDrawList(), right, row.y + 0.5F * (row.height - 1.2F * size), text, faint_color(),
+                size);
     return right - units(8.0F);
 }
 
@@ -521,7 +511,7 @@ void show_sweep(const Session& session, PanelState& state, Commands& commands) {
     const Rectangle cell = remaining();
     const auto [row, inner] = paint_plot_card(cell);
     if (inner.width < 2.0F || inner.height < 2.0F) return;
-    const float right = show_progress(session, row, state, commands);
+    const float right = show_progress(session, row);
     show_sweep_menus(session, {row.x, row.y, right - row.x, row.height}, state, commands);
     const SweepJob& job = session.sweep_job();
     const auto message = [&area = inner](const std::string& text) {

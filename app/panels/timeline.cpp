@@ -6,6 +6,7 @@
 
 #include "figure/axes.hpp"
 #include "paint/paint.hpp"
+#include "panels/actions.hpp"
 #include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 #include "surface/imgui_version.hpp"
@@ -80,10 +81,9 @@ void paint_axis(const Session& session, const Track& track, ImDrawList* list) {
                             {x, track.top + units(5.0F)}, packed(text_color()));
 }
 
-// Play or pause. A pause also seeks to its time, so that a replayed journal stops at the same picture.
 void play_button(const Session& session, PanelState& state, Commands& commands) {
     const ImVec2 size{units(40.0F), ImGui::GetFrameHeight()};
-    const bool pressed = ImGui::Button("##play", size);
+    if (ImGui::Button("##play", size)) perform(action("Play"), session, state, commands);
     remember(state, "play");
     tooltip(session.playing() ? "pause (space)" : "play (space)");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
@@ -97,12 +97,6 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
         list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
                                 packed(text_color()));
     }
-    const bool space_pressed = !ImGui::GetIO().WantTextInput && !has_keys(state) && takes_key(state, ' ', false);
-    if (!pressed && !space_pressed) return;
-    if (session.playing())
-        commands.insert(commands.end(), {command::Pause{}, command::Seek{session.time()}});
-    else
-        commands.emplace_back(command::Play{});
 }
 
 // A small button with a triangle and a bar.
@@ -167,15 +161,6 @@ void loop_box(const Session& session, PanelState& state, Commands& commands) {
     tooltip("start again at the end of the run");
 }
 
-// Left and Right step between events, Home and End go to the ends.
-void use_keys(const Session& session, const PanelState& state, Commands& commands) {
-    if (has_keys(state) || ImGui::GetIO().WantTextInput || ImGui::IsAnyItemActive()) return;
-    if (takes_key(state, key::left)) commands.emplace_back(command::StepEvents{-1});
-    if (takes_key(state, key::right)) commands.emplace_back(command::StepEvents{1});
-    if (takes_key(state, key::home)) commands.emplace_back(command::Seek{session.run().options.start_time});
-    if (takes_key(state, key::end)) commands.emplace_back(command::Seek{session.trajectory().end_time});
-}
-
 // The event whose marker is under the mouse.
 std::optional<int> event_at(const Session& session, const Track& track) {
     const auto& events = session.trajectory().events;
@@ -230,9 +215,10 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     play_button(session, state, commands);
     ImGui::SameLine(0.0F, between);
     if (step_button("step back", -1.0F, "previous event (left arrow)", state))
-        commands.emplace_back(command::StepEvents{-1});
+        perform(action("Previous event"), session, state, commands);
     ImGui::SameLine(0.0F, between);
-    if (step_button("step on", 1.0F, "next event (right arrow)", state)) commands.emplace_back(command::StepEvents{1});
+    if (step_button("step on", 1.0F, "next event (right arrow)", state))
+        perform(action("Next event"), session, state, commands);
     ImGui::SameLine();
     ImGui::AlignTextToFramePadding();
     // Reserve the maximum width, so that the following items do not move.
@@ -243,7 +229,6 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
         ImGui::CalcTextSize(fmt::format("t = {:.3f} s", 8.0 + 10.0 * session.run().options.end_time).c_str()).x);
     speed_slider(session, state, commands);
     loop_box(session, state, commands);
-    use_keys(session, state, commands);
 
     const Rectangle area = remaining();
     const float inset = units(8.0F);
@@ -255,7 +240,7 @@ void show_timeline(const Session& session, PanelState& state, Commands& commands
     use_events(session, track, state, commands);
     double time = 0.0;
     if (!state.on_marker && dragged_to(track.start, track.end, track.left, track.width, time) && time != session.time())
-        commands.emplace_back(command::Seek{time});
+        move_time(session, time, commands);
     ImDrawList* list = ImGui::GetWindowDrawList();
     paint_phases(session, track, list);
     paint_events(session, track, list);

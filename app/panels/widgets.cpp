@@ -13,7 +13,6 @@
 #include "figure/label.hpp"
 #include "output/precision.hpp"
 #include "paint/paint.hpp"
-#include "session/glossary.hpp"
 #include "surface/imgui_version.hpp"
 #include "surface/interface.hpp"
 
@@ -151,13 +150,6 @@ bool is_covered() { return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupI
 
 bool take_escape(PanelState& state) { return std::exchange(state.escape, false); }
 
-bool menu_item(const char* name, PanelState& state, bool ticked, bool enabled) {
-    const std::string keys(shortcut_of(name));
-    const bool chosen = ImGui::MenuItem(name, keys.c_str(), ticked, enabled);
-    remember(state, std::string("menu ") + name);
-    return chosen;
-}
-
 void close_by_escape(const PanelState& state) {
     if (takes_key(state, key::escape, false)) ImGui::CloseCurrentPopup();
 }
@@ -171,6 +163,11 @@ void remember(PanelState& state, const std::string& name) {
     const ImVec2 low = ImGui::GetItemRectMin(), size = ImGui::GetItemRectSize();
     state.places[name] = {low.x, low.y, size.x, size.y};
     add_stop(state, name, state.places[name]);
+}
+
+void move_time(const Session& session, double time, Commands& commands) {
+    if (session.selected() > 0 && !lens_is_open(session)) commands.emplace_back(command::Select{0});
+    if (time != session.time()) commands.emplace_back(command::Seek{time});
 }
 
 void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind) {

@@ -54,8 +54,6 @@ bool is_in_front(const PanelState& state);
 bool takes_key(const PanelState& state, int code, bool repeat = true);
 // True if Escape was pressed and no menu, dialog or text field in front used it. Only the first caller gets it.
 bool take_escape(PanelState& state);
-// A menu entry with its shortcut; true if it is chosen.
-bool menu_item(const char* name, PanelState& state, bool ticked = false, bool enabled = true);
 // In a menu: closes it on Escape.
 void close_by_escape(const PanelState& state);
 // The remaining area of the current window.
@@ -95,6 +93,8 @@ bool text_row(const char* name, const std::string& id, std::string& text, float 
 // tooltip that explains expressions.
 bool expression_fields(std::string& x, std::string& y, bool focuses_y, const std::string& id, const std::string& more,
                        PanelState& state);
+// Moves the time by hand. An event selected elsewhere is let go, except in the Zeno lens, which stays at its point.
+void move_time(const Session& session, double time, Commands& commands);
 // Fades the part of a time plot from `start` to `end` that lies after the horizon of the run.
 void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind);
 // Click tolerance of an event marker, pixels at scale 1.

@@ -124,7 +124,9 @@ std::string drawn(const Session& session, const command::Export& what, const std
     }
 }
 
-std::string bytes_of(const Session& session, const command::Export& what) {
+}  // namespace
+
+std::string exported(const Session& session, const command::Export& what) {
     if (const std::string format = ending_of_picture(what.file); !format.empty()) return drawn(session, what, format);
     if (what.plot > 0 || what.mechanism || what.width > 0.0)
         throw InputError(what.file, {}, "plot, mechanism and width apply only to figures",
@@ -137,6 +139,8 @@ std::string bytes_of(const Session& session, const command::Export& what) {
                      "end it in .svg, .png or .pdf (the plots), .mp4 or .gif (a film), .json or .csv (the run), or "
                      ".journal (the session)");
 }
+
+namespace {
 
 // Distinguishes the runs: the current one in ink, the others in their hues. Within a run only the dash pattern marks
 // the phase.
@@ -301,7 +305,7 @@ void write_export(const Session& session, const command::Export& what) {
     check_file(what);
     OutputFiles files;
     files.add(file);  // checked before the work
-    files.put(file, bytes_of(session, what));
+    files.put(file, exported(session, what));
     files.commit();
 }
 

@@ -33,6 +33,8 @@ Resolution resolution_of(const PaperSize& page, const PictureSize& in_pixels, co
 // run; .journal the session. The write is atomic; it replaces an existing file only with `overwrite`. Throws
 // InputError.
 void write_export(const Session& session, const command::Export& what);
+// The bytes that it would write.
+std::string exported(const Session& session, const command::Export& what);
 
 // Starts an export to .mp4 or .gif in another process: the mechanism in motion beside the plots, at most
 // `max_film_frames` frames. Throws InputError before drawing if it is not possible.

@@ -61,6 +61,7 @@ struct WordReader {
 };
 
 void read(std::string& word, const FieldFormat& how, WordReader& from) {
+    if (how.may_lack && from.at_end()) return;
     if (how.one_of && std::find(how.one_of->begin(), how.one_of->end(), from.word()) == how.one_of->end())
         throw from.error(filled(how.complaint, from.word(), did_you_mean(from.word(), *how.one_of)),
                          how.known.empty() ? from.usage : filled(how.known, fmt::join(*how.one_of, ", ")));
@@ -124,6 +125,7 @@ void read(Values& values, const FieldFormat& how, WordReader& from) {
 
 // The form that read() accepts, with a space before every word.
 std::string written(const std::string& word, const FieldFormat& how) {
+    if (how.may_lack && word.empty()) return "";
     return " " + (how.in_quotes ? quoted(word) : quoted_where_needed(word));
 }
 std::string written(bool value, const FieldFormat& how) {

@@ -97,16 +97,16 @@ struct Save {
     static constexpr auto spec = CommandSpec("save", "write: save FILE, or: save FILE overwrite", UndoPolicy::view,
                                              &Save::file, Field(&Save::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> shown_things{"accuracy",  "contours", "controls", "depend", "editor",  "energy",
-                                                   "equations", "events",   "export",   "force",  "gallery", "help",
-                                                   "lens",      "orbit",    "palette",  "plane",  "plots",   "runs",
-                                                   "sides",     "strobe",   "sweep",    "trail",  "velocity"};
-// These panels share the place of the event list; at most one is shown.
-inline const std::vector<std::string> shown_below{"equations", "depend", "orbit"};
+inline const std::vector<std::string> shown_things{
+    "accuracy", "contours", "controls", "depend", "editor", "energy", "equations", "events",
+    "export",   "force",    "gallery",  "help",   "lens",   "orbit",  "palette",   "plane",
+    "plots",    "proof",    "runs",     "sides",  "strobe", "sweep",  "trail",     "velocity"};
+// Studies: tabs beside the event list. At most one is shown; without one, the events are.
+inline const std::vector<std::string> studies{"equations", "depend", "sweep", "orbit", "proof"};
 struct Show {
-    // What to show or hide. Panels: `controls`, `plots`, `events`; `editor` (replaces the controls); `equations`,
-    // `depend` (sensitivities) and `orbit` (all three replace the events); `energy` (below the results); `sweep` (below
-    // the plots); `runs` (table of pinned runs, beside the events). In the mechanism view: `trail`, `velocity`,
+    // What to show or hide. Panels: `controls`, `plots`, `events`; `editor` (replaces the controls); the studies, which
+    // replace the events; `energy` (below the results); `runs` (table of pinned runs, beside the events). In the
+    // mechanism view: `trail`, `velocity`,
     // `force`, `strobe` (poses at events); `plane` replaces the mechanism with the configuration plane, `contours` adds
     // energy contours to it; `sides` shows two side views of a 3D system. Cards: `help`, `gallery`, `palette`,
     // `export`. `accuracy` is a section of the controls.
@@ -220,10 +220,15 @@ struct Loop {
     static constexpr auto spec =
         CommandSpec("loop", "write: loop on, or: loop off", UndoPolicy::view, Field(&Loop::on, on_off));
 };
+inline const std::vector<std::string> step_kinds{"event", "frame", "zeno"};
 struct StepEvents {
     int events = 1;  // 1: to the next event; -1: to the previous one
-    static constexpr auto spec =
-        CommandSpec("step", "write: step 1, or: step -1", UndoPolicy::none, &StepEvents::events);
+    // One of `step_kinds`. `event` and `zeno` also choose the event or Zeno point, `frame` moves by one picture of the
+    // playback. Empty: only the time moves to the event.
+    std::string what = {};
+    static constexpr auto spec = CommandSpec(
+        "step", "write: step 1, or: step -1 event, frame or zeno", UndoPolicy::none, &StepEvents::events,
+        Field(&StepEvents::what, {.one_of = &step_kinds, .may_lack = true, .complaint = "there is no step by '{}'{}"}));
 };
 
 struct Undo {
@@ -330,12 +335,19 @@ struct Export {
         Field(&Export::pixels, {.after = "pixels", .complaint = "{} is not a valid width in pixels"}),
         Field(&Export::dark, {.yes = "dark", .may_lack = true}), Field(&Export::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> copied_things{"explorer", "figure", "run", "sweep"};
+inline const std::vector<std::string> copied_things{"data",    "events", "explorer", "figure",
+                                                    "picture", "plots",  "run",      "sweep"};
 struct Copy {
-    std::string what;  // one of copied_things; its command line is copied to the clipboard
-    static constexpr auto spec =
-        CommandSpec("copy", "write: copy explorer, copy figure, copy run, or: copy sweep", UndoPolicy::view,
-                    Field(&Copy::what, {.one_of = &copied_things, .complaint = "'{}' has no command{}"}));
+    // One of copied_things. `explorer`, `figure`, `run`, `sweep`: the shell command that makes it. `data`: the run;
+    // `events`: the selected event, or all; `plots`: what is plotted, all as tables. `picture`: the plots.
+    std::string what;
+    int plot = 0;  // of `plots` and `picture`: only this plot; 0: all
+    static constexpr auto spec = CommandSpec(
+        "copy",
+        "write: copy explorer, figure, run or sweep (a command line); copy data or events (a table); copy plots or "
+        "picture, of one plot: copy plots 2",
+        UndoPolicy::view, Field(&Copy::what, {.one_of = &copied_things, .complaint = "'{}' cannot be copied{}"}),
+        Field(&Copy::plot, {.may_lack = true, .complaint = "plots count from 1: there is no plot {}"}));
 };
 
 // Commands for guided tours.

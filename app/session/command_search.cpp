@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <sstream>
 
 #include "journal/journal.hpp"
 #include "session/command.hpp"
@@ -74,6 +75,19 @@ int match_rank(const std::string& typed, const std::string& text) {
     return static_cast<int>(4 + from - first - a.size());
 }
 
+int words_rank(const std::string& typed, const std::string& text) {
+    const std::string all = lower(text);
+    int rank = 0;
+    std::istringstream words(lower(typed));
+    for (std::string word; words >> word;) {
+        std::size_t at = all.find(word);
+        while (at != std::string::npos && !begins_word(all, at)) at = all.find(word, at + 1);
+        if (at == std::string::npos) return -1;
+        if (at > 0) ++rank;
+    }
+    return rank;
+}
+
 std::vector<CommandMatch> find_commands(const std::string& typed, const std::vector<Completions>& completions) {
     MatchRanking best;
     const std::size_t space = typed.find(' ');
@@ -102,6 +116,34 @@ std::vector<CommandMatch> find_commands(const std::string& typed, const std::vec
         }
     }
     return best.take();
+}
+
+std::vector<CommandMatch> find_anything(const std::string& typed, const std::vector<NamedEntry>& entries,
+                                        const std::vector<Completions>& completions) {
+    const bool has_arguments = typed.find(' ') != std::string::npos;
+    std::vector<CommandMatch> commands = find_commands(typed, completions), found;
+    if (has_arguments) found = std::move(commands);  // arguments that complete the line
+    MatchRanking titles, best;                       // entries that begin with what was typed, and the others
+    constexpr int after_label = 100;
+    for (std::size_t i = 0; i < entries.size(); ++i) {
+        const NamedEntry& entry = entries[i];
+        const int by_label = words_rank(typed, entry.label), by_words = words_rank(typed, entry.words);
+        const CommandMatch match{entry.syntax, entry.line, entry.runs, entry.label, static_cast<int>(i)};
+        const int beginning = match_rank(typed, entry.label);
+        if (has_arguments && (beginning == 0 || beginning == 1))
+            titles.offer(0, match);
+        else
+            best.offer(by_label >= 0 ? by_label : by_words >= 0 ? after_label + by_words : -1, match);
+    }
+    const auto add = [&](std::vector<CommandMatch> more) {
+        for (CommandMatch& match : more) found.push_back(std::move(match));
+    };
+    add(titles.take());
+    const bool is_there = std::any_of(found.begin(), found.end(), [&](const auto& one) { return one.line == typed; });
+    if (has_arguments && !is_there && is_command(typed)) found.push_back({usage_of(typed), typed, true, typed});
+    add(best.take());
+    if (!has_arguments) add(std::move(commands));
+    return found;
 }
 
 std::string usage_of(const std::string& line) {

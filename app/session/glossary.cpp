@@ -60,51 +60,9 @@ constexpr std::array terms{
                  "theory 6"},
 };
 
-constexpr std::array keys{
-    Shortcut{"F1", "this card", "Keys and words"},
-    Shortcut{"Ctrl+Shift+P", "any command", "Command\u2026"},
-    Shortcut{"Ctrl+N", "a new system", "New"},
-    Shortcut{"Ctrl+O", "open a file", "Open\u2026"},
-    Shortcut{"Ctrl+G", "the gallery", "Gallery\u2026"},
-    Shortcut{"Ctrl+S", "save the text", "Save"},
-    Shortcut{"Ctrl+E", "edit the system file", "Edit System File"},
-    Shortcut{"Ctrl+Z", "undo", "Undo"},
-    Shortcut{"Ctrl+Shift+Z", "redo", "Redo"},
-    Shortcut{"Ctrl+1", "controls", "Controls"},
-    Shortcut{"Ctrl+2", "plots", "Plots"},
-    Shortcut{"Ctrl+3", "events", "Events"},
-    Shortcut{"Ctrl+4", "sweep: many runs beside this one", "Sweep"},
-    Shortcut{"Ctrl+5", "sensitivities", "Sensitivities"},
-    Shortcut{"Ctrl+6", "a periodic run and its branch", "Periodic run"},
-    Shortcut{"Ctrl+D", "light or dark", "Dark theme"},
-    Shortcut{"Ctrl+Plus", "everything larger", "Larger"},
-    Shortcut{"Ctrl+Minus", "smaller", "Smaller"},
-    Shortcut{"Ctrl+0", "reset zoom", "Reset Zoom"},
-    Shortcut{"F11", "presentation mode", "Presentation"},
-    Shortcut{"Ctrl+C", "copy the chosen event"},
-    Shortcut{"Ctrl+Q", "close the window"},
-    Shortcut{"Space", "play, pause"},
-    Shortcut{"Left, Right", "previous, next event"},
-    Shortcut{"Home, End", "start, end of the run"},
-    Shortcut{"Tab, arrows", "move between controls; Enter clicks"},
-    Shortcut{"Escape", "close what is open"},
-    Shortcut{"Enter", "next step of a tour"},
-    Shortcut{"Backspace", "previous step of a tour"},
-    Shortcut{"double click", "type a slider's value"},
-    Shortcut{"Shift+drag", "a slider in fine steps"},
-    Shortcut{"right click", "the file's value"},
-    Shortcut{"drag a body", "set its start"},
-};
-
 }  // namespace
 
 std::span<const GlossaryTerm> glossary() { return terms; }
-std::span<const Shortcut> shortcuts() { return keys; }
-
-std::string_view shortcut_of(std::string_view menu) {
-    const auto* const found = std::find_if(keys.begin(), keys.end(), [&](const Shortcut& s) { return s.menu == menu; });
-    return found == keys.end() ? std::string_view() : found->keys;
-}
 
 std::span<const GalleryGroup> gallery() {
     static const std::vector<GalleryGroup> groups{

@@ -1,4 +1,4 @@
-// Tables of terms, shortcuts and example systems, shown by the help card (F1), the menus, the gallery and the manual.
+// Tables of terms and example systems, shown by the help card (F1), the gallery and the manual.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +18,6 @@ struct GlossaryTerm {
 };
 // In the order in which they occur in a run.
 std::span<const GlossaryTerm> glossary();
-
-// A keyboard or mouse shortcut.
-struct Shortcut {
-    std::string_view keys;
-    std::string_view does;
-    std::string_view menu = {};  // the menu entry with the same effect; empty: none
-};
-// Grouped by subject: files, changes, view, time, mouse.
-std::span<const Shortcut> shortcuts();
-// The shortcut of a menu entry; empty if it has none.
-std::string_view shortcut_of(std::string_view menu);
 
 // Groups of example systems in the gallery.
 

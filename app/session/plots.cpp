@@ -292,7 +292,7 @@ namespace {
 
 // Applies each step as it records it, to know what is still missing.
 struct Steps {
-    explicit Steps(const Plots& plots) : now(plots.model()) {}
+    explicit Steps(Plots from) : now(std::move(from)) {}
     template <class Kind>
     void take(const Kind& step) {
         now.perform(step);
@@ -309,18 +309,19 @@ void frame_as(const Plot& wanted, std::size_t at, Steps& steps) {
     if (framing().difference != goal.difference) steps.take(command::PlotDifference{number, goal.difference});
     if (framing().log_x != goal.log_x) steps.take(command::AxisScale{number, true, goal.log_x});
     if (framing().log_y != goal.log_y) steps.take(command::AxisScale{number, false, goal.log_y});
+    if ((framing().x && !goal.x) || (framing().y && !goal.y)) steps.take(command::Fit{number});
     const bool x = goal.x && goal.x != framing().x, y = goal.y && goal.y != framing().y;
     if (x && y)
         steps.take(command::Zoom{number, (*goal.x)[0], (*goal.x)[1], (*goal.y)[0], (*goal.y)[1]});
     else if (x || y)
         steps.take(command::SetRange{number, x, (*(x ? goal.x : goal.y))[0], (*(x ? goal.x : goal.y))[1]});
-    for (const std::size_t curve : goal.hidden)
-        if (!framing().hidden.contains(curve))
-            steps.take(command::ShowCurve{number, static_cast<int>(curve) + 1, false});
+    for (std::size_t curve = 0; curve < wanted.view.y.size(); ++curve)
+        if (const bool hidden = goal.hidden.contains(curve); hidden != framing().hidden.contains(curve))
+            steps.take(command::ShowCurve{number, static_cast<int>(curve) + 1, !hidden});
 }
 
-std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_one) {
-    Steps steps(plots);
+std::vector<Command> steps_between(const Plots& from, const Plots& plots, bool always_grid, bool one_by_one) {
+    Steps steps(from);
     if (always_grid || steps.now.columns() != plots.columns() || steps.now.rows() != plots.rows())
         steps.take(command::SetGrid{plots.columns(), plots.rows()});
     for (std::size_t i = 0; i < plots.list().size(); ++i) {
@@ -330,18 +331,22 @@ std::vector<Command> steps_to(const Plots& plots, bool always_grid, bool one_by_
         for (const Text& y : view.y) step.y.push_back(y.text);
         steps.take(step);
     }
-    if (one_by_one || !plots.linked()) steps.take(command::Link{false});
+    if (steps.now.linked() && (one_by_one || !plots.linked())) steps.take(command::Link{false});
     for (std::size_t i = 0; i < plots.list().size(); ++i) frame_as(plots.list()[i], i, steps);
     if (steps.now.linked() != plots.linked()) steps.take(command::Link{plots.linked()});
     const bool done = std::equal(plots.list().begin(), plots.list().end(), steps.now.list().begin(),
                                  [](const Plot& a, const Plot& b) { return a.framing == b.framing; });
     // Time axes that were not always linked need separate commands for each axis.
-    return done || one_by_one ? steps.all : steps_to(plots, always_grid, true);
+    return done || one_by_one ? steps.all : steps_between(from, plots, always_grid, true);
 }
 
 }  // namespace
 
-std::vector<Command> steps_to(const Plots& plots, bool always_grid) { return steps_to(plots, always_grid, false); }
+std::vector<Command> steps_to(const Plots& plots, bool always_grid) {
+    return steps_between(Plots(plots.model()), plots, always_grid, false);
+}
+
+std::vector<Command> steps_between(const Plots& from, const Plots& to) { return steps_between(from, to, false, false); }
 
 std::string to_text(const Plots& plots) {
     std::string text =

@@ -84,6 +84,8 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
 // Commands that lead from the initial plots of the model to these. With `always_grid` the `grid` command is always
 // included, otherwise only if the grid differs.
 std::vector<Command> steps_to(const Plots& plots, bool always_grid = false);
+// The same from other plots of the model.
+std::vector<Command> steps_between(const Plots& from, const Plots& to);
 
 // Text form of the plots, part of to_text(Session).
 std::string to_text(const Plots& plots);

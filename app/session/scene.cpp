@@ -56,7 +56,7 @@ void Scene::perform(const command::ShowPlane& command) {
 
 void Scene::perform(const command::ShowSweep& command) {
     sweep_ = command.text;
-    shown_.insert("sweep");
+    perform(command::Show{"sweep", true});
 }
 
 void Scene::perform(const command::ShowSensitivity& command) {
@@ -74,9 +74,9 @@ void Scene::perform(const command::Show& command) {
     };
     if (command.on && is_card(command.what)) std::erase_if(shown_, is_card);
     if (command.what == "palette") finds_.clear();
-    const auto& lower = command::shown_below;
-    if (command.on && std::find(lower.begin(), lower.end(), command.what) != lower.end())
-        for (const std::string& other : lower) shown_.erase(other);
+    const auto& studies = command::studies;
+    if (command.on && std::find(studies.begin(), studies.end(), command.what) != studies.end())
+        for (const std::string& other : studies) shown_.erase(other);
     if (command.on)
         shown_.insert(command.what);
     else
@@ -84,7 +84,7 @@ void Scene::perform(const command::Show& command) {
 }
 
 std::string Scene::below() const {
-    for (const std::string& what : command::shown_below)
+    for (const std::string& what : command::studies)
         if (shows(what)) return what;
     return shows("events") ? "events" : "";
 }
@@ -116,7 +116,8 @@ double Scene::share(const std::string& panel) const {
 void Scene::perform(const command::SetPanelSize& command) {
     if (!(command.share >= 0.0 && command.share < 1.0))
         throw refusal(fmt::format("a panel cannot take {} of the window", command.share));
-    shares_[command.panel] = command.share;
+    // Journals from when the sweep had a panel of its own.
+    shares_[command.panel == "sweep" ? "events" : command.panel] = command.share;
 }
 
 // A highlight ends with its caption.

@@ -19,7 +19,7 @@ class Scene {
     std::optional<command::LookAt> look() const { return camera_ == CameraMode::fixed ? look_ : std::nullopt; }
     // True if `what`, one of command::shown_things, is visible.
     bool shows(const std::string& what) const { return shown_.contains(what); }
-    // The panel at the place of the events: one of command::shown_below, or "events"; empty: none.
+    // The panel at the place of the events: one of command::studies, or "events"; empty: none.
     std::string below() const;
     double speed() const { return speed_; }  // simulated seconds per second of playback
     bool loops() const { return loops_; }

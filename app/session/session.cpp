@@ -138,7 +138,7 @@ void Session::begin_document(Document document) {
         const auto system = std::make_shared<const OpenSystem>(document_.name, description);
         system->model->check(run);
         playing_ = false;
-        selected_ = 0;
+        choose(0);
         time_ = run.options.start_time;
         scene_.forget_place();
         placed_.reset();
@@ -360,6 +360,8 @@ void Session::receive(Timeout patience) {
         error_ = "there is not enough memory for this run; the previous run is kept. Use an earlier end time";
     }
     if (!motion) return;
+    const bool is_at_event = selected_ > 0 && simulated_ != nullptr && selected_ <= std::ssize(trajectory().events) &&
+                             time_ == trajectory().events[static_cast<std::size_t>(selected_ - 1)].t;
     simulated_ = *motion;
     watch_.reset();
     estimate();
@@ -370,8 +372,7 @@ void Session::receive(Timeout patience) {
     }
     compose_plots();  // the plots may have changed meanwhile
     compose_pinned();
-    if (static_cast<std::size_t>(selected_) > trajectory().events.size()) selected_ = 0;
-    move_to(time_);
+    keep_choice(is_at_event);
     if (!placed_) return;
     // A time requested before this run was known is clamped to it, without a warning.
     Command placed = *std::exchange(placed_, std::nullopt);
@@ -413,6 +414,12 @@ void Session::compose_plots() {
 
 // ---- playback position, selected event, and the lens on it ----
 
+namespace {
+
+constexpr double frames_per_second = 60.0;  // of the playback, for steps by one frame
+
+}  // namespace
+
 void Session::perform(const command::Seek& command) {
     move_to(command.time);
     place(command);
@@ -434,9 +441,26 @@ void Session::perform(const command::Select& command) {
     const auto& events = trajectory().events;
     if (command.event < 0 || static_cast<std::size_t>(command.event) > events.size())
         throw refusal(fmt::format("there is no event {}: this run has events 1 to {}", command.event, events.size()));
-    selected_ = command.event;
-    if (selected_ > 0) move_to(events[static_cast<std::size_t>(selected_ - 1)].t);
+    choose(command.event);
     place(command);
+}
+
+// Selects an event, or none (0), and moves the time to it.
+void Session::choose(int event) {
+    selected_ = event;
+    meaning_.reset();
+    if (event == 0) return;
+    const auto index = static_cast<std::size_t>(event - 1);
+    meaning_ = meaning_of(trajectory(), index);
+    move_to(trajectory().events[index].t);
+}
+
+// A changed run keeps the selected event by its meaning, and the time goes with it if it was there; or lets it go.
+void Session::keep_choice(bool is_at_event) {
+    const auto found = meaning_ ? find_event(trajectory(), *meaning_) : std::nullopt;
+    const double before = time_;
+    choose(found ? static_cast<int>(*found) + 1 : 0);
+    if (!found || !is_at_event) move_to(before);
 }
 
 const Event* Session::selected_zeno() const {
@@ -468,11 +492,40 @@ void Session::move_to(double time) {
     now_ = simulated_->sampler.at(time_);
 }
 
+// Selects the event, or the Zeno point, this many steps later or earlier; beyond the last one goes to the end or the
+// start of the run.
+void Session::step_to_event(int steps, bool is_zeno) {
+    const auto& events = trajectory().events;
+    const auto here = [&](bool after) {
+        const auto is_before = [&](const Event& event) { return after ? event.t <= time_ : event.t < time_; };
+        return std::partition_point(events.begin(), events.end(), is_before) - events.begin();
+    };
+    // From the selected event, so that several at one time are passed one by one.
+    const bool is_at_event = selected_ > 0 && events[static_cast<std::size_t>(selected_ - 1)].t == time_;
+    std::ptrdiff_t next =
+        steps > 0 ? (is_at_event ? selected_ : here(true)) : (is_at_event ? selected_ - 1 : here(false)) - 1;
+    const std::ptrdiff_t step = steps > 0 ? 1 : -1;
+    for (int left = std::abs(steps); next >= 0 && next < std::ssize(events); next += step) {
+        const bool counts = !is_zeno || is_zeno_point(events[static_cast<std::size_t>(next)]);
+        if (counts && --left == 0) break;
+    }
+    const bool is_event = next >= 0 && next < std::ssize(events);
+    choose(is_event ? static_cast<int>(next) + 1 : 0);
+    if (!is_event) move_to(steps > 0 ? trajectory().end_time : run().options.start_time);
+    place(is_event ? Command(command::Select{selected_}) : Command(command::Seek{time_}));
+}
+
 // Goes to the next event or the last one before the current time; beyond those, to the end or the start.
 void Session::perform(const command::StepEvents& command) {
     const auto& events = trajectory().events;
     const double start = run().options.start_time;
     double time = time_;
+    if (command.what == "frame") {
+        choose(0);
+        move_to(time_ + command.events * scene_.speed() / frames_per_second);
+        return place(command::Seek{time_});
+    }
+    if (!command.what.empty()) return step_to_event(command.events, command.what == "zeno");
     for (int i = 0; i < std::abs(command.events); ++i) {
         if (time == (command.events > 0 ? trajectory().end_time : start)) break;
         const auto later = std::upper_bound(events.begin(), events.end(), time,

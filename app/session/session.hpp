@@ -16,6 +16,7 @@
 #include "output/event_descriptions.hpp"
 #include "output/output.hpp"
 #include "sensitivity/error_estimate.hpp"
+#include "session/chosen_event.hpp"
 #include "session/command.hpp"
 #include "session/document.hpp"
 #include "session/history.hpp"
@@ -50,6 +51,8 @@ struct SystemSource {
     bool exports = true;  // false: `export` writes nothing
     // Receives an animation job that was started; empty: the session waits for it.
     std::function<void(std::unique_ptr<FilmJob>)> film{};
+    // Puts the bytes of a PNG on the clipboard; empty: there is no clipboard for pictures. Throws InputError.
+    std::function<void(const std::string& png)> copy_picture{};
     std::function<void(const std::string& file)> before_writing{};  // called by `save` and `export`; may be empty
     bool saves_any_text = true;                                     // false: only a text that is a valid system
     std::shared_ptr<Budget> budget{};                               // limits of its runs and sweeps; null: no limits
@@ -270,6 +273,7 @@ class Session {
     void perform(const command::SetTheme& command);
     void perform(const command::Export& command);
     void perform(const command::Copy& command);
+    bool copy_content(const command::Copy& command);
     void perform(const command::Wait& command);
     void perform(const command::Replay& command);
     // All other commands change the plots or the view state.
@@ -308,6 +312,7 @@ class Session {
     void keep_sweep();
     void keep_dependence();
     void follow_sweep();
+    bool wants_sensitivities() const;
     void follow_dependence(Timeout patience);
     void follow_proof(Timeout patience);
     void receive_proof(Timeout patience);
@@ -321,6 +326,9 @@ class Session {
     void compose_plots();
     void place(const Command& command);
     void move_to(double time);
+    void choose(int event);
+    void step_to_event(int steps, bool is_zeno);
+    void keep_choice(bool is_at_event);
     void warn(const std::string& warning);
 
     SystemSource library_;
@@ -340,6 +348,7 @@ class Session {
     double time_ = 0.0;
     bool playing_ = false;
     int selected_ = 0;
+    std::optional<EventMeaning> meaning_;  // of the selected event, by which another run finds it again
     std::string error_, notice_;
     std::vector<std::string> warnings_;
     std::string copied_;

@@ -7,6 +7,7 @@
 #include "pictures/export.hpp"
 #include "pictures/film.hpp"
 #include "session/command.hpp"
+#include "session/copied_text.hpp"
 #include "session/session.hpp"
 #include "session/study_jobs.hpp"
 
@@ -48,7 +49,36 @@ void Session::perform(const command::Export& command) {
     throw InputError(command.file, {}, film->output());
 }
 
+// Copies a table or a picture of the run that is shown. Returns false if the command copies a command line instead.
+bool Session::copy_content(const command::Copy& command) {
+    const bool is_table = command.what == "data" || command.what == "events" || command.what == "plots";
+    const bool is_picture = command.what == "picture", has_plots = is_picture || command.what == "plots";
+    if (command.plot > 0 && !has_plots) throw refusal(fmt::format("there is no {} of a single plot", command.what));
+    if (!is_table && !is_picture) return false;
+    if (under_way() != nullptr || shows_start())
+        throw refusal("the run is still under way", "copy when it has finished");
+    if (command.plot > 0) plots_.only(command.plot);  // throws if there is no such plot
+    const std::string plots = command.plot > 0 ? fmt::format("plot {}", command.plot) : "the plots";
+    if (is_picture) {
+        const command::Export picture{"picture.png", false, command.plot};
+        if (library_.copy_picture) library_.copy_picture(exported(*this, picture));
+        notice_ = fmt::format("copied {} as a picture", plots);
+        return true;
+    }
+    copied_ = command.what == "data"     ? exported(*this, command::Export{"data.csv"})
+              : command.what == "events" ? events_table(*this)
+                                         : plots_table(*this, command.plot);
+    ++copies_;
+    const std::string what = command.what == "data"    ? "the run"
+                             : command.what == "plots" ? plots
+                             : selected_ > 0           ? fmt::format("event {}", selected_)
+                                                       : "the events";
+    notice_ = fmt::format("copied {} as a table", what);
+    return true;
+}
+
 void Session::perform(const command::Copy& command) {
+    if (copy_content(command)) return;
     // The command line names a file, which must contain the system that runs here.
     if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
         throw refusal("this text is not saved in a file, and a command line needs a file", "save it first, then copy");

@@ -87,7 +87,7 @@ void Session::follow_sweep() {
     if (scene_.shows("sweep"))
         sweep_job_->ask(system_->model, sweep());
     else
-        sweep_job_->ask(system_->model, {});
+        sweep_job_->pause();
     sweep_job_->update(0.0);
 }
 
@@ -199,10 +199,17 @@ void Session::keep_dependence() {
     if (scene_.depends() && !passes([&] { check_quantity(*scene_.depends()); })) scene_.forget_dependence();
 }
 
+// True if they are shown, or if they are the slope of the curve that the sweep shows.
+bool Session::wants_sensitivities() const {
+    if (scene_.shows("depend") || !scene_.shows("sweep")) return scene_.shows("depend");
+    const SweepSpec shown = sweep();
+    return shown.axes.size() == 1 && !shown.at && shown.prints.front() == depend_text();
+}
+
 // Follows the run that is shown. What takes less than half a frame is available in the same frame.
 void Session::follow_dependence(Timeout patience) {
     constexpr double glance = 0.008;
-    if (!scene_.shows("depend") || shows_start()) return sensitivities_job_->forget();
+    if (!wants_sensitivities() || shows_start()) return sensitivities_job_->forget();
     const bool is_new = sensitivities_job_->ask({simulated_, &simulated_->trajectory}, depend_text());
     sensitivities_job_->update(is_new && patience ? glance : patience);
 }

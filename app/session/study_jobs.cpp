@@ -243,6 +243,10 @@ void SweepJob::ask(const std::shared_ptr<const Model>& model, std::optional<Swee
     begin();
 }
 
+void SweepJob::pause() {
+    if (is_busy()) ask(model_, {});
+}
+
 void SweepJob::begin() {
     if (!is_busy()) return job_.stop();
     job_.start([model = model_, level = levels_[next_]](const StopMonitor& monitor) {

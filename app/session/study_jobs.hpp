@@ -113,6 +113,8 @@ class SweepJob {
     // Sets the sweep of this model to compute; empty: stop. Work and data of the same sweep are kept; the base's values
     // of the swept inputs are ignored in this comparison.
     void ask(const std::shared_ptr<const Model>& model, std::optional<SweepSpec> sweep);
+    // Stops the work under way, since nobody sees its result. Finished data are kept.
+    void pause();
     // Receives a finished level and starts the next finer one. Without a timeout: waits for the finest.
     void update(Timeout patience);
     // `ready` is called on another thread when update() would receive a result.

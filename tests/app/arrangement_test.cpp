@@ -109,18 +109,29 @@ TEST(Arrangement, ShowsAClassWhatItLooksAt) {
     EXPECT_GT(alone.mechanism.width, 1300.0);
 }
 
-// Equations replace the events, and keep that place if the events are hidden.
-TEST(Arrangement, EquationsShareThePlaceOfTheEvents) {
-    Scene scene;
-    const Measures m = measures(1600.0F, 1000.0F);
-    const float height = arrange(scene, m).events.height;
-    scene.perform(command::Show{"equations", true});
-    EXPECT_GT(arrange(scene, m).events.height, height);
-    scene.perform(command::Show{"events", false});
-    EXPECT_GT(arrange(scene, m).events.height, height);
-    expect_no_overlap(arrange(scene, m), m, "equations");
-    scene.perform(command::Show{"equations", false});
-    EXPECT_EQ(arrange(scene, m).events.height, 0.0F);
+// Studies replace the events, at the same height, and keep that place if the events are hidden.
+TEST(Arrangement, StudiesHaveThePlaceOfTheEventsAndMoveNothing) {
+    for (const auto& [width, height] : {std::pair{1600.0F, 1000.0F}, {1280.0F, 720.0F}, {640.0F, 480.0F}}) {
+        Scene scene;
+        const Measures m = measures(width, height);
+        const Arrangement before = arrange(scene, m);
+        for (const std::string& study : command::studies) {
+            scene.perform(command::Show{study, true});
+            const auto events = all_of(before), now = all_of(arrange(scene, m));
+            ASSERT_EQ(now.size(), events.size()) << study;
+            for (std::size_t i = 0; i < now.size(); ++i) {
+                EXPECT_EQ(now[i].second.x, events[i].second.x) << study << " " << now[i].first;
+                EXPECT_EQ(now[i].second.y, events[i].second.y) << study << " " << now[i].first;
+                EXPECT_EQ(now[i].second.width, events[i].second.width) << study << " " << now[i].first;
+                EXPECT_EQ(now[i].second.height, events[i].second.height) << study << " " << now[i].first;
+            }
+        }
+        EXPECT_EQ(scene.below(), "proof");
+        scene.perform(command::Show{"events", false});
+        EXPECT_GT(arrange(scene, m).events.height, 0.0F);
+        scene.perform(command::Show{"proof", false});
+        EXPECT_EQ(arrange(scene, m).events.height, 0.0F);
+    }
 }
 
 TEST(Arrangement, NothingCoversAnythingInAnyState) {
@@ -213,13 +224,13 @@ TEST(Arrangement, ASplitterGivesTheShareThatPutsItWhereTheHandIs) {
 
 TEST(Panels, AreHiddenAndShownFromTheBarTheMenuAndTheKeyboard) {
     Hands hands("ball_on_sine");
-    hands.click("switch plots");
+    hands.click("switch Plots");
     EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"plots", false})});
     hands.state.places.clear();
     hands.rest(2);
     EXPECT_FALSE(hands.state.places.contains("plot 1"));
     EXPECT_TRUE(hands.state.places.contains("set g"));
-    hands.click("menu View");
+    hands.click("bar View");
     hands.click("menu Controls");
     hands.state.places.clear();
     hands.rest(2);
@@ -232,7 +243,7 @@ TEST(Panels, AreHiddenAndShownFromTheBarTheMenuAndTheKeyboard) {
     EXPECT_TRUE(hands.state.places.contains("mechanism"));
     const Rectangle alone = hands.state.places.at("mechanism");
     EXPECT_GT(alone.width, 1200.0F);
-    for (const char* panel : {"controls", "plots", "events"}) hands.click(std::string("switch ") + panel);
+    for (const char* panel : {"Controls", "Plots", "Events"}) hands.click(std::string("switch ") + panel);
     EXPECT_TRUE(hands.state.places.contains("plot 1"));
     EXPECT_TRUE(hands.state.places.contains("impacts 1"));
     EXPECT_LT(hands.state.places.at("mechanism").width, 0.5F * alone.width);

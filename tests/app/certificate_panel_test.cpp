@@ -3,6 +3,7 @@
 
 #include "app/open.hpp"
 #include "panels/panels.hpp"
+#include "session/certificate_text.hpp"
 
 namespace achilles {
 namespace {
@@ -33,6 +34,53 @@ TEST(CertificatePanel, TellsTheIntervalTheBoundsAndWhatDecided) {
         decisive += inequality.name == sharp.certificate->tightest_bound ? 1 : 0;
     }
     EXPECT_EQ(decisive, 1);
+}
+
+// The card answers first: the point, its time, whether it is certified, and where the bounces end.
+TEST(CertificateText, SaysWhatHappenedAndHowNearEachLimitIs) {
+    Session session = test::session("ball_on_sine");
+    session.settle();
+    const CertificateText text = certificate_text(session, 9);
+    EXPECT_EQ(text.title, "Zeno 1");
+    EXPECT_EQ(text.verdict, "CERTIFIED");
+    EXPECT_EQ(text.sentence,
+              "It would bounce infinitely often; we stopped computing bounces after the 9th, 1.6 ms before.");
+    ASSERT_EQ(text.rows.size(), 3U);
+    const Certificate::Decision& decision = *session.trajectory().events[9].certificate->decision;
+    int nearest = 0;
+    for (const auto& [row, inequality] : {std::pair{&text.rows[0], &decision.time},
+                                          {&text.rows[1], &decision.position},
+                                          {&text.rows[2], &decision.velocity}}) {
+        EXPECT_DOUBLE_EQ(row->share, inequality->ratio());
+        EXPECT_EQ(row->is_nearest, inequality->name == decision.closest().name);
+        nearest += row->is_nearest ? 1 : 0;
+    }
+    EXPECT_EQ(nearest, 1);
+    EXPECT_EQ(text.rows[0].error, "Zeno time");
+    EXPECT_EQ(text.rows[0].allowed, "1e\u221206 s");
+    EXPECT_EQ(text.rows[2].allowed, "1e\u221206 m/s");
+    EXPECT_EQ(text.not_covered.rfind("Not covered: integration error before the cut, about ", 0), 0U)
+        << text.not_covered;
+    session.apply(command::SetConditions{Conditions::paper});
+    const auto& events = session.trajectory().events;
+    const auto zeno =
+        std::find_if(events.begin(), events.end(), [](const Event& event) { return is_zeno_point(event); });
+    ASSERT_NE(zeno, events.end());
+    const CertificateText paper = certificate_text(session, static_cast<std::size_t>(zeno - events.begin()));
+    ASSERT_EQ(paper.rows.size(), 3U);
+    EXPECT_EQ(paper.rows[0].error, "gap speed, for the Zeno time");
+    session.apply(command::SetConditions{Conditions::sharp});
+    session.apply(parse_command("prove"));
+    session.settle();
+    EXPECT_EQ(certificate_text(session, 9).not_covered.rfind("Covered by the proof", 0), 0U);
+}
+
+TEST(CertificateText, CountsAndMeasuresInWords) {
+    EXPECT_EQ(ordinal(1) + ordinal(2) + ordinal(3) + ordinal(4), "1st2nd3rd4th");
+    EXPECT_EQ(ordinal(11) + ordinal(12) + ordinal(21) + ordinal(112), "11th12th21st112th");
+    EXPECT_EQ(duration_text(0.00162), "1.6 ms");
+    EXPECT_EQ(duration_text(3.0e-7), "300 ns");
+    EXPECT_EQ(duration_text(2.0), "2 s");
 }
 
 // A click on the Zeno row opens the card, a click on its cross closes it.

@@ -11,7 +11,7 @@ using test::Hands;
 TEST(EnergyBar, IsShownByACommandAndFromTheMenu) {
     Hands hands("ball_on_sine");
     EXPECT_FALSE(hands.state.places.contains("energy bar"));
-    hands.click("menu View");
+    hands.click("bar View");
     hands.click("menu Energy");
     EXPECT_EQ(hands.all, (std::vector<Command>{command::Show{"energy", true}}));
     hands.rest(2);

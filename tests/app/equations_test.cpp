@@ -1,5 +1,5 @@
 // The equations panel: content, mouse, and caching of the layout.
-#include "panels/equations.hpp"
+#include "session/equations_view.hpp"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

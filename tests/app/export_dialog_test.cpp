@@ -94,7 +94,7 @@ TEST(ExportDialog, EntryOfTheMenuIsReady) {
         {"Run as JSON\u2026", "json"}, {"Run as CSV\u2026", "csv"},    {"Session as journal\u2026", "journal"}};
     for (const auto& [entry, ending] : entries) {
         test::Hands hands("ball_on_sine");
-        hands.click("menu File");
+        hands.click("bar File");
         hands.click(std::string("menu ") + entry);
         hands.rest(3);
         EXPECT_EQ(hands.state.editor.path, std::string("ball_on_sine.") + ending);
@@ -111,8 +111,8 @@ TEST(ExportDialog, FilmNeedsFfmpeg) {
     const ProgramFolder programs;  // no programs
     const test::Folder folder;
     test::Hands hands("ball_on_sine");
-    hands.click("menu File");
-    hands.click("menu Film as MP4\u2026");
+    hands.click("bar File");
+    hands.click("menu Export film\u2026");
     hands.rest(3);
     EXPECT_EQ(hands.state.editor.path, "ball_on_sine.mp4");
     EXPECT_FALSE(can_press(hands, "dialog Export"));
@@ -134,9 +134,12 @@ TEST(ExportDialog, FilmNeedsFfmpeg) {
 TEST(ExportDialog, NameIsTypedOverAndEndsAsTheKindSays) {
     const test::Folder folder;
     test::Hands hands("ball_on_sine");
-    hands.click("menu File");
-    hands.click("menu Figure as PNG\u2026");
+    hands.click("bar File");
+    hands.click("menu Export figure\u2026");
     hands.rest(3);
+    hands.click("take png");
+    hands.click("path");
+    hands.press_with_control('A');
     hands.type((folder.path() / "short").string());
     hands.rest(2);
     EXPECT_EQ(hands.state.editor.path, (folder.path() / "short").string()) << "the rest of the proposed name stays";
@@ -182,9 +185,10 @@ TEST(ExportDialog, SizeIsReadWhole) {
     for (const double scale : {1.0, 1.5}) {
         test::Hands hands("ball_on_sine",
                           test::surface(static_cast<int>(1280 * scale), static_cast<int>(800 * scale), scale));
-        hands.click("menu File");
-        hands.click("menu Figure as PNG\u2026");
+        hands.click("bar File");
+        hands.click("menu Export figure\u2026");
         hands.rest(3);
+        hands.click("take png");
         hands.click("take page");
         hands.click("take one of two columns (85 mm)");
         hands.rest(3);
@@ -210,8 +214,8 @@ TEST(ExportDialog, SizeIsReadWhole) {
 
 TEST(ExportDialog, FilmNeedsANumberOfPicturesASecond) {
     test::Hands hands("ball_on_sine");
-    hands.click("menu File");
-    hands.click("menu Film as MP4\u2026");
+    hands.click("bar File");
+    hands.click("menu Export film\u2026");
     hands.rest(3);
     hands.click("take field fps");
     hands.press_with_control('A');

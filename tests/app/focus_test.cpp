@@ -35,9 +35,9 @@ TEST(Focus, ThePlayerHasTheKeysUntilTabAndAgainAfterEscape) {
     const double first = hands.session.time();
     ASSERT_GT(first, 0.0);
     hands.press(key::tab);
-    ASSERT_EQ(hands.state.focus.at, "menu File");
+    ASSERT_EQ(hands.state.focus.at, "bar File");
     hands.press(key::right);
-    EXPECT_EQ(hands.state.focus.at, "menu Edit");
+    EXPECT_EQ(hands.state.focus.at, "bar Edit");
     EXPECT_EQ(hands.session.time(), first) << "the arrow moved the time as well";
     hands.press(key::escape);
     EXPECT_EQ(hands.state.focus.at, "");
@@ -65,7 +65,7 @@ TEST(Focus, TabWalksEverythingAndComesBack) {
     while (met.insert(hands.state.focus.at).second) hands.press(key::tab);
     EXPECT_EQ(hands.state.focus.at, first);
     for (const char* name :
-         {"menu Help", "switch theme", "systems", "editor", "set g", "play", "pin", "loop", "show trail"})
+         {"bar Help", "switch theme", "systems", "editor", "set g", "play", "pin", "loop", "show trail"})
         EXPECT_TRUE(met.contains(name)) << name;
     EXPECT_FALSE(met.contains("mechanism"));
     hands.press(key::tab);
@@ -120,7 +120,7 @@ TEST(Focus, EnterAndSpacePress) {
 // Arrows walk a menu; Escape closes only the menu.
 TEST(Focus, AMenuGoesByKeys) {
     test::Hands hands("ball_on_sine");
-    go_to(hands, "menu View");
+    go_to(hands, "bar View");
     hands.press(key::enter);
     hands.rest(2);
     for (const char* panel : {"controls", "plots", "events"}) ASSERT_TRUE(hands.session.scene().shows(panel));
@@ -131,7 +131,7 @@ TEST(Focus, AMenuGoesByKeys) {
     hands.press(key::enter);
     hands.rest(2);
     hands.press(key::escape);
-    EXPECT_EQ(hands.state.focus.at, "menu View");
+    EXPECT_EQ(hands.state.focus.at, "bar View");
     hands.press(key::escape);
     EXPECT_EQ(hands.state.focus.at, "");
 }

@@ -121,16 +121,16 @@ TEST(FrictionPanels, TheSliderOfMuActsAtOnce) {
 // The button of proofs is disabled and says why; the command is refused as on the command line.
 TEST(FrictionPanels, NoProofIsOffered) {
     RoughHands ramp(block_on_ramp);
-    const std::string refusal = "runs with dry friction cannot be proved";
-    for (const char* button : {"prove", "prove more"}) {
+    const std::string refusal = "Runs with dry friction cannot be proved";
+    ramp.hands.click("tab proof");
+    for (const char* button : {"prove", "spreads"}) {
         ramp.hands.click(button);
         EXPECT_EQ(ramp.hands.session.proof_under_way(), nullptr) << button;
         EXPECT_EQ(ramp.hands.session.error(), "") << button;
-        EXPECT_FALSE(ramp.hands.says("for all starts within")) << button;
-        ramp.hands.point(button);
-        ramp.hands.rest(40);
+        EXPECT_FALSE(ramp.hands.says("this start only")) << button;
         EXPECT_TRUE(ramp.hands.says(refusal)) << button;
     }
+    ramp.hands.click("tab events");
     ramp.hands.click("compare");
     EXPECT_EQ(ramp.hands.session.error(), "");
     EXPECT_TRUE(ramp.hands.session.pinned().empty());

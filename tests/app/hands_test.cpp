@@ -223,7 +223,7 @@ TEST(ExplorerInput, TakesAFigureAwayAndIsToldWhatCannotBeWritten) {
     Hands hands("ball_on_sine");
     const std::string file = (folder.path() / "ball.svg").string();
     const auto ask = [&](const char* item, const std::string& path) {
-        hands.click("menu File");
+        hands.click("bar File");
         hands.click(item);
         hands.rest(2);
         hands.hand.keys = {key::left_control};
@@ -235,13 +235,13 @@ TEST(ExplorerInput, TakesAFigureAwayAndIsToldWhatCannotBeWritten) {
         hands.type(path);
         hands.rest(2);
     };
-    ask("menu Figure as SVG\u2026", file);
+    ask("menu Export figure\u2026", file);
     hands.press(key::enter);
     EXPECT_EQ(hands.session.error(), "");
     EXPECT_EQ(hands.session.notice(), "wrote " + file);
     EXPECT_EQ(test::content(file).rfind("<?xml", 0), 0U);
     // The file exists already: Enter alone does not overwrite it.
-    ask("menu Figure as SVG\u2026", file);
+    ask("menu Export figure\u2026", file);
     hands.all.clear();
     hands.press(key::enter);
     EXPECT_TRUE(hands.all.empty());
@@ -249,7 +249,7 @@ TEST(ExplorerInput, TakesAFigureAwayAndIsToldWhatCannotBeWritten) {
     EXPECT_EQ(hands.all, std::vector<Command>{(command::Export{file, true})});
     EXPECT_EQ(hands.session.error(), "");
     std::filesystem::permissions(folder.path() / "ball.svg", std::filesystem::perms::none);
-    ask("menu Run as JSON\u2026", "/proc/run.json");
+    ask("menu Export data\u2026", "/proc/run.json");
     hands.press(key::enter);
     EXPECT_NE(hands.session.error().find("/proc/run.json"), std::string::npos) << hands.session.error();
     EXPECT_EQ(folder.files().size(), 1U);
@@ -259,8 +259,9 @@ TEST(ExplorerInput, TakesAFigureAwayAndIsToldWhatCannotBeWritten) {
 TEST(ExplorerInput, CopiesTheCommandLine) {
     Hands hands("ball_on_sine");
     hands.click("set e", 0.3);
-    hands.click("menu File");
-    hands.click("menu Copy run command");
+    hands.click("bar File");
+    hands.click("menu Copy command");
+    hands.click("menu copy run");
     hands.rest(2);
     EXPECT_EQ(hands.session.copies(), 1);
     EXPECT_EQ(hands.state.copies, 1);

@@ -38,7 +38,7 @@ std::string seen(const Hands& hands) {
 }
 
 TEST(Keys, ReachNothingBehindAMenuOrADialog) {
-    for (const std::string front : {"systems", "menu View", "dialog", "manual"}) {
+    for (const std::string front : {"systems", "bar View", "dialog", "manual"}) {
         Hands hands("ball_on_sine");
         hands.session.apply(command::Set{"e", 0.7});
         hands.session.apply(command::Seek{1.0});
@@ -55,7 +55,7 @@ TEST(Keys, ReachNothingBehindAMenuOrADialog) {
         hands.rest(3);
         const std::string before = seen(hands);
         hands.all.clear();
-        press_all(hands, front == "systems" || front == "menu View");
+        press_all(hands, front == "systems" || front == "bar View");
         EXPECT_EQ(seen(hands), before) << front;
         for (const Command& command : hands.all) ADD_FAILURE() << front << " lets through: " << to_text(command);
     }

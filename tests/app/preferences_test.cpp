@@ -105,7 +105,7 @@ TEST(Preferences, FilesStandInTheMenu) {
     Hands hands("ball_on_sine");
     const std::string path = find_system("double_pendulum").string();
     hands.state.recent = {path};
-    hands.click("menu File");
+    hands.click("bar File");
     EXPECT_TRUE(hands.says("double_pendulum.toml"));
     hands.click("menu " + path);
     EXPECT_EQ(hands.all, std::vector<Command>{command::Open{path}});

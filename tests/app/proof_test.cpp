@@ -163,6 +163,7 @@ TEST(ProofPanels, SayProvedOfProofsAlone) {
 
 TEST(ProofPanels, TellWhatIsProved) {
     Hands hands("ball_on_sine", test::surface(1600, 1000));
+    hands.click("tab proof");
     EXPECT_TRUE(hands.says("Prove this run"));
     hands.click("prove");
     hands.session.settle();
@@ -170,23 +171,27 @@ TEST(ProofPanels, TellWhatIsProved) {
     ASSERT_NE(hands.session.proof(), nullptr);
     EXPECT_TRUE(hands.says("proved to t = 20 s"));
     EXPECT_TRUE(hands.says("Zeno 1, proved"));
+    EXPECT_TRUE(hands.says("Proved to t = 20 s: the exact motion lies in the tubes"));
     const auto zeno = std::find_if(hands.session.trajectory().events.begin(), hands.session.trajectory().events.end(),
                                    [](const Event& event) { return event.kind == Event::Kind::zeno; });
     const auto at = static_cast<std::size_t>(zeno - hands.session.trajectory().events.begin());
     const std::string time = short_text(hands.session.enclosed(at)->t);
     EXPECT_TRUE(hands.says(time)) << time;
+    hands.click("tab events");
     EXPECT_TRUE(hands.says("proved t = " + time + " s"));
     hands.session.apply(command::Select{static_cast<int>(at) + 1});
     hands.rest(2);
     EXPECT_TRUE(hands.says(proved_text(hands.session, at)));
-    EXPECT_TRUE(hands.says("Forget proof"));
+    EXPECT_TRUE(hands.says("Covered by the proof of this run"));
     hands.session.apply(command::Select{0});
-    hands.rest(2);
+    hands.click("tab proof");
+    EXPECT_TRUE(hands.says(proved_text(hands.session, at))) << "in the list of the proof, too";
+    EXPECT_TRUE(hands.says("Forget proof"));
     hands.click("prove");
     EXPECT_EQ(hands.session.proof(), nullptr);
     EXPECT_FALSE(hands.says("proved to"));
     // A wider box from the menu, for which the proof ends undecided.
-    hands.click("prove more");
+    hands.click("spreads");
     hands.click("prove 0.0001");
     hands.session.settle();
     hands.rest(2);
@@ -201,13 +206,15 @@ TEST(ProofPanels, TellWhatIsProved) {
 // Prints positions for proof_window_test.sh.
 TEST(ProofPanels, TellWhereTheyAre) {
     Hands hands("ball_on_sine");
+    hands.click("tab proof");
     const auto tell = [&](const char* name, const std::string& place) {
         std::cout << name << " " << std::lround(hands.middle(place).x) << " " << std::lround(hands.middle(place).y)
                   << "\n";
     };
+    tell("tab", "tab proof");
     tell("prove", "prove");
-    tell("more", "prove more");
-    hands.click("prove more");
+    tell("more", "spreads");
+    hands.click("spreads");
     tell("wider", "prove 1e-06");
 }
 

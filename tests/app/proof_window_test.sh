@@ -8,6 +8,10 @@
 open_window "" ball_on_sine --record "$folder/record"
 settle
 # shellcheck disable=SC2046
+xdotool mousemove --window "$window" $(place tab) sleep 0.3 click 1
+recorded '^show proof$' "the tab does not open"
+settle
+# shellcheck disable=SC2046
 xdotool mousemove --window "$window" $(place prove) sleep 0.3 click 1
 recorded '^prove$' "the button proves nothing"
 settle

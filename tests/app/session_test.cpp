@@ -167,6 +167,64 @@ TEST(Session, PlaysAndFindsEvents) {
     EXPECT_EQ(session.selected(), 0);
 }
 
+// Stepping chooses the event; the list, the card and the strip follow.
+TEST(Session, StepsByEventsByZenoPointsAndByFrames) {
+    Session session = test::session("ball_on_sine");
+    const auto& events = session.trajectory().events;
+    const auto step = [&](const char* line) {
+        session.apply(parse_command(line));
+        EXPECT_EQ(session.error(), "") << line;
+        return session.selected();
+    };
+    EXPECT_EQ(step("step 1 event"), 1);
+    EXPECT_EQ(session.time(), events[0].t);
+    EXPECT_EQ(step("step 2 event"), 3);
+    EXPECT_EQ(step("step -1 event"), 2);
+    EXPECT_EQ(step("step 1 zeno"), 10);
+    EXPECT_EQ(session.time(), events[9].t);
+    const int second = step("step 1 zeno");
+    EXPECT_EQ(events[static_cast<std::size_t>(second - 1)].kind, Event::Kind::zeno);
+    EXPECT_EQ(step("step -1 zeno"), 10);
+    EXPECT_EQ(step("step -1 zeno"), 0);
+    EXPECT_EQ(session.time(), 0.0) << "before the first: the start of the run";
+    step("step 3 event");
+    EXPECT_EQ(step("step 1 frame"), 0) << "between events none is chosen";
+    EXPECT_NEAR(session.time(), events[2].t + 1.0 / 60.0, 1e-12);
+    EXPECT_EQ(step("step 1000 event"), 0);
+    EXPECT_EQ(session.time(), session.trajectory().end_time);
+    // The word of earlier journals moves the time alone.
+    step("select 10");
+    EXPECT_EQ(step("step 1"), 10);
+    EXPECT_EQ(session.time(), events[10].t);
+}
+
+TEST(Session, KeepsTheChosenEventByItsMeaning) {
+    Session session = test::session("ball_on_sine");
+    const auto zeno = [&](int n) {
+        const auto& events = session.trajectory().events;
+        for (std::size_t i = 0; i < events.size(); ++i)
+            if (is_zeno_point(events[i]) && --n == 0) return static_cast<int>(i) + 1;
+        return 0;
+    };
+    session.apply(command::Select{zeno(2)});
+    const int before = session.selected();
+    session.apply(command::Set{"e", 0.4});
+    EXPECT_NE(zeno(2), before) << "the number changes";
+    EXPECT_EQ(session.selected(), zeno(2));
+    EXPECT_EQ(session.time(), session.trajectory().events[static_cast<std::size_t>(zeno(2) - 1)].t);
+    // Elsewhere the time stays.
+    session.apply(command::Seek{1.0});
+    session.apply(command::Set{"e", 0.45});
+    EXPECT_EQ(session.selected(), zeno(2));
+    EXPECT_EQ(session.time(), 1.0);
+    session.apply(command::Select{2});
+    session.apply(command::Set{"e", 0.5});
+    EXPECT_EQ(session.selected(), 2) << "the second impact is the second one";
+    session.apply(command::Select{zeno(2)});
+    session.apply(command::SetEndTime{5.0});
+    EXPECT_EQ(session.selected(), 0) << "this run has no second Zeno point";
+}
+
 // Whatever the start time is.
 TEST(Session, BeginsAndBeginsAgainWhereTheRunStarts) {
     Session session = test::session("ball_on_sine");

@@ -154,7 +154,7 @@ TEST(Slider, AllValuesAreResetAtOnceAndThatIsUndoneAtOnce) {
     EXPECT_EQ(to_text(hands.session.trajectory()), before);
     hands.press_with_control('Z');
     EXPECT_EQ(to_text(hands.session.trajectory()), changed);
-    hands.click("menu Edit");
+    hands.click("bar Edit");
     hands.click("menu Reset all values");
     EXPECT_EQ(to_text(hands.session.trajectory()), before);
     hands.state.places.clear();

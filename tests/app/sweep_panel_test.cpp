@@ -235,7 +235,7 @@ TEST(SweepPanel, IsChosenFromMenus) {
     EXPECT_EQ(hands.session.sweep().axes.size(), 1U);
     EXPECT_TRUE(hands.session.sweep().at);
     hands.press(key::escape);
-    hands.click("hide sweep");
+    hands.click("tab events");
     EXPECT_FALSE(hands.session.scene().shows("sweep"));
 }
 

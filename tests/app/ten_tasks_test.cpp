@@ -149,7 +149,7 @@ TEST(TenTasks, ASystemOfSeveralContactsIsFoundByItsGroup) {
 
 TEST(TenTasks, WhatImpactsTookIsSaidBesideTheEnergy) {
     Hands hands("ball_on_sine", surface);
-    use(hands, "view", "menu View");
+    use(hands, "view", "bar View");
     use(hands, "view_energy", "menu Energy");
     use(hands, "zeno_over_energy", result(hands));
     EXPECT_TRUE(hands.says("impact loss")) << hands.letters();
@@ -158,7 +158,7 @@ TEST(TenTasks, WhatImpactsTookIsSaidBesideTheEnergy) {
 TEST(TenTasks, AFileOfYesterdayStandsInTheMenu) {
     Hands hands("ball_on_sine", surface);
     hands.state.recent = {"/elsewhere/mine.toml"};
-    use(hands, "file", "menu File");
+    use(hands, "file", "bar File");
     tell(hands, "recent", "menu /elsewhere/mine.toml");
 }
 

@@ -231,7 +231,7 @@ TEST(HelpMenu, ShowsAPageAboveEverythingUntilEscape) {
     hands.state.manual = {{"data", "The data"}, {"system", "The system file"}};
     hands.state.manual_page = [](const std::string& topic) { return "# A page about " + topic; };
     hands.rest(2);
-    hands.click("menu Help");
+    hands.click("bar Help");
     hands.click("menu system");
     EXPECT_EQ(hands.state.manual_text, "# A page about system");
     ASSERT_TRUE(hands.state.places.count("Close the manual"));
@@ -247,7 +247,7 @@ TEST(HelpMenu, ShowsAPageAboveEverythingUntilEscape) {
 TEST(Tour, IsChosenFromTheMenu) {
     test::Hands hands("ball_on_sine");
     hands.state.tours = {{"the_ball", "The paper's ball"}};
-    hands.click("menu Tours");
+    hands.click("bar Tours");
     hands.all.clear();
     hands.click("tour the_ball");
     ASSERT_EQ(hands.all.size(), 1U);

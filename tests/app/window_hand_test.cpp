@@ -267,8 +267,8 @@ TEST(Escape, BelongsToWhatIsInFront) {
 
 TEST(Escape, ClosesMenus) {
     Hands hands("ball_on_sine");
-    for (const auto& [open, line] : {std::pair{"menu File", "menu Save"},
-                                     {"menu View", "menu Plots"},
+    for (const auto& [open, line] : {std::pair{"bar File", "menu Save"},
+                                     {"bar View", "menu Plots"},
                                      {"systems", "open double_pendulum"},
                                      {"menu of plot 1", "expression y"}}) {
         hands.state.places.erase(line);
@@ -349,7 +349,7 @@ TEST(Files, ANoteNamesTheFolderAndASystemGetsItsEnding) {
     EXPECT_EQ(session.notice(), "wrote " + (folder.path() / "mine.svg").string());
 
     Hands hands("ball_on_sine");
-    hands.click("menu File");
+    hands.click("bar File");
     hands.click("menu Save as\u2026");
     hands.press_with_control('A');
     hands.type((folder.path() / "mine").string());

@@ -1,4 +1,4 @@
-// The equations in the panel: simplified once per system, typeset once per width, drawn every frame.
+// The equations of a system for a panel: simplified once per system, typeset once per width.
 #pragma once
 
 #include <map>
@@ -13,6 +13,9 @@
 #include "session/worker.hpp"
 
 namespace achilles {
+
+// Space above a heading, relative to the size of the letters.
+constexpr float before_heading = 1.0F;
 
 // A typeset sheet of equations on a scrollable page.
 struct TypesetSheet {

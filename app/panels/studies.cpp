@@ -1,0 +1,151 @@
+// The lower panel: the events and the studies of the run, as tabs; and the study that proves the run.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string>
+
+#include "output/proof.hpp"
+#include "panels/actions.hpp"
+#include "panels/widgets.hpp"
+#include "session/study_jobs.hpp"
+#include "surface/imgui_version.hpp"
+#include "surface/interface.hpp"
+
+namespace achilles {
+
+namespace {
+
+// A tab: what the scene shows, its title, and the action of the View menu that shows it, too.
+struct StudyTab {
+    const char *what, *title, *action;
+    void (*show)(const Session& session, PanelState& state, Commands& commands);
+};
+constexpr StudyTab study_tabs[] = {{"events", "Events", "Events", show_events},
+                                   {"equations", "Equations", "Equations", show_equations},
+                                   {"depend", "Sensitivities", "Sensitivities", show_dependence},
+                                   {"sweep", "Sweep", "Sweep", show_sweep},
+                                   {"orbit", "Periodic", "Periodic run", show_orbit},
+                                   {"proof", "Proof", "Proof", show_proof}};
+
+// One of the tabs; the current one is underlined. Returns true if it was pressed.
+bool study_tab(const StudyTab& tab, float width, bool is_seen, PanelState& state) {
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const bool is_pressed = ImGui::InvisibleButton(tab.title, {width, ImGui::GetFrameHeight()});
+    remember(state, std::string("tab ") + tab.what);
+    const Color color = is_seen || ImGui::IsItemHovered() ? text_color() : faint_color();
+    const Action& shown_by = action(tab.action);
+    tooltip(std::string(shown_by.about) + (shown_by.keys.empty() ? "" : fmt::format(" ({})", shown_by.keys)));
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    list->AddText({at.x, at.y + ImGui::GetStyle().FramePadding.y}, packed(color), fitted(tab.title, width).c_str());
+    const float low = at.y + ImGui::GetFrameHeight();
+    if (is_seen) list->AddRectFilled({at.x, low - units(2.0F)}, {at.x + width, low}, packed(current_theme().accent));
+    return is_pressed && !is_seen;
+}
+
+// The tabs always have the same places. In a narrow panel their titles are shortened.
+void show_study_tabs(const std::string& seen, PanelState& state, Commands& commands) {
+    const float room = ImGui::GetContentRegionAvail().x, count = static_cast<float>(std::size(study_tabs));
+    float width = 0.0F;
+    for (const StudyTab& one : study_tabs) width += ImGui::CalcTextSize(one.title).x;
+    const float between = std::clamp((room - width) / count, units(6.0F), units(16.0F));
+    const float share = std::min(1.0F, (room - between * count) / width);
+    for (const StudyTab& one : study_tabs) {
+        if (study_tab(one, std::max(1.0F, share * ImGui::CalcTextSize(one.title).x), one.what == seen, state)) {
+            if (std::string_view(one.what) == "events") commands.emplace_back(command::Show{seen, false});
+            commands.emplace_back(command::Show{one.what, true});
+        }
+        ImGui::SameLine(0.0F, between);
+    }
+    ImGui::NewLine();
+}
+
+constexpr const char *prove_word = "Prove this run", *stop_word = "Stop proving", *forget_word = "Forget proof";
+
+// Menu of the half-widths of the start interval.
+void show_spreads(PanelState& state, Commands& commands) {
+    if (!ImGui::BeginPopup("spreads")) return;
+    for (const double width : {0.0, 1e-8, 1e-6, 1e-4}) {
+        const std::string name = width == 0.0 ? "this start only" : fmt::format("\u00b1 {:g}", width);
+        if (ImGui::MenuItem(name.c_str())) commands.emplace_back(command::Prove{width, {}});
+        remember(state, fmt::format("prove {:g}", width));
+    }
+    close_by_escape(state);
+    ImGui::EndPopup();
+}
+
+// The events with the proved intervals of their times; a click selects one.
+void show_proved_events(const Session& session, PanelState& state, Commands& commands) {
+    const auto& events = session.trajectory().events;
+    constexpr float name_width = 150.0F;
+    begin_padded_child("proved events", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
+    ImGuiListClipper clipper;
+    clipper.Begin(static_cast<int>(events.size()), ImGui::GetTextLineHeightWithSpacing());
+    while (clipper.Step())
+        for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
+            const ImVec2 at = ImGui::GetCursorScreenPos();
+            const auto event = static_cast<std::size_t>(i);
+            ImGui::PushID(i);
+            if (ImGui::Selectable("##proved", session.selected() == i + 1))
+                commands.emplace_back(command::Select{session.selected() == i + 1 ? 0 : i + 1});
+            ImGui::PopID();
+            remember(state, fmt::format("proved {}", i + 1));
+            const std::string text = proved_text(session, event);
+            cell({at.x + units(4.0F), at.y}, fmt::format("{} {}", i + 1, names_of(events[event]).name),
+                 units(name_width), text_color());
+            cell({at.x + units(name_width + 12.0F), at.y}, text.empty() ? "not proved" : text,
+                 remaining().width - units(name_width + 16.0F), text.empty() ? faint_color() : text_color());
+        }
+    ImGui::EndChild();
+}
+
+}  // namespace
+
+void show_lower_panel(const Session& session, PanelState& state, Commands& commands) {
+    const std::string seen = session.scene().below();
+    show_study_tabs(seen, state, commands);
+    for (const StudyTab& tab : study_tabs)
+        if (tab.what == seen) tab.show(session, state, commands);
+}
+
+void begin_study(const char* name) {
+    ImGui::PushStyleColor(ImGuiCol_ChildBg, packed(current_theme().background));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {units(12.0F), units(6.0F)});
+    begin_padded_child(name, {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
+    ImGui::PopStyleVar();
+    ImGui::PopStyleColor();
+}
+
+void show_proof(const Session& session, PanelState& state, Commands& commands) {
+    begin_study("proof");
+    const std::string_view what = not_proved(*session.model());
+    const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
+    ImGui::BeginDisabled(!what.empty());
+    if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word))
+        commands.push_back(is_under_way || is_there ? Command(command::StopProof{}) : Command(command::Prove{}));
+    remember(state, "prove");
+    ImGui::SameLine(0.0F, units(14.0F));
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    const Rectangle row{at.x, at.y, 0.0F, ImGui::GetFrameHeight()};
+    menu_button("spreads", "for all starts within", at.x, row, ImGui::GetWindowPos().x + content_right(), state);
+    tooltip("prove more than the present run: all starts in a box around its start");
+    show_spreads(state, commands);
+    ImGui::EndDisabled();
+    ImGui::SetCursorScreenPos({remaining().x, row.y + row.height + ImGui::GetStyle().ItemSpacing.y});
+    const float width = std::min(remaining().width, units(640.0F));
+    if (!what.empty())
+        paragraph(fmt::format("Runs with {} cannot be proved; the status line has the estimated error.", what), width,
+                  text_color());
+    else if (is_there)
+        paragraph(proof_sentence(*session.proof()), remaining().width, text_color());
+    else
+        paragraph(
+            is_under_way
+                ? "The proof is under way; the status line has its progress."
+                : "A proof encloses the exact motion from its start: through every impact and every Zeno point, with "
+                  "all errors of integration, cuts and rounding. Events then have the intervals of their times.",
+            width, faint_color());
+    if (is_there) show_proved_events(session, state, commands);
+    ImGui::EndChild();
+}
+
+}  // namespace achilles
