@@ -14,6 +14,7 @@
 
 #include "cli/assets.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/file_watch.hpp"
 #include "cli/inputs.hpp"
 #include "cli/manual.hpp"
 #include "journal/journal.hpp"
@@ -90,6 +91,7 @@ class Explorer {
         pass_time();
         std::vector<Command> commands = explorer(session_, state_);
         take_dropped(commands);
+        follow_file(commands);
         if (!commands.empty()) {
             apply_tour_action(PanelState::TourAction::stop);  // user input ends the tour
             replayed_ = 0;
@@ -103,13 +105,14 @@ class Explorer {
         if (const double size = session_.scene().text_scale(state_.width / scale_, state_.height / scale_);
             size != std::exchange(text_scale_, size))
             window_.restyle(std::min(scale_ * size, largest_scale), session_.theme().dark);
+        window_.fill_screen(session_.scene().presents() && !tour_.runs());
         apply_tour_action(std::exchange(state_.tour_action, PanelState::TourAction::none));
         if (state_.editor.may_close) window_.close();
         // Redraw now and then to show the progress of a run.
         constexpr double progress_seconds = 0.25;
         const bool is_next = !dropped_.empty() && !is_asking();
         window_.keep_drawing(
-            session_.playing() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
+            session_.is_moving() || tour_.runs() || is_typing(state_) || waits_for_click(state_) || is_next,
             session_.under_way() != nullptr || session_.proof_under_way() != nullptr ||
                     session_.sweep_job().is_busy() || derives_equations(state_) || film_.is_busy() ||
                     state_.thumbnails->is_busy()
@@ -125,7 +128,7 @@ class Explorer {
 
  private:
     void pass_time() {
-        if ((!session_.playing() && !tour_.runs()) || state_.file_question) return clock_.stop();
+        if ((!session_.is_moving() && !tour_.runs()) || state_.file_question) return clock_.stop();
         const double seconds = clock_.elapsed();
         // Playback advances with the clock and is not recorded.
         if (!tour_.runs()) return play_on(session_, seconds);
@@ -182,6 +185,20 @@ class Explorer {
         dropped_.pop_front();
         const bool replays = std::filesystem::path(file).extension() == ".journal" || is_picture(file);
         request(session_, state_, replays ? Command(command::Replay{file}) : Command(command::Open{file}), commands);
+    }
+
+    // Reads the file of the system again after another program has written it. A text with unsaved changes is asked for
+    // first, as before any other text that replaces it.
+    void follow_file(std::vector<Command>& commands) {
+        watch_.follow(session_.document().file);
+        if (is_asking() || tour_.runs() || !watch_.take_change()) return;
+        try {
+            if (read_text(session_.document().file) == session_.document().saved) return;  // it was saved from here
+        } catch (const InputError&) {
+            return;  // another change follows when the file is there again
+        }
+        request(session_, state_, command::Reload{}, commands);
+        window_.draw_again();
     }
 
     // Replays a journal or the content of a picture. Asks once about every file it needs. If one answer is no, no
@@ -297,6 +314,7 @@ class Explorer {
     Recovery recovery_;
     std::vector<RecoveredText> unsaved_;  // from earlier windows, not offered yet
     FilePolicy trust_;
+    FileWatch watch_{Window::wake};
     std::deque<std::string> dropped_;  // dropped files not handled yet
     std::size_t replayed_ = 0;         // commands from journals since the last user input
     FrameTimer clock_;

@@ -104,6 +104,19 @@ void show_command_lines(const Session&, PanelState& state, Commands& commands) {
     }
 }
 
+// In the order of the gallery.
+template <int step>
+void next_system(const Session& session, PanelState& state, Commands& commands) {
+    const auto& all = state.systems;
+    const auto here =
+        std::find_if(all.begin(), all.end(), [&](const SystemEntry& one) { return one.name == session.system(); });
+    const auto count = static_cast<std::ptrdiff_t>(all.size());
+    if (count == 0) return;
+    const std::ptrdiff_t next = here == all.end() ? 0 : (here - all.begin() + step + count) % count;
+    request(session, state, command::Open{all[static_cast<std::size_t>(next)].name}, commands);
+}
+
+bool is_lecture(const Session& session) { return session.scene().presents(); }
 bool is_idle(const Session& session) { return session.under_way() == nullptr; }
 bool can_undo(const Session& session) { return session.can_undo(); }
 bool can_redo(const Session& session) { return session.can_redo(); }
@@ -135,16 +148,16 @@ constexpr Action all_actions[] = {
     {"Edit", "Redo", "Ctrl+Shift+Z, Ctrl+Y", "redo", "redo", not_in_text | held_too, can_redo},
     {"Edit", "Reset all values", "", "every value as in the file", "reset", new_group},
     {"Edit", "Pin this run", "", "keep it beside later ones, to compare", "pin"},
-    {"Edit", "Find\u2026", "Ctrl+Shift+P", "find an action, a system, a value", "show palette", new_group},
+    {"Edit", "Find\u2026", "Ctrl+Shift+P", "find anything by its name", "show palette", new_group},
     {"Edit", "Edit System File", "Ctrl+E", "edit the system file", toggle_editor},
 
     {"View", "Controls", "Ctrl+1", "the sliders", "show controls"},
     {"View", "Plots", "Ctrl+2", "the plots", "show plots"},
     {"View", "Events", "Ctrl+3", "the events", toggle_events},
     {"View", "Equations", "Ctrl+7", "the equations of motion", "show equations", new_group},
-    {"View", "Sensitivities", "Ctrl+5", "what a quantity depends on", "show depend"},
-    {"View", "Sweep", "Ctrl+4", "many runs beside this one", "show sweep"},
-    {"View", "Periodic run", "Ctrl+6", "a periodic run and its branch", "show orbit"},
+    {"View", "Sensitivities", "Ctrl+5", "sensitivities", "show depend"},
+    {"View", "Sweep", "Ctrl+4", "sweep: many runs", "show sweep"},
+    {"View", "Periodic run", "Ctrl+6", "periodic run and branch", "show orbit"},
     {"View", "Proof", "Ctrl+8", "the proof of the run", "show proof"},
     {"View", "Automatic panel sizes", "", "forget the sizes set by hand", size_automatically, new_group},
     {"View", "Trail", "", "the path of the body", "show trail", new_group},
@@ -154,7 +167,9 @@ constexpr Action all_actions[] = {
     {"View", "Configuration plane", "", "two quantities in place of the mechanism", "show plane"},
     {"View", "Energy", "", "where the energy is and where it went", "show energy"},
     {"View", "Fit whole run", "", "the camera shows the whole run", "look all", 0, has_look},
-    {"View", "Presentation", "F11", "presentation mode", "present on", new_group},
+    {"View", "Lecture", "F11", "a lecture: for a class", "present on", new_group},
+    {"View", "Next system", "Down", "next system in a lecture", next_system<1>, of_player, is_lecture},
+    {"View", "Previous system", "Up", "next system in a lecture", next_system<-1>, of_player, is_lecture},
     {"View", "Larger", "Ctrl+Plus", "everything larger", enlarge<1>, new_group},
     {"View", "Smaller", "Ctrl+Minus", "everything smaller", enlarge<-1>},
     {"View", "Reset Zoom", "Ctrl+0", "reset zoom", enlarge<0>},
@@ -164,15 +179,15 @@ constexpr Action all_actions[] = {
     {"Time", "Loop playback", "", "start again at the end", "loop on"},
     {"Time", "Previous event", "Left", "previous, next event", "step -1 event", new_group | of_player | held_too},
     {"Time", "Next event", "Right", "previous, next event", "step 1 event", of_player | held_too},
-    {"Time", "Previous Zeno point", "Page Up", "previous, next Zeno point", "step -1 zeno", of_player | held_too},
-    {"Time", "Next Zeno point", "Page Down", "previous, next Zeno point", "step 1 zeno", of_player | held_too},
-    {"Time", "Back by a frame", ",", "back, on by one frame", "step -1 frame", of_player | held_too},
-    {"Time", "On by a frame", ".", "back, on by one frame", "step 1 frame", of_player | held_too},
+    {"Time", "Previous Zeno point", "Page Up", "Zeno point before, after", "step -1 zeno", of_player | held_too},
+    {"Time", "Next Zeno point", "Page Down", "Zeno point before, after", "step 1 zeno", of_player | held_too},
+    {"Time", "Back by a frame", "Comma", "back, on by one frame", "step -1 frame", of_player | held_too},
+    {"Time", "On by a frame", "Period", "back, on by one frame", "step 1 frame", of_player | held_too},
     {"Time", "Start of the run", "Home", "start, end of the run", seek_start, new_group | of_player},
     {"Time", "End of the run", "End", "start, end of the run", seek_end, of_player},
 
-    {"Plots", "Back", "Alt+Left", "the last view of the plots", go_to_view<-1>, held_too},
-    {"Plots", "Forward", "Alt+Right", "the next view of the plots", go_to_view<1>, held_too},
+    {"Plots", "Back", "Alt+Left", "plots as before", go_to_view<-1>, held_too},
+    {"Plots", "Forward", "Alt+Right", "plots as after", go_to_view<1>, held_too},
     {"Plots", "Fit all", "", "every plot shows all of its data", fit_all},
     {"Plots", "Link time", "", "one time axis for all plots over time", "link on", new_group},
     {"Plots", "Copy plotted data", "", "every plot as a table, for a spreadsheet", "copy plots", new_group, is_idle},
@@ -184,14 +199,14 @@ constexpr Action all_actions[] = {
 
 // What the mouse does, and the keys of single panels.
 const Shortcut gestures[] = {
-    {"Keys", "Tab, arrows", "move between controls; Enter clicks"},
+    {"Keys", "Tab, arrows", "to another control; Enter clicks"},
     {"Keys", "Escape", "close what is open"},
     {"Keys", "Enter", "next step of a tour"},
     {"Keys", "Backspace", "previous step of a tour"},
     {"Sliders", "double click", "type a slider's value"},
     {"Sliders", "Shift+drag", "a slider in fine steps"},
     {"Sliders", "right click", "the file's value"},
-    {"Plots", "wheel", "zoom at the mouse; over an axis along it"},
+    {"Plots", "wheel", "zoom; over an axis along it"},
     {"Plots", "drag", "move the axes"},
     {"Plots", "right drag", "zoom to a box"},
     {"Plots", "double click", "fit the data"},
@@ -230,6 +245,8 @@ int code_of(std::string_view name) {
                                                           {"Home", key::home},
                                                           {"End", key::end},
                                                           {"Space", ' '},
+                                                          {"Comma", ','},
+                                                          {"Period", '.'},
                                                           {"Plus", '='},
                                                           {"Minus", '-'},
                                                           {"Up", key::up},

@@ -25,8 +25,9 @@ float energy_in(const Measures& m, float room) {
     return m.min_energy <= room ? m.min_energy : 0.0F;
 }
 
-// Presentation mode: the mechanism beside one plot, the results and the player below, nothing else.
-Arrangement arrange_presented(const Scene& scene, const Measures& m) {
+// Lecture: the title, the mechanism beside one plot, up to three sliders and the player; nothing else, unless the energy
+// was asked for.
+Arrangement arrange_lecture(const Scene& scene, const Measures& m) {
     const float edge = margin * m.unit, between = gap * m.unit, inside = std::max(0.0F, m.width - 2.0F * edge);
     const float bottom = std::max(0.0F, m.height - edge);
     const auto below = [&](const Rectangle& part) {
@@ -34,26 +35,27 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
         return static_cast<float>(part.height > 0.0 ? end + 0.6 * double{between} : end);
     };
     Arrangement parts;
-    parts.error = {edge, edge, inside, std::min(m.error ? m.error(inside) : 0.0F, bottom - edge)};
+    parts.title = {edge, edge, inside, std::min(m.title, bottom - edge)};
+    const float error_top = std::min(below(parts.title), bottom);
+    parts.error = {edge, error_top, inside, std::min(m.error ? m.error(inside) : 0.0F, bottom - error_top)};
     const float caption_top = below(parts.error);
     parts.caption = {edge, caption_top, inside,
-                     std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, bottom - caption_top)};
+                     std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, std::max(0.0F, bottom - caption_top))};
     const float top = std::min(below(parts.caption), bottom);
     const float timeline = std::min(m.timeline, bottom - top), lower = bottom - timeline;
-    const float all_results = m.results ? m.results(inside) : 0.0F;
-    const float left_over = lower - 1.4F * between - top - min_picture * m.unit;
-    const float results = all_results <= left_over ? all_results : 0.0F;
-    const float above = results > 0.0F ? results + 0.4F * between : 0.0F;
-    const float energy = energy_in(m, left_over - above),
-                below_results = energy > 0.0F ? energy + 0.4F * between : 0.0F;
-    const float height = std::max(0.0F, lower - between - top - above - below_results);
+    const float left_over = lower - between - top - min_picture * m.unit;
+    const float sliders = m.sliders <= left_over ? m.sliders : 0.0F;
+    const float above = sliders > 0.0F ? sliders + 0.4F * between : 0.0F;
+    const float energy = energy_in(m, left_over - above - 0.4F * between),
+                below_sliders = energy > 0.0F ? energy + 0.4F * between : 0.0F;
+    const float height = std::max(0.0F, lower - between - top - above - below_sliders);
     const bool has_plots = scene.shows("plots") || scene.shows("sweep");
     const float right = has_plots ? std::floor(0.48F * (inside - between)) : 0.0F;
     const float center = inside - (has_plots ? right + between : 0.0F);
     parts.mechanism = {edge, top, center, height};
     // A visible sweep replaces the plot.
     (scene.shows("sweep") ? parts.sweep : parts.plots) = {edge + center + between, top, right, height};
-    parts.results = {edge, lower - between - below_results - results, inside, results};
+    parts.sliders = {edge, lower - between - below_sliders - sliders, inside, sliders};
     parts.energy = {edge, lower - between - energy, inside, energy};
     parts.timeline = {edge, lower, inside, timeline};
     return parts;
@@ -62,7 +64,7 @@ Arrangement arrange_presented(const Scene& scene, const Measures& m) {
 }  // namespace
 
 Arrangement arrange(const Scene& scene, const Measures& m) {
-    if (scene.presents()) return arrange_presented(scene, m);
+    if (scene.presents()) return arrange_lecture(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
     const bool has_plots = scene.shows("plots");

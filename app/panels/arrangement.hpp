@@ -13,6 +13,7 @@ namespace achilles {
 struct Arrangement {
     // A rectangle of size 0: not shown.
     Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, sweep, events, status;
+    Rectangle title, sliders;  // of a lecture
     // The gap beside a panel, which can be dragged to resize it.
     struct Splitter {
         std::string panel;  // as in command::Size
@@ -32,6 +33,7 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // the surface
     float unit = 1.0F;                  // one pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
+    float title = 0.0F, sliders = 0.0F;      // of a lecture; 0: not shown
     float energy = 0.0F, min_energy = 0.0F;  // with and without its time plot; 0: not shown
     // Heights, for a given width, of the error message, the tour caption, the results, and the numbers over the
     // mechanism; 0: not shown.

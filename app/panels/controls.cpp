@@ -76,50 +76,6 @@ void first_section(const char* title, const Session& session, const Run& file, P
     ImGui::GetWindowDrawList()->AddText({std::floor(right - width), low.y}, packed(color), text);
 }
 
-void parameters(const Session& session, const Run& file, PanelState& state, Commands& commands) {
-    const auto& all = session.description().parameters;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-        const ParameterDescription& p = all[i];
-        const bool is_angle = p.unit == "rad";
-        Slider slider{typeset_name(p.name),
-                      "set " + p.name,
-                      is_angle ? "\u00b0" : typeset_unit(p.unit),
-                      p.about.empty() ? p.name : p.name + ": " + p.about,
-                      session.run().parameters[i],
-                      p.range[0],
-                      p.range[1],
-                      file.parameters[i],
-                      is_angle ? degrees(1.0) : 1.0};
-        slider.varies = p.name;
-        put_bar(session, slider);
-        if (moved(slider, state)) commands.emplace_back(command::Set{p.name, slider.value});
-    }
-}
-
-// An initial coordinate or rate.
-void start_value(const Session& session, const Run& file, std::size_t i, bool is_rate, PanelState& state,
-                 Commands& commands) {
-    const CoordinateDescription& c = session.description().coordinates[i];
-    const bool is_angle = c.unit == "rad";
-    const auto& range = is_rate ? c.rate_range : c.range;
-    const auto at = static_cast<Eigen::Index>(i);
-    const std::string name = is_rate ? c.name + "'" : c.name;
-    std::string unit = is_angle ? "\u00b0" : typeset_unit(c.unit);
-    if (is_rate && !unit.empty()) unit += "/s";
-    Slider slider{typeset_name(name) + "(0)",
-                  "set " + name,
-                  unit,
-                  fmt::format("initial {} of {}", is_rate ? "rate" : "value", c.name),
-                  is_rate ? session.run().v[at] : session.run().q[at],
-                  range[0],
-                  range[1],
-                  is_rate ? file.v[at] : file.q[at],
-                  is_angle ? degrees(1.0) : 1.0};
-    slider.varies = name;
-    put_bar(session, slider);
-    if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
-}
-
 // An option as a slider or as a row of buttons, one of which is selected.
 struct OptionRow {
     const char* key;
@@ -321,6 +277,31 @@ void end_time(const Session& session, const Run& file, PanelState& state, Comman
 
 }  // namespace
 
+void show_value_slider(const Session& session, const std::string& name, PanelState& state, Commands& commands) {
+    const SystemDescription& system = session.description();
+    const auto parameter = std::find_if(system.parameters.begin(), system.parameters.end(),
+                                        [&](const ParameterDescription& one) { return one.name == name; });
+    const bool is_start = parameter == system.parameters.end(), is_rate = is_start && name.ends_with('\'');
+    const std::string about =
+        is_start ? fmt::format("initial {} of {}", is_rate ? "rate" : "value", name.substr(0, name.find('\'')))
+                 : parameter->name + (parameter->about.empty() ? "" : ": " + parameter->about);
+    const ShownUnit unit = shown_unit_of_setting(system, name);
+    const SweepAxis range = *axis_for(session, name);
+    Run file = session.file_run();
+    Slider slider{typeset_name(name) + (is_start ? "(0)" : ""),
+                  "set " + name,
+                  unit.text,
+                  about,
+                  *session.value(name),
+                  range.low,
+                  range.high,
+                  *find_value(system, file, name),
+                  unit.factor};
+    slider.varies = name;
+    put_bar(session, slider);
+    if (moved(slider, state)) commands.emplace_back(command::Set{name, slider.value});
+}
+
 void show_system(const Session& session, PanelState& state, Commands& commands) {
     const float width = units(52.0F), space = ImGui::GetStyle().ItemInnerSpacing.x;
     choose_system(session, state, commands, ImGui::GetContentRegionAvail().x - width - space);
@@ -354,13 +335,14 @@ void show_controls(const Session& session, PanelState& state, Commands& commands
     const Run& file = session.file_run();
     const bool has_parameters = !file.parameters.empty();
     if (has_parameters) first_section("Parameters", session, file, state, commands);
-    parameters(session, file, state, commands);
+    for (const ParameterDescription& parameter : session.description().parameters)
+        show_value_slider(session, parameter.name, state, commands);
     if (has_parameters)
         section("Start and end");
     else
         first_section("Start and end", session, file, state, commands);
-    for (std::size_t i = 0; i < session.description().coordinates.size(); ++i)
-        for (const bool is_rate : {false, true}) start_value(session, file, i, is_rate, state, commands);
+    for (const CoordinateDescription& coordinate : session.description().coordinates)
+        for (const char* prime : {"", "'"}) show_value_slider(session, coordinate.name + prime, state, commands);
     end_time(session, file, state, commands);
     accuracy(session, file, state, commands);
     show_runs(session, state, commands);

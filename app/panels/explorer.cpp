@@ -58,6 +58,10 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
         measures.energy = energy_height(true);
         measures.min_energy = energy_height(false);
     }
+    if (session.scene().presents()) {
+        measures.title = lecture_title_height();
+        measures.sliders = lecture_sliders(session).empty() ? 0.0F : ImGui::GetFrameHeight();
+    }
     measures.state = [&](float width) { return state_height(session, width); };
     measures.error = [&](float width) { return card_height(message, width); };
     measures.caption = [&](float width) { return caption_height(session, state, width); };
@@ -189,6 +193,8 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     show_palette(session, state, commands);
     show_gallery(session, state, commands);
     show_film(state);
+    part("title", parts.title, still_window, [&] { show_lecture_title(session); });
+    part("sliders", parts.sliders, still_window, [&] { show_lecture_sliders(session, state, commands); });
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });

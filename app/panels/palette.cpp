@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <utility>
 
 #include "panels/actions.hpp"
@@ -75,6 +76,17 @@ void add_values(const std::string& typed, const Session& session, std::vector<Na
     }
 }
 
+// "play e from 0.2 to 0.9" animates e.
+void add_animation(const std::string& typed, const Session& session, std::vector<NamedEntry>& entries) {
+    std::istringstream words(typed);
+    std::string play, name, from, to, first, last;
+    if (!(words >> play >> name >> from >> first >> to >> last) || play != "play" || from != "from" || to != "to")
+        return;
+    if (!session.value(name)) return;
+    const std::string line = fmt::format("animate {} {} {}", name, first, last);
+    entries.insert(entries.begin(), {typed, "", line, line});
+}
+
 // What is found by words, in this order: actions, values, systems, tours, plots, pages. The first `actions().size()`
 // entries are the actions, the last ones the pages.
 std::vector<NamedEntry> named_entries(const std::string& typed, const Session& session, const PanelState& state) {
@@ -85,6 +97,7 @@ std::vector<NamedEntry> named_entries(const std::string& typed, const Session& s
                                action.keys.empty() ? std::string(action.effect.command) : std::string(action.keys),
                                "action " + std::string(action.name)});
     add_values(typed, session, entries);
+    add_animation(typed, session, entries);
     for (const SystemEntry& system : state.systems)
         entries.push_back({system.title, spaced(system.name), "open " + system.name, "open " + system.name});
     for (const SystemEntry& tour : state.tours)

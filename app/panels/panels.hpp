@@ -271,6 +271,13 @@ using Commands = std::vector<Command>;
 void show_bar(const Session& session, PanelState& state, Commands& commands);
 void show_system(const Session& session, PanelState& state, Commands& commands);
 void show_controls(const Session& session, PanelState& state, Commands& commands);
+// The slider of a parameter, or of an initial coordinate or rate.
+void show_value_slider(const Session& session, const std::string& name, PanelState& state, Commands& commands);
+// The lecture (F11): the title of the system, and up to three sliders with a button that animates each.
+float lecture_title_height();
+void show_lecture_title(const Session& session);
+std::vector<std::string> lecture_sliders(const Session& session);
+void show_lecture_sliders(const Session& session, PanelState& state, Commands& commands);
 // Lists the differences of the run from the system's file or text (`of`), at most `lines` lines, in the order of the
 // controls; a click restores the original value. Draws nothing without differences.
 void show_changes(const Session& session, const std::string& of, std::size_t lines, PanelState& state,

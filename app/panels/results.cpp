@@ -212,17 +212,6 @@ void show_result(const Session& session, const Result& result, const ResultCell&
     if (pressed && !state.strip.was_dragged) commands.emplace_back(command::Select{is_chosen ? 0 : number});
 }
 
-// Presentation mode: the last event in a sentence.
-void show_sentence(const Session& session, ImVec2 at, float width) {
-    const auto& events = session.trajectory().events;
-    const auto after = std::upper_bound(events.begin(), events.end(), session.time(),
-                                        [](double t, const Event& event) { return t < event.t; });
-    const std::size_t reached = session.selected() > 0 ? static_cast<std::size_t>(session.selected())
-                                                       : static_cast<std::size_t>(after - events.begin());
-    const EventDescriptions& sentences = session.sentences();
-    cell(at, typeset_sentence(reached == 0 ? sentences.start() : sentences.of(reached - 1)), width, text_color());
-}
-
 // "‹ 3" or "12 ›": the number of results before or after the visible ones; a click scrolls by one strip.
 void show_more(bool is_before, std::size_t count, ImVec2 at, const VisibleResults& shown, PanelState& state) {
     if (count == 0) return;
@@ -297,8 +286,8 @@ std::string proved_text(const Session& session, std::size_t event, const std::st
 }
 
 float results_height(const Session& session) {
-    const float lines = session.scene().presents() ? 3.0F : 2.0F;
-    return lines * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
+    if (session.scene().presents()) return 0.0F;
+    return 2.0F * ImGui::GetTextLineHeightWithSpacing() + 2.0F * units(padding);
 }
 
 void show_results(const Session& session, PanelState& state, Commands& commands) {
@@ -310,7 +299,6 @@ void show_results(const Session& session, PanelState& state, Commands& commands)
     const float line = ImGui::GetTextLineHeightWithSpacing();
     const auto lines = static_cast<int>((area.height + 1.0F - 2.0F * units(padding)) / line);
     if (lines < 1) return;
-    if (session.scene().presents() && lines > 2) show_sentence(session, {left, top + 2.0F * line + units(2.0F)}, width);
     const std::vector<Result> results = results_of(session.trajectory());
     if (results.empty()) return show_none(session, {left, top}, width);
     const std::size_t seen = wanted(session, results);

@@ -87,16 +87,7 @@ void play_button(const Session& session, PanelState& state, Commands& commands) 
     remember(state, "play");
     tooltip(session.playing() ? "pause (space)" : "play (space)");
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-    const ImVec2 c{0.5F * (low.x + high.x), 0.5F * (low.y + high.y)};
-    const float r = units(5.5F);
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    if (session.playing()) {
-        for (const float side : {-1.0F, 0.4F})
-            list->AddRectFilled({c.x + side * r, c.y - r}, {c.x + (side + 0.6F) * r, c.y + r}, packed(text_color()));
-    } else {
-        list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
-                                packed(text_color()));
-    }
+    paint_play_sign({0.5F * (low.x + high.x), 0.5F * (low.y + high.y)}, session.playing());
 }
 
 // A small button with a triangle and a bar.

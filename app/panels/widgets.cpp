@@ -170,6 +170,17 @@ void move_time(const Session& session, double time, Commands& commands) {
     if (time != session.time()) commands.emplace_back(command::Seek{time});
 }
 
+void paint_play_sign(const ImVec2& center, bool is_playing) {
+    const ImVec2 c = center;
+    const float r = units(5.5F);
+    ImDrawList* list = ImGui::GetWindowDrawList();
+    if (!is_playing)
+        return list->AddTriangleFilled({c.x - 0.7F * r, c.y - r}, {c.x - 0.7F * r, c.y + r}, {c.x + r, c.y},
+                                       packed(text_color()));
+    for (const float side : {-1.0F, 0.4F})
+        list->AddRectFilled({c.x + side * r, c.y - r}, {c.x + (side + 0.6F) * r, c.y + r}, packed(text_color()));
+}
+
 void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind) {
     const std::optional<double> horizon = session.horizon();
     if (!horizon || !(*horizon < end)) return;

@@ -95,6 +95,8 @@ bool expression_fields(std::string& x, std::string& y, bool focuses_y, const std
                        PanelState& state);
 // Moves the time by hand. An event selected elsewhere is let go, except in the Zeno lens, which stays at its point.
 void move_time(const Session& session, double time, Commands& commands);
+// A triangle, or two bars while something plays.
+void paint_play_sign(const ImVec2& center, bool is_playing);
 // Fades the part of a time plot from `start` to `end` that lies after the horizon of the run.
 void fade_beyond(const Session& session, const Rectangle& area, double start, double end, const Color& behind);
 // Click tolerance of an event marker, pixels at scale 1.

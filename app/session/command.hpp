@@ -97,6 +97,9 @@ struct Save {
     static constexpr auto spec = CommandSpec("save", "write: save FILE, or: save FILE overwrite", UndoPolicy::view,
                                              &Save::file, Field(&Save::overwrite, command::overwrite));
 };
+struct Reload {  // reads the file of the system again; sliders keep what they changed
+    static constexpr auto spec = CommandSpec("reload", alone, UndoPolicy::own_step);
+};
 inline const std::vector<std::string> shown_things{
     "accuracy", "contours", "controls", "depend", "editor", "energy", "equations", "events",
     "export",   "force",    "gallery",  "help",   "lens",   "orbit",  "palette",   "plane",
@@ -221,6 +224,17 @@ struct Loop {
         CommandSpec("loop", "write: loop on, or: loop off", UndoPolicy::view, Field(&Loop::on, on_off));
 };
 inline const std::vector<std::string> step_kinds{"event", "frame", "zeno"};
+struct StopAnimation {
+    static constexpr auto spec = CommandSpec("animate off", alone, UndoPolicy::none);
+};
+struct Animate {
+    std::string name;  // a parameter, a coordinate x, or a rate x'
+    ValueArgument from, to;
+    double seconds = 0.0;  // of playback; 0: 5
+    static constexpr auto spec =
+        CommandSpec("animate", "write: animate NAME FROM TO [over SECONDS], or: animate off", UndoPolicy::own_step,
+                    &Animate::name, &Animate::from, &Animate::to, Field(&Animate::seconds, length_after("over")));
+};
 struct StepEvents {
     int events = 1;  // 1: to the next event; -1: to the previous one
     // One of `step_kinds`. `event` and `zeno` also choose the event or Zeno point, `frame` moves by one picture of the
@@ -286,9 +300,12 @@ struct Enlarge {
         CommandSpec("enlarge", "write: enlarge NUMBER, 1 is the default size", UndoPolicy::view, &Enlarge::value);
 };
 struct Present {
-    bool on = true;  // presentation mode: the mechanism, one plot and the results, enlarged
+    bool on = true;  // lecture mode: title, mechanism, one plot, up to three sliders and the player, enlarged
+    // The names of these sliders; empty: those that differ from the file.
+    std::vector<std::string> sliders = {};
     static constexpr auto spec =
-        CommandSpec("present", "write: present on, or: present off", UndoPolicy::view, Field(&Present::on, on_off));
+        CommandSpec("present", "write: present on [NAME ...] (up to three sliders), or: present off", UndoPolicy::view,
+                    Field(&Present::on, on_off), Field(&Present::sliders, {.may_lack = true}));
 };
 inline const std::vector<std::string> sized_panels{"controls", "editor", "events", "plots", "sweep"};
 struct SetPanelSize {
@@ -423,18 +440,17 @@ struct ShowSensitivity {
 }  // namespace command
 
 // In the order of the help listing.
-using AnyCommand =
-    std::variant<command::Open, command::Set, command::SetOption, command::Seek, command::Play, command::Pause,
-                 command::Select, command::New, command::SetText, command::Save, command::Show, command::DefaultPlane,
-                 command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowSensitivity,
-                 command::StopOrbit, command::FindOrbit, command::SelectBranchPoint, command::Find, command::SetGrid,
-                 command::PlotView, command::Zoom, command::Fit, command::SetRange, command::AxisScale,
-                 command::ShowCurve, command::Link, command::SetStart, command::LookAll, command::LookAt,
-                 command::SetCamera, command::Speed, command::Loop, command::StepEvents, command::Undo, command::Redo,
-                 command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall,
-                 command::PlotDifference, command::ShowLens, command::SetTheme, command::Enlarge, command::Present,
-                 command::SetPanelSize, command::Reset, command::EndEdit, command::Export, command::Copy, command::Wait,
-                 command::Say, command::Highlight, command::Replay>;
+using AnyCommand = std::variant<
+    command::Open, command::Set, command::SetOption, command::Seek, command::Play, command::Pause, command::Select,
+    command::New, command::SetText, command::Save, command::Reload, command::Show, command::DefaultPlane,
+    command::ShowPlane, command::ShowSweep, command::StopProof, command::Prove, command::ShowSensitivity,
+    command::StopOrbit, command::FindOrbit, command::SelectBranchPoint, command::Find, command::SetGrid,
+    command::PlotView, command::Zoom, command::Fit, command::SetRange, command::AxisScale, command::ShowCurve,
+    command::Link, command::SetStart, command::LookAll, command::LookAt, command::SetCamera, command::Speed,
+    command::Loop, command::StopAnimation, command::Animate, command::StepEvents, command::Undo, command::Redo,
+    command::Pin, command::UnpinAll, command::Unpin, command::ShowPinned, command::Recall, command::PlotDifference,
+    command::ShowLens, command::SetTheme, command::Enlarge, command::Present, command::SetPanelSize, command::Reset,
+    command::EndEdit, command::Export, command::Copy, command::Wait, command::Say, command::Highlight, command::Replay>;
 // The variant type with copy, move and destruction defined in command.cpp: inline, they would cost seconds of compile
 // time in every file that uses a Command.
 struct Command : AnyCommand {

@@ -42,6 +42,7 @@ void Scene::forget_place() {
     plane_.reset();
     sweep_.reset();
     depends_.reset();
+    lecture_sliders_.clear();
 }
 
 void Scene::perform(const command::DefaultPlane&) {
@@ -134,7 +135,10 @@ void Scene::perform(const command::Enlarge& command) {
     enlarged_ = command.value;
 }
 
-void Scene::perform(const command::Present& command) { presents_ = command.on; }
+void Scene::perform(const command::Present& command) {
+    presents_ = command.on;
+    lecture_sliders_ = command.sliders;
+}
 
 double Scene::text_scale(double width, double height) const {
     constexpr double least = 1.5, presented_width = 900.0, presented_height = 520.0;
@@ -164,7 +168,7 @@ std::vector<Command> steps_to(const Scene& scene) {
     for (const std::string& panel : command::sized_panels)
         if (scene.share(panel) > 0.0) steps.emplace_back(command::SetPanelSize{panel, scene.share(panel)});
     if (scene.enlarged() != 1.0) steps.emplace_back(command::Enlarge{scene.enlarged()});
-    if (scene.presents()) steps.emplace_back(command::Present{true});
+    if (scene.presents()) steps.emplace_back(command::Present{true, scene.lecture_sliders()});
     if (!scene.caption().empty()) steps.emplace_back(command::Say{scene.caption()});
     if (!scene.highlight().empty()) steps.emplace_back(command::Highlight{scene.highlight()});
     return steps;
@@ -189,7 +193,7 @@ std::string to_text(const Scene& scene) {
     if (scene.lens()) text += fmt::format("lens {:.9g}\n", *scene.lens());
     if (scene.loops()) text += "loop on\n";
     if (scene.enlarged() != 1.0) text += fmt::format("enlarge {:.9g}\n", scene.enlarged());
-    if (scene.presents()) text += "present on\n";
+    if (scene.presents()) text += to_text(command::Present{true, scene.lecture_sliders()}) + "\n";
     if (!scene.finds().empty()) text += fmt::format("finds {}\n", scene.finds());
     if (!scene.caption().empty()) text += fmt::format("says {}\n", scene.caption());
     if (!scene.highlight().empty()) text += fmt::format("highlights {}\n", scene.highlight());

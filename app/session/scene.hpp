@@ -41,6 +41,8 @@ class Scene {
 
     double enlarged() const { return enlarged_; }  // interface scale set by the user
     bool presents() const { return presents_; }
+    // The sliders chosen for the lecture; empty: those that differ from the file.
+    const std::vector<std::string>& lecture_sliders() const { return lecture_sliders_; }
     // Scale factor for a surface of this width and height (pixels at that scale). Includes the user's factor. In
     // presentation mode it grows with the surface, so that text stays readable from the last row.
     double text_scale(double width, double height) const;
@@ -85,6 +87,7 @@ class Scene {
     std::string caption_, highlight_, finds_;
     double enlarged_ = 1.0;
     bool presents_ = false;
+    std::vector<std::string> lecture_sliders_;
 };
 
 // Commands that lead from a new scene to this one, except the lens, which needs a Zeno point.

@@ -195,6 +195,15 @@ class Session {
     double time() const { return time_; }
     const Sample& now() const { return now_; }  // the state at that time
     bool playing() const { return playing_; }
+    // The value that is being animated; null: none. animate() moves it by `seconds` of wall time.
+    struct Animation {
+        std::string name;
+        double from = 0.0, to = 0.0, seconds = 1.0, elapsed = 0.0;
+    };
+    const Animation* animation() const { return animation_ ? &*animation_ : nullptr; }
+    void animate(double seconds);
+    // True while time or a value changes by itself.
+    bool is_moving() const { return playing_ || animation_.has_value(); }
     int selected() const { return selected_; }           // number of an event, from 1; 0: none
     const Event* selected_zeno() const;                  // the selected event if it is a Zeno point, else null
     const std::string& error() const { return error_; }  // why the last command was refused; empty: it was not
@@ -259,6 +268,7 @@ class Session {
     void perform(const command::New& command);
     void perform(const command::SetText& command);
     void perform(const command::Save& command);
+    void perform(const command::Reload& command);
     void perform(const command::SetStart& command);
     void perform(const command::Undo& command);
     void perform(const command::Redo& command);
@@ -268,6 +278,9 @@ class Session {
     void perform(const command::ShowPinned& command);
     void perform(const command::Recall& command);
     void perform(const command::StepEvents& command);
+    void perform(const command::Animate& command);
+    void perform(const command::StopAnimation&) { animation_.reset(); }
+    void perform(const command::Present& command);
     void perform(const command::Reset& command);
     void perform(const command::EndEdit&) {}  // only the undo history uses it
     void perform(const command::SetTheme& command);
@@ -311,6 +324,8 @@ class Session {
     void keep_plane();
     void keep_sweep();
     void keep_dependence();
+    void follow_studies();
+    bool vary(const std::string& name, double value);
     void follow_sweep();
     bool wants_sensitivities() const;
     void follow_dependence(Timeout patience);
@@ -347,6 +362,7 @@ class Session {
     Sample now_;
     double time_ = 0.0;
     bool playing_ = false;
+    std::optional<Animation> animation_;
     int selected_ = 0;
     std::optional<EventMeaning> meaning_;  // of the selected event, by which another run finds it again
     std::string error_, notice_;

@@ -141,6 +141,8 @@ std::string to_text(const Session& session) {
     }
     text += fmt::format("time {:.9g}{}, event {}\n", session.time(), session.playing() ? " playing" : "",
                         session.selected());
+    if (const Session::Animation* moving = session.animation())
+        text += fmt::format("animate {} to {:.9g}\n", moving->name, moving->to);
     for (const PinnedRun& pinned : session.pinned())
         text += fmt::format("pinned {}{}: {}\n", pinned.place, pinned.shown ? "" : " (hidden)",
                             pinned.name.empty() ? "the same" : pinned.name);

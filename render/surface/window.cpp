@@ -144,6 +144,7 @@ struct Window::Implementation {
     bool dark = false, stale = false, moving = true;
     int unsettled = settling_frames;
     double last_frame = -1.0, pause = 0.0;
+    std::array<int, 4> before_full_screen{};  // x, y, width, height
 };
 
 GLFWwindow* Window::Implementation::open(const SurfaceOptions& surface, const std::string& title) {
@@ -317,6 +318,22 @@ void Window::restyle(double scale, bool dark) {
     implementation_->dark = dark;
     implementation_->stale = true;
     implementation_->unsettled = settling_frames;
+}
+
+void Window::fill_screen(bool full) {
+    GLFWwindow* const window = implementation_->window;
+    if (full == (glfwGetWindowMonitor(window) != nullptr)) return;
+    auto& [x, y, width, height] = implementation_->before_full_screen;
+    GLFWmonitor* const monitor = glfwGetPrimaryMonitor();
+    const GLFWvidmode* const mode = monitor == nullptr ? nullptr : glfwGetVideoMode(monitor);
+    if (full && mode != nullptr) {
+        glfwGetWindowPos(window, &x, &y);
+        glfwGetWindowSize(window, &width, &height);
+        glfwSetWindowMonitor(window, monitor, 0, 0, mode->width, mode->height, mode->refreshRate);
+    } else if (!full) {
+        glfwSetWindowMonitor(window, nullptr, x, y, width, height, GLFW_DONT_CARE);
+    }
+    draw_again();
 }
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(implementation_->window, title.c_str()); }

@@ -32,6 +32,8 @@ class Window {
     static void wake();
     // Takes effect from the next frame on; `scale` multiplies the scale of the monitor.
     void restyle(double scale, bool dark);
+    // Covers the whole monitor, or returns to the size before.
+    void fill_screen(bool full);
     void set_title(const std::string& title);
     // The last frame as drawn, before the window system could change it.
     Image picture();

@@ -28,7 +28,7 @@ TEST(Actions, HaveNamesAndKeysOfTheirOwnAndLinesThatAreCommands) {
 
 // Every key of the table does what the entry of the menu does.
 TEST(Actions, DoTheSameByKeyAndByMenu) {
-    for (const char* name : {"Dark theme", "Sweep", "Proof", "Equations", "Presentation", "Energy", "Next event"}) {
+    for (const char* name : {"Dark theme", "Sweep", "Proof", "Equations", "Lecture", "Energy", "Next event"}) {
         const Action& one = action(name);
         Hands by_menu("ball_on_sine"), by_key("ball_on_sine");
         by_menu.click("bar " + std::string(one.menu));
@@ -52,7 +52,7 @@ TEST(Actions, TurnOffWhatIsOn) {
         for (const Command& command : commands) hands.session.apply(command);
         return is_on(action(name), hands.session);
     };
-    for (const char* name : {"Dark theme", "Sweep", "Presentation", "Loop playback", "Energy"}) {
+    for (const char* name : {"Dark theme", "Sweep", "Lecture", "Loop playback", "Energy"}) {
         EXPECT_TRUE(done(name)) << name;
         EXPECT_FALSE(done(name)) << name;
     }

@@ -38,6 +38,7 @@ const std::vector<Command> one_of_each{
     command::ShowCurve{1, 2, false},
     command::Link{false},
     command::New{},
+    command::Reload{},
     command::SetText{"title = \"A \\ \\n ball\"\n\t# \u03b8\r\n"},
     command::SetText{""},
     command::Save{"mine.toml", false},
@@ -49,6 +50,10 @@ const std::vector<Command> one_of_each{
     command::Find{"grid 3"},
     command::Enlarge{1.25},
     command::Present{true},
+    command::Present{true, {"e", "x'"}},
+    command::Animate{"e", 0.2, {0.5235987755982988, "30 deg"}, 8.0},
+    command::Animate{"x'", -1.0, 1.0},
+    command::StopAnimation{},
     command::Show{"trail", false},
     command::SetStart{{{"x", 0.1 + 0.2}, {"x'", -1.5}}},
     command::LookAt{-1.5, 1e-7, 3.0},
@@ -59,6 +64,7 @@ const std::vector<Command> one_of_each{
     command::Speed{0.001},
     command::Loop{true},
     command::StepEvents{-1},
+    command::StepEvents{1, "zeno"},
     command::Undo{},
     command::Redo{},
     command::Pin{},
@@ -87,6 +93,7 @@ const std::vector<Command> one_of_each{
     command::Export{"ball.svg", false, 2},
     command::Export{"plot", true, 3},
     command::Copy{"figure"},
+    command::Copy{"plots", 2},
     command::Say{"A ball, \"bouncing\" # and more"},
     command::Say{""},
     command::Wait{2.5},
@@ -113,6 +120,8 @@ TEST(Command, LooksAsTheManualSays) {
         EXPECT_NEAR(std::get<command::Set>(parse_command(line)).value.value, 0.5235987755982988, 1e-15) << line;
     EXPECT_EQ(to_text(parse_command("set theta1 30 deg")), "set theta1 \"30 deg\"");
     EXPECT_EQ(to_text(parse_command("start a 30 deg b 1 c pi")), "start a \"30 deg\" b 1 c 3.141592653589793");
+    EXPECT_EQ(to_text(parse_command("animate e 0.2 0.9 over 8")), "animate e 0.2 0.9 over 8");
+    EXPECT_EQ(to_text(parse_command("step -1 frame")), "step -1 frame");
     EXPECT_EQ(parse_command("eps 1e-6"), Command(command::Eps{1e-6, 1e-6, 1e-6}));
     EXPECT_EQ(parse_command("  seek\t3.2   # then look"), Command(command::Seek{3.2}));
 }
@@ -132,6 +141,10 @@ struct Mistake {
 
 TEST(Journal, NamesThePlaceOfAMistake) {
     const Mistake mistakes[] = {{"save", 5, "needs more"},
+                                {"step 1 zenno", 8, "did you mean 'zeno'"},
+                                {"copy plotz", 6, "did you mean 'plots'"},
+                                {"copy plots 0", 12, "plots count from 1"},
+                                {"animate e 0.2", 14, "needs more"},
                                 {"theme blue", 7, "there is no theme 'blue'"},
                                 {"size plot 0.3", 6, "did you mean 'plots'"},
                                 {"size plots 1.5", 12, "cannot take 1.5 of the window"},
@@ -202,7 +215,7 @@ TEST(Command, IsListedOnce) {
         EXPECT_TRUE(all.contains(text.substr(0, text.find(' ')))) << text;
     }
     EXPECT_TRUE(all.contains("hide") && all.contains("unpin"));
-    EXPECT_EQ(all.size(), 65u) << list;
+    EXPECT_EQ(all.size(), 67u) << list;
 }
 
 TEST(Command, ListsAllWhereNoneIsNear) {

@@ -15,7 +15,7 @@ settle
 
 # Tab moves the focus to a control, Escape returns it to the player.
 xdotool key Tab sleep 0.3 key Right sleep 0.3 key Right sleep 0.3 key Escape sleep 0.3 key Right
-recorded '^step 1$' "Escape does not give the keys back to the player"
+recorded '^step 1 event$' "Escape does not give the keys back to the player"
 [ "$(grep -c '^step' "$folder/record")" -eq 1 ] || fail "arrows move the time while a control has the keys"
 
 # Gallery: right arrow, Enter.

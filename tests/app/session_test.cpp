@@ -389,6 +389,31 @@ TEST(Session, SavesWhereItIsToldAndWritesOverItsOwnFileAlone) {
     EXPECT_EQ(folder.files().size(), 2U);
 }
 
+// A file that another program has written is read again; sliders keep what they changed.
+TEST(Session, ReadsItsFileAgain) {
+    const test::Folder folder;
+    const std::string text = read_text(ACHILLES_SOURCE_DIR "/assets/systems/ball_on_sine.toml");
+    folder.put("mine.toml", text);
+    const std::string mine = (folder.path() / "mine.toml").string();
+    Session session = test::session("ball_on_floor");
+    session.apply(command::Reload{});
+    EXPECT_NE(session.error().find("no file of its own"), std::string::npos) << session.error();
+    session.apply(command::Open{mine});
+    session.apply(command::Set{"g", 2.0});
+    folder.put("mine.toml", with(text, "value = 0.5", "value = 0.25"));
+    session.apply(command::Reload{});
+    EXPECT_EQ(session.error(), "");
+    EXPECT_EQ(session.value("e"), 0.25);
+    EXPECT_EQ(session.value("g"), 2.0);
+    EXPECT_FALSE(session.document().is_changed());
+    folder.put("mine.toml", "title = 3");
+    session.apply(command::Reload{});
+    EXPECT_FALSE(session.document().problems.empty());
+    EXPECT_EQ(session.value("e"), 0.25) << "the last good system stays";
+    session.apply(command::Undo{});
+    EXPECT_EQ(session.value("e"), 0.25);
+}
+
 TEST(ContactChanges, AreAllEventsButTheImpacts) {
     std::size_t found = 0;
     for (const char* system : {"ball_on_sine", "double_pendulum", "triple_pendulum", "cart_pendulum",

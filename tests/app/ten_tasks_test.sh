@@ -66,7 +66,7 @@ click zeno
 recorded '^select ' "a result is not selected"
 act key Left
 act key Left
-recorded '^step -1$' "Left does not go to the impact before"
+recorded '^step -1 event$' "Left does not go to the impact before"
 done_with zeno_condition
 back "hide equations" "select 0" "seek 0"
 
@@ -117,6 +117,8 @@ done_with energy
 back "hide energy" "select 0"
 
 click file
+point recent_menu
+xdotool sleep 0.4
 click recent
 recorded "^open $folder/mine.toml\$" "the menu does not open the file that was open last"
 done_with yesterday

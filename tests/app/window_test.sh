@@ -97,7 +97,7 @@ xdotool sleep 0.3 key Return
 await grep -q "^open $folder/mine.toml" "$folder/second" || fail "Ctrl+O does not open a file"
 xdotool sleep 0.5 key Right sleep 0.3 key End sleep 0.3 key ctrl+z
 await grep -q '^undo' "$folder/second" || fail "Ctrl+Z does not undo"
-grep -q '^step 1' "$folder/second" || fail "the right arrow does not step"
+grep -q '^step 1 event' "$folder/second" || fail "the right arrow does not step"
 # Files dropped on the window: a system is opened, a journal is replayed.
 cp "$folder/mine.toml" "$folder/dropped.toml"
 printf 'grid 3 2\n' > "$folder/dropped.journal"
