@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <limits>
@@ -87,33 +86,18 @@ Image read_png(const std::filesystem::path& file) {
     int channels = 0;
     const std::unique_ptr<stbi_uc, void (*)(void*)> pixels(
         stbi_load_from_memory(reinterpret_cast<const stbi_uc*>(png.data()), static_cast<int>(png.size()), &image.width,
-                              &image.height, &channels, 3),
+                              &image.height, &channels, 4),
         stbi_image_free);
     if (!pixels) throw file_error(file, std::string("is not a readable PNG file: ") + stbi_failure_reason());
-    image.rgb.assign(pixels.get(), pixels.get() + bytes(image));
-    return image;
-}
-
-double worst_tile(const Image& a, const Image& b) {
-    if (a.width != b.width || a.height != b.height || a.rgb.size() != b.rgb.size())
-        return std::numeric_limits<double>::infinity();
-    constexpr int tile = 30;
-    double worst = 0.0;
-    for (int top = 0; top < a.height; top += tile) {
-        for (int left = 0; left < a.width; left += tile) {
-            const int bottom = std::min(top + tile, a.height), right = std::min(left + tile, a.width);
-            long sum = 0;
-            for (int y = top; y < bottom; ++y) {
-                const std::size_t row = 3 * static_cast<std::size_t>(y) * static_cast<std::size_t>(a.width);
-                for (auto i = row + 3 * static_cast<std::size_t>(left); i < row + 3 * static_cast<std::size_t>(right);
-                     ++i)
-                    sum += std::abs(int{a.rgb[i]} - int{b.rgb[i]});
-            }
-            // A tile at the edge of the image is averaged over a full tile, or a single pixel could fail a test.
-            worst = std::max(worst, static_cast<double>(sum) / (3.0 * 255.0 * tile * tile));
-        }
+    image.rgb.reserve(bytes(image));
+    image.alpha.reserve(bytes(image) / 3);
+    for (const stbi_uc *p = pixels.get(), *end = p + bytes(image) / 3 * 4; p < end; p += 4) {
+        image.rgb.insert(image.rgb.end(), p, p + 3);
+        image.alpha.push_back(p[3]);
     }
-    return worst;
+    const auto is_opaque = [](std::uint8_t alpha) { return alpha == 255; };
+    if (std::all_of(image.alpha.begin(), image.alpha.end(), is_opaque)) image.alpha.clear();
+    return image;
 }
 
 }  // namespace achilles

@@ -1,4 +1,4 @@
-// Images: reading and writing PNG files, and comparing two images. image.cpp is the only file that includes stb.
+// Images: reading and writing PNG files. image.cpp is the only file that includes stb.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ struct Image {
 
 // Both throw std::runtime_error with the path and the reason.
 void write_png(const Image& image, const std::filesystem::path& file);
-// Reads the colors; transparency is dropped.
+// Reads colors, 8 bits each, and transparency. `alpha` is empty if all pixels are opaque.
 Image read_png(const std::filesystem::path& file);
 
 // PNG compression: level of stb, and the filter of every row (0 none, 1 left, 2 up, 3 average, 4 Paeth, -1 the one with
@@ -28,9 +28,5 @@ struct Compression {
 };
 // The bytes of a PNG file.
 std::string png_bytes(const Image& image, const Compression& compression = {});
-
-// Mean absolute color difference of a tile of 30 x 30 pixels, maximum over all tiles (0: equal, 1: black against
-// white). Infinite for images of different sizes.
-double worst_tile(const Image& a, const Image& b);
 
 }  // namespace achilles

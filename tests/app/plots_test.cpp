@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "app/hands.hpp"
+#include "image/comparison.hpp"
 #include "simulate/sampler.hpp"
 
 namespace achilles {

@@ -1,6 +1,6 @@
 // Measures how well the comparison of pixels separates falsified from correct pictures. Every falsification is applied
 // to every figure of the gallery. Prints the smallest score of each kind, the number that the coarse limit alone would
-// miss, and the largest score of pictures drawn again in other ways. tests/golden/tolerance.hpp has the limits; a score
+// miss, and the largest score of pictures drawn again in other ways. render/image/comparison.hpp has the limits; a score
 // of 1 is the limit.
 //
 //     bench_golden [REPETITIONS [SYSTEM...]]        exits with 1 if a lie is missed or a correct picture is rejected
@@ -13,10 +13,9 @@
 #include <vector>
 
 #include "cli/assets.hpp"
-#include "golden/comparer.hpp"
 #include "golden/mutated_figures.hpp"
 #include "golden/pictures.hpp"
-#include "golden/tolerance.hpp"
+#include "image/comparison.hpp"
 
 namespace {
 
@@ -25,9 +24,9 @@ using namespace achilles::golden;
 
 struct Tally {
     int told = 0, missed = 0, missed_by_coarse = 0;
-    Distance least;
+    ImageDistance least;
     std::string example;
-    void add(const Distance& distance, const std::string& what) {
+    void add(const ImageDistance& distance, const std::string& what) {
         if (told++ == 0 || distance.score() < least.score()) least = distance, example = what;
         if (distance.coarse <= worst_tile_allowed) ++missed_by_coarse;
         if (distance.score() <= 1.0) {
@@ -76,9 +75,9 @@ int be_honest(const std::vector<std::string>& systems, int repetitions) {
              {"LP_NUM_THREADS=1 LP_NATIVE_VECTOR_WIDTH=128", "LP_NUM_THREADS=1 LP_NATIVE_VECTOR_WIDTH=256",
               "LP_NUM_THREADS=2 LP_NATIVE_VECTOR_WIDTH=128", "LP_NUM_THREADS=2 LP_NATIVE_VECTOR_WIDTH=256",
               "ACHILLES_OFFSCREEN=egl", "GALLIUM_OVERRIDE_CPU_CAPS=sse2"}) {
-            Distance greatest;
+            ImageDistance greatest;
             for (int i = 0; i < repetitions; ++i) {
-                const Distance distance = golden::distance(truth, image_of(command, means));
+                const ImageDistance distance = achilles::distance(truth, image_of(command, means));
                 if (distance.score() > greatest.score()) greatest = distance;
                 refused += distance.score() > 1.0 ? 1 : 0;
             }

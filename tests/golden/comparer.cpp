@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
+#include <cctype>
 #include <charconv>
 #include <cmath>
-#include <cstdlib>
-#include <limits>
 #include <optional>
 #include <vector>
 
@@ -16,22 +14,6 @@
 namespace achilles::golden {
 
 namespace {
-
-constexpr int fine_tile = 10, stride = 5;
-
-std::size_t at(const Image& image, int x, int y) {
-    return 3 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(image.width) + static_cast<std::size_t>(x));
-}
-
-// The mean difference over a tile in the channel that differs most; pixels outside the image count as equal.
-double fine_difference(const Image& a, const Image& b, int left, int top) {
-    std::array<long, 3> sums{};
-    const int right = std::min(left + fine_tile, a.width), bottom = std::min(top + fine_tile, a.height);
-    for (int y = top; y < bottom; ++y)
-        for (std::size_t i = at(a, left, y); i < at(a, right, y); i += 3)
-            for (std::size_t c = 0; c < 3; ++c) sums[c] += std::abs(int{a.rgb[i + c]} - int{b.rgb[i + c]});
-    return static_cast<double>(*std::max_element(sums.begin(), sums.end())) / (255.0 * fine_tile * fine_tile);
-}
 
 std::vector<std::string_view> lines_of(std::string_view text) {
     std::vector<std::string_view> lines;
@@ -97,32 +79,6 @@ std::string shown(std::string_view line, std::size_t column) {
 }
 
 }  // namespace
-
-double Distance::score() const { return std::max(coarse / worst_tile_allowed, fine / worst_fine_tile_allowed); }
-
-Distance distance(const Image& a, const Image& b) {
-    Distance result;
-    result.coarse = worst_tile(a, b);
-    if (!std::isfinite(result.coarse)) {
-        result.fine = result.coarse;
-        return result;
-    }
-    for (int top = 0; top < a.height; top += stride) {
-        for (int left = 0; left < a.width; left += stride) {
-            const double fine = fine_difference(a, b, left, top);
-            if (fine > result.fine) result.fine = fine, result.left = left, result.top = top;
-        }
-    }
-    return result;
-}
-
-Image difference(const Image& a, const Image& b) {
-    Image result{a.width, a.height, std::vector<std::uint8_t>(a.rgb.size(), 0)};
-    if (a.width != b.width || a.height != b.height) return result;
-    for (std::size_t i = 0; i < a.rgb.size(); ++i)
-        result.rgb[i] = static_cast<std::uint8_t>(std::min(10 * std::abs(int{a.rgb[i]} - int{b.rgb[i]}), 255));
-    return result;
-}
 
 std::string difference(std::string_view golden, std::string_view actual) {
     constexpr std::size_t most = 5;  // lines of each kind

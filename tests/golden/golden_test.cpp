@@ -7,7 +7,7 @@
 #include "app/program.hpp"
 #include "golden/comparer.hpp"
 #include "golden/pictures.hpp"
-#include "golden/tolerance.hpp"
+#include "image/comparison.hpp"
 
 namespace achilles::golden {
 
@@ -145,7 +145,7 @@ TEST(ImageDistance, SeesASmallChangeOfOneChannelByTheFineBarAlone) {
     Image before{90, 60, std::vector<std::uint8_t>(std::size_t{3 * 90 * 60}, 200)}, after = before;
     for (std::size_t y = 42; y < 50; ++y)
         for (std::size_t x = 37; x < 39; ++x) after.rgb[3 * (90 * y + x) + 1] = 100;
-    const Distance apart = distance(before, after);
+    const ImageDistance apart = distance(before, after);
     EXPECT_DOUBLE_EQ(apart.fine, 16.0 * 100.0 / (255.0 * 100.0));
     EXPECT_DOUBLE_EQ(apart.coarse, 16.0 * 100.0 / (3.0 * 255.0 * 900.0));
     EXPECT_LT(apart.coarse, worst_tile_allowed);

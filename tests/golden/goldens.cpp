@@ -12,6 +12,7 @@
 
 #include "golden/comparer.hpp"
 #include "golden/report.hpp"
+#include "image/comparison.hpp"
 
 namespace achilles::golden {
 
@@ -41,7 +42,7 @@ std::optional<Layer> golden_of(const Layer& made, const fs::path& folder) {
     return Layer{made.file, content(file)};
 }
 
-std::string told(const Distance& distance, const Image& golden, const Image& made) {
+std::string told(const ImageDistance& distance, const Image& golden, const Image& made) {
     if (golden.width != made.width || golden.height != made.height)
         return fmt::format("{} x {} pixels, not {} x {}\n", made.width, made.height, golden.width, golden.height);
     return fmt::format("{:.3g} times what is allowed, worst at ({}, {}); coarse {:.4f}, fine {:.4f}\n",
@@ -70,7 +71,7 @@ Comparison compare(const GoldenPicture& picture, const GoldenFolders& place) {
         result.golden.push_back(*golden);
         if (const auto* image = std::get_if<Image>(&layer.content)) {
             const auto& before = std::get<Image>(golden->content);
-            const Distance apart = distance(before, *image);
+            const ImageDistance apart = distance(before, *image);
             result.score = std::max(result.score, apart.score());
             if (apart.score() > 1.0) result.findings.push_back({layer.file, told(apart, before, *image)});
         } else {

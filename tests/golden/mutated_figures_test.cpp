@@ -4,9 +4,9 @@
 
 #include <map>
 
-#include "golden/comparer.hpp"
 #include "golden/mutated_figures.hpp"
 #include "golden/pictures.hpp"
+#include "image/comparison.hpp"
 
 namespace achilles::golden {
 namespace {

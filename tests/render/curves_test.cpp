@@ -107,7 +107,7 @@ TEST(Curves, ThinningCannotBeSeen) {
         if (i % 50 == 0) coarse.push_back(fine.back());
     }
     EXPECT_LT(worst_tile(curve(surface, fine, {full, 1.5, {}}), curve(surface, coarse, {full, 1.5, {}})),
-              support::worst_tile_allowed);
+              worst_tile_allowed);
 }
 
 TEST(Curves, TheFinerMaskDrawsTheSameCurve) {
@@ -119,7 +119,7 @@ TEST(Curves, TheFinerMaskDrawsTheSameCurve) {
     for (int i = 0; i <= 500; ++i) points.push_back({20.0 + 1.1 * i, 200.0 + 150.0 * std::sin(i * 0.05)});
     const Image a = curve(plain, points, {full, 2.0, {}}), b = curve(fine, points, {full, 2.0, {}});
     EXPECT_NE(a, b);
-    EXPECT_LT(worst_tile(a, b), support::worst_tile_allowed);
+    EXPECT_LT(worst_tile(a, b), worst_tile_allowed);
 }
 
 // A curve shifted by one pixel must be detected as a different picture.
@@ -132,7 +132,7 @@ TEST(Curves, ACurveMovedByAPixelIsNoticed) {
     };
     const Image here = wave(0.0);
     EXPECT_EQ(worst_tile(here, wave(0.0)), 0.0);
-    EXPECT_GT(worst_tile(here, wave(1.0)), 2.0 * support::worst_tile_allowed);
+    EXPECT_GT(worst_tile(here, wave(1.0)), 2.0 * worst_tile_allowed);
 }
 
 }  // namespace

@@ -126,17 +126,17 @@ TEST(Paint, ChangesAreNoticed) {
     EXPECT_EQ(worst_tile(truth, draw(figure)), 0.0);
     Figure lie = figure;
     lie.panels[0].markers[1].points.erase(lie.panels[0].markers[1].points.begin());
-    EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
+    EXPECT_GT(worst_tile(truth, draw(lie)), worst_tile_allowed);
     lie = figure;
     lie.panels[0].curves[0].stroke.color = {60, 90, 130, 255};
-    EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
+    EXPECT_GT(worst_tile(truth, draw(lie)), worst_tile_allowed);
     lie = figure;
     for (Point& p : lie.panels[0].curves[0].points) p.y += 0.01;
-    EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
+    EXPECT_GT(worst_tile(truth, draw(lie)), worst_tile_allowed);
     lie = figure;
     // A letter. A subscript alone scores 0.0049; the comparison of the figure's text detects it.
     lie.panels[1].x.label = "\u03c6\u2081 [\u00b0]";
-    EXPECT_GT(worst_tile(truth, draw(lie)), support::worst_tile_allowed);
+    EXPECT_GT(worst_tile(truth, draw(lie)), worst_tile_allowed);
 }
 
 TEST(Mechanism, IsPlacedInTheMiddleWithEqualAxes) {

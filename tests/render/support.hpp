@@ -3,7 +3,7 @@
 
 #include <imgui.h>
 
-#include "golden/tolerance.hpp"
+#include "image/comparison.hpp"
 #include "surface/offscreen.hpp"
 
 namespace achilles::support {
@@ -16,8 +16,6 @@ inline SurfaceOptions options(int width = 600, int height = 400, double scale = 
     result.fonts = ACHILLES_BINARY_DIR "/assets/fonts";
     return result;
 }
-
-using golden::worst_tile_allowed;
 
 // Draws on the background draw list, on white.
 template <class Draw>

@@ -45,6 +45,7 @@ constexpr OtherWords other_commands[] = {
     {"orbit", "periodic limit-cycle continuation continue"},
     {"screenshot", "capture snapshot"},
     {"reproduce", "redo"},
+    {"compare", "diff difference imgdiff pixelmatch odiff"},
     {"--version", "version -v --ver"},
     {"--help", "-help -? /? /help"},
 };
@@ -88,6 +89,7 @@ constexpr OtherWords other_options[] = {
     {"do", "command"},
     {"journal", "replay"},
     {"verbose", "v timing"},
+    {"threshold", "tolerance tol fuzz max-difference max-diff limit"},
     {"conditions", "sharp paper"},
     {"simultaneous", "moreau"},
     {"energy-gain", "cap"},
@@ -278,6 +280,8 @@ class CommandLine {
         return best.empty() ? help() : setting(best, value);
     }
 
+        if (missing == "BEFORE" || missing == "AFTER")
+            return message("a picture is missing", "write achilles compare BEFORE.png AFTER.png, or two folders");
     InputError of_option(const std::string& word) const {
         TypedOption option(word);
         std::string value = option.value.empty() ? value_behind(word) : option.value;

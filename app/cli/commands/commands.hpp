@@ -17,7 +17,7 @@ namespace achilles {
 class Messages;
 class PictureJob;
 
-// Exit statuses. made_differently: `reproduce` succeeded, but the bytes differ.
+// Exit statuses. made_differently: `reproduce` or `compare` succeeded, but the pictures differ.
 constexpr int reached_end = 0, made_differently = 1, bad_input = 2, stopped_early = 3;
 
 void add_explore(CLI::App& program, int& status);
@@ -37,6 +37,7 @@ void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new
 void add_check(CLI::App& program, int& status);
+void add_compare(CLI::App& program, int& status);
 
 // The program as a function.
 

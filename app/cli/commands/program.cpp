@@ -82,6 +82,7 @@ int run(const std::vector<std::string>& words, Messages* ranks) {
     PictureJob job(words);
     add_pictures(program, status, job, ranks);
     add_reproduce(program, status);
+    add_compare(program, status);
     add_check(program, status);
     add_list(program, status);
     add_manual(program, status);
