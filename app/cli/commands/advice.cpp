@@ -121,13 +121,6 @@ struct TypedOption {
 
 bool is_option(const std::string& word) { return word.size() > 1 && word[0] == '-' && word.find(' ') == word.npos; }
 
-const CLI::Option* option_of(const CLI::App& command, std::string_view name) {
-    for (const CLI::Option* option : command.get_options())
-        for (const std::string& known : option->get_lnames())
-            if (known == name) return option;
-    return nullptr;
-}
-
 // "--out F.png": the option with the word typed as its value, if any.
 std::string with_value(const CLI::Option& option, const std::string& value) {
     if (option.get_items_expected_max() == 0) return option.get_name();
@@ -204,18 +197,7 @@ class CommandLine {
         return at == words_.end() || at + 1 == words_.end() || is_option(*(at + 1)) ? "" : *(at + 1);
     }
 
-    // The first word that names a readable system.
-    std::optional<SystemDescription> system() const {
-        for (const std::string& word : words_) {
-            if (is_option(word)) continue;
-            try {
-                const std::filesystem::path file = find_system(word);
-                if (std::filesystem::is_regular_file(file)) return read_tables(read_text(file), word).system;
-            } catch (const InputError&) {
-            }
-        }
-        return std::nullopt;
-    }
+    std::optional<SystemDescription> system() const { return named_system(words_); }
 
     // "--set e=0.3" or, for several values, --over e=0:0.9:100.
     std::string setting(const std::string& name, const std::string& value) const {
@@ -280,8 +262,6 @@ class CommandLine {
         return best.empty() ? help() : setting(best, value);
     }
 
-        if (missing == "BEFORE" || missing == "AFTER")
-            return message("a picture is missing", "write achilles compare BEFORE.png AFTER.png, or two folders");
     InputError of_option(const std::string& word) const {
         TypedOption option(word);
         std::string value = option.value.empty() ? value_behind(word) : option.value;
@@ -300,6 +280,8 @@ class CommandLine {
                            fmt::format("write achilles {} NAME: a name from 'achilles list', or a .toml file", name_));
         if (missing == "PICTURE")
             return message("a picture is missing", "write achilles reproduce F.png, with a picture that Achilles made");
+        if (missing == "BEFORE" || missing == "AFTER")
+            return message("a picture is missing", "write achilles compare BEFORE.png AFTER.png, or two folders");
         if (missing == "NAME") return message("a name is missing", "for example, achilles new mine writes mine.toml");
         if (option == nullptr) return message(what, help());
         for (const std::string& extra : program_.remaining(true))
@@ -358,6 +340,25 @@ std::vector<std::string> command_names(const CLI::App& program) {
     Words names;
     for (const CLI::App* command : program.get_subcommands({})) names.push_back(command->get_name());
     return names;
+}
+
+const CLI::Option* option_of(const CLI::App& command, std::string_view name) {
+    for (const CLI::Option* option : command.get_options())
+        for (const std::string& known : option->get_lnames())
+            if (known == name) return option;
+    return nullptr;
+}
+
+std::optional<SystemDescription> named_system(const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+        if (is_option(word)) continue;
+        try {
+            const std::filesystem::path file = find_system(word);
+            if (std::filesystem::is_regular_file(file)) return read_tables(read_text(file), word).system;
+        } catch (const InputError&) {
+        }
+    }
+    return std::nullopt;
 }
 
 InputError unknown_command(const CLI::App& program, const std::vector<std::string>& words) {

@@ -2,13 +2,16 @@
 // subcommand does the work and sets the exit status.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "system/description.hpp"
 
 namespace CLI {
 class App;
+class Option;
 class ParseError;
 }  // namespace CLI
 
@@ -36,8 +39,15 @@ void add_prove(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new
+void add_completion(CLI::App& program, int& status);
 void add_check(CLI::App& program, int& status);
 void add_compare(CLI::App& program, int& status);
+
+// The man pages: achilles.1 and achilles-COMMAND.1, made from the tables of --help.
+struct ManPage {
+    std::string file, text;
+};
+std::vector<ManPage> man_pages(const CLI::App& program);
 
 // The program as a function.
 
@@ -45,10 +55,21 @@ void add_compare(CLI::App& program, int& status);
 // file give one message on standard error and status 2.
 int run_program(const std::vector<std::string>& words);
 
-// Suggestions for command lines that cannot be parsed: terms of other programs, misspellings, misplaced values.
+// Reading the tables of the program and what was typed.
+
+// The command if the first word is a system, or missing.
+inline constexpr const char* default_command = "explore";
 
 // In the order of --help.
 std::vector<std::string> command_names(const CLI::App& program);
+
+// The option of a command with this name, without dashes; null if there is none.
+const CLI::Option* option_of(const CLI::App& command, std::string_view name);
+
+// The system that the first word with the name of a readable system names.
+std::optional<SystemDescription> named_system(const std::vector<std::string>& words);
+
+// Suggestions for command lines that cannot be parsed: terms of other programs, misspellings, misplaced values.
 
 // Error if the first word is neither a command nor a system: "there is no command or system 'plot'; write achilles
 // figure ...".

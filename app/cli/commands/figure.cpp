@@ -171,7 +171,7 @@ void add_figure(CLI::App& program, int& status, PictureJob& job) {
         ->type_name("F.png|F.svg|F.pdf");
     add_view_option(*command, arguments->views, "view of the system; repeatable (default: all)");
     command->add_option("--journal", arguments->journal, "journal to replay first; its plots are drawn")
-        ->type_name("F");
+        ->type_name("TOUR|F.journal");
     add_step_option(*command, arguments->steps, arguments->allow_files);
     add_format_option(*command, arguments->format, "format, if the name of --out does not give it");
     command

@@ -50,7 +50,20 @@ void add_manual(CLI::App& program, int& status) {
     CLI::App* help = program.add_subcommand("help", "Prints the manual, one page per topic");
     const auto topic = std::make_shared<std::string>();
     help->add_option("TOPIC", *topic, "page or command (default: the list of pages)")->type_name("");
-    help->callback([topic, &program, &status] {
+    const auto man_folder = std::make_shared<std::string>();
+    help->add_option("--man", *man_folder, "write the man pages of all commands into this folder")->type_name("DIR");
+    help->callback([topic, man_folder, &program, &status] {
+        if (!man_folder->empty()) {
+            OutputFiles files;
+            for (const ManPage& page : man_pages(program)) {
+                const std::string file = (std::filesystem::path(*man_folder) / page.file).string();
+                files.add(file);
+                files.put(file, page.text);
+            }
+            files.commit(OutputFiles::Durability::fast);
+            status = reached_end;
+            return;
+        }
         // Some commands have a manual page, which says more than their options.
         const auto pages = manual_topics();
         const bool has_page =

@@ -33,7 +33,7 @@ namespace {
 
 // The first word may be a command, or a system to explore, or missing.
 void put_default_command(const CLI::App& program, std::vector<std::string>& words) {
-    if (words.empty()) words.emplace_back("explore");
+    if (words.empty()) words.emplace_back(default_command);
     const std::string first = words.front();
     if (first == "--help" || first == "-h" || first == "--version") return;
     const std::vector<std::string> commands = command_names(program);
@@ -44,7 +44,7 @@ void put_default_command(const CLI::App& program, std::vector<std::string>& word
         if (!is_system && std::filesystem::path(first).extension() != ".toml" && !std::filesystem::exists(first))
             throw unknown_command(program, words);
     }
-    words.insert(words.begin(), "explore");
+    words.insert(words.begin(), default_command);
 }
 
 // Throws InputError if standard output did not accept everything that was printed.
@@ -86,6 +86,7 @@ int run(const std::vector<std::string>& words, Messages* ranks) {
     add_check(program, status);
     add_list(program, status);
     add_manual(program, status);
+    add_completion(program, status);
     std::vector<std::string> with_command = words;
     put_default_command(program, with_command);
     try {
@@ -157,7 +158,7 @@ void add_options(CLI::App& command, ExploreOptions& options) {
     command.add_option("SYSTEM", options.system, "the path of a .toml file, or a name from 'achilles list'")
         ->type_name("");
     command.add_option("--journal", options.journal, "journal to replay first: a path, or the name of a tour")
-        ->type_name("F");
+        ->type_name("TOUR|F.journal");
     add_step_option(command, options.steps, options.allow_files);
     command.add_option("--record", options.record, "record this session as a journal")->type_name("F");
     add_size_options(command, options.width, options.height, options.scale);
