@@ -23,6 +23,7 @@
 #include "model/read_system.hpp"
 #include "panels/panels.hpp"
 #include "panels/widgets.hpp"
+#include "pictures/icon.hpp"
 #include "pictures/origin.hpp"
 #include "pictures/picture_format.hpp"
 #include "pictures/thumbnails.hpp"
@@ -337,6 +338,17 @@ void copy_picture(const std::string& png) {
 }
 
 // If there is no display, the message names what works without one.
+// The icon in the sizes of title bars and task lists; none if the assets have none.
+std::vector<Image> window_icons() {
+    constexpr int largest = 128;
+    std::vector<Image> icons;
+    for (const int pixels : icon_sizes)
+        if (const auto file = assets() / "icons" / fmt::format("{}.png", pixels);
+            pixels <= largest && std::filesystem::exists(file))
+            icons.push_back(read_png(file));
+    return icons;
+}
+
 Window window_for(const ExploreOptions& options, const std::string& system) {
     try {
         return Window(surface_options(options), "Achilles");
@@ -373,6 +385,7 @@ int explore(const ExploreOptions& options) {
     Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
                                    std::move(library), journal.empty() ? Timeout(frame_patience) : Timeout());
     Window window = window_for(options, name);
+    window.set_icons(window_icons());
     // Created last, so that an existing record file is not lost if there is no display.
     Explorer explorer(session, window, options, film, state.get(), trust);
     session.set_patience(frame_patience);

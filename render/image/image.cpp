@@ -30,23 +30,22 @@ std::size_t bytes(const Image& image) {
     return 3 * static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
 }
 
-// RGBA, four bytes per pixel.
-std::vector<std::uint8_t> with_alpha(const Image& image) {
-    std::vector<std::uint8_t> mixed;
-    mixed.reserve(4 * image.alpha.size());
-    for (std::size_t i = 0; i < image.alpha.size(); ++i) {
-        mixed.insert(mixed.end(), image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i),
-                     image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i + 3));
-        mixed.push_back(image.alpha[i]);
-    }
-    return mixed;
-}
-
 std::runtime_error file_error(const std::filesystem::path& file, const std::string& reason) {
     return std::runtime_error(file.string() + ": " + reason);
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> rgba(const Image& image) {
+    std::vector<std::uint8_t> pixels;
+    pixels.reserve(image.rgb.size() / 3 * 4);
+    for (std::size_t i = 0; i < image.rgb.size() / 3; ++i) {
+        const auto color = image.rgb.begin() + static_cast<std::ptrdiff_t>(3 * i);
+        pixels.insert(pixels.end(), color, color + 3);
+        pixels.push_back(image.alpha.empty() ? 255 : image.alpha[i]);
+    }
+    return pixels;
+}
 
 std::string png_bytes(const Image& image, const Compression& compression) {
     const bool opaque = image.alpha.empty();
@@ -60,7 +59,7 @@ std::string png_bytes(const Image& image, const Compression& compression) {
         static_cast<std::string*>(context)->append(static_cast<const char*>(data), static_cast<std::size_t>(size));
     };
     const int channels = opaque ? 3 : 4;
-    const std::vector<std::uint8_t> mixed = opaque ? std::vector<std::uint8_t>{} : with_alpha(image);
+    const std::vector<std::uint8_t> mixed = opaque ? std::vector<std::uint8_t>{} : rgba(image);
     const void* const pixels = opaque ? image.rgb.data() : mixed.data();
     if (stbi_write_png_to_func(append, &out, image.width, image.height, channels, pixels, channels * image.width) == 0)
         throw std::bad_alloc();  // the only cause of failure that stb reports

@@ -16,6 +16,9 @@ struct Image {
     friend bool operator==(const Image&, const Image&) = default;
 };
 
+// The pixels as red, green, blue and alpha, 4 bytes each.
+std::vector<std::uint8_t> rgba(const Image& image);
+
 // Both throw std::runtime_error with the path and the reason.
 void write_png(const Image& image, const std::filesystem::path& file);
 // Reads colors, 8 bits each, and transparency. `alpha` is empty if all pixels are opaque.

@@ -338,6 +338,16 @@ void Window::fill_screen(bool full) {
 
 void Window::set_title(const std::string& title) { glfwSetWindowTitle(implementation_->window, title.c_str()); }
 
+void Window::set_icons(const std::vector<Image>& icons) {
+    std::vector<std::vector<unsigned char>> pixels;
+    std::vector<GLFWimage> images;
+    for (const Image& icon : icons) {
+        pixels.push_back(rgba(icon));
+        images.push_back({icon.width, icon.height, pixels.back().data()});
+    }
+    glfwSetWindowIcon(implementation_->window, static_cast<int>(images.size()), images.data());
+}
+
 Image Window::picture() {
     const Implementation::CurrentWindowContext current(implementation_->window);
     return implementation_->canvas->read();

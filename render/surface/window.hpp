@@ -35,6 +35,8 @@ class Window {
     // Covers the whole monitor, or returns to the size before.
     void fill_screen(bool full);
     void set_title(const std::string& title);
+    // The window system shows the icon of the best size. Wayland ignores them.
+    void set_icons(const std::vector<Image>& icons);
     // The last frame as drawn, before the window system could change it.
     Image picture();
     // Files dropped onto the window since the last call.

@@ -40,6 +40,7 @@ void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);
 void add_manual(CLI::App& program, int& status);  // help and new
 void add_completion(CLI::App& program, int& status);
+void add_icon(CLI::App& program, int& status);
 void add_check(CLI::App& program, int& status);
 void add_compare(CLI::App& program, int& status);
 

@@ -87,6 +87,7 @@ int run(const std::vector<std::string>& words, Messages* ranks) {
     add_list(program, status);
     add_manual(program, status);
     add_completion(program, status);
+    add_icon(program, status);
     std::vector<std::string> with_command = words;
     put_default_command(program, with_command);
     try {
