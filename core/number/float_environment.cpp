@@ -1,5 +1,7 @@
 #include "number/float_environment.hpp"
 
+#include <fmt/format.h>
+
 #include <cfenv>
 
 #if defined(__SSE2__)
@@ -46,6 +48,8 @@ FloatEnvironmentGuard::~FloatEnvironmentGuard() { std::fesetenv(&environment_); 
 std::string mathematical_library() {
 #if defined(__GLIBC__)
     return std::string("glibc ") + gnu_get_libc_version();
+#elif defined(__EMSCRIPTEN__)
+    return fmt::format("musl of Emscripten {}.{}.{}", __EMSCRIPTEN_major__, __EMSCRIPTEN_minor__, __EMSCRIPTEN_tiny__);
 #else
     return "unknown";
 #endif

@@ -88,7 +88,7 @@ bool ExecutionAutomaton::complete_collapse(std::size_t which, const Contact& con
 // The same for this pair, of which the first one impacts.
 bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pair,
                                            const std::array<Contact, 2>& contacts, double W12, bool at_rounding) {
-    const auto [which, j] = pair;
+    const std::size_t which = pair[0], j = pair[1];
     const double e = restitution(which), u = -contacts[0].hdot;
     const AlternateImpacts law({contacts[0].W, W12, contacts[1].W, {e, restitution(j)}});
     const auto fail = [&](std::string_view inequality) {

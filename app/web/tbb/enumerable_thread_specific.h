@@ -1,0 +1,13 @@
+// Stand-in for TBB on a page, which has one thread.
+#pragma once
+
+namespace tbb {
+template <class Value>
+class enumerable_thread_specific {
+ public:
+    Value& local() { return value_; }
+
+ private:
+    Value value_{};
+};
+}  // namespace tbb
