@@ -230,7 +230,6 @@ void show_end(const Session& session, bool is_start, const EventColumns& columns
     // The time is in its own column.
     std::string text = is_start ? session.sentences().start() : session.sentences().end();
     const std::size_t colon = text.find(": ");
-    // Beside a card there is room for the word alone.
     text = (is_start ? "start" : "end") + (has_card(session) ? "" : text.substr(colon));
     columns.put_words(at, typeset_sentence(text), faint_color());
 }

@@ -241,6 +241,10 @@ void show_numbers(const Session& session, const OrbitJobResult& found, PanelStat
     const float width = remaining().width;
     const OrbitPoint& point = found.point(described_point(session, found));
     const auto line = [&](const std::string& text, const Color& color) { paragraph(with_minus(text), width, color); };
+    if (found.answer.branch) {
+        show_slider(session, found, state, commands);
+        show_happenings(found, state, commands);
+    }
     line(fmt::format("period {:.10g} s, from {}", point.period,
                      found.answer.orbit->is_at_release ? "release to release" : "flight to flight"),
          text_color());
@@ -249,8 +253,6 @@ void show_numbers(const Session& session, const OrbitJobResult& found, PanelStat
     if (const std::string margins = margins_text(point); !margins.empty())
         line(typeset_sentence(margins.substr(0, margins.size() - 1)), faint_color());
     if (!found.answer.branch) return;
-    show_slider(session, found, state, commands);
-    show_happenings(found, state, commands);
     const Branch& branch = *found.answer.branch;
     const auto tell_end = [&](const OrbitPoint& end, const std::string& why) {
         const ImVec2 at = ImGui::GetCursorScreenPos();

@@ -6,6 +6,7 @@
 
 #include "output/proof.hpp"
 #include "panels/actions.hpp"
+#include "panels/event_list.hpp"
 #include "panels/widgets.hpp"
 #include "session/study_jobs.hpp"
 #include "surface/imgui_version.hpp"
@@ -59,8 +60,6 @@ void show_study_tabs(const std::string& seen, PanelState& state, Commands& comma
     ImGui::NewLine();
 }
 
-constexpr const char *prove_word = "Prove this run", *stop_word = "Stop proving", *forget_word = "Forget proof";
-
 // Menu of the half-widths of the start interval.
 void show_spreads(PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup("spreads")) return;
@@ -73,24 +72,28 @@ void show_spreads(PanelState& state, Commands& commands) {
     ImGui::EndPopup();
 }
 
-// The events with the proved intervals of their times; a click selects one.
+// The events that change the contacts, with the proved intervals of their times; a click selects one. A run with impacts
+// alone has those.
 void show_proved_events(const Session& session, PanelState& state, Commands& commands) {
     const auto& events = session.trajectory().events;
+    std::vector<std::size_t> rows = turns(session.trajectory(), true);
+    for (std::size_t i = 0; rows.empty() && i < events.size(); ++i) rows.push_back(i);
     constexpr float name_width = 150.0F;
     begin_padded_child("proved events", {0.0F, std::max(1.0F, ImGui::GetContentRegionAvail().y)});
     ImGuiListClipper clipper;
-    clipper.Begin(static_cast<int>(events.size()), ImGui::GetTextLineHeightWithSpacing());
+    clipper.Begin(static_cast<int>(rows.size()), ImGui::GetTextLineHeightWithSpacing());
     while (clipper.Step())
         for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
             const ImVec2 at = ImGui::GetCursorScreenPos();
-            const auto event = static_cast<std::size_t>(i);
+            const std::size_t event = rows[static_cast<std::size_t>(i)];
+            const int event_number = static_cast<int>(event) + 1;
             ImGui::PushID(i);
-            if (ImGui::Selectable("##proved", session.selected() == i + 1))
-                commands.emplace_back(command::Select{session.selected() == i + 1 ? 0 : i + 1});
+            if (ImGui::Selectable("##proved", session.selected() == event_number))
+                commands.emplace_back(command::Select{session.selected() == event_number ? 0 : event_number});
             ImGui::PopID();
-            remember(state, fmt::format("proved {}", i + 1));
+            remember(state, fmt::format("proved {}", event_number));
             const std::string text = proved_text(session, event);
-            cell({at.x + units(4.0F), at.y}, fmt::format("{} {}", i + 1, names_of(events[event]).name),
+            cell({at.x + units(4.0F), at.y}, fmt::format("{} {}", event_number, names_of(events[event]).name),
                  units(name_width), text_color());
             cell({at.x + units(name_width + 12.0F), at.y}, text.empty() ? "not proved" : text,
                  remaining().width - units(name_width + 16.0F), text.empty() ? faint_color() : text_color());
@@ -120,7 +123,7 @@ void show_proof(const Session& session, PanelState& state, Commands& commands) {
     const std::string_view what = not_proved(*session.model());
     const bool is_under_way = session.proof_under_way() != nullptr, is_there = session.proof() != nullptr;
     ImGui::BeginDisabled(!what.empty());
-    if (ImGui::Button(is_under_way ? stop_word : is_there ? forget_word : prove_word))
+    if (ImGui::Button(is_under_way ? "Stop proving" : is_there ? "Forget proof" : "Prove this run"))
         commands.push_back(is_under_way || is_there ? Command(command::StopProof{}) : Command(command::Prove{}));
     remember(state, "prove");
     ImGui::SameLine(0.0F, units(14.0F));

@@ -157,7 +157,7 @@ TEST(Equations, AreSetInColumnsThatFit) {
 }
 
 TEST(Equations, AreACommandAndATab) {
-    Hands hands("double_pendulum");
+    Hands hands("double_pendulum", test::surface(1280, 1000));
     EXPECT_FALSE(hands.session.scene().shows("equations"));
     hands.click("tab equations");
     EXPECT_TRUE(hands.session.scene().shows("equations"));
@@ -176,7 +176,7 @@ TEST(Equations, AreACommandAndATab) {
 }
 
 TEST(Equations, TellWhatTheConditionIsNow) {
-    Hands hands("double_pendulum");
+    Hands hands("double_pendulum", test::surface(1280, 1000));
     hands.session.apply(parse_command("show equations"));
     hands.session.apply(parse_command("seek 1"));
     hands.rest(2);
@@ -198,7 +198,7 @@ TEST(Equations, TellWhatTheConditionIsNow) {
 }
 
 TEST(Equations, AndSlidersLightEachOther) {
-    Hands hands("double_pendulum");
+    Hands hands("double_pendulum", test::surface(1280, 1000));
     hands.session.apply(parse_command("show equations"));
     hands.rest(3);
     hands.point("equation m1");
@@ -260,7 +260,7 @@ TEST(Equations, StandBelowTheBodies) {
 
 // A window does not wait for the equations.
 TEST(Equations, ComeWhenTheyAreReady) {
-    Hands hands("double_pendulum");
+    Hands hands("double_pendulum", test::surface(1280, 1000));
     hands.state.in_window = true;
     hands.session.apply(parse_command("show equations"));
     hands.rest(1);

@@ -89,9 +89,10 @@ class ProgramFolder : public test::Folder {
 TEST(ExportDialog, EntryOfTheMenuIsReady) {
     const ProgramFolder programs;
     programs.add("ffmpeg");
-    const std::pair<const char*, const char*> entries[] = {
-        {"Film as MP4\u2026", "mp4"},  {"Figure as SVG\u2026", "svg"}, {"Figure as PNG\u2026", "png"},
-        {"Run as JSON\u2026", "json"}, {"Run as CSV\u2026", "csv"},    {"Session as journal\u2026", "journal"}};
+    const std::pair<const char*, const char*> entries[] = {{"Export film\u2026", "mp4"},
+                                                           {"Export figure\u2026", "svg"},
+                                                           {"Export data\u2026", "csv"},
+                                                           {"Save session\u2026", "journal"}};
     for (const auto& [entry, ending] : entries) {
         test::Hands hands("ball_on_sine");
         hands.click("bar File");
