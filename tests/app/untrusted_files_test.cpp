@@ -365,9 +365,9 @@ TEST_F(UntrustedFiles, JsonSteersNoTerminalAndKeepsWhatItSays) {
     ASSERT_EQ(answer.status, 0) << answer.err;
     EXPECT_EQ(printable(answer.out), answer.out);
     EXPECT_NE(answer.out.find("\\u007f\\u009b[31m\\u202e\\u2066\xC3\xA9\\n"), std::string::npos) << answer.out;
-    const auto json = nlohmann::json::parse(answer.out);
-    EXPECT_EQ(json["system"]["title"], title);
-    EXPECT_EQ(json["units"]["y"], "m\xC2\x9B");
+    const auto written = nlohmann::json::parse(answer.out);
+    EXPECT_EQ(written["system"]["title"], title);
+    EXPECT_EQ(written["units"]["y"], "m\xC2\x9B");
     EXPECT_EQ(folder.run("simulate evil.toml --json a.json").status, 0);
     EXPECT_EQ(held_by("a.json"), answer.out) << "the same run gives the same bytes";
     EXPECT_EQ(printable(folder.run("simulate evil.toml --csv - --units").out),
