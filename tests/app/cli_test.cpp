@@ -46,13 +46,35 @@ TEST(Cli, AssetsCanBeElsewhere) {
 
 TEST(Cli, HelpAndVersion) {
     const Folder folder;
-    EXPECT_EQ(folder.run("--version").out, "achilles 0.1.0\n");
+    const std::string version = folder.run("--version").out;
+    EXPECT_TRUE(
+        std::regex_match(version, std::regex("achilles 0\\.1\\.0 \\(commit ([0-9a-f]{7,12}( with changes)?|unknown: "
+                                             "built from files outside of a git repository)\\)\n")))
+        << version;
     for (const char* arguments : {"--help", "simulate --help", "paper --help", "list --help", "explore --help",
                                   "screenshot --help", "figure --help", "frames --help", "reproduce --help"}) {
         const Answer answer = folder.run(arguments);
         EXPECT_EQ(answer.status, 0) << arguments;
         EXPECT_NE(answer.out.find("Usage: achilles"), std::string::npos) << arguments;
     }
+}
+
+// The commit is one of the source's repository. (It need not be the last one: the program may be older.)
+TEST(Cli, TheVersionHasACommitOfTheSource) {
+    const Folder folder;
+    const std::string version = folder.run("--version").out, git = "git -C '" ACHILLES_SOURCE_DIR "' ";
+    if (std::system((git + "rev-parse HEAD >/dev/null 2>&1").c_str()) != 0) GTEST_SKIP() << "there is no repository";
+    std::smatch commit;
+    ASSERT_TRUE(std::regex_search(version, commit, std::regex("commit ([0-9a-f]{7,12})"))) << version;
+    EXPECT_EQ(std::system((git + "cat-file -e '" + commit[1].str() + "^{commit}'").c_str()), 0) << version;
+}
+
+// README and the manual cite the version of the build.
+TEST(Cli, TheVersionIsCitedEverywhere) {
+    const std::string version = Folder().run("--version").out.substr(9, 5);
+    EXPECT_NE(content(ACHILLES_SOURCE_DIR "/README.md").find("*Achilles " + version + ":"), std::string::npos);
+    EXPECT_NE(content(ACHILLES_SOURCE_DIR "/assets/manual/paper.md").find("version = {" + version + "}"),
+              std::string::npos);
 }
 
 TEST(Cli, JsonHasTheContractsKeys) {

@@ -53,8 +53,8 @@ std::vector<ManPage> man_pages(const CLI::App& program);
 // The program as a function.
 
 // Runs a command line, given without the program's name. Returns the exit status. Errors in the command line or in a
-// file give one message on standard error and status 2.
-int run_program(const std::vector<std::string>& words);
+// file give one message on standard error and status 2. `commit`: of the source, for --version.
+int run_program(const std::vector<std::string>& words, const std::string& commit = "commit unknown");
 
 // Reading the tables of the program and what was typed.
 

@@ -71,9 +71,9 @@ void finish_output() {
     std::abort();
 }
 
-int run(const std::vector<std::string>& words, Messages* ranks) {
+int run(const std::vector<std::string>& words, const std::string& commit, Messages* ranks) {
     CLI::App program("Simulates mechanical systems with impacts past their Zeno points", "achilles");
-    program.set_version_flag("--version", "achilles " + version());
+    program.set_version_flag("--version", fmt::format("achilles {} ({})", version(), commit));
     program.require_subcommand(1);
     int status = reached_end;
     add_explore(program, status);
@@ -107,7 +107,7 @@ int run(const std::vector<std::string>& words, Messages* ranks) {
 
 // Runs as one of several processes started by mpirun. Only sweeps are shared: rank 0 runs the program, the others
 // follow its orders and print nothing. All other commands run in every process.
-int run_as_rank(const Launch& launch, const std::vector<std::string>& words) {
+int run_as_rank(const Launch& launch, const std::vector<std::string>& words, const std::string& commit) {
     std::optional<Ranks> ranks;
     try {
         ranks.emplace(launch);
@@ -116,23 +116,23 @@ int run_as_rank(const Launch& launch, const std::vector<std::string>& words) {
         if (launch.rank > 0) std::this_thread::sleep_for(std::chrono::seconds(2));
         throw;
     }
-    if (ranks->rank() == 0) return run(words, &*ranks);
+    if (ranks->rank() == 0) return run(words, commit, &*ranks);
     help_with_sweep(*ranks);
     return reached_end;
 }
 
-int run_or_throw(const std::vector<std::string>& words) {
+int run_or_throw(const std::vector<std::string>& words, const std::string& commit) {
     const bool is_sweep = !words.empty() && words.front() == "sweep";
     const std::optional<Launch> launch = is_sweep ? find_launch() : std::nullopt;
-    return launch ? run_as_rank(*launch, words) : run(words, nullptr);
+    return launch ? run_as_rank(*launch, words, commit) : run(words, commit, nullptr);
 }
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& words) {
+int run_program(const std::vector<std::string>& words, const std::string& commit) {
     std::set_terminate(end_in_words);
     try {
-        return run_or_throw(words);
+        return run_or_throw(words, commit);
     } catch (const InputError& error) {
         // A message about a place in a file starts with the place, so that editors find it.
         print_clean(stderr, "{}{}\n", error.file.empty() ? "achilles: " : "", error.what());
