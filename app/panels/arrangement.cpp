@@ -46,7 +46,7 @@ Arrangement arrange_lecture(const Scene& scene, const Measures& m) {
     const float left_over = lower - between - top - min_picture * m.unit;
     const float sliders = m.sliders <= left_over ? m.sliders : 0.0F;
     const float above = sliders > 0.0F ? sliders + 0.4F * between : 0.0F;
-    const float energy = energy_in(m, left_over - above - 0.4F * between),
+    const float energy = energy_in(m, left_over - above - 0.4F * between - min_picture * m.unit),
                 below_sliders = energy > 0.0F ? energy + 0.4F * between : 0.0F;
     const float height = std::max(0.0F, lower - between - top - above - below_sliders);
     const bool has_plots = scene.shows("plots") || scene.shows("sweep");
@@ -82,9 +82,9 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     const float fitting = editor ? std::min(std::max(0.36F * m.width, 420.0F * u), 0.6F * m.width)
                                  : std::clamp(0.2F * m.width, 272.0F * u, 320.0F * u);
     const float left = has_left ? size_of(scene.share(left_panel), m.width, fitting, min_left, inside - others) : 0.0F;
-    // Space for a certificate without scrolling, if available. The same for the events and for every study, so that
-    // nothing jumps when another one is shown.
-    const float fitting_events = std::max({180.0F * u, 0.26F * m.height, std::min(218.0F * u, 0.3F * m.height)});
+    // Space for a certificate and for the curve of a sweep. The same for the events and for every study, so that nothing
+    // jumps when another one is shown.
+    const float fitting_events = std::clamp(0.43F * m.height - 100.0F * u, 180.0F * u, 330.0F * u);
     const float low =
         has_events ? size_of(scene.share("events"), m.height, fitting_events, min_events * u, all - min_top * u) : 0.0F;
     const float height = std::max(0.0F, all - (low > 0.0F ? low + between : 0.0F));

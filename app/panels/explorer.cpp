@@ -139,7 +139,8 @@ bool escape_pressed(const PanelState& state) {
 }
 
 // A frame around the panel that a tour refers to.
-void show_highlight(const std::string& panel, const Arrangement& parts) {
+void show_highlight(const Scene& scene, const std::string& panel, const Arrangement& parts) {
+    if ((panel == "sweep" || panel == "events") && scene.below() != panel) return;  // another study is shown there
     const std::pair<const char*, const Rectangle*> all[] = {
         {"bar", &parts.bar},          {"controls", &parts.controls},   {"energy", &parts.energy},
         {"events", &parts.events},    {"mechanism", &parts.mechanism}, {"plots", &parts.plots},
@@ -213,7 +214,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     for (const Arrangement::Splitter& splitter : parts.splitters)
         part(("splitter " + splitter.panel).c_str(), splitter.area, still_window,
              [&] { show_splitter(splitter, state, commands); });
-    show_highlight(session.scene().highlight(), parts);
+    show_highlight(session.scene(), session.scene().highlight(), parts);
     use_focus(state);
     if (session.scene().presents() && take_escape(state)) commands.emplace_back(command::Present{false});
     state.changing = state.changing || std::any_of(commands.begin(), commands.end(), is_part_of_change);

@@ -57,8 +57,8 @@ TEST(CertificateText, SaysWhatHappenedAndHowNearEachLimitIs) {
     }
     EXPECT_EQ(nearest, 1);
     EXPECT_EQ(text.rows[0].error, "Zeno time");
-    EXPECT_EQ(text.rows[0].allowed, "1e\u221206 s");
-    EXPECT_EQ(text.rows[2].allowed, "1e\u221206 m/s");
+    EXPECT_EQ(text.rows[0].allowed, "1e\u22126 s");
+    EXPECT_EQ(text.rows[2].allowed, "1e\u22126 m/s");
     EXPECT_EQ(text.not_covered.rfind("Not covered: integration error before the cut, about ", 0), 0U)
         << text.not_covered;
     session.apply(command::SetConditions{Conditions::paper});

@@ -178,7 +178,7 @@ TEST(OrbitPanel, MakesTheRunPeriodic) {
 }
 
 TEST(OrbitPanel, GoesAlongTheBranch) {
-    Hands hands("ball_down_a_wave");
+    Hands hands("ball_down_a_wave", test::surface(1600, 1000));
     hands.session.apply(command::Set{"e", 0.3});
     hands.press_with_control('6');
     hands.rest(2);

@@ -106,6 +106,7 @@ TEST(Preferences, FilesStandInTheMenu) {
     const std::string path = find_system("double_pendulum").string();
     hands.state.recent = {path};
     hands.click("bar File");
+    hands.click("menu Open recent");
     EXPECT_TRUE(hands.says("double_pendulum.toml"));
     hands.click("menu " + path);
     EXPECT_EQ(hands.all, std::vector<Command>{command::Open{path}});
