@@ -55,19 +55,6 @@ Figure pale_figure(const Trajectory& trajectory, std::span<const ViewDescription
     return figure;
 }
 
-// The plane of the first two coordinates; for a single coordinate its phase plane.
-ViewDescription plane_of(const SystemDescription& description) {
-    const std::string& first = description.coordinates[0].name;
-    ViewDescription view;
-    view.x.text = first;
-    view.y.push_back({description.coordinates.size() > 1 ? description.coordinates[1].name : first + "'", {}});
-    return view;
-}
-
-}  // namespace
-
-namespace {
-
 // The number of columns that gives plots nearly the preferred shape and leaves few cells empty.
 int columns_in(const Rectangle& area, std::size_t plots) {
     constexpr double pleasant = 1.6, empty = 0.3;  // width / height; cost of an empty cell
@@ -86,6 +73,14 @@ int columns_in(const Rectangle& area, std::size_t plots) {
 }
 
 }  // namespace
+
+ViewDescription plane_of(const SystemDescription& description) {
+    const std::string& first = description.coordinates[0].name;
+    ViewDescription view;
+    view.x.text = first;
+    view.y.push_back({description.coordinates.size() > 1 ? description.coordinates[1].name : first + "'", {}});
+    return view;
+}
 
 double still_scale(const StillSize& size) {
     constexpr double wide = 1600.0, high = 1000.0, at_that = 1.3, least = 0.5, most = 11.0;

@@ -32,6 +32,9 @@ constexpr double still_margin = 16.0;      // pixels at scale 1, on all sides of
 // never drops below a readable size.
 double still_scale(const StillSize& size);
 
+// What is shown of a system without a drawing: the plane of its first two coordinates, or the phase plane of its only one.
+ViewDescription plane_of(const SystemDescription& description);
+
 // One frame of an animation.
 struct AnimationFrame {
     Sheet heading;  // and the background

@@ -354,7 +354,10 @@ std::vector<PlotArea> plot_areas(const Figure& figure, const Measure& width, Rec
     std::vector<PlotArea> areas;
     for (std::size_t i = 0; i < figure.panels.size(); ++i) {
         const Rectangle place = on_pixels(grid.plot(i));
-        areas.push_back({with_equal_units(figure.panels[i], place), place});
+        const Rectangle plot = with_equal_units(figure.panels[i], place);
+        Rectangle inner = plot;
+        inner.height -= strip_height(figure.panels[i], plot, m);
+        areas.push_back({plot, place, inner});
     }
     return areas;
 }

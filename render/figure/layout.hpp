@@ -66,9 +66,10 @@ using Sheet = std::vector<std::variant<Fill, Path, Strip, Mark, Tiles, TextRun>>
 // Lays out the whole figure in the area; `scale` multiplies text sizes and stroke widths.
 Sheet layout(const Figure& figure, const Measure& width, Rectangle area, double scale);
 
-// Plot area inside the axes of a panel, and the area before it was shrunk to equal axes.
+// Plot area inside the axes of a panel, the area before it was shrunk to equal axes, and the plot area without the time
+// bars at its bottom.
 struct PlotArea {
-    Rectangle plot, place;
+    Rectangle plot, place, inner;
 };
 std::vector<PlotArea> plot_areas(const Figure& figure, const Measure& width, Rectangle area, double scale);
 

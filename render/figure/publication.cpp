@@ -243,7 +243,7 @@ Figure publication(const Trajectory& trajectory, std::vector<Panel> panels, cons
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
 const std::vector<double> unstable_dash{5.0, 3.0};
 
 // Special points of one kind along a branch, and their marker.
@@ -284,7 +284,7 @@ void trace(Panel& panel, const Branch& branch, const Color& color, const Value& 
         const Point at{branch.value(point), value(point)};
         std::vector<Point>& points = curves[point.stable ? 0 : 1].points;
         if (before != nullptr && before->stable != point.stable) {
-            points.push_back({nan, nan});
+            points.push_back({no_number, no_number});
             points.push_back({branch.value(*before), value(*before)});
         }
         points.push_back(at);
@@ -305,7 +305,7 @@ void add_branch_events(Panel& panel, const Branch& branch, const Theme& theme, c
 
 // Fits the y axis to the curves.
 void fit(Panel& panel, const std::array<double, 2>& x) {
-    double low = nan, high = nan;
+    double low = no_number, high = no_number;
     for (const Curve& curve : panel.curves)
         for (const Point& point : curve.points) {
             low = std::fmin(low, point.y);
@@ -339,8 +339,8 @@ class BranchPanels {
         panels.push_back(of_multipliers());
         const auto has_margin = [](const OrbitPoint& point) { return point.margins.a_inf.has_value(); };
         if (std::any_of(branch_.points.begin(), branch_.points.end(), has_margin))
-            panels.push_back(
-                of("\U0001D44E_{\u221E}", [](const OrbitPoint& point) { return point.margins.a_inf.value_or(nan); }));
+            panels.push_back(of("\U0001D44E_{\u221E}",
+                                [](const OrbitPoint& point) { return point.margins.a_inf.value_or(no_number); }));
         return panels;
     }
 
@@ -382,7 +382,7 @@ class BranchPanels {
             most = std::max(most, point.multipliers.size() - point.zero_multipliers);
         const auto size_of = [](std::size_t i) -> Value {
             return [i](const OrbitPoint& point) {
-                return i < point.multipliers.size() ? std::abs(point.multipliers[i]) : nan;
+                return i < point.multipliers.size() ? std::abs(point.multipliers[i]) : no_number;
             };
         };
         for (std::size_t i = first; i < std::max(most, first + 1); ++i) {

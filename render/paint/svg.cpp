@@ -142,7 +142,7 @@ Image image_of(const Cells& cells) {
 // Writes the items of a sheet in order.
 class SvgWriter {
  public:
-    explicit SvgWriter(const FontFile& font) : font_(font) {}
+    SvgWriter(const FontFile& font, std::string prefix) : font_(font), prefix_(std::move(prefix)) {}
 
     void operator()(const Fill& fill) {
         const Rectangle& r = fill.area;
@@ -266,7 +266,7 @@ class SvgWriter {
 
     const std::string& clip(const Rectangle& r) {
         std::string& name = clips_[{r.x, r.y, r.width, r.height}];
-        if (name.empty()) name = fmt::format("plot{}", clips_.size());
+        if (name.empty()) name = fmt::format("{}plot{}", prefix_, clips_.size());
         return name;
     }
 
@@ -311,6 +311,7 @@ class SvgWriter {
     static constexpr double dot_gap = 0.08;  // between a letter and its dots, as a fraction of the em
 
     const FontFile& font_;
+    std::string prefix_;  // of the names of clip paths
     std::string body_;
     bool has_images_ = false;
     std::map<std::tuple<float, float, float, float>, std::string> clips_;
@@ -345,15 +346,21 @@ Rectangle area_of(const SvgSize& size) {
 std::string svg(const Figure& figure, const SvgSize& size, const std::filesystem::path& fonts, const Notes& notes) {
     const FontFile font(fonts);
     const auto measure = [&font](const std::string& label, float size_of_it) { return font.width(label, size_of_it); };
-    SvgWriter writer(font);
+    SvgWriter writer(font, size.prefix);
     for (const auto& item : layout(figure, measure, area_of(size), size.scale)) std::visit(writer, item);
     return file_of(writer, size, notes);
+}
+
+std::vector<PlotArea> plot_areas(const Figure& figure, const SvgSize& size, const std::filesystem::path& fonts) {
+    const FontFile font(fonts);
+    const auto measure = [&font](const std::string& label, float size_of_it) { return font.width(label, size_of_it); };
+    return plot_areas(figure, measure, area_of(size), size.scale);
 }
 
 std::string svg(const Drawing& world, const Color& background, const SvgSize& size, const std::filesystem::path& fonts,
                 const Notes& notes) {
     const FontFile font(fonts);
-    SvgWriter writer(font);
+    SvgWriter writer(font, size.prefix);
     const Rectangle area = area_of(size);
     if (background.a > 0) writer(Fill{area, background});
     const Placement placement = place(world, area);

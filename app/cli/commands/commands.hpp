@@ -35,6 +35,7 @@ void add_screenshot(CLI::App& program, int& status, PictureJob& job);
 void add_sweep(CLI::App& program, int& status, PictureJob& job, Messages* ranks);
 // Adds all commands that make pictures.
 void add_pictures(CLI::App& program, int& status, PictureJob& job, Messages* ranks = nullptr);
+void add_html(CLI::App& program, int& status);
 void add_prove(CLI::App& program, int& status);
 void add_reproduce(CLI::App& program, int& status);
 void add_list(CLI::App& program, int& status);

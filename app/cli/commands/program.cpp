@@ -81,6 +81,7 @@ int run(const std::vector<std::string>& words, const std::string& commit, Messag
     add_prove(program, status);
     PictureJob job(words);
     add_pictures(program, status, job, ranks);
+    add_html(program, status);
     add_reproduce(program, status);
     add_compare(program, status);
     add_check(program, status);
