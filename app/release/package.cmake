@@ -43,6 +43,7 @@ if(TARGET achilles_python)
     math(EXPR next "${ACHILLES_PYTHON_MINOR} + 1")
     string(APPEND CPACK_DEBIAN_MAIN_PACKAGE_DEPENDS
            ", python3 (>= 3.${ACHILLES_PYTHON_MINOR}), python3 (<< 3.${next}), python3-numpy")
+    set(CPACK_DEBIAN_MAIN_PACKAGE_CONTROL_EXTRA ${CMAKE_CURRENT_LIST_DIR}/postinst ${CMAKE_CURRENT_LIST_DIR}/prerm)
 endif()
 
 set(CPACK_DEBIAN_MPI_PACKAGE_NAME achilles-mpi)
