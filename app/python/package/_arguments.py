@@ -60,6 +60,13 @@ def texts_in(name: str, value: object, example: str) -> list[str]:
     return texts
 
 
+def one_of(name: str, value: Any, plain_name: str, plain: Any) -> Any:
+    """The value of an argument that has two names, of which at most one may be given; None if neither is."""
+    if value is not None and plain is not None:
+        raise TypeError(f"{plain_name} and {name} are two names of the same argument: give only one of them")
+    return value if plain is None else plain
+
+
 def kind_of(value: object) -> str:
     """The type of a wrong argument, and its value, for messages."""
     return "None" if value is None else f"{type(value).__name__} ({value!r})"[:80]
@@ -71,20 +78,23 @@ class RunArguments:
     settings: list[str]
     options: dict[str, str]
 
-    def __init__(self, system: Any, set: Mapping[str, object] | None, given: Mapping[str, object]) -> None:
+    def __init__(self, system: Any, set: Mapping[str, object] | None, plain: Mapping[str, object] | None,
+                 given: Mapping[str, object]) -> None:
         self.settings, self.options = [], {}
-        if set is not None and not isinstance(set, Mapping):
-            raise TypeError(f"set: a dict such as {{\"x'\": 1.5}} is expected, not {kind_of(set)}")
-        values = dict(set or {})
+        place = "set" if plain is None else "values"
+        listed = one_of("set", set, "values", plain)
+        if listed is not None and not isinstance(listed, Mapping):
+            raise TypeError(f"{place}: a dict such as {{\"x'\": 1.5}} is expected, not {kind_of(listed)}")
+        values = dict(listed or {})
         for name, value in given.items():
             if name in _flags:
                 if value is not None:
                     self._take(name, value)
                     if name in system.settable:
-                        told = f"{name} is taken as the option; the value of the system with this name goes into set"
+                        told = f"{name} is taken as the option; the value of the system with this name goes into values"
                         warnings.warn(told, AchillesWarning, stacklevel=3)
             elif name in values:
-                raise TypeError(f"{name} is given twice: as an argument and in set")
+                raise TypeError(f"{name} is given twice: as an argument and in {place}")
             else:
                 _check_name(system, name)
                 values[name] = value
@@ -105,22 +115,22 @@ def _check_name(system: Any, name: str) -> None:
     guess = _core.did_you_mean(name, system.settable) or _core.did_you_mean(name, options)
     known = ", ".join(system.settable)
     told = f"there is no value or option '{name}'{guess}"
-    hint = f"its values are {known}; a name that is not valid in Python goes into set={{\"x'\": 1.5}}"
+    hint = f"its values are {known}; a name that is not valid in Python goes into values={{\"x'\": 1.5}}"
     raise InputError(f"{told}\n{hint}", [(told, name, 0, 0, told, hint)])
 
 
 def with_options(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Decorator that adds all options to the signature and docstring of a function with a **values parameter."""
+    """Decorator that adds all options to the signature and docstring of a function with a **named parameter."""
     signature = inspect.signature(function)
     kept = [p for p in signature.parameters.values() if p.kind is not p.VAR_KEYWORD]
     rest = [p for p in signature.parameters.values() if p.kind is p.VAR_KEYWORD]
     lines = []
     for row in _table:
         name = _name(row["flag"])
-        kind = "str" if row["words"] else "int | str" if isinstance(row["default"], int) else "float | str"
+        kind = f"Literal[{', '.join(map(repr, row['words']))}]" if row["words"] else "int | str" if isinstance(row["default"], int) else "float | str"
         kept.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=f"{kind} | None"))
-        choice = ": " + " or ".join(row["words"]) if row["words"] else ""
-        lines.append(f"    {name}: {row['about']}{', ' + row['unit'] if row['unit'] else ''}{choice}")
+        unit, choice = f", {row['unit']}" if row["unit"] else "", f": {' or '.join(row['words'])}" if row["words"] else ""
+        lines.append(f"    {name}: {row['about']}{unit}{choice}")
     function.__signature__ = signature.replace(parameters=kept + rest)  # type: ignore[attr-defined]
     head = "\n\n    Options, where they differ from those of the file:\n\n"
     function.__doc__ = (function.__doc__ or "").rstrip() + head + "\n".join(lines) + "\n    "

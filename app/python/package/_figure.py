@@ -40,18 +40,27 @@ class Figure:
         with open(name, "wb") as file:
             file.write(content)
 
+    def __repr__(self) -> str:
+        views, (width, height) = self._look[0], self._look[1]
+        return f"<achilles.Figure of {', '.join(views) or 'all views'}: {width} x {height} pixels>"
+
     def _repr_svg_(self) -> str:
         svg = self.svg
         return svg[svg.index("<svg") :]  # HTML does not allow the XML declaration
 
 
-def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tuple[int, int], scale: float,
-              paper: dict[str, float], columns: int, dark: bool, transparent: bool) -> Figure:
-    """Checks the arguments and makes a figure. Raises InputError for a view that is not in `known`."""
+def known_views(known: Sequence[str], views: Sequence[str]) -> None:
+    """Raises InputError for a view that is not in `known`."""
     for view in views:
         if view not in known:
             guess = _core.did_you_mean(view, list(known)) if isinstance(view, str) else ""
             raise InputError(f"this system has no view '{view}'{guess}\nits views are: {', '.join(known)}")
+
+
+def figure_of(drawn: Any, known: Sequence[str], views: Sequence[str], size: tuple[int, int], scale: float,
+              paper: dict[str, float], columns: int, dark: bool, transparent: bool) -> Figure:
+    """Checks the arguments and makes a figure. Raises InputError for a view that is not in `known`."""
+    known_views(known, views)
     pixels = _pixels(size)
     page = tuple(number_in(name, value, 0, 1e6) for name, value in paper.items())
     return Figure(drawn, (list(views), pixels, number_in("scale", scale, 0.25, 8), page,

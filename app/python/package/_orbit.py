@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arguments import RunArguments, number_in, text_of, with_options
+from ._arguments import RunArguments, number_in, one_of, text_of, with_options
 from ._errors import AchillesWarning, InputError, NoOrbit, as_arguments
 from ._figure import Figure, figure_of
 from ._records import Event, OrbitPoint, Record, _Result, entry
@@ -135,7 +135,7 @@ class Orbit(_Result):
 
     @functools.cached_property
     def branch(self) -> Branch | None:
-        """The branch in the parameter of `continue_`; None if that was not given."""
+        """The branch in the parameter of the argument `branch`; None if that was not given."""
         told = self._record["branch"]
         return None if told is None else Branch(told)
 
@@ -185,68 +185,74 @@ def _answer(system: System, core: Any, asked: tuple[Any, ...]) -> Orbit:
 
 @with_options
 def orbit(system: System | str | os.PathLike[str], *,
+          begin: str | os.PathLike[str] | Orbit | Run | Mapping[str, Any] | None = None,
           from_: str | os.PathLike[str] | Orbit | Run | Mapping[str, Any] | None = None, period: float | str | None = None,
           shift: Mapping[str, float | str] | str | Sequence[str] | None = None,
+          branch: Mapping[str, tuple[float | str, float | str]] | str | None = None,
           continue_: Mapping[str, tuple[float | str, float | str]] | str | None = None,
-          set: Mapping[str, float | str] | None = None, **values: float | str) -> Orbit:
+          values: Mapping[str, float | str] | None = None, set: Mapping[str, float | str] | None = None,
+          **named: float | str) -> Orbit:
     """Finds a periodic run of a system, its multipliers, and its branch in a parameter, as `achilles orbit` does.
 
-    The search begins at `from_`: the "start" or the "end" of the system's run, an Orbit, a point of a branch, a dict with q, v and
-    t, the end of a Run, or the state in a JSON file. Without `from_` it begins at [orbit] of the system, else at the start.
+    The search begins at `begin`, also called `from_`: the "start" or the "end" of the system's run, an Orbit, a point of a branch,
+    a dict with q, v and t, the end of a Run, or the state in a JSON file. Without it the search begins at [orbit] of the system,
+    else at the start.
     `period` is that of a drive, "2*pi/om"; without a drive it is a guess. With shift={"x": "2*pi"} the run returns moved by 2 pi.
-    continue_={"e": (0.1, 0.9)} follows the run in a parameter, in both directions and through folds, until a Zeno point is lost.
+    branch={"e": (0.1, 0.9)}, also called continue_, follows the run in a parameter, in both directions and through folds, until a
+    Zeno point is lost. `values` are as in simulate().
     Options that are not given have the smallest tolerances that double precision supports (tolerance 1e-14, eps 1e-11).
 
     Raises NoOrbit if no periodic run is found, and InputError. Other threads keep running; Ctrl-C ends the search with
     KeyboardInterrupt.
     """
     what = system_of(system)
-    of_run = RunArguments(what._core, set, values)
-    asked = (*_place(what, from_), "" if period is None else text_of("period", period), _shifts(shift), _along(continue_),
-             of_run.settings, of_run.options)
+    of_run = RunArguments(what._core, set, values, named)
+    place = _place(what, "from_" if begin is None else "begin", one_of("from_", from_, "begin", begin))
+    along = _along("continue_" if branch is None else "branch", one_of("continue_", continue_, "branch", branch))
+    asked = (*place, "" if period is None else text_of("period", period), _shifts(shift), along, of_run.settings, of_run.options)
     core = _core.orbit(what._core, *asked)
     for warning in core.warnings:
         warnings.warn(as_arguments(warning), AchillesWarning, stacklevel=2)
     return _answer(what, core, asked)
 
 
-def _place(system: System, from_: Any) -> tuple[str, str | None]:
+def _place(system: System, name: str, begin: Any) -> tuple[str, str | None]:
     """Returns the start of the search in the form of --from, and the content of that file or None."""
-    if from_ is None:
+    if begin is None:
         return "", None
-    if isinstance(from_, (str, os.PathLike)):
-        name = os.fspath(from_)
-        return name, None if name in ("start", "end") else _core.read_text(name)
-    if isinstance(from_, Orbit):
-        return "orbit.json", _state(system, from_.state, from_.period)
-    if isinstance(from_, Run):
-        return "run.json", _state(system, from_.end, None)
-    if isinstance(from_, Mapping):
-        return "state.json", _state(system, from_.get("state", from_), from_.get("period"))
-    raise TypeError('from_: "start", "end", a file, an Orbit, a Run or a dict with q, v and t is expected, '
-                    f"not {type(from_).__name__}")
+    if isinstance(begin, (str, os.PathLike)):
+        file = os.fspath(begin)
+        return file, None if file in ("start", "end") else _core.read_text(file)
+    if isinstance(begin, Orbit):
+        return "orbit.json", _state(system, name, begin.state, begin.period)
+    if isinstance(begin, Run):
+        return "run.json", _state(system, name, begin.end, None)
+    if isinstance(begin, Mapping):
+        return "state.json", _state(system, name, begin.get("state", begin), begin.get("period"))
+    raise TypeError(f'{name}: "start", "end", a file, an Orbit, a Run or a dict with q, v and t is expected, '
+                    f"not {type(begin).__name__}")
 
 
-def _state(system: System, state: Mapping[str, Any], period: Any) -> str:
+def _state(system: System, argument: str, state: Mapping[str, Any], period: Any) -> str:
     """Checks a state and converts it to JSON."""
-    told: dict[str, Any] = {"t": _time("t", state.get("t", 0.0))}
+    told: dict[str, Any] = {"t": _time(f"{argument}: t", state.get("t", 0.0))}
     for name in ("q", "v"):
         if name not in state:
-            raise InputError(f"from_: {name} is missing: give a number for each of {', '.join(system.coordinates)}")
+            raise InputError(f"{argument}: {name} is missing: give a number for each of {', '.join(system.coordinates)}")
         numbers = np.asarray(state[name])
         if numbers.dtype.kind not in "iuf":
-            raise TypeError(f"from_: {name} must be numbers, not {numbers.dtype}")
+            raise TypeError(f"{argument}: {name} must be numbers, not {numbers.dtype}")
         if numbers.shape != (len(system.coordinates),) or not np.isfinite(numbers).all():
-            raise InputError(f"from_: {name} needs a finite number for each of {', '.join(system.coordinates)}, not {state[name]}")
+            raise InputError(f"{argument}: {name} needs a finite number for each of {', '.join(system.coordinates)}, not {state[name]}")
         told[name] = numbers.astype(float).tolist()
     whole: dict[str, Any] = {"state": told}
     if period is not None:
-        whole["period"] = _time("period", period)
+        whole["period"] = _time(f"{argument}: period", period)
     return json.dumps(whole)
 
 
 def _time(name: str, value: Any) -> float:
-    return number_in(f"from_: {name}", value, -sys.float_info.max, sys.float_info.max)
+    return number_in(name, value, -sys.float_info.max, sys.float_info.max)
 
 
 def _shifts(shift: Any) -> list[str]:
@@ -262,7 +268,7 @@ def _shifts(shift: Any) -> list[str]:
     raise TypeError('shift: a dict such as {"x": "2*pi"} or a text such as "x=2*pi" is expected')
 
 
-def _along(range_: Any) -> str:
+def _along(argument: str, range_: Any) -> str:
     """Converts the parameter range of a branch to the form of --continue."""
     if range_ is None:
         return ""
@@ -271,5 +277,5 @@ def _along(range_: Any) -> str:
     if isinstance(range_, Mapping) and len(range_) == 1:
         ((name, limits),) = range_.items()
         if isinstance(limits, Sequence) and not isinstance(limits, str) and len(limits) == 2:
-            return f"{name}=" + ":".join(text_of(f"continue_: {name}", limit) for limit in limits)
-    raise TypeError('continue_: a dict such as {"e": (0.1, 0.9)} or a text such as "e=0.1:0.9" is expected')
+            return f"{name}=" + ":".join(text_of(f"{argument}: {name}", limit) for limit in limits)
+    raise TypeError(argument + ': a dict such as {"e": (0.1, 0.9)} or a text such as "e=0.1:0.9" is expected')

@@ -11,7 +11,7 @@ import numpy as np
 _states = ("q", "v", "v_before", "v_after")
 
 
-class Record(dict):
+class Record(dict[str, Any]):
     """A dict whose entries are also attributes: event["t"] is event.t. States are NumPy arrays; None marks what does not apply."""
 
     def __getattr__(self, name: str) -> Any:

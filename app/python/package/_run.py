@@ -177,7 +177,9 @@ class Run(_Result):
         return self._core.summary()
 
     def __repr__(self) -> str:
-        return f"<achilles.Run of {self.system.name} to t = {self._core.end_time:g}: {self._core.outcome}>"
+        is_whole = self._core.outcome == "end time"
+        end = "" if is_whole else f", stopped early: {self._core.outcome}"
+        return f"<achilles.Run of {self.system.name}: to t = {self._core.end_time:g} s{end}>"
 
 
 def _made(system: System, settings: list[str], options: dict[str, str]) -> Run:
@@ -185,16 +187,17 @@ def _made(system: System, settings: list[str], options: dict[str, str]) -> Run:
 
 
 @with_options
-def simulate(system: System | str | os.PathLike[str], *, set: Mapping[str, float | str] | None = None,
-             **values: float | str) -> Run:
+def simulate(system: System | str | os.PathLike[str], *, values: Mapping[str, float | str] | None = None,
+             set: Mapping[str, float | str] | None = None, **named: float | str) -> Run:
     """Simulates one completed execution of a system: a System, a path, or a name from the gallery.
 
-    Values that differ from the file are arguments, e=0.3. If a name is not valid in Python, put it into `set`, set={"x'": 1.5}.
-    An expression is a string, "pi/6" or "30 deg". A run that stops early is returned with a warning, and its `outcome` says why.
+    `values`, also called `set`, has what differs from the file: {"e": 0.3, "x'": 1.5}. A name that is valid in Python may also
+    be an argument, e=0.3; type checkers, which do not know the system, accept it only in `values`. An expression is a string,
+    "pi/6" or "30 deg". A run that stops early is returned with a warning, and its `outcome` says why.
     Other threads keep running; Ctrl-C ends the run with KeyboardInterrupt. Raises InputError.
     """
     what = system_of(system)
-    asked = RunArguments(what._core, set, values)
+    asked = RunArguments(what._core, set, values, named)
     run = _made(what, asked.settings, asked.options)
     core = run._core
     told = core.warnings + core.remarks()

@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arguments import RunArguments, text_of, texts_in, with_options
+from ._arguments import RunArguments, one_of, text_of, texts_in, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._system import System, system_of
 
 
-class Sweep(Mapping):
+class Sweep(Mapping[str, np.ndarray]):
     """Results of many runs: a dict of NumPy arrays, one for each quantity of `print`, and "outcome".
 
     For a grid, an array has the shape of the grid, the first axis slowest. For random points and sections it has one row per
@@ -92,20 +92,21 @@ class Sweep(Mapping):
 
 
 @with_options
-def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str | Sequence[str], print: str | Sequence[str],
-          *, at: str | None = None, after: float | str | None = None, random: int | None = None, seed: int | None = None,
+def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str | Sequence[str],
+          print: str | Sequence[str] | None = None, *, quantities: str | Sequence[str] | None = None, at: str | None = None, after: float | str | None = None, random: int | None = None, seed: int | None = None,
           threads: int | None = None, progress: Callable[[int, int], object] | None = None,
-          set: Mapping[str, float | str] | None = None, **values: float | str) -> Sweep:
+          values: Mapping[str, float | str] | None = None, set: Mapping[str, float | str] | None = None,
+          **named: float | str) -> Sweep:
     """Simulates many runs on all cores and returns a table, as `achilles sweep` does.
 
     `over` has the axes: {"e": (0, 0.95, 200)}, {"e": ("log", 1e-3, 0.9, 100)}, an array of equidistant values, or strings as on
     the command line, "e=0:0.95:200". Several axes make a grid, the first slowest. With random=N and seed=S, give {"x": (-1, 1)},
-    and N random points are drawn. `print` has the quantities to tabulate: expressions at the end of the run, zeno_time(k),
+    and N random points are drawn. `quantities`, also called `print`, are tabulated: expressions at the end of the run, zeno_time(k),
     impact_time(k), impact_speed(k), release_time(k), zeno_points, impacts, releases, least_gap, held, outcome; with friction also heat, sticks,
     slips, reversals, collapse_time(k), collapses, stick_time(k), slip_time(k), reversal_time(k), modes; or the derivative of one of these numbers with respect to an initial coordinate,
     rate or parameter, "d(zeno_time(1), e)". With `at` they are
     tabulated at every "impact", "zeno" or "release" ("jump", "pass"), or where an expression crosses zero upward, from time `after` on. A failed
-    run is a point with its outcome, and a warning gives the number of such runs.
+    run is a point with its outcome, and a warning gives the number of such runs. `values` are as in simulate().
 
     progress(done, count) is called a few times per second. An exception from it ends the sweep, as Ctrl-C does, once the current
     chunks (a quarter of a second each) are done. Other threads keep running. Raises InputError.
@@ -115,8 +116,11 @@ def sweep(system: System | str | os.PathLike[str], over: Mapping[str, Any] | str
         raise InputError(f"threads={threads}: a whole number from 1 to 1024 is expected")
     if progress is not None and not callable(progress):
         raise TypeError("progress: a function of (done, count) is expected")
-    asked = RunArguments(what._core, set, values)
-    prints = texts_in("print", print, "zeno_time(2)")
+    asked = RunArguments(what._core, set, values, named)
+    chosen = one_of("print", print, "quantities", quantities)
+    if chosen is None:
+        raise TypeError('quantities is missing: say what to tabulate, such as quantities="zeno_time(1)"')
+    prints = texts_in("print" if quantities is None else "quantities", chosen, "zeno_time(2)")
 
     def text(name: str, value: object) -> str | None:
         return None if value is None else text_of(name, value)
