@@ -56,6 +56,7 @@ orbit.figure("path", size=(800, 600), scale=1, width_mm=85.0, height_mm=60.0, fo
 latest: float = np.max(run.t)
 q, v = run([1.0, 2.0])
 number: float = run.certificates[0].zeno_time[0]
+table, events, rows = run.to_dataframe(np.linspace(0, 1, 5)), run.events_to_dataframe(), sweep.to_dataframe()
 text: str = run.to_csv(plain_names=True, units=True) + run.to_json() + run.events[0].kind
 system = achilles.System.from_energies(["x"], T=1, V=2, gaps={{"wall": (3, 0.5)}}, parameters={{"m": 1}}, rates=["v"], start={{}},
                                        forces=None, dissipation=None, units={{}}, names={{}}, title="one")

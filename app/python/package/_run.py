@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import functools
+import io
 import json
 import os
 import warnings
@@ -15,6 +17,7 @@ from . import _core
 from ._arguments import RunArguments, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
 from ._figure import Figure, figure_of
+from ._frames import frame_of, pandas_for
 from ._records import Certificate, Event, Phase, Record, _Result, derivative_records, entry
 from ._system import System, system_of
 
@@ -103,7 +106,7 @@ class Run(_Result):
         return times
 
     events: list[Event] = entry(
-        "events", "Impacts, Zeno points, releases and events of friction, in time. Dicts with attributes: pandas.DataFrame(run.events) is a table.")
+        "events", "Impacts, Zeno points, releases and events of friction, in time: dicts with attributes. events_to_dataframe() is a table.")
 
     @property
     def certificates(self) -> list[Certificate]:
@@ -161,6 +164,20 @@ class Run(_Result):
         """The text that `achilles simulate --csv` writes; with times t it has a row for each of them."""
         return self._core.csv(None if t is None else self._times(t).ravel(), plain_names, units)
 
+    def to_dataframe(self, t: Sequence[float] | np.ndarray | None = None) -> Any:
+        """A pandas.DataFrame with the columns of to_csv(): time, phase, coordinates, rates, gaps, forces, energy. It has a row at
+        every step end and two at every event, or a row for each of the times t. Units are in its attrs["units"]."""
+        pandas = pandas_for("Run.to_dataframe")
+        names, units, *rows = csv.reader(io.StringIO(self.to_csv(t, units=True)))
+        return frame_of(pandas, dict(zip(names, zip(*rows) if rows else ((),) * len(names))), dict(zip(names, units)))
+
+    def events_to_dataframe(self) -> Any:
+        """The events as a pandas.DataFrame, a row each: kind, t, contacts, the coordinates, the rates before ("x' before") and
+        after the event ("x'"), and what else its kind has as a number or a text. Of a certificate: the enclosure of the Zeno time."""
+        pandas = pandas_for("Run.events_to_dataframe")
+        rows = [_row_of(event, self.system.coordinates) for event in self.events]
+        return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)) or ["kind", "t"])
+
     def figure(self, *views: str, size: tuple[int, int] = (1200, 800), scale: float = 1.0, width_mm: float = 0.0,
                height_mm: float = 0.0, font_pt: float = 0.0, dpi: float = 0.0, columns: int = 0, dark: bool = False,
                transparent: bool = False) -> Figure:
@@ -180,6 +197,22 @@ class Run(_Result):
         is_whole = self._core.outcome == "end time"
         end = "" if is_whole else f", stopped early: {self._core.outcome}"
         return f"<achilles.Run of {self.system.name}: to t = {self._core.end_time:g} s{end}>"
+
+
+def _row_of(event: Event, coordinates: Sequence[str]) -> dict[str, Any]:
+    """The entries of an event that are numbers or texts."""
+    row: dict[str, Any] = {}
+    states = {"q": "{}", "v": "{}'", "v_after": "{}'", "v_before": "{}' before", "q_before": "{} before"}
+    for name, value in event.items():
+        if name in states:
+            row |= {states[name].format(coordinate): x for coordinate, x in zip(coordinates, value)}
+        elif name == "certificate":
+            row |= {"certified": value.certified, "zeno_low": value.zeno_time[0], "zeno_high": value.zeno_time[1]}
+        elif isinstance(value, list) and all(isinstance(each, str) for each in value):
+            row[name] = "+".join(value)
+        elif value is None or isinstance(value, (bool, int, float, str)):
+            row[name] = value
+    return row
 
 
 def _made(system: System, settings: list[str], options: dict[str, str]) -> Run:

@@ -13,6 +13,7 @@ import numpy as np
 from . import _core
 from ._arguments import RunArguments, one_of, text_of, texts_in, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
+from ._frames import pandas_for
 from ._system import System, system_of
 
 
@@ -75,6 +76,12 @@ class Sweep(Mapping[str, np.ndarray]):
         """The table of the CSV, column by column: pandas.DataFrame(sweep.rows()). An axis that is also printed is "x(0)"."""
         table = {name + "(0)" if name in self._values else name: column for name, column in self._axis_rows.items()}
         return table | {name: array.ravel() for name, array in self._values.items()}
+
+    def to_dataframe(self) -> Any:
+        """The table of rows() as a pandas.DataFrame. Units are in its attrs["units"]."""
+        frame = pandas_for("Sweep.to_dataframe").DataFrame(self.rows())
+        frame.attrs["units"] = {name: unit for name in frame if (unit := self.units.get(name.removesuffix("(0)")))}
+        return frame
 
     def _failures(self, points: np.ndarray) -> Iterator[str]:
         """Yields a message for each kind of failure: the number of runs and the first of them."""
