@@ -10,6 +10,7 @@
 #include "output/contacts.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
+#include "pictures/player.hpp"
 #include "sensitivity/error_estimate.hpp"
 #include "sensitivity/quantities.hpp"
 #include "session/replay_script.hpp"
@@ -154,6 +155,16 @@ std::string draw(const PythonRun& made, const FigureStyleTuple& tuple, const std
                       {{InputSource::Kind::system, made.system->name, description.source_text}}, made.trajectory);
 }
 
+// The same page as from `achilles html`.
+std::string page_of(const PythonRun& made, const std::vector<std::string>& names) {
+    const SystemDescription& description = made.system->model->description();
+    const std::string& system = made.system->name;
+    const std::string prove = prove_line(system, made.arguments.settings, overrides_of(made.arguments));
+    return player_page(
+        made.trajectory, made.estimate(), views_of(description, names),
+        {answer(made.trajectory, made.estimate(), prove), player_command(made.trajectory, system, names)});
+}
+
 }  // namespace
 
 void bind_runs(py::module_& module) {
@@ -212,6 +223,7 @@ void bind_runs(py::module_& module) {
                  const py::gil_scoped_release without_gil;
                  return to_csv(m.trajectory, style);
              })
+        .def("html", &page_of, released)
         .def("figure", [](const PythonRun& m, const FigureStyleTuple& look, const std::string& format) {
             return without_gil([&] { return draw(m, look, format); });
         });

@@ -53,6 +53,7 @@ figure = run.figure("height", "path", size=(800, 600), scale=1.5, width_mm=85, h
                     dark=True, transparent=True)
 figure.save("ball.pdf", format="pdf")
 orbit.figure("path", size=(800, 600), scale=1, width_mm=85.0, height_mm=60.0, font_pt=8.0, dpi=300.0, dark=False, transparent=False)
+page: str = run.html("run.html", views=["height"])
 latest: float = np.max(run.t)
 q, v = run([1.0, 2.0])
 number: float = run.certificates[0].zeno_time[0]
@@ -73,6 +74,7 @@ def test_every_option_is_accepted(mypy):
     ('achilles.sweep("ball_on_sine", "e=0:1:3", "impacts", thread=2)', 'Unexpected keyword argument "thread" for "sweep"'),
     ('achilles.orbit("ball_on_sine", perod=1)', 'Unexpected keyword argument "perod" for "orbit"'),
     ('achilles.simulate("ball_on_sine").figure(widht_mm=85)', 'Unexpected keyword argument "widht_mm" for "figure" of "Run"'),
+    ('achilles.simulate("ball_on_sine").html(paht="run.html")', 'Unexpected keyword argument "paht" for "html" of "Run"'),
     ('achilles.simulate("ball_on_sine", method="tailor")', 'has incompatible type "Literal[\'tailor\']"'),
     ('achilles.simulate("ball_on_sine", max_impacts=1.5)', 'has incompatible type "float"'),
 ])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import functools
+import html
 import io
 import json
 import os
@@ -16,7 +17,7 @@ import numpy as np
 from . import _core
 from ._arguments import RunArguments, with_options
 from ._errors import AchillesWarning, InputError, as_arguments
-from ._figure import Figure, figure_of
+from ._figure import Figure, figure_of, known_views
 from ._frames import frame_of, pandas_for
 from ._records import Certificate, Event, Phase, Record, _Result, derivative_records, entry
 from ._system import System, system_of
@@ -177,6 +178,21 @@ class Run(_Result):
         pandas = pandas_for("Run.events_to_dataframe")
         rows = [_row_of(event, self.system.coordinates) for event in self.events]
         return pandas.DataFrame(rows, columns=list(dict.fromkeys(name for row in rows for name in row)) or ["kind", "t"])
+
+    def html(self, path: str | os.PathLike[str] | None = None, *, views: Sequence[str] = ()) -> str:
+        """One page for a browser, with the mechanism in motion, plots (of these views, or all) and events, as from
+        `achilles html`; also written to `path` if that is given. It needs no other file, no server and no network."""
+        known_views(self.system.views, views)
+        page = self._core.html(list(views))
+        if path is not None:
+            with open(path, "w", encoding="utf-8", newline="") as file:
+                file.write(page)
+        return page
+
+    def _repr_html_(self) -> str:
+        # In a frame of its own, the page and the notebook cannot change each other.
+        return ('<iframe sandbox="allow-scripts" style="width: 100%; height: 640px; border: 0" title="run" srcdoc="'
+                f'{html.escape(self.html())}"></iframe>')
 
     def figure(self, *views: str, size: tuple[int, int] = (1200, 800), scale: float = 1.0, width_mm: float = 0.0,
                height_mm: float = 0.0, font_pt: float = 0.0, dpi: float = 0.0, columns: int = 0, dark: bool = False,
