@@ -2,17 +2,19 @@
 
     import achilles
 
-    run = achilles.simulate("ball_on_sine", e=0.3, set={"x'": 1.5}, end=20)
+    run = achilles.simulate("ball_on_sine", values={"e": 0.3, "x'": 1.5}, end=20)
     run.t, run.q, run.v                  # NumPy arrays: every step and every event
     q, v = run(3.2)                      # the state at a time, or at an array of them
     run["y - sin(x)"]                    # any expression of the run, along run.t
     run.events[0].kind, run.certificates # the events, and the certificates
     run.figure("height").save("f.pdf")   # as `achilles figure` draws it; a notebook shows it
+    run.html("run.html")                 # a page for a browser: the mechanism in motion, plots, events
+    run.to_dataframe()                   # a table for pandas
 
-    map = achilles.sweep("ball_on_sine", over={"e": (0, 0.95, 200)}, print="zeno_time(2)")
+    map = achilles.sweep("ball_on_sine", over={"e": (0, 0.95, 200)}, quantities="zeno_time(2)")
     map["zeno_time(2)"]                  # an array in the shape of the grid
 
-    orbit = achilles.orbit("ball_down_a_wave", continue_={"e": (0.1, 0.9)})
+    orbit = achilles.orbit("ball_down_a_wave", branch={"e": (0.1, 0.9)})
     orbit.period, orbit.multipliers      # a periodic run, and its multipliers
     orbit.branch.value, orbit.branch.q   # the same along a parameter
 
