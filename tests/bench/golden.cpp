@@ -1,7 +1,7 @@
 // Measures how well the comparison of pixels separates falsified from correct pictures. Every falsification is applied
 // to every figure of the gallery. Prints the smallest score of each kind, the number that the coarse limit alone would
-// miss, and the largest score of pictures drawn again in other ways. render/image/comparison.hpp has the limits; a score
-// of 1 is the limit.
+// miss, and the largest score of pictures drawn again in other ways. render/image/comparison.hpp has the limits; a
+// score of 1 is the limit.
 //
 //     bench_golden [REPETITIONS [SYSTEM...]]        exits with 1 if a lie is missed or a correct picture is rejected
 #include <fmt/format.h>

@@ -30,7 +30,8 @@ _achilles() {
     [ -n "${answer[0]}" ] || return 0
     compopt -o filenames
     while IFS= read -r file; do
-        if [ -d "${file/#\~\//$HOME/}" ] || [[ " ${answer[0]} " == *" * "* || " ${answer[0]} " == *" ${file##*.} "* ]]; then
+        if [ -d "${file/#\~\//$HOME/}" ] || [[ " ${answer[0]} " == *" * "* ]] ||
+            [[ " ${answer[0]} " == *" ${file##*.} "* ]]; then
             COMPREPLY+=("$file")
         fi
     done < <(compgen -f -- "${answer[1]}")
