@@ -17,7 +17,7 @@ for (const clip of run.clips)
             for (let i = width; i < entry[1].length; ++i) entry[1][i] += entry[1][i - width];
         }
 
-// The index of the last number of a sorted list that is at most x; 0 if there is none.
+// The index of the last number of a sorted list that is at most x; 0 if all are larger.
 function lastUpTo(list, x, of = each => each) {
     let low = 0, high = list.length;
     while (high - low > 1) {
@@ -129,7 +129,7 @@ const isPlaying = () => before !== null;
 
 function step(now) {
     if (!isPlaying()) return;
-    // After a pause of the browser, such as of a hidden tab, the run goes on from where it was.
+    // A browser stops drawing a hidden tab; the run then continues from the time shown last.
     const passed = Math.min(Math.max(now - before, 0), 250) / 1000 * Number(part("speed").value);
     before = now;
     seek(time + passed);

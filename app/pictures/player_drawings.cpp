@@ -82,8 +82,8 @@ std::string rules_of(const DrawnShape& shape) {
     return rules;
 }
 
-// A line of so many points that they must be curves: points at equal distances along it, always as many. The number of
-// points that a curve is drawn with changes as it moves, and then it could not be interpolated.
+// A moving curve as a fixed number of points at equal distances along it. The file's curves are drawn with a number of
+// points that changes as they move, so that they could not be interpolated.
 std::vector<Point> evenly_spaced(const std::vector<Point>& points) {
     constexpr std::size_t most = 160;
     if (points.size() <= most ||
