@@ -278,8 +278,7 @@ TEST(Card, ShowsTheBoundsInASmallWindow) {
         hands.surface.step([&] {
             explorer(hands.session, hands.state);
             for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
-                if (std::string(window->Name).find("/card_") != std::string::npos)
-                    beside = window->ScrollMax.x;
+                if (std::string(window->Name).find("/card_") != std::string::npos) beside = window->ScrollMax.x;
         });
         EXPECT_EQ(beside, 0.0F) << system;
     }
