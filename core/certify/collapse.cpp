@@ -129,17 +129,28 @@ std::optional<CollapseTime> collapse_time(const AlternationBounds& bounds, const
     return std::nullopt;
 }
 
+CollapseConditions::CollapseConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e,
+                                       std::size_t first, std::size_t second, Mode closed, ContactSet unpressed,
+                                       const FloatEnvironmentGuard& ground)
+    : TwoContactConditions(model, run, e, first, second, closed, unpressed, ground),
+      has_skew_(model.has_friction()),
+      sliding_(model.pair(first, second, closed).sliding) {
+    if (sliding_ > 0) slips_ = model.evaluator<Interval>(model.pair(first, second, closed).slips, run.parameters);
+}
+
 std::optional<CollapseConditions::AtCut> CollapseConditions::at_cut(const PairCollision& collision,
                                                                     const State& tangential) {
     if (!evaluate_terms_at(tangential)) return std::nullopt;
-    AtCut cut;
-    for (std::size_t k = 0; k < 2; ++k) {
-        for (std::size_t l = 0; l < 2; ++l) cut.W[k][l] = terms_.W(k, l);
-        cut.size[k] = sqrt(cut.W[k][k]);
-    }
-    if (!certainly_positive(cut.W[0][0] * cut.W[1][1] - square(cut.W[0][1]))) return std::nullopt;
-    const std::array<Interval, 2> sigma{Interval(collision.sigma[0]), Interval(collision.sigma[1])};
-    cut.r0 = top(sqrt(abs(by_inverse(cut.W, sigma, sigma))));
+    const PairLaw<double> law{mid(W(0, 0)), mid(W(0, 1)), mid(W(1, 0)), mid(W(1, 1)), {mid(e_[0]), mid(e_[1])}};
+    const double c = std::sqrt(law.coupling());
+    if (!(law.W12 < 0.0 && law.W21 < 0.0 && c < 1.0)) return std::nullopt;
+    const std::array<double, 2> size = law.sizes();
+    AtCut cut{law, {Interval(size[0]), Interval(size[1])}, {}, {}, {}};
+    cut.impulse = {cut.size[0] / Interval(law.W11), cut.size[1] / Interval(law.W22)};
+    cut.W0 = {{{Interval(1.0), Interval(-c)}, {Interval(-c), Interval(1.0)}}};
+    const std::array<Interval, 2> sigma{Interval(collision.sigma[0]) / cut.size[0],
+                                        Interval(collision.sigma[1]) / cut.size[1]};
+    cut.r0 = top(sqrt(abs(by_inverse(cut.W0, sigma, sigma))));
     return cut;
 }
 
@@ -147,16 +158,22 @@ std::optional<CollapseConditions::AtCut> CollapseConditions::at_cut(const PairCo
 std::optional<TwoContactConditions::MotionBounds> CollapseConditions::bounds_over(const PairBox& box, const AtCut& cut,
                                                                                   const CollapseStart& start,
                                                                                   std::string_view& failed) {
-    const Interval one(1.0), two(2.0), c = -terms_.W(0, 1);
-    if (!certainly_positive(c)) {
+    const Interval one(1.0), two(2.0);
+    if (!certainly_negative(W(0, 1)) || !certainly_negative(W(1, 0))) {
         failed = collapse::negative_c;
         return std::nullopt;
     }
     AlternationBounds bounds{{}, e_, Interval(0.0)};
+    PairMatrix scaled;
+    std::array<Interval, 2> hddot;
     for (std::size_t k = 0; k < 2; ++k) {
-        bounds.k[k] = c * (one + e_[k]) * cut.size[k] / (terms_.W(k, k) * cut.size[1 - k]);
-        bounds.acceleration = max(bounds.acceleration, abs(terms_.hddot(k)) / cut.size[k]);
+        bounds.k[k] = -W(1 - k, k) * (one + e_[k]) * cut.size[k] / (W(k, k) * cut.size[1 - k]);
+        hddot[k] = terms_.hddot(k) / cut.size[k];
+        bounds.acceleration = max(bounds.acceleration, abs(hddot[k]));
+        for (std::size_t l = 0; l < 2; ++l) scaled[k][l] = W(k, l) * cut.impulse[l] / cut.size[k];
     }
+    const Interval skew = has_skew_ ? (scaled[0][1] - scaled[1][0]) / two : Interval(0.0);
+    if (has_skew_) scaled[0][1] = (scaled[0][1] + scaled[1][0]) / two;
     const std::size_t i = start.landed, j = 1 - i;
     const auto time =
         collapse_time(bounds,
@@ -164,11 +181,10 @@ std::optional<TwoContactConditions::MotionBounds> CollapseConditions::bounds_ove
                        Interval(start.collision.h[j]) / cut.size[j]},
                       failed);
     if (!time) return std::nullopt;
-    // The growth of |sigma| in the norm of W: forces add their integral, and each impact at most twice the deviation of
+    // The growth of |sigma| in the norm of W0: forces add their integral, and each impact at most twice the deviation of
     // W times its impulse. S bounds the sum of these, in units of r0.
-    const std::array<Interval, 2> hddot{terms_.hddot(0), terms_.hddot(1)};
-    const Interval force = top(sqrt(abs(by_inverse(cut.W, hddot, hddot)))), omega = deviation_from(cut.W);
-    const Interval kd = sqrt(two / (one + cut.W[0][1] / (cut.size[0] * cut.size[1])));
+    const Interval force = top(sqrt(abs(by_inverse(cut.W0, hddot, hddot)))), omega = deviation(scaled, cut.W0, skew);
+    const Interval kd = sqrt(two / (one + cut.W0[0][1]));
     const Interval duration = top(time->T / cut.r0);
     if (!certainly_less(kd * omega, one)) {
         failed = collapse::contained;
@@ -207,12 +223,26 @@ bool CollapseConditions::decides_who_stays(const PairBox& box, bool& both_held) 
     bool both_leave = true, one_leaves = false;
     for (std::size_t k = 0; k < 2; ++k) {
         // The acceleration of the other gap while contact k is held.
-        const Interval other = a[1 - k] - terms_.W(0, 1) / terms_.W(k, k) * a[k];
+        const Interval other = a[1 - k] - W(1 - k, k) / W(k, k) * a[k];
         both_held = both_held && certainly_positive(other);
         one_leaves = one_leaves || (certainly_positive(a[k]) && certainly_negative(other));
         both_leave = both_leave && (certainly_negative(a[k]) || mag(a[k]) == 0.0);
     }
     return both_held || one_leaves || both_leave;
+}
+
+// Whether no slip ends over the box: u = u(s) + L sigma, with |sigma| bounded in the norm of W0 (theory-collapse.md 5).
+bool CollapseConditions::keeps_sliding(const PairBox& box, const AtCut& cut) {
+    if (!slips_) return true;
+    set_box(*slips_, box.all);
+    slips_->run();
+    for (std::size_t k = 0; k < sliding_; ++k) {
+        const Interval L0 = slips_->output(3 * k + 1) * cut.size[0], L1 = slips_->output(3 * k + 2) * cut.size[1];
+        const Interval square_norm = square(L0) + Interval(2.0) * cut.W0[0][1] * L0 * L1 + square(L1);
+        const Interval change = top(sqrt(abs(square_norm))) * Interval(box.growth) * cut.r0;
+        if (!certainly_less(change, slips_->output(3 * k))) return false;
+    }
+    return true;
 }
 
 std::optional<PairCompletion> CollapseConditions::certify(const CollapseStart& start, bool cut_at_resolution,
@@ -223,7 +253,7 @@ std::optional<PairCompletion> CollapseConditions::certify(const CollapseStart& s
     const auto cut = at_cut(collision, tangential);
     if (!cut) return std::nullopt;
     const std::size_t i = start.landed, j = 1 - i;
-    const AlternateImpacts law({mid(cut->W[0][0]), mid(cut->W[0][1]), mid(cut->W[1][1]), {mid(e_[0]), mid(e_[1])}});
+    const AlternateImpacts law(cut->law);
     const double estimate = law.time(i, collision.sigma[i], collision.sigma[j], collision.h[j]);
     if (!law.is_real || !(estimate >= 0.0) || !std::isfinite(estimate)) {
         failed = law.is_real ? collapse::cone : collapse::real;
@@ -238,6 +268,8 @@ std::optional<PairCompletion> CollapseConditions::certify(const CollapseStart& s
         failed = collapse::contained;
         if (!contain(box, *motion)) continue;
         std::optional<Certificate::OtherContactBounds> others;
+        failed = collapse::slides;
+        if (!keeps_sliding(box, *cut)) return std::nullopt;
         failed = collapse::others;
         if (!prove_other_contacts_stay(box.all, others)) return std::nullopt;
         const Interval first_flight =

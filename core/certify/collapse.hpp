@@ -3,6 +3,7 @@
 #pragma once
 
 #include "certify/two_contacts.hpp"
+#include "contacts/collapse.hpp"
 
 namespace achilles {
 
@@ -29,7 +30,9 @@ std::optional<CollapseTime> collapse_time(const AlternationBounds& bounds, const
 class CollapseConditions : private TwoContactConditions {
  public:
     using TwoContactConditions::set_states;
-    using TwoContactConditions::TwoContactConditions;
+    // As for TwoContactConditions. Two contacts may slide, each with one sign, while nothing else is held.
+    CollapseConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
+                       std::size_t second, Mode closed, ContactSet unpressed, const FloatEnvironmentGuard& ground);
 
     // `collision.before` is the state after an impact of the contact `landed` (0 or 1), at approach speed `speed`.
     struct CollapseStart {
@@ -43,17 +46,24 @@ class CollapseConditions : private TwoContactConditions {
     std::optional<PairCompletion> certify(const CollapseStart& start, bool cut_at_resolution, std::string_view& failed);
 
  private:
-    // The terms at the cut that do not change with the box.
+    // The terms at the cut that do not change with the box. Gaps have the units `size`, and impulses the units in which W
+    // at the cut is nearly W0, with W0_11 = W0_22 = 1 and W0_12 = W0_21 (theory-collapse.md 3).
     struct AtCut {
-        std::array<std::array<Interval, 2>, 2> W;
-        std::array<Interval, 2> size;  // sqrt(W_ii)
-        Interval r0;                   // sqrt(sigma' W^-1 sigma)
+        PairLaw<double> law;
+        std::array<Interval, 2> size, impulse;
+        PairMatrix W0;
+        Interval r0;  // sqrt(sigma' W0^-1 sigma)
     };
+    Interval W(std::size_t k, std::size_t l) const { return has_skew_ && k > l ? terms_.W_10() : terms_.W(k, l); }
     std::optional<AtCut> at_cut(const PairCollision& collision, const State& tangential);
     std::optional<MotionBounds> bounds_over(const PairBox& box, const AtCut& cut, const CollapseStart& start,
                                             std::string_view& failed);
     bool decides_who_stays(const PairBox& box, bool& both_held);
+    bool keeps_sliding(const PairBox& box, const AtCut& cut);
 
+    bool has_skew_;        // the contacts slide, and W is not symmetric
+    std::size_t sliding_;  // contacts with friction
+    std::optional<Evaluator<Interval>> slips_;
     double contraction_ = 0.0;  // q q' of the last bounds
 };
 

@@ -122,23 +122,31 @@ std::optional<PairBound> pair_bound(const PairAtCollision& pair) {
     return best;
 }
 
-Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
-                    const std::array<Interval, 2>& y) {
+Interval by_inverse(const PairMatrix& W, const std::array<Interval, 2>& x, const std::array<Interval, 2>& y) {
     const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
     return (W[1][1] * x[0] * y[0] - W[0][1] * (x[0] * y[1] + x[1] * y[0]) + W[0][0] * x[1] * y[1]) / det;
+}
+
+// The Frobenius norm, computed from K = W0^-1 (W - W0). The skew part is orthogonal to the symmetric one.
+Interval deviation(const PairMatrix& W, const PairMatrix& W0, const Interval& skew) {
+    const Interval two(2.0), det = W0[0][0] * W0[1][1] - square(W0[0][1]);
+    const Interval d0 = W[0][0] - W0[0][0], d1 = W[0][1] - W0[0][1], d2 = W[1][1] - W0[1][1];
+    const Interval k00 = (W0[1][1] * d0 - W0[0][1] * d1) / det, k11 = (W0[0][0] * d2 - W0[0][1] * d1) / det;
+    const Interval k01 = (W0[1][1] * d1 - W0[0][1] * d2) / det, k10 = (W0[0][0] * d1 - W0[0][1] * d0) / det;
+    return top(sqrt(abs(square(k00) + two * k01 * k10 + square(k11) + two * square(skew) / det)));
 }
 
 // ---- the box and the shadow of two contacts ----
 
 TwoContactConditions::TwoContactConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e,
-                                           std::size_t first, std::size_t second, Mode mode, ContactSet unpressed,
+                                           std::size_t first, std::size_t second, Mode closed, ContactSet unpressed,
                                            const FloatEnvironmentGuard& ground)
-    : ConditionsBase(model, run, &model.pair(first, second, mode).others, variables_of_pair(model.layout()), unpressed,
-                     ground),
+    : ConditionsBase(model, run, &model.pair(first, second, closed).others, variables_of_pair(model.layout()),
+                     unpressed, ground),
       layout_(model.layout()),
       e_(e),
-      terms_(model.evaluator<Interval>(model.pair(first, second, mode).terms, run.parameters)),
-      point_(model.evaluator(model.pair(first, second, mode).terms, run.parameters)) {
+      terms_(model.evaluator<Interval>(model.pair(first, second, closed).terms, run.parameters)),
+      point_(model.evaluator(model.pair(first, second, closed).terms, run.parameters)) {
     truncation_.conditions = Conditions::sharp;  // pairs have no other conditions
     truncation_.reinitialization = Reinitialization::kinetic;
 }
@@ -195,15 +203,6 @@ void TwoContactConditions::update(PairBox& box, const std::array<Interval, 2>& s
         box.all[2 * dof_ + k] = {-most, most};
     }
     box.all.back() = box.time();
-}
-
-// Frobenius norm of W^-1/2 (W(q) - W) W^-1/2, computed from K = W^-1 (W(q) - W).
-Interval TwoContactConditions::deviation_from(const std::array<std::array<Interval, 2>, 2>& W) {
-    const Interval det = W[0][0] * W[1][1] - square(W[0][1]);
-    const Interval d0 = terms_.W(0, 0) - W[0][0], d1 = terms_.W(0, 1) - W[0][1], d2 = terms_.W(1, 1) - W[1][1];
-    const Interval k00 = (W[1][1] * d0 - W[0][1] * d1) / det, k11 = (W[0][0] * d2 - W[0][1] * d1) / det;
-    const Interval k01 = (W[1][1] * d1 - W[0][1] * d2) / det, k10 = (W[0][0] * d1 - W[0][1] * d0) / det;
-    return top(sqrt(abs(square(k00) + Interval(2.0) * k01 * k10 + square(k11))));
 }
 
 bool TwoContactConditions::contain(PairBox& box, const MotionBounds& bounds) {
@@ -352,7 +351,8 @@ std::optional<PairCompletion> PairConditions::certify(const PairCollision& colli
         if (!evaluate_terms(box.all)) return std::nullopt;
         const std::array<Interval, 2> off{terms_.hddot(0) + pair->a[0], terms_.hddot(1) + pair->a[1]};
         pair->Delta = top(sqrt(abs(by_inverse(pair->W, off, off))));
-        pair->omega = deviation_from(pair->W);
+        const Interval& W_01 = terms_.W(0, 1);
+        pair->omega = deviation({{{terms_.W(0, 0), W_01}, {W_01, terms_.W(1, 1)}}}, pair->W);
         const auto bound = pair_bound(*pair);
         if (!bound) return std::nullopt;
         if (!contain(box, motion_bounds(*bound, *pair))) continue;

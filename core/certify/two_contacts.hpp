@@ -11,10 +11,12 @@
 
 namespace achilles {
 
+using PairMatrix = std::array<std::array<Interval, 2>, 2>;
+
 // Bounds on the pair at a collision, in units of its energy E = sigma' W^-1 sigma/2 + lambda' h, r0 = sqrt(2 E).
 struct PairAtCollision {
     std::array<Interval, 2> a, lambda, e;  // -hddot, the forces that hold both, the restitutions
-    std::array<std::array<Interval, 2>, 2> W;
+    PairMatrix W;
     Interval r0;
     // Upper bounds over the neighborhood: Delta of |W^-1/2 (hddot + a)|, omega of |W^-1/2 (W(q) - W) W^-1/2|.
     Interval Delta, omega;
@@ -43,9 +45,10 @@ struct PairCompletion {
 class TwoContactConditions : protected ConditionsBase {
  public:
     using ConditionsBase::set_states;
-    // For two contacts while others are held; those in `unpressed` need no contact force.
+    // For two contacts while others are held; those in `unpressed` need no contact force. In the mode `closed` the two
+    // are held, too, and slide if they have friction.
     TwoContactConditions(const Model& model, const Run& run, const std::array<Interval, 2>& e, std::size_t first,
-                         std::size_t second, Mode mode, ContactSet unpressed, const FloatEnvironmentGuard& ground);
+                         std::size_t second, Mode closed, ContactSet unpressed, const FloatEnvironmentGuard& ground);
 
  protected:
     // Neighborhood: `duration` and `growth` are assumed values of T and m.
@@ -71,8 +74,6 @@ class TwoContactConditions : protected ConditionsBase {
     PairBox first_box(const PairCollision& collision, const State& tangential, double duration, double growth);
     // Sets the variables of the box; |sigma_k| <= size_k growth r0.
     void update(PairBox& box, const std::array<Interval, 2>& size, const Interval& r0) const;
-    // Bound of |W^-1/2 (W(q) - W) W^-1/2| over the box whose terms were evaluated.
-    Interval deviation_from(const std::array<std::array<Interval, 2>, 2>& W);
     // Whether the motion and the shifted variables are proved to stay inside the box. If not, the box grows to the
     // required size. terms_ must be those over the box.
     bool contain(PairBox& box, const MotionBounds& bounds);
@@ -107,8 +108,9 @@ class PairConditions : private TwoContactConditions {
 };
 
 // x' W^-1 y for 2-vectors and a symmetric W.
-Interval by_inverse(const std::array<std::array<Interval, 2>, 2>& W, const std::array<Interval, 2>& x,
-                    const std::array<Interval, 2>& y);
+Interval by_inverse(const PairMatrix& W, const std::array<Interval, 2>& x, const std::array<Interval, 2>& y);
+// Bound of |W0^-1/2 (W + skew [0 1; -1 0] - W0) W0^-1/2|, for symmetric W and W0.
+Interval deviation(const PairMatrix& W, const PairMatrix& W0, const Interval& skew = Interval(0.0));
 // The upper end of an interval, as a point.
 inline Interval top(const Interval& x) { return Interval(x.hi()); }
 

@@ -192,9 +192,10 @@ TypedProgram<PairTerms> derive_pair_terms(const Expressions& A, const std::array
                                        joined({D[0], D[1], D[2]}), row_by_row(A, q), row_by_row(A, v), skew);
 }
 
-PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
+PairPrograms derive_pair(std::size_t first, std::size_t second, Mode closed, ContactModes& motions,
                          const Equations& equations, const Layout& layout) {
-    const ModeEquations& both = motions.of(mode.with(ContactSet::of(first).with(second), ContactState::held));
+    const Mode mode = closed.without(ContactSet::of(first).with(second));
+    const ModeEquations& both = motions.of(closed);
     const ModeEquations& open = motions.of(mode);
     const std::array<Row, 2> N{both.contacts[first].direction, both.contacts[second].direction};
     const Row velocity = pair_velocity(N, layout);

@@ -115,7 +115,7 @@ class PairTerms : public Terms<Base> {
     decltype(auto) D(std::size_t k, std::size_t i) const { return row(9 + k, i); }
     decltype(auto) dA_dq(std::size_t i, std::size_t j) const { return row(12 + i, j); }
     decltype(auto) dA_ds(std::size_t i, std::size_t j) const { return row(12 + this->dof_ + i, j); }
-    // W_10 of a contact that sticks at its impacts. Other contacts that slide make W unsymmetric.
+    // Contacts that slide make W unsymmetric.
     decltype(auto) W_10() const { return row(12 + 2 * this->dof_, 0); }
 
  private:
@@ -216,11 +216,15 @@ Expressions pair_velocity(const std::array<Expressions, 2>& N, const Layout& lay
 struct PairPrograms {
     TypedProgram<PairTerms> terms;
     OtherContactTerms others;
+    // For every contact of the pair with friction: its slip at v = s and the two coefficients of sigma in it, all times
+    // the sign with which it slides.
+    Program slips;
+    std::size_t sliding = 0;  // how many there are
 };
 
-// The programs of two contacts while others are held. Throws std::domain_error if the two cannot be held together with
-// these.
-PairPrograms derive_pair(std::size_t first, std::size_t second, Mode mode, ContactModes& motions,
+// The programs of two contacts without friction that are held in the mode `closed`, with the others. Throws
+// std::domain_error if they cannot be held together.
+PairPrograms derive_pair(std::size_t first, std::size_t second, Mode closed, ContactModes& motions,
                          const Equations& equations, const Layout& layout);
 
 }  // namespace achilles

@@ -336,4 +336,55 @@ OtherContactTerms derive_other_contacts(const BouncingKey& key, ContactModes& mo
     return result;
 }
 
+bool slides_evenly(std::size_t contact, ContactState state, const FrictionLaws& laws, const Layout& layout) {
+    const auto law = laws.find(contact);
+    if (law == laws.end()) return true;
+    const std::uint32_t speed[] = {layout.sliding_speed()};
+    return slip_sign(state) != 0 && !law->second.never_slides && !depends_on(law->second.level, speed);
+}
+
+PairPrograms derive_sliding_pair(std::size_t first, std::size_t second, Mode closed, ContactModes& modes,
+                                 const Equations& equations, const Layout& layout) {
+    const std::array<std::size_t, 2> pair{first, second};
+    const Mode others = closed.without(ContactSet::of(first).with(second));
+    const ModeEquations& flight = modes.of(others);
+    Graph& graph = modes.graph();
+    const std::vector<std::uint32_t> v = slots_from(layout.v(0), layout.dof);
+    std::array<Row, 2> N;
+    std::array<std::array<Expression, 2>, 2> W;
+    for (std::size_t l = 0; l < 2; ++l) {
+        const auto law = modes.friction().find(pair[l]);
+        // The direction of the impulses, with the reaction of the other contact.
+        const ModeEquations& with_other = modes.of(closed.without(pair[l]));
+        if (law == modes.friction().end()) {
+            N[l] = with_other.contacts[pair[l]].direction;
+            for (std::size_t k = 0; k < 2; ++k) W[k][l] = flight.contacts[pair[l]].delassus[pair[k]];
+            continue;
+        }
+        const int sign = slip_sign(closed.state(pair[l]));
+        N[l] = sliding_direction(with_other, pair[l], sign, law->second.level).n;
+        const Expression factor = graph.number(sign) * law->second.level;
+        for (std::size_t k = 0; k < 2; ++k)
+            W[k][l] = flight.contacts[pair[l]].delassus[pair[k]] - factor * flight.slips.at(pair[l]).on_gaps[pair[k]];
+    }
+    const Row velocity = pair_velocity(N, layout), free{flight.contacts[first].hddot, flight.contacts[second].hddot};
+    Row A;
+    for (std::size_t i = 0; i < layout.dof; ++i) A.push_back(flight.f[i] - N[0][i] * free[0] - N[1][i] * free[1]);
+    PairPrograms result;
+    Row slips;
+    for (const std::size_t k : pair) {
+        const auto law = modes.friction().find(k);
+        if (law == modes.friction().end()) continue;
+        const Expression sign = graph.number(slip_sign(closed.state(k)));
+        slips.push_back(sign * law->second.slip);
+        for (const Row& direction : N) slips.push_back(sign * product(law->second.d, direction));
+        ++result.sliding;
+    }
+    result.slips = Program(slips, layout.slots());
+    result.terms = derive_pair_terms(A, N, at_velocity(free, v, velocity), {W[0][0], W[0][1], W[1][1]},
+                                     !equations.quadratic_in_rates, layout, {W[1][0]});
+    result.others = derive_other_contacts({first, second}, others, velocity, modes, layout);
+    return result;
+}
+
 }  // namespace achilles

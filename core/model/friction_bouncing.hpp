@@ -30,4 +30,11 @@ BouncingModel derive_bouncing(const BouncingKey& key, ContactModes& modes, const
 OtherContactTerms derive_other_contacts(const BouncingKey& key, ContactModes& modes, const Equations& equations,
                                         const Layout& layout);
 
+// The programs of two contacts that bounce in turn in a system with friction, each sliding with the sign of its state in
+// `closed`, or without friction. Nothing else may be held in that mode. W_10 is set.
+PairPrograms derive_sliding_pair(std::size_t first, std::size_t second, Mode closed, ContactModes& modes,
+                                 const Equations& equations, const Layout& layout);
+// Whether a contact slides with a coefficient that does not depend on the speed, or has no friction.
+bool slides_evenly(std::size_t contact, ContactState state, const FrictionLaws& laws, const Layout& layout);
+
 }  // namespace achilles

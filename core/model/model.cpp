@@ -266,9 +266,10 @@ std::optional<BouncingObstacle> Model::obstacle_to_bouncing(const BouncingKey& k
     return derived(obstacles_, key, [&] { return achilles::obstacle_to_bouncing(key, contact_modes(), layout_); });
 }
 
-const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode mode) const {
-    return derived(pairs_, {mode, ContactSet::of(first).with(second)},
-                   [&] { return derive_pair(first, second, mode, contact_modes(), equations_, layout_); });
+const PairPrograms& Model::pair(std::size_t first, std::size_t second, Mode closed) const {
+    const auto derive = has_friction() ? derive_sliding_pair : derive_pair;
+    return derived(pairs_, {closed, ContactSet::of(first).with(second)},
+                   [&] { return derive(first, second, closed, contact_modes(), equations_, layout_); });
 }
 
 LanePrograms Model::lane_programs() const {

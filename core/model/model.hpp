@@ -137,8 +137,9 @@ class Model {
     // output for each coordinate, with v = s (theory-modes.md 5).
     const Program& change_at_zeno_point(const BouncingKey& key) const;
     std::optional<BouncingObstacle> obstacle_to_bouncing(const BouncingKey& key) const;
-    // The same for two contacts that bounce together while others are held; first < second.
-    const PairPrograms& pair(std::size_t first, std::size_t second, Mode mode) const;
+    // The same for two contacts that bounce together or in turn, first < second. In the mode `closed` they are held with
+    // the others; those with friction slide (derive_sliding_pair).
+    const PairPrograms& pair(std::size_t first, std::size_t second, Mode closed) const;
 
     // An evaluator of one of the programs above with the values of the parameters set.
     template <class Scalar = double>

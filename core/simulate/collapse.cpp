@@ -1,4 +1,4 @@
-// Impacts of a pair that collapse without force (theory-collapse.md 5).
+// Impacts of a pair that collapse without force (theory-collapse.md 6).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -43,10 +43,8 @@ std::optional<PairLaw<Interval>> ExecutionAutomaton::law_of_pair(ContactSet pair
     const auto e = [&](Eigen::Index place) {
         return surfaces_->restitution(closed.which[static_cast<std::size_t>(place)]).enclosure;
     };
-    return PairLaw<Interval>{by_first.W,
-                             HeldBlock<Interval>::between(W, first, second, by_second.kappa),
-                             by_second.W,
-                             {e(first), e(second)}};
+    const Interval between = HeldBlock<Interval>::between(W, first, second, by_second.kappa);
+    return PairLaw<Interval>{by_first.W, between, between, by_second.W, {e(first), e(second)}};
 }
 
 // Whether two contacts that close at the same time lose their speeds at once: the plastic impact is then the limit of
@@ -54,6 +52,7 @@ std::optional<PairLaw<Interval>> ExecutionAutomaton::law_of_pair(ContactSet pair
 bool ExecutionAutomaton::is_collapse_at_tie(ContactSet landing) {
     if (landing.count() != 2 || !next_.touching.empty() || next_.held().count() + 2 > max_closed_contacts) return false;
     if (may_jump(landing, {})) return false;  // a contact with a jump is never cut
+    if (surfaces_->has_friction()) return slides_into_collapse(landing);
     for (const std::size_t i : landing)
         if (!(surfaces_->of(i).at(next_.state).hdot < 0.0)) return false;
     const FloatEnvironmentGuard ground;
@@ -64,7 +63,8 @@ bool ExecutionAutomaton::is_collapse_at_tie(ContactSet landing) {
 AlternateImpacts ExecutionAutomaton::law_of_tie(ContactSet landing) {
     const FloatEnvironmentGuard ground;
     const auto law = law_of_pair(landing, next_.held());
-    return AlternateImpacts({mid(law->W11), mid(law->W12), mid(law->W22), {mid(law->e[0]), mid(law->e[1])}});
+    return AlternateImpacts(
+        {mid(law->W11), mid(law->W12), mid(law->W21), mid(law->W22), {mid(law->e[0]), mid(law->e[1])}});
 }
 
 // Tries to complete the impacts of this contact and another open one that alternate without end. `at_rounding`: no
@@ -85,31 +85,55 @@ bool ExecutionAutomaton::complete_collapse(std::size_t which, const Contact& con
     return false;
 }
 
-// The same for this pair, of which the first one impacts.
+// The same for this pair without friction, of which the first one impacts.
 bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pair,
                                            const std::array<Contact, 2>& contacts, double W12, bool at_rounding) {
-    const std::size_t which = pair[0], j = pair[1];
-    const double e = restitution(which), u = -contacts[0].hdot;
-    const AlternateImpacts law({contacts[0].W, W12, contacts[1].W, {e, restitution(j)}});
+    const double e = restitution(pair[0]), u = -contacts[0].hdot;
+    const State after{next_.state.q, impact(contacts[0], next_.state.v, e), next_.state.t};
+    const ContactSet two = ContactSet::of(pair[0]).with(pair[1]);
+    const CollapsingPair collapsing{pair,
+                                    {contacts[0].W, W12, W12, contacts[1].W, {e, restitution(pair[1])}},
+                                    u,
+                                    contacts[1].hdot,
+                                    contacts[1].h,
+                                    next_.mode.with(two, ContactState::held)};
+    auto completion = certify_collapse(collapsing, after, at_rounding);
+    if (!completion) return false;
+    const ContactSet all = next_.held().with(two);
+    State restart = completion->restart;
+    if (!surfaces_->project(restart, all, all)) return false;
+    record_.impact(next_.state, after.v, u, exchange_of(contacts[0], e), ContactSet::of(pair[0]));
+    next_.state.v = after.v;
+    const auto info = collapse_info(two, AlternateImpacts(collapsing.law));
+    record_.add(record_.exchange_of_jump(after, restart, plastic_work(after, all)));
+    continue_to_collapse(collapsing, after, restart, std::move(*completion), info);
+    return true;
+}
+
+// The certificate for a truncation at this impact, which leads to the state `after`.
+std::optional<PairCompletion> ExecutionAutomaton::certify_collapse(const CollapsingPair& pair, const State& after,
+                                                                   bool at_rounding) {
+    const std::size_t which = pair.which[0], j = pair.which[1];
+    const double e = pair.law.e[0], u = pair.speed;
+    const AlternateImpacts law(pair.law);
     const auto fail = [&](std::string_view inequality) {
         collapse_failure_ = {inequality, ContactSet::of(which).with(j)};
-        return false;
+        return std::nullopt;
     };
     if (!law.is_real) return fail(collapse::real);
-    const double sigma = contacts[1].hdot - law.k[0] * u;
-    const double error = surfaces_->of(j).gap_error(next_.state), h = std::max(0.0, contacts[1].h) + error;
+    const double sigma = pair.rate - law.k[0] * u;
+    const double error = surfaces_->of(j).gap_error(next_.state), h = std::max(0.0, pair.gap) + error;
     // Contacts that close at the same time are decided together.
-    if (!at_rounding && contacts[1].hdot < 0.0 && h <= 8.0 * error - contacts[1].hdot * ulp_of(next_.state.t))
-        return false;
+    if (!at_rounding && pair.rate < 0.0 && h <= 8.0 * error - pair.rate * ulp_of(next_.state.t)) return std::nullopt;
     const double T = law.time(0, e * u, sigma, h);
     if (!(T > 0.0)) return fail(collapse::cone);
-    const State after{next_.state.q, impact(contacts[0], next_.state.v, e), next_.state.t};
-    double acceleration = 0.0;  // in units in which W_ii = 1
+    const std::array<double, 2> size{std::sqrt(pair.law.W11), std::sqrt(pair.law.W22)};  // W_ii = 1 in these units
+    double acceleration = 0.0;
     for (std::size_t k = 0; k < 2; ++k)
-        acceleration = std::max(acceleration, std::abs(surfaces_->of(pair[k], next_.mode).normal_acceleration(after)) /
-                                                  std::sqrt(contacts[k].W));
+        acceleration = std::max(
+            acceleration, std::abs(surfaces_->of(pair.which[k], next_.mode).normal_acceleration(after)) / size[k]);
     if (!law.is_fast && acceleration > 0.0) return fail(collapse::fast);
-    const double beta = acceleration * h * contacts[0].W / (std::sqrt(contacts[1].W) * u * u);
+    const double beta = acceleration * h * pair.law.W11 / (size[1] * u * u);
     if (!(beta < 0.2)) return fail(collapse::weak_force);
     constexpr double resolved = 16.0;
     const bool cut_at_resolution =
@@ -117,7 +141,7 @@ bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pai
     // The enclosure of the time is never narrower than the first flight allows: this saves the proof.
     if (!cut_at_resolution && T > 2.0 * run_.options.truncation.eps_t) return fail(collapse::tolerances);
 
-    CollapseConditions& conditions = collapse_conditions(std::min(which, j), std::max(which, j));
+    CollapseConditions& conditions = collapse_conditions(std::min(which, j), std::max(which, j), pair.closed);
     const std::size_t landed = which < j ? 0 : 1;
     CollapseConditions::CollapseStart start{{after, {}, {}}, landed, u};
     start.collision.sigma[landed] = e * u;
@@ -127,27 +151,19 @@ bool ExecutionAutomaton::complete_collapse(const std::array<std::size_t, 2>& pai
     conditions.set_states(next_.inactive, next_.latched);
     auto completion = timed([&] { return conditions.certify(start, cut_at_resolution, failed); });
     if (!completion) return fail(failed);
-    const ContactSet two = ContactSet::of(which).with(j), all = next_.held().with(two);
-    State restart = completion->restart;
-    if (!surfaces_->project(restart, all, all)) return false;
-    record_.impact(next_.state, after.v, u, exchange_of(contacts[0], e), ContactSet::of(which));
-    next_.state.v = after.v;
-    const auto info = collapse_info(two, law);
-    record_.add(record_.exchange_of_jump(after, restart, plastic_work(after, all)));
-    continue_to_collapse(two, after, restart, std::move(*completion), info, u);
-    return true;
+    return completion;
 }
 
-CollapseConditions& ExecutionAutomaton::collapse_conditions(std::size_t first, std::size_t second) {
+CollapseConditions& ExecutionAutomaton::collapse_conditions(std::size_t first, std::size_t second, Mode closed) {
     const ContactSet unpressed = always_unpressed(next_.mode);
     for (CollapseConditionsCache& known : all_collapses_)
-        if (known.first == first && known.second == second && known.mode == next_.mode && known.unpressed == unpressed)
+        if (known.first == first && known.second == second && known.closed == closed && known.unpressed == unpressed)
             return *known.conditions;
     const FloatEnvironmentGuard ground;
     const std::array e{surfaces_->restitution(first).enclosure, surfaces_->restitution(second).enclosure};
     all_collapses_.push_back(
-        {first, second, next_.mode, unpressed,
-         std::make_unique<CollapseConditions>(*model_, run_, e, first, second, next_.mode, unpressed, ground)});
+        {first, second, closed, unpressed,
+         std::make_unique<CollapseConditions>(*model_, run_, e, first, second, closed, unpressed, ground)});
     return *all_collapses_.back().conditions;
 }
 
@@ -171,14 +187,15 @@ std::shared_ptr<CollapseInfo> ExecutionAutomaton::collapse_info(ContactSet pair,
 }
 
 // The motion that holds both contacts, from the restart to the time of the collapse.
-void ExecutionAutomaton::continue_to_collapse(ContactSet pair, const State& after, const State& restart,
-                                              PairCompletion completion, std::shared_ptr<const CollapseInfo> info,
-                                              double speed) {
-    const Mode mode = next_.mode.with(pair, ContactState::held);
+void ExecutionAutomaton::continue_to_collapse(const CollapsingPair& collapsing, const State& after,
+                                              const State& restart, PairCompletion completion,
+                                              std::shared_ptr<const CollapseInfo> info) {
+    const Mode mode = collapsing.closed;
+    const ContactSet pair = ContactSet::of(collapsing.which[0]).with(collapsing.which[1]);
     Event& event = completion_.emplace();
     event.kind = Event::Kind::collapse;
     event.t = completion.certificate.zeno_time;
-    event.truncation = Event::TruncationRecord{after.t, after.q, after.v, restart.v, speed};
+    event.truncation = Event::TruncationRecord{after.t, after.q, after.v, restart.v, collapsing.speed};
     cut_error_ += std::max(completion.certificate.shadowing_position.value_or(0.0),
                            completion.certificate.shadowing_velocity.value_or(0.0));
     event.certificate = std::move(completion.certificate);
@@ -214,7 +231,10 @@ void ExecutionAutomaton::record_collapse_at_tie(ContactSet pair, std::shared_ptr
 // The end of a collapse: the accelerations decide by complementarity which contacts stay.
 void ExecutionAutomaton::pass_collapse(Event event) {
     const ContactSet pair = event.contacts;
-    decide(next_.held());
+    if (surfaces_->has_friction())
+        decide_with_friction(next_.held(), next_.mode);
+    else
+        decide(next_.held());
     if (outcome_) return stop_at_collapse(pair);
     event.q = next_.state.q;
     event.v_before = event.v_after = next_.state.v;

@@ -42,10 +42,7 @@ void ExecutionAutomaton::land(std::size_t which, const Contact& contact) {
         return;
     }
     if (surfaces_->count() > 1) {
-        // Contacts that impact in turn may leave no time between impacts, even if each alone would bounce high.
-        constexpr double resolved = 16.0;
-        const bool at_rounding = record_.impacts() > 1 && (last_step_ < resolved * ulp(next_.state.t) ||
-                                                           moves_within_rounding(which, -contact.hdot));
+        const bool at_rounding = is_at_rounding(which, -contact.hdot);
         if (complete_collapse(which, contact, at_rounding)) return;
         if (at_rounding) {
             const Vector v_after = impact(contact, next_.state.v, restitution(which));

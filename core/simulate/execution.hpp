@@ -30,6 +30,8 @@ namespace achilles {
 struct FrictionProblem;
 struct FrictionImpactProblem;
 struct FrictionImpact;
+// simulate/sliding_collapse.cpp
+struct SlidingPair;
 
 // Text of a state, for messages.
 std::string where(const State& state);
@@ -172,6 +174,7 @@ class ExecutionAutomaton {
     ContactSet unpressed_among(ContactSet closed, ContactSet active);
     bool is_chatter() const;
     bool moves_within_rounding(std::size_t which, double speed);
+    bool is_at_rounding(std::size_t which, double speed);
     void end_chatter(ContactSet contacts);
     bool stays_closed(std::size_t contact, Mode mode);
     bool is_at_rest(Mode mode);
@@ -181,13 +184,22 @@ class ExecutionAutomaton {
     std::optional<PairLaw<Interval>> law_of_pair(ContactSet pair, ContactSet held);
     bool is_collapse_at_tie(ContactSet landing);
     AlternateImpacts law_of_tie(ContactSet landing);
+    // Two contacts, of which the first impacts: its speed, and the rate and the gap of the other just before. Both are
+    // held, or slide, in the mode `closed`.
+    struct CollapsingPair {
+        std::array<std::size_t, 2> which;
+        PairLaw<double> law;
+        double speed, rate, gap;
+        Mode closed;
+    };
     bool complete_collapse(std::size_t which, const Contact& contact, bool at_rounding);
     bool complete_collapse(const std::array<std::size_t, 2>& pair, const std::array<Contact, 2>& contacts, double W12,
                            bool at_rounding);
-    CollapseConditions& collapse_conditions(std::size_t first, std::size_t second);
+    std::optional<PairCompletion> certify_collapse(const CollapsingPair& pair, const State& after, bool at_rounding);
+    CollapseConditions& collapse_conditions(std::size_t first, std::size_t second, Mode closed);
     std::shared_ptr<CollapseInfo> collapse_info(ContactSet pair, const AlternateImpacts& law);
-    void continue_to_collapse(ContactSet pair, const State& after, const State& restart, PairCompletion completion,
-                              std::shared_ptr<const CollapseInfo> info, double speed);
+    void continue_to_collapse(const CollapsingPair& pair, const State& after, const State& restart,
+                              PairCompletion completion, std::shared_ptr<const CollapseInfo> info);
     void record_collapse_at_tie(ContactSet pair, std::shared_ptr<const CollapseInfo> info);
     void pass_collapse(Event event);
     void finish_collapse(Event event, ContactSet held, Mode resting);
@@ -234,6 +246,12 @@ class ExecutionAutomaton {
         std::shared_ptr<const Event::FrictionImpulses> friction;
     };
     bool complete_with_friction(const ImpactWithFriction& impact);
+    // Two sliding contacts whose impacts collapse (sliding_collapse.cpp).
+    std::optional<SlidingPair> sliding_pair(std::size_t first, std::size_t second);
+    bool slides_into_collapse(ContactSet landing);
+    std::shared_ptr<CollapseInfo> sliding_collapse_info(ContactSet two);
+    bool complete_sliding_collapse(const ImpactWithFriction& impact);
+    bool complete_sliding_collapse(const ImpactWithFriction& impact, std::size_t other);
     std::optional<BouncingObstacle> change_at_impact(const ImpactWithFriction& impact) const;
     std::optional<BouncingObstacle> obstacle_to_completion(const ImpactWithFriction& impact);
     std::string obstacle_text() const;
@@ -361,7 +379,7 @@ class ExecutionAutomaton {
     std::vector<PairConditionsCache> all_pairs_;  // the same for pairs
     struct CollapseConditionsCache {
         std::size_t first, second;
-        Mode mode;  // of the other contacts
+        Mode closed;  // in which both are held, or slide
         ContactSet unpressed;
         std::unique_ptr<CollapseConditions> conditions;
     };

@@ -143,7 +143,10 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
     if (!surfaces_->project(next_.state, all.with(latched), {})) return fail_projection();
     if (!check_friction_levels(all)) return;
     const ContactRows rows = rows_before_impact(all, still);
-    const FrictionImpactProblem problem = impact_problem(rows, all);
+    FrictionImpactProblem problem = impact_problem(rows, all);
+    const bool collapses = is_collapse_at_tie(landing);  // then the impact is plastic, whatever the restitutions
+    const auto limit = collapses ? sliding_collapse_info(landing) : nullptr;
+    if (collapses) std::fill(problem.e.begin(), problem.e.end(), 0.0);
     const FrictionImpact impact = friction_impact(problem);
     if (!check_impact(impact, landing, all)) return;
     const Vector v_before = next_.state.v, v_after = rows.after(v_before, impact.impulses);
@@ -161,7 +164,10 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
         friction->capped = friction->capped.with(problem.elements[element].which);
     }
     const ContactSet unlatched = unlatched_by(landing);
-    if (unlatched.empty() && complete_with_friction({landing, rows, problem, impact, joint, friction})) return;
+    if (unlatched.empty()) {
+        const ImpactWithFriction known{landing, rows, problem, impact, joint, friction};
+        if (complete_with_friction(known) || complete_sliding_collapse(known)) return;
+    }
     Exchange exchange = energy_of_impact(rows, impact.impulses);
     exchange.work += add_impulses_of_latched(*joint, friction.get(), v_after - v_before).work;
     record_.impact(next_.state, v_after, speed, exchange, landing, std::move(joint));
@@ -184,7 +190,13 @@ void ExecutionAutomaton::collide_with_friction(ContactSet landing) {
     const Mode after = stays->with(unlatched, ContactState::held);
     if (!surfaces_->settle(next_.state, after)) return fail_projection();
     change_other_rates(v_before, all.with(latched));
-    if (!decide_with_friction(after.held(), after)) return;
+    const bool is_decided = decide_with_friction(after.held(), after);
+    if (collapses && !is_decided) return stop_at_collapse(landing);
+    if (!is_decided) return;
+    if (collapses) {
+        record_collapse_at_tie(landing, limit);  // the collapse, not its impact, changes the mode
+        return begin_stretch(next_.mode, run_.options.end_time);
+    }
     const ContactSet opened = held.with(unlatched).without(next_.held());
     const bool is_plastic = landing.has_one() && restitution(landing.only()) == 0.0 && opened.empty() &&
                             next_.mode.is_held(landing.only()) && still == held && unlatched.empty();

@@ -310,7 +310,9 @@ bool ExecutionAutomaton::complete_pair(std::size_t first, std::size_t second, Mo
         const std::array e{surfaces_->restitution(first).enclosure, surfaces_->restitution(second).enclosure};
         all_pairs_.push_back(
             {first, second, others, unpressed,
-             std::make_unique<PairConditions>(*model_, run_, e, first, second, others, unpressed, ground)});
+             std::make_unique<PairConditions>(*model_, run_, e, first, second,
+                                              others.with(ContactSet::of(first).with(second), ContactState::held),
+                                              unpressed, ground)});
         known = std::prev(all_pairs_.end());
     }
     known->conditions->set_states(next_.inactive, next_.latched);
@@ -363,6 +365,13 @@ bool ExecutionAutomaton::moves_within_rounding(std::size_t which, double speed) 
         if (other.h < known && std::abs(other.hdot) * last_step_ < known && speed * last_step_ < known) return true;
     }
     return false;
+}
+
+// Whether no time is left between impacts, which may happen to contacts that impact in turn even if each alone would
+// bounce high.
+bool ExecutionAutomaton::is_at_rounding(std::size_t which, double speed) {
+    constexpr double resolved = 16.0;
+    return record_.impacts() > 1 && (last_step_ < resolved * ulp(next_.state.t) || moves_within_rounding(which, speed));
 }
 
 // Ends the run: a chatter that cannot be resolved any further has no certified limit. The message names these contacts

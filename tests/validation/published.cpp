@@ -249,26 +249,36 @@ Topic vibrating_table() {
 }
 
 Topic collapses() {
-    const char* const times_of[2][5] = {
-        {"0.0026925044362526", "0.025872753460352", "0.039763085917002", "0.062029177841626", "0.071896685653581"},
-        {"0.0026925035908552", "0.025872753460032", "0.039763085916443", "0.062029177840777", "0.07189668565255"}};
-    const char* const ends[2] = {"7.588340739596945", "7.588340739675127"};
+    struct Reference {
+        const char *command, *source, *times[5], *end;
+    };
+    const Reference references[] = {
+        {"simulate slider_crank_clearance --tolerance 1e-14 --eps 1e-12 --json -",
+         "quadruple precision",
+         {"0.0026925044362526", "0.025872753460352", "0.039763085917002", "0.062029177841626", "0.071896685653581"},
+         "7.588340739596945"},
+        {"simulate slider_crank_clearance --tolerance 1e-14 --eps 1e-12 --set e=0.1 --json -",
+         "quadruple precision",
+         {"0.0026925035908552", "0.025872753460032", "0.039763085916443", "0.062029177840777", "0.07189668565255"},
+         "7.588340739675127"},
+        {"simulate slider_crank_friction --tolerance 1e-14 --eps 1e-12 --json -",
+         "Runge-Kutta",
+         {"0.00269250442963", "0.0258943678395", "0.03981508743462", "0.06214192419839", "0.0720577573868"},
+         "7.573849471527"}};
     std::vector<Command> commands;
-    for (int i = 0; i < 2; ++i) {
-        Command command{i == 0 ? "simulate slider_crank_clearance --tolerance 1e-14 --eps 1e-12 --json -"
-                               : "simulate slider_crank_clearance --tolerance 1e-14 --eps 1e-12 --set e=0.1 --json -",
-                        {}};
+    for (const Reference& reference : references) {
+        Command command{reference.command, {}};
         for (int k = 0; k < 5; ++k)
-            command.rows.push_back({"time of collapse " + std::to_string(k + 1) + ", s", "quadruple precision",
-                                    times_of[i][k], event("collapse", k, "/t"), 10});
-        command.rows.push_back({"crank at t = 0.0838 s, rad", "quadruple precision", ends[i], at("/end/q/0"), 11});
+            command.rows.push_back({"time of collapse " + std::to_string(k + 1) + ", s", reference.source,
+                                    reference.times[k], event("collapse", k, "/t"), 10});
+        command.rows.push_back({"crank at t = 0.0838 s, rad", reference.source, reference.end, at("/end/q/0"), 11});
         commands.push_back(command);
     }
-    return {
-        "Slider-crank with clearance",
-        "P. Flores, R. Leine & Ch. Glocker, Multibody System Dynamics 23 (2010) 165-190, with the data of Table 1 but "
-        "without friction: with friction, impacts that collapse are not treated. Restitution 0.4, then 0.1.",
-        commands};
+    return {"Slider-crank with clearance",
+            "P. Flores, R. Leine & Ch. Glocker, Multibody System Dynamics 23 (2010) 165-190, with the data of Table 1: "
+            "without friction at the restitutions 0.4 and 0.1, then with the friction 0.01 of the guide. There the "
+            "reference is a program of its own: Runge-Kutta steps of order 8, impact by impact.",
+            commands};
 }
 
 Topic three_balls() {
@@ -329,6 +339,24 @@ Topic impact_oscillator() {
             10}}}}};
 }
 
+Topic impact_pair() {
+    return {
+        "Impact pair",
+        "C. N. Bapat, N. Popplewell & K. McLachlan, J. Sound Vib. 87 (1983) 19-40: two impacts in each cycle, in "
+        "closed form. At the phase phi of the left one, d = 2 a sin phi + pi a cos phi (1 + e)/(1 - e). Half a "
+        "cycle has the factors m with m1 m2 = e^2 and m1 + m2 = 2 e + (1 - e^2) (pi/2) tan phi, and a whole one "
+        "their squares. One of them is 1, and the halves become unequal, where tan phi = -(2/pi) (1 + e)/(1 - e).",
+        {{"orbit impact_pair --json -",
+          {{"impact speed, m/s", "closed form", "1.74661909448292072519724966639", event("impact", 0, "/impact_speed"),
+            12},
+           {"multiplier, real part", "closed form", "-0.155711973344056563977729466857615", at("/multipliers/0/0"), 12},
+           {"its imaginary part", "closed form", "0.324582472350710610703404190036851", at("/multipliers/0/1"), 12}}},
+         {"orbit impact_pair --set a=0.036 --json -",
+          {{"multiplier near the loss of symmetry", "closed form", "0.913286909231236283175150694152729",
+            at("/multipliers/0/0"), 11},
+           {"the other one", "closed form", "0.141905023153229507072857327060989", at("/multipliers/1/0"), 11}}}}};
+}
+
 Topic superball() {
     return {"Superball",
             "R. L. Garwin, American J. Physics 37 (1969) 88-92: a ball thrown under a table comes back after three "
@@ -376,9 +404,10 @@ Topic ball_on_sine() {
 }  // namespace
 
 std::vector<Topic> topics() {
-    return {rimless_wheel(),   simplest_walker(), compass_gait(), cascade(),     rocking_block(),
-            woodpecker(),      stick_slip_belt(), friction(),     superball(),   impact_oscillator(),
-            vibrating_table(), bouncing_balls(),  collapses(),    three_balls(), ball_on_sine()};
+    return {rimless_wheel(),  simplest_walker(),   compass_gait(),    cascade(),
+            rocking_block(),  woodpecker(),        stick_slip_belt(), friction(),
+            superball(),      impact_oscillator(), impact_pair(),     vibrating_table(),
+            bouncing_balls(), collapses(),         three_balls(),     ball_on_sine()};
 }
 
 }  // namespace achilles::validation

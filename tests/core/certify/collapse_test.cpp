@@ -65,7 +65,7 @@ CollapseTally tally_of(double spread, double reach) {
     for (int n = 0; n < 1500; ++n) {
         const double c2 = 0.6 + 0.39 * part(random);
         const std::array<double, 2> e{0.01 + 0.3 * part(random), 0.01 + 0.3 * part(random)};
-        const AlternateImpacts law({1.0, -std::sqrt(c2), 1.0, e});
+        const AlternateImpacts law({1.0, -std::sqrt(c2), -std::sqrt(c2), 1.0, e});
         if (!law.is_real || !law.is_fast) continue;
         const double fall = law.nu(0) * e[0] * (1.0 + 2.0 * part(random)), gap = 0.01 * part(random);
         const double ah = reach * part(random) / gap;  // beta = ah gap for u = 1
@@ -107,7 +107,7 @@ TEST(CollapseTime, HoldsForKAndRestitutionWithinTheirEnclosures) {
 
 // Without force the exact time is known.
 TEST(CollapseTime, IsTheClosedFormWithoutForce) {
-    const AlternateImpacts law({1.0, -0.9, 1.0, {0.1, 0.1}});
+    const AlternateImpacts law({1.0, -0.9, -0.9, 1.0, {0.1, 0.1}});
     const AlternationBounds bounds{
         {Interval(law.k[0]), Interval(law.k[1])}, {Interval(0.1), Interval(0.1)}, Interval(0.0)};
     std::string_view failed;
@@ -119,7 +119,7 @@ TEST(CollapseTime, IsTheClosedFormWithoutForce) {
 }
 
 TEST(CollapseTime, NamesTheInequalityThatFails) {
-    const AlternateImpacts law({1.0, -0.9, 1.0, {0.1, 0.1}});
+    const AlternateImpacts law({1.0, -0.9, -0.9, 1.0, {0.1, 0.1}});
     const auto failure = [&](double fall, double acceleration, double e = 0.1) {
         const AlternationBounds bounds{
             {Interval(law.k[0]), Interval(law.k[1])}, {Interval(e), Interval(e)}, Interval(acceleration)};

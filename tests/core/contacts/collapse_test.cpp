@@ -27,7 +27,7 @@ AlternateRun impacts_in_turn_of(const PairLaw<double>& pair, double rise, double
         h[next] = 0.0;
         const double u = -sigma[next];
         sigma[next] = pair.e[next] * u;
-        sigma[1 - next] += pair.W12 * (1.0 + pair.e[next]) * u / W[next];
+        sigma[1 - next] += (next == 0 ? pair.W21 : pair.W12) * (1.0 + pair.e[next]) * u / W[next];
         next = 1 - next;
         sequence.alternates = sigma[next] < 0.0;
         sequence.speed = u;
@@ -38,10 +38,9 @@ AlternateRun impacts_in_turn_of(const PairLaw<double>& pair, double rise, double
 PairLaw<double> random_pair(std::mt19937_64& random) {
     std::uniform_real_distribution<double> part(0.0, 1.0);
     const double W1 = std::exp(4.0 * part(random) - 2.0), W2 = std::exp(4.0 * part(random) - 2.0);
-    return {W1,
-            -std::sqrt(W1 * W2 * (0.7 + 0.299 * part(random))),
-            W2,
-            {0.01 + 0.4 * part(random), 0.01 + 0.4 * part(random)}};
+    const double skew = std::exp(part(random) - 0.5);  // of contacts that slide
+    const double c = std::sqrt(W1 * W2 * (0.7 + 0.299 * part(random)));
+    return {W1, -c * skew, -c / skew, W2, {0.01 + 0.4 * part(random), 0.01 + 0.4 * part(random)}};
 }
 
 // Inside the cone the impacts have no end, and take exactly the time of the closed form; outside they end.
@@ -73,7 +72,7 @@ TEST(AlternateImpacts, HaveTheTimeOfTheClosedForm) {
 
 // Per two impacts the speeds fall by mu+.
 TEST(AlternateImpacts, LoseSpeedByTheGreaterFactor) {
-    const PairLaw<double> pair{1.0, -0.9, 1.0, {0.1, 0.1}};
+    const PairLaw<double> pair{1.0, -0.9, -0.9, 1.0, {0.1, 0.1}};
     const AlternateImpacts law(pair);
     EXPECT_NEAR(law.mu_plus, 0.7671, 1e-4);
     EXPECT_NEAR(law.mu_minus, 0.01304, 1e-5);
@@ -83,7 +82,7 @@ TEST(AlternateImpacts, LoseSpeedByTheGreaterFactor) {
 
 // Three equal balls: both conditions have thresholds in closed form.
 TEST(AlternateImpacts, OfThreeBallsHaveTheKnownThresholds) {
-    const auto balls = [](double e) { return PairLaw<double>{2.0, -1.0, 2.0, {e, e}}; };
+    const auto balls = [](double e) { return PairLaw<double>{2.0, -1.0, -1.0, 2.0, {e, e}}; };
     const double collapse = 7.0 - 4.0 * std::sqrt(3.0), fast = 9.0 - 4.0 * std::sqrt(5.0);
     for (const double sign : {-1.0, 1.0}) {
         EXPECT_EQ(AlternateImpacts(balls(collapse * (1.0 + 1e-9 * sign))).is_real, sign < 0.0);
@@ -97,7 +96,7 @@ TEST(AlternateImpacts, OfThreeBallsHaveTheKnownThresholds) {
 
 // The unit of a gap changes neither conditions nor time.
 TEST(AlternateImpacts, DoNotDependOnTheUnitOfAGap) {
-    const PairLaw<double> pair{1.0, -0.9, 1.2, {0.1, 0.2}}, other{1.0, -900.0, 1.2e6, {0.1, 0.2}};
+    const PairLaw<double> pair{1.0, -0.9, -0.9, 1.2, {0.1, 0.2}}, other{1.0, -900.0, -900.0, 1.2e6, {0.1, 0.2}};
     const AlternateImpacts a(pair), b(other);
     EXPECT_NEAR(a.mu_plus, b.mu_plus, 1e-14);
     EXPECT_NEAR(a.time(0, 0.1, -1.0, 0.01), b.time(0, 0.1, -1000.0, 10.0), 1e-14);
@@ -105,8 +104,11 @@ TEST(AlternateImpacts, DoNotDependOnTheUnitOfAGap) {
 
 TEST(AlternateImpacts, CollapseAtATieOnlyIfProved) {
     const auto tie = [](double c, double e1, double e2, double radius = 0.0) {
-        return collapses_at_tie(
-            {Interval(1.0), Interval(c - radius, c + radius), Interval(1.0), {Interval(e1), Interval(e2)}});
+        return collapses_at_tie({Interval(1.0),
+                                 Interval(c - radius, c + radius),
+                                 Interval(c),
+                                 Interval(1.0),
+                                 {Interval(e1), Interval(e2)}});
     };
     EXPECT_TRUE(tie(-0.9, 0.1, 0.1));
     EXPECT_FALSE(tie(0.9, 0.1, 0.1));
