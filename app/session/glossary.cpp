@@ -81,10 +81,11 @@ std::span<const GalleryGroup> gallery() {
         {"several contacts",
          {"double_pendulum_two_stops", "wavy_ramp", "ball_in_sloped_box", "ball_round_post", "ball_in_v",
           "box_dropped_flat", "cart_between_walls", "backlash", "newtons_cradle", "three_balls",
-          "slider_crank_clearance", "slider_crank_friction", "seesaw", "table_on_legs"}},
+          "slider_crank_clearance", "seesaw", "table_on_legs"}},
         {"dry friction",
          {"block_on_incline", "stick_slip_belt", "spun_disc", "bead_on_rough_sine", "rough_pendulum", "rocking_block",
-          "woodpecker", "ladder", "spinning_ball_between_walls", "impacting_stick", "bouncing_dimer", "painleve_rod"}}};
+          "woodpecker", "ladder", "spinning_ball_between_walls", "impacting_stick", "bouncing_dimer", "painleve_rod",
+          "slider_crank_friction"}}};
     return groups;
 }
 

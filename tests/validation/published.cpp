@@ -263,7 +263,7 @@ Topic collapses() {
          "7.588340739675127"},
         {"simulate slider_crank_friction --tolerance 1e-14 --eps 1e-12 --json -",
          "Runge-Kutta",
-         {"0.00269250442963", "0.0258943678395", "0.03981508743462", "0.06214192419839", "0.0720577573868"},
+         {"0.0026925044307", "0.0258943678395", "0.03981508743462", "0.06214192419839", "0.0720577573868"},
          "7.573849471527"}};
     std::vector<Command> commands;
     for (const Reference& reference : references) {

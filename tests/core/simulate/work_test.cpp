@@ -81,12 +81,13 @@ TEST(Work, IsTheIntegralOfThePower) {
             run.options.tolerance = tolerance;
             const Trajectory trajectory = simulate(model, run);
             const double work = expect_integrals(trajectory, 0);
-            EXPECT_TRUE(work > 0.0 || !model->equations().has_power()) << name;
+            // The stops of the pair do work at impacts only.
+            EXPECT_TRUE(work > 0.0 || !model->equations().has_power() || name == "impact_pair") << name;
             if (model->has_friction() && expect_integrals(trajectory, 1) > 0.0) ++heated;
         }
     }
     EXPECT_GT(systems, 16);
-    EXPECT_EQ(heated, 4 * 9);  // the ball between walls and the rocking block slip only at impacts
+    EXPECT_EQ(heated, 4 * 10);  // the ball between walls and the rocking block slip only at impacts
 }
 
 // The mass stays on the floor, so a single step covers the run, in which the potential energy oscillates: its series
