@@ -204,10 +204,9 @@ std::string EventDescriptions::beginning(const Event& event) const {
     if (!words.empty()) return words;
     if (!is_of_several_) return "contact begins";
     const bool latches = is_one && event.latched.contains(event.contacts.only());
-    return joined_names(*trajectory_.model, event.contacts, " and ") +
-           (latches  ? " latches"
-            : is_one ? " is held"
-                     : " are held");
+    return joined_names(*trajectory_.model, event.contacts, " and ") + (latches  ? " latches"
+                                                                        : is_one ? " is held"
+                                                                                 : " are held");
 }
 
 std::string EventDescriptions::change(std::size_t index) const {
@@ -316,7 +315,7 @@ std::string EventDescriptions::collapse(std::size_t index) const {
     for (const std::string& part : {end(held, " is held", "both held"), end(event.opened, " leaves", "both leave"),
                                     end(touching, " touches", "both touch")})
         if (!part.empty()) ends += (ends.empty() ? "; " : ", ") + part;
-    return text + ends;
+    return text + ends + friction_after(index);
 }
 
 std::string EventDescriptions::impacts() const {

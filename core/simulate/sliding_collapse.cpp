@@ -142,7 +142,10 @@ bool ExecutionAutomaton::complete_sliding_collapse(const ImpactWithFriction& imp
     const PairLaw<double> law = before->law<double>();
     if (!(law.W12 < 0.0 && law.W21 < 0.0)) return false;
     const bool slides = before->slip(0) < 0 || impact.solved.mode.state(which) == before->closed.state(which);
-    if (!slides) return false;
+    if (!slides) {
+        collapse_failure_ = {collapse::slides, impact.landing.with(other)};
+        return false;
+    }
     const double u = -before->rate(before->gap(0));
     const CollapsingPair pair{
         {which, other}, law, u, before->rate(before->gap(1)), surfaces_->of(other).at(next_.state).h, before->closed};

@@ -30,5 +30,11 @@ TEST(CollapseOutput, HasASentenceAndJson) {
     EXPECT_TRUE((*found)["certificate"]["certified"]);
 }
 
+TEST(CollapseOutput, SaysWhichWayTheContactsSlide) {
+    const auto model = test::load("slider_crank_friction");
+    const std::string text = summary(simulate(model, model->default_run()));
+    EXPECT_NE(text.find("c3 slides with slip > 0, c4 slides with slip > 0"), std::string::npos) << text;
+}
+
 }  // namespace
 }  // namespace achilles

@@ -207,13 +207,28 @@ TEST(SlidingCollapse, ATieIsThePlasticImpact) {
     EXPECT_EQ(slip_sign(event.mode.state(1)), 1);
 }
 
-// Where the impacts use up the slip, its sign is not kept, and nothing is completed.
-TEST(SlidingCollapse, IsNotCompletedWhereTheSlipEnds) {
+// Where the impacts use up the slip, its sign is not kept, and the sequence is not cut before that.
+TEST(SlidingCollapse, IsNotCutWhereASlipMayEnd) {
     SlidingPlanes planes;
-    planes.slide = 0.1;
     planes.mu_p = planes.mu_r = 0.4;
-    const Trajectory run = run_with(planes.model(), 1e-8);
-    EXPECT_TRUE(collapses_of(run).empty());
+    planes.potential = "x + 2*y";
+    const Trajectory slides_on = run_with(planes.model(), 0.01);
+    ASSERT_EQ(collapses_of(slides_on).size(), 1u);
+    const double lost = planes.slide - collapses_of(slides_on)[0].v_after[2];  // of the slip
+    int cut = 0;
+    for (const double short_of : {3.0, 1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001}) {
+        planes.slide = lost - short_of;
+        const Trajectory run = run_with(planes.model(), 0.01);
+        // A wrong cut would end here: the slip would reach zero before the collapse.
+        EXPECT_EQ(run.outcome.message.find("before the Zeno time"), std::string::npos) << run.outcome.message;
+        for (const Event& event : collapses_of(run)) {
+            ++cut;
+            const auto slip = [&](const Vector& v) { return v[2] + planes.slip_p[0] * v[0] + planes.slip_p[1] * v[1]; };
+            EXPECT_GT(slip(event.truncation->v_before) * slip(event.v_after), 0.0) << short_of;
+            EXPECT_GT(slip_sign(event.mode.state(0)) * slip(event.v_after), 0.0) << short_of;
+        }
+    }
+    EXPECT_LT(cut, 4);
 }
 
 // An independent program (scipy's DOP853, impact by impact, plastic impacts at the ends) gave these numbers; without
