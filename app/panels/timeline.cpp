@@ -53,12 +53,18 @@ void paint_events(const Session& session, const Track& track, ImDrawList* list) 
         event = std::partition_point(event, events.end(),
                                      [&](const Event& e) { return std::floor(track.x(e.t)) <= pixel; });
     }
-    for (const std::size_t turn : turns(session.trajectory()))
-        paint_marker(list,
-                     events[turn].opened.empty() || !events[turn].is_impact()
-                         ? event_markers(session.theme(), events[turn].kind)
-                         : opened_markers(session.theme()),
-                     {track.x(events[turn].t), top - units(8.0F)}, scale);
+    // At most one marker in a few pixels, of Zeno points first.
+    std::vector<float> taken;
+    const std::vector<std::size_t> all = turns(session.trajectory());
+    for (const bool of_zeno : {true, false})
+        for (const std::size_t turn : all) {
+            const float x = track.x(events[turn].t), least = units(static_cast<float>(event_marker_distance));
+            if (events[turn].is_zeno() != of_zeno ||
+                std::any_of(taken.begin(), taken.end(), [&](float other) { return std::abs(x - other) < least; }))
+                continue;
+            taken.push_back(x);
+            paint_marker(list, event_markers(session.theme(), events[turn].kind), {x, top - units(8.0F)}, scale);
+        }
 }
 
 void paint_axis(const Session& session, const Track& track, ImDrawList* list) {

@@ -156,7 +156,7 @@ void name_runs(Figure& figure, const Session& session, const std::vector<const P
     const Stroke own{theme.ink, 2.0, {}};
     figure.keys.push_back({session.name_of_run().empty() ? "present run" : session.name_of_run(), own});
     for (const PinnedRun* run : pinned)
-        figure.keys.push_back({run->name.empty() ? "pinned run" : run->name, pinned_stroke(theme, {}, run->place, 0)});
+        figure.keys.push_back({run->name.empty() ? "pinned run" : run->name, pinned_stroke(theme, {}, run->place)});
 }
 
 }  // namespace

@@ -264,12 +264,12 @@ Panel with_pinned(Panel panel, std::span<const PinnedPanel> pinned, const Framin
         const Panel& other = *pinned[i].panel;
         for (Curve curve : other.curves) {
             curve.label.clear();
-            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place, pinned.size() - 1 - i);
+            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place);
             under.push_back(std::move(curve));
         }
         for (Curve curve : other.beyond.curves) {
             const std::uint8_t alpha = curve.stroke.color.a;
-            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place, pinned.size() - 1 - i);
+            curve.stroke = pinned_stroke(theme, curve.stroke, pinned[i].place);
             curve.stroke.color.a = alpha;
             panel.beyond.curves.push_back(std::move(curve));
         }

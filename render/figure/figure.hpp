@@ -34,7 +34,8 @@ struct Stroke {
 struct Curve {
     std::string label;  // "": not in the legend
     Stroke stroke;
-    std::vector<Point> points;  // data coordinates; a NaN point breaks the curve
+    std::vector<Point> points;      // data coordinates; a NaN point breaks the curve
+    bool is_between_cells = false;  // a boundary in the panel's raster, drawn where its cells are wide enough
 };
 
 struct Markers {
@@ -52,7 +53,7 @@ struct Markers {
     Color fill, edge;
     double size = 6.0;  // width
     std::vector<Point> points;
-    double apart = 0.05;  // minimum distance between two drawn markers
+    double apart = 0.05;  // minimum distance from other drawn markers, also from larger ones of other kinds
     double lift = 0.0;    // distance above its point at which a marker is drawn
 };
 

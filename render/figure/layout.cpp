@@ -103,6 +103,16 @@ void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& ma
     end_strip();
 }
 
+// Lines between the cells of a map would be gray noise where the cells are small. Judged by their width alone, since the
+// legend is laid out before the height of the plot is known.
+bool has_lines_between_cells(const Panel& panel, float plot_width, const Metrics& m) {
+    constexpr double min_cell = 4.0;  // points
+    if (!panel.raster.cells) return false;
+    const PanelMap map(panel, {0.0F, 0.0F, plot_width, 1.0F});
+    return std::abs(map.x(panel.raster.right) - map.x(panel.raster.left)) >
+           min_cell * m.scale * panel.raster.cells->columns;
+}
+
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
     const PanelMap map(panel, plot);
     lay_hatch(panel.hatch, sheet, plot, m);
@@ -120,21 +130,26 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     };
     if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is invisible on a screen
     for (const Curve& curve : panel.beyond.curves) lay(curve);
-    for (const Curve& curve : panel.curves) lay(curve);
+    const bool between_cells = has_lines_between_cells(panel, plot.width, m);
+    for (const Curve& curve : panel.curves)
+        if (between_cells || !curve.is_between_cells) lay(curve);
 }
 
 // Event markers are drawn above the box, so that the box does not cross out those at the end of an axis.
 void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
-    const PanelMap map(panel, plot);
-    for (const std::vector<Markers>& all : {std::cref(panel.beyond.markers), std::cref(panel.markers)})
-        for (const Markers& markers : all)
-            if (markers.shape != Markers::MarkerShape::bar) lay_markers(markers, sheet, plot, map, m);
+    std::vector<const Markers*> all;
+    for (const std::vector<Markers>& some : {std::cref(panel.beyond.markers), std::cref(panel.markers)})
+        for (const Markers& markers : some)
+            if (markers.shape != Markers::MarkerShape::bar) all.push_back(&markers);
+    lay_markers(all, sheet, plot, PanelMap(panel, plot), m);
 }
 
-std::vector<Key> keys_of(const Panel& panel) {
+std::vector<Key> keys_of(const Panel& panel, float plot_width, const Metrics& m) {
     std::vector<Key> keys;
+    const bool between_cells = has_lines_between_cells(panel, plot_width, m);
     for (const Curve& curve : panel.curves)
-        if (!curve.label.empty()) keys.push_back({curve.label, curve.stroke});
+        if (!curve.label.empty() && (between_cells || !curve.is_between_cells))
+            keys.push_back({curve.label, curve.stroke});
     for (const Markers& markers : panel.markers)
         if (!markers.label.empty()) keys.push_back({markers.label, markers});
     if (!panel.hatch.label.empty() && !has_no_fill(panel)) keys.push_back({panel.hatch.label, panel.hatch});
@@ -176,7 +191,7 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
 
 // Draws a legend in the corner that the panel specifies.
 void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
-    const std::vector<Key> keys = keys_of(panel);
+    const std::vector<Key> keys = keys_of(panel, plot.width, m);
     if (keys.empty()) return;
     const float pad = std::round(m.text * 0.45F), inset = std::round(m.text * 0.6F);
     const float room_x = plot.width - 2.0F * inset, room_y = plot.height - 2.0F * inset;
@@ -275,7 +290,7 @@ bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, co
 
 float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     if (!panel.legend || !panel.legend_above) return 0.0F;
-    const KeyLines keys(keys_of(panel), plot_width, m);
+    const KeyLines keys(keys_of(panel, plot_width, m), plot_width, m);
     const float spare = title_beside(panel, keys, plot_width, m) ? m.text * 1.35F : 0.0F;
     return std::max(keys.height(m) - spare, 0.0F);
 }
@@ -293,7 +308,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     layout_word(panel, style, sheet, inner, m);
     float lift = 0.0F;
     if (panel.legend && panel.legend_above) {
-        const KeyLines keys(keys_of(panel), inner.width, m);
+        const KeyLines keys(keys_of(panel, inner.width, m), inner.width, m);
         keys.lay(sheet, inner.x + inner.width, inner.y - m.gap - keys.height(m), 1.0F, style, m);
         if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }

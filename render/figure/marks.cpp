@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <optional>
+#include <vector>
 
 namespace achilles {
 
@@ -30,33 +33,41 @@ std::vector<Point> places_of(const Markers& markers, Rectangle plot, const Panel
     return places;
 }
 
-// Markers at a minimum distance from the last 32 that are kept: impacts accumulate before a Zeno point.
-std::vector<Point> standing_apart(const std::vector<Point>& places, double apart) {
-    constexpr std::size_t remembered = 32;
-    std::vector<Point> laid;
-    for (const Point& at : places) {
-        const auto recent = laid.end() - static_cast<std::ptrdiff_t>(std::min(laid.size(), remembered));
-        if (std::none_of(recent, laid.end(),
-                         [&](const Point& other) { return std::hypot(at.x - other.x, at.y - other.y) < apart; }))
-            laid.push_back(at);
-    }
-    return laid;
-}
-
-// The first marker in each square of this side, unless one in an adjacent square is closer than that.
-std::vector<Point> spaced_apart(const std::vector<Point>& places, double side) {
-    std::map<std::array<long, 2>, Point> taken;
-    std::vector<Point> laid;
-    for (const Point& at : places) {
-        const long column = std::lround(std::floor(at.x / side)), row = std::lround(std::floor(at.y / side));
-        bool is_free = true;
-        for (long i = -1; i <= 1 && is_free; ++i)
-            for (long j = -1; j <= 1 && is_free; ++j) {
-                const auto other = taken.find({column + i, row + j});
-                is_free = other == taken.end() || std::hypot(at.x - other->second.x, at.y - other->second.y) >= side;
+// Markers in squares as wide as the distance that one more must keep from them.
+class DrawnMarkers {
+ public:
+    explicit DrawnMarkers(double distance) : side_(std::max(distance, 1e-3)) {}
+    void add(const Point& at) { squares_[square(at)].push_back(at); }
+    bool has_near(const Point& at) const {
+        const auto [column, row] = square(at);
+        for (long i = -1; i <= 1; ++i)
+            for (long j = -1; j <= 1; ++j) {
+                const auto near = squares_.find({column + i, row + j});
+                if (near == squares_.end()) continue;
+                for (const Point& other : near->second)
+                    if (std::hypot(at.x - other.x, at.y - other.y) < side_) return true;
             }
-        if (!is_free) continue;
-        taken.insert({{column, row}, at});
+        return false;
+    }
+
+ private:
+    std::array<long, 2> square(const Point& at) const {
+        return {std::lround(std::floor(at.x / side_)), std::lround(std::floor(at.y / side_))};
+    }
+
+    double side_;
+    std::map<std::array<long, 2>, std::vector<Point>> squares_;
+};
+
+// The markers that are drawn: at these distances from each other and from those of other kinds.
+std::vector<Point> spaced_apart(const std::vector<Point>& places, double distance, const std::vector<Point>& others,
+                                double from_others) {
+    DrawnMarkers drawn(distance), taken(from_others);
+    for (const Point& other : others) taken.add(other);
+    std::vector<Point> laid;
+    for (const Point& at : places) {
+        if (drawn.has_near(at) || taken.has_near(at)) continue;
+        drawn.add(at);
         laid.push_back(at);
     }
     return laid;
@@ -115,20 +126,37 @@ Mark mark_of(const Markers& markers, const Point& pixel, const Metrics& m) {
     return {markers.shape, pixel, markers.fill, markers.edge, markers.size * m.scale, m.scale};
 }
 
-void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& m) {
+namespace {
+
+// Markers of one kind; those laid are added to `drawn`.
+void lay_kind(const Markers& markers, std::vector<Point>& drawn, Sheet& sheet, Rectangle plot, const PanelMap& map,
+              const Metrics& m) {
     const std::vector<Point> places = places_of(markers, plot, map, m);
-    if (places.size() <= few_markers) {
-        for (const Point& at : standing_apart(places, markers.apart * m.scale))
-            sheet.emplace_back(mark_of(markers, at, m));
-        return;
-    }
+    const bool are_few = places.size() <= few_markers;
     constexpr double between = 1.3;  // distance in marker sizes
-    const std::vector<Point> laid = spaced_apart(places, std::max(between * markers.size, markers.apart) * m.scale);
-    if (laid.size() > max_markers || places.size() > most_events * laid.size())
+    const double distance = are_few ? markers.apart : std::max(between * markers.size, markers.apart);
+    const std::vector<Point> laid = spaced_apart(places, distance * m.scale, drawn, markers.apart * m.scale);
+    if (!are_few && (laid.size() > max_markers || places.size() > most_events * std::max<std::size_t>(laid.size(), 1)))
         return lay_band(markers, places, sheet, plot, m);
-    Markers bare = markers;
-    bare.edge.a = 0;
-    for (const Point& at : laid) sheet.emplace_back(mark_of(bare, at, m));
+    Markers drawn_as = markers;
+    if (!are_few) drawn_as.edge.a = 0;
+    for (const Point& at : laid) sheet.emplace_back(mark_of(drawn_as, at, m));
+    drawn.insert(drawn.end(), laid.begin(), laid.end());
+}
+
+}  // namespace
+
+void lay_markers(const std::vector<const Markers*>& all, Sheet& sheet, Rectangle plot, const PanelMap& map,
+                 const Metrics& m) {
+    // A larger marker is more important, such as that of a Zeno point among impacts: it is chosen first.
+    std::vector<std::size_t> order(all.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return all[a]->size > all[b]->size; });
+    std::vector<Point> drawn;
+    std::vector<Sheet> laid(all.size());
+    for (const std::size_t i : order) lay_kind(*all[i], drawn, laid[i], plot, map, m);
+    for (Sheet& one : laid) std::move(one.begin(), one.end(), std::back_inserter(sheet));
 }
 
 // ---- hatching, rasters, points ----

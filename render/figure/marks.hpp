@@ -6,13 +6,14 @@
 namespace achilles {
 
 // ---- event markers ----
-// Markers must not hide the curves. Many markers are thinned and lose their edges; very many become a band of small
-// dots.
+// Markers must not hide the curves. Of markers closer than Markers::apart the largest is drawn, such as that of a Zeno
+// point among impacts. Many markers lose their edges; very many become a band of small dots.
 
 Mark mark_of(const Markers& markers, const Point& pixel, const Metrics& metrics);
 
 // Adds markers of any shape except bars.
-void lay_markers(const Markers& markers, Sheet& sheet, Rectangle plot, const PanelMap& map, const Metrics& metrics);
+void lay_markers(const std::vector<const Markers*>& all, Sheet& sheet, Rectangle plot, const PanelMap& map,
+                 const Metrics& metrics);
 
 void lay_hatch(const Hatch& hatch, Sheet& sheet, Rectangle plot, const Metrics& metrics);
 // The hatching symbol of a legend.

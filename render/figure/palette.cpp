@@ -200,11 +200,9 @@ Color run_color(const Theme& theme, int place) {
     return (theme.dark ? dark : light)[static_cast<std::size_t>(std::max(place, 1) - 1) % light.size()];
 }
 
-Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above) {
-    Stroke wide{run_color(theme, place), 2.9 + 0.6 * static_cast<double>(above), stroke.dash};
-    // The stroke has round ends, so gaps are lengthened by as much as these cover.
-    for (std::size_t i = 1; i < wide.dash.size(); i += 2) wide.dash[i] += 0.8 * wide.width;
-    return wide;
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place) {
+    constexpr double share = 0.6;  // of the width of the present run
+    return {run_color(theme, place), share * stroke.width, stroke.dash};
 }
 
 Markers event_markers(const Theme& theme, Event::Kind kind) {
@@ -216,6 +214,7 @@ Markers event_markers(const Theme& theme, Event::Kind kind) {
     markers.edge = theme.background;
     if (sign.is_hollow) std::swap(markers.fill, markers.edge);
     markers.size = sign.size;
+    markers.apart = event_marker_distance;
     return markers;
 }
 

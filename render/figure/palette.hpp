@@ -66,12 +66,13 @@ inline Color phase_color(const Theme& theme, Phase::Kind kind) { return phase_co
 // and only stroke and dash show its phases.
 inline constexpr int max_pinned = 6;
 Color run_color(const Theme& theme, int place);
-// Stroke of a compared run that lies below `above` others and the present one. It is wide enough to be visible where
-// they coincide.
-Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place, std::size_t above);
+// Stroke of a compared run, thinner than that of the present run.
+Stroke pinned_stroke(const Theme& theme, const Stroke& stroke, int place);
 // Filled squares at impacts, diamonds at Zeno points, triangles at releases. Events of friction: a disc where it
 // sticks, a circle where a slip starts, a hollow diamond where it is reversed. The markers have no points yet.
 Markers event_markers(const Theme& theme, Event::Kind kind);
+// Events nearer to each other than this share a marker, points.
+inline constexpr double event_marker_distance = 6.0;
 // Hollow triangles above the squares of impacts that open a held contact. The markers have no points yet.
 Markers opened_markers(const Theme& theme);
 // Legend text of a phase.

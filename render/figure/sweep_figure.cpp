@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "figure/grid.hpp"
 #include "figure/label.hpp"
@@ -127,7 +128,8 @@ std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const Sw
     return panels;
 }
 
-// Moves legend entries that two panels share into one legend above all panels.
+// Moves legend entries that two panels share into one legend above all panels. Lines between cells are named by the first
+// panel that has them, since the layout may leave them out.
 void share_keys(Figure& figure) {
     const auto is_said_twice = [&](const std::string& label) {
         const auto says = [&](const Panel& panel) {
@@ -145,7 +147,8 @@ void share_keys(Figure& figure) {
         figure.keys.push_back({label, sign});
     };
     for (const Panel& panel : figure.panels) {
-        for (const Curve& curve : panel.curves) add(curve.label, curve.stroke);
+        for (const Curve& curve : panel.curves)
+            if (!curve.is_between_cells) add(curve.label, curve.stroke);
         for (const Markers& markers : panel.markers)
             if (!markers.points.empty() || panel.raster.cells == nullptr) add(markers.label, markers);
         if (!has_no_fill(panel)) add(panel.hatch.label, panel.hatch);
@@ -153,8 +156,12 @@ void share_keys(Figure& figure) {
     const auto clear = [&](auto& one) {
         if (std::find(shared.begin(), shared.end(), one.label) != shared.end()) one.label.clear();
     };
+    bool is_named = false;
     for (Panel& panel : figure.panels) {
-        for (Curve& curve : panel.curves) clear(curve);
+        for (Curve& curve : panel.curves) {
+            clear(curve);
+            if (curve.is_between_cells && !curve.label.empty() && std::exchange(is_named, true)) curve.label.clear();
+        }
         for (Markers& markers : panel.markers) clear(markers);
         if (!has_no_fill(panel)) clear(panel.hatch);
     }

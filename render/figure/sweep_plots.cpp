@@ -239,8 +239,10 @@ std::optional<std::vector<Point>> changes(const SweepData& data, const Grid2& gr
 void add_contours(const SweepData& data, const Grid2& grid, const Theme& theme, Panel& panel) {
     Curve line;
     line.stroke = {theme.ink, 0.8, {}};
+    line.is_between_cells = true;
     const auto points = changes(data, grid);
     if (!points) {
+        line.is_between_cells = false;  // only its label is shown
         line.label = changes_too_often;
         panel.curves.push_back(std::move(line));
         return;

@@ -3,11 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "core/systems.hpp"
 #include "figure/axes.hpp"
 #include "figure/grid.hpp"
+#include "figure/palette.hpp"
 #include "figure/publication.hpp"
 #include "render/samples.hpp"
 #include "simulate/simulate.hpp"
@@ -95,6 +97,36 @@ TEST(Layout, MarkersOnTheRimAreDrawn) {
         for (const auto& item : layout(figure, half, {0, 0, width, 300}, 1.0))
             marks += std::holds_alternative<Mark>(item) ? 1 : 0;
         EXPECT_EQ(marks, 4) << width;
+    }
+}
+
+// Within the distance of event markers one is drawn: the largest.
+TEST(Layout, CrowdedEventsShareAMarker) {
+    Figure figure;
+    Panel& panel = figure.panels.emplace_back();
+    panel.x.low = 0.0, panel.x.high = 1.0, panel.y.low = -1.0, panel.y.high = 1.0;
+    for (const Event::Kind kind : {Event::Kind::impact, Event::Kind::zeno, Event::Kind::release})
+        panel.markers.push_back(event_markers(light_theme(), kind));
+    for (int i = 0; i < 60; ++i) panel.markers[0].points.push_back({0.5 - 0.4 * std::pow(0.8, i), 0.0});
+    panel.markers[1].points = {{0.5, 0.0}};
+    panel.markers[2].points = {{0.502, 0.0}, {0.9, 0.0}};
+    for (const double scale : {1.0, 2.0}) {
+        std::vector<Mark> marks;
+        for (const auto& item : layout(figure, half, {0, 0, 600, 400}, scale))
+            if (const auto* mark = std::get_if<Mark>(&item)) marks.push_back(*mark);
+        double nearest = 1e9;
+        int diamonds = 0, triangles = 0;
+        for (std::size_t i = 0; i < marks.size(); ++i) {
+            diamonds += marks[i].shape == Markers::MarkerShape::diamond ? 1 : 0;
+            triangles += marks[i].shape == Markers::MarkerShape::triangle ? 1 : 0;
+            for (std::size_t j = 0; j < i; ++j)
+                nearest = std::min(nearest, std::hypot(marks[i].at.x - marks[j].at.x, marks[i].at.y - marks[j].at.y));
+        }
+        EXPECT_GE(nearest, event_marker_distance * scale);
+        EXPECT_LT(nearest, 3.0 * event_marker_distance * scale) << "more are drawn where there is room";
+        EXPECT_EQ(diamonds, 1) << "the Zeno point, not its release";
+        EXPECT_EQ(triangles, 1);
+        EXPECT_GT(marks.size(), 8u);
     }
 }
 

@@ -59,6 +59,33 @@ TEST(SweepMap, HasACellForEveryPoint) {
     EXPECT_EQ(line[4].x, 1.5);
 }
 
+// Lines between small cells would be gray noise: neither they nor their legend are drawn.
+TEST(SweepMap, HasLinesOnlyBetweenLargeCells) {
+    const auto width = [](const std::string&, float) { return 40.0F; };
+    for (const auto& [side, is_drawn] : {std::pair{10, true}, {60, true}, {220, false}}) {
+        const auto count = static_cast<std::size_t>(side);
+        std::vector<double> numbers(count * count, 1.0);
+        std::vector<std::uint64_t> signatures(count * count, 1);
+        for (std::size_t i = 0; i < count * count / 2; ++i) signatures[i] = 2;
+        const SweepData data =
+            grid({{"e", 0.0, 1.0, count, false}, {"g", 0.0, 2.0, count, false}}, numbers, signatures);
+        const Figure figure = compose_sweep(data, only(0));
+        for (const double scale : {1.0, 2.0}) {
+            const auto size = static_cast<float>(500.0 * scale);
+            std::size_t lines = 0, words = 0;
+            const Color rim = figure.panels.at(0).curves.at(0).stroke.color;
+            for (const auto& item : layout(figure, width, {0, 0, size, size}, scale)) {
+                const auto* path = std::get_if<Path>(&item);
+                lines += path != nullptr && path->stroke.color == rim ? 1 : 0;
+                const auto* text = std::get_if<TextRun>(&item);
+                words += text != nullptr && text->label == sequence_changes ? 1 : 0;
+            }
+            EXPECT_EQ(lines > 0, is_drawn) << side << " " << scale;
+            EXPECT_EQ(words > 0, is_drawn) << side << " " << scale;
+        }
+    }
+}
+
 TEST(SweepMap, SaysWhereLinesWouldBeTooMany) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 2, 3, 4});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
@@ -273,13 +300,14 @@ TEST(SweepFigure, SaysOnceWhatSeveralPanelsShow) {
     data.columns.push_back({RunMeasures::Column::Kind::outcome, "outcome", ""});
     const Figure figure = compose_sweep(data);
     ASSERT_EQ(figure.panels.size(), 3u);
-    ASSERT_EQ(figure.keys.size(), 2u);
-    EXPECT_EQ(figure.keys[0].label, sequence_changes);
-    EXPECT_EQ(figure.keys[1].label, no_value);
+    ASSERT_EQ(figure.keys.size(), 1u);
+    EXPECT_EQ(figure.keys[0].label, no_value);
+    std::size_t named = 0;
     for (const Panel& panel : figure.panels) {
         EXPECT_TRUE(panel.hatch.label.empty());
-        for (const Curve& curve : panel.curves) EXPECT_TRUE(curve.label.empty());
+        for (const Curve& curve : panel.curves) named += curve.label == sequence_changes ? 1 : 0;
     }
+    EXPECT_EQ(named, 1u);
     EXPECT_EQ(figure.panels[2].markers[0].label, "end time") << "before what is as frequent";
     EXPECT_EQ(figure.panels[2].markers[1].label, "cannot start");
     EXPECT_EQ(figure.panels[2].title, "(c)\u00A0\u00A0outcome");
