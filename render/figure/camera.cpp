@@ -138,6 +138,7 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
     }
     std::reverse(times.begin(), times.end());
     if (times.size() < 3) return std::nullopt;
+    approach.cut = times[times.size() - 2];
     Sampler sampler(trajectory_);
     const Sample first = sampler.at(times.front());
     const auto known = std::find_if(approaches_.begin(), approaches_.end(),
@@ -166,9 +167,9 @@ std::optional<Camera::Approach> Camera::approach_to(std::size_t event) const {
 }
 
 // Interpolates the height between flights as a power of the time left, and after the last flight as its square, as
-// under constant acceleration.
+// under constant acceleration. From the cut on there are no bounces, and the height stays.
 double Camera::Approach::height(double t) const {
-    const double left = std::max(0.0, zeno - t);
+    const double left = std::max(0.0, zeno - std::min(t, cut));
     const auto next =
         std::find_if(flights.begin(), flights.end(), [&](const FlightHeight& f) { return f.left <= left; });
     if (next == flights.begin()) return flights.front().height;
@@ -268,7 +269,7 @@ double Camera::size_at(std::size_t which, double t, double full) const {
     const double run = trajectory_.end_time - trajectory_.run.options.start_time;
     const double lasts = std::min(most * run, of_rest * (end - approach.zeno));
     if (t >= approach.zeno + lasts) return full;
-    return full * std::pow(sized(0.0) / full, 1.0 - eased((t - approach.zeno) / lasts));
+    return full * std::pow(sized(approach.height(t)) / full, 1.0 - eased((t - approach.zeno) / lasts));
 }
 
 // Center of the zoomed view: the contact point on the ground, in the lower part of the picture.
@@ -283,13 +284,31 @@ Point Camera::focus(const Approach& approach, const Sample& now, double size) co
     return body.at(now.t, now.state).at;
 }
 
+Camera::ZenoZoom Camera::zoom(double t, const Drawing& all) const {
+    const double full = std::min(all.x_high - all.x_low, all.y_high - all.y_low);
+    ZenoZoom zoom{nullptr, full, full};
+    for (std::size_t i = 0; i < approaches_.size(); ++i)
+        if (const double size = size_at(i, t, full); size < zoom.size)
+            zoom.size = size, zoom.approach = &approaches_[i];
+    return zoom;
+}
+
+std::optional<Camera::ZenoView> Camera::zeno_view(const Sample& now, const CameraPicture& picture) const {
+    const auto [on_way, size, full] = zoom(now.t, widened(fit(picture), picture.width, picture.height));
+    if (on_way == nullptr || now.t < on_way->zeno - on_way->flights.front().left || now.t > on_way->zeno)
+        return std::nullopt;
+    const Bounce here = bounce(on_way->grip, on_way->contact, now);
+    // The flight under way, or the last one.
+    const auto later = std::find_if(on_way->flights.begin(), on_way->flights.end(),
+                                    [&](const Approach::FlightHeight& f) { return f.left < on_way->zeno - now.t; });
+    AnchorPoint grip = grips_[on_way->grip];
+    return ZenoView{full / size, std::max(0.0, std::hypot(here.rise.x, here.rise.y) * here.gap),
+                    std::prev(later)->height, now.t >= on_way->cut, grip.at(now.t, now.state).radius > size};
+}
+
 Drawing Camera::near_zeno(const Sample& now, const CameraPicture& picture) const {
     const Drawing all = widened(fit(picture), picture.width, picture.height);
-    const double full = std::min(all.x_high - all.x_low, all.y_high - all.y_low);
-    const Approach* on_way = nullptr;
-    double size = full;
-    for (std::size_t i = 0; i < approaches_.size(); ++i)
-        if (const double here = size_at(i, now.t, full); here < size) size = here, on_way = &approaches_[i];
+    const auto [on_way, size, full] = zoom(now.t, all);
     if (on_way == nullptr) return all;
     // As if the viewer approached the contact point: it moves to the center of the picture, and the previous center
     // moves out.

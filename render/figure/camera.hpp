@@ -19,7 +19,8 @@ namespace achilles {
 //     follow  a part of the world in which the body is well visible; it moves with the mean position of the body and
 //             always contains the body
 //     zeno    as fit, but before a Zeno point the picture zooms in on the contact point in proportion to the remaining
-//             bounce height, so that all bounces look alike; after the Zeno point it zooms out again
+//             bounce height, so that all bounces look alike; from the cut on there is nothing more to see, and it stays;
+//             after the Zeno point it zooms out again
 
 enum class CameraMode { fit, fixed, follow, zeno };
 std::string_view to_text(CameraMode mode);
@@ -45,10 +46,20 @@ class Camera {
     // bouncing sequence.
     std::optional<double> height_left(double t) const;
 
+    // What the mode `zeno` shows at an instant of a bouncing sequence; nullopt outside one.
+    struct ZenoView {
+        double enlargement = 1.0;     // relative to the mode `fit`
+        double gap = 0.0;             // world units
+        double bounce = 0.0;          // height of this bounce or, after the cut, of the last one, world units
+        bool is_cut = false;          // no more bounces are computed
+        bool is_inside_body = false;  // the disc of the body is larger than the picture
+    };
+    std::optional<ZenoView> zeno_view(const Sample& now, const CameraPicture& picture) const;
+
  private:
     // A bouncing sequence that ends in a Zeno point.
     struct Approach {
-        double begin = 0.0, zeno = 0.0;
+        double begin = 0.0, cut = 0.0, zeno = 0.0;
         std::size_t contact = 0, grip = 0;
         bool on_ground = false;  // the ground is drawn, so that the picture may zoom in without limit
         // For every flight of the sequence, in order: time from its start to the Zeno point (s), and height. Heights do
@@ -70,6 +81,11 @@ class Camera {
     double size_at(std::size_t approach, double t, double full) const;
     Drawing fit(const CameraPicture& picture) const;
     Drawing follow(const Sample& now, const CameraPicture& picture) const;
+    struct ZenoZoom {
+        const Approach* approach = nullptr;  // null: the whole run is shown
+        double size = 0.0, full = 0.0;       // smaller side of the picture and of that of the whole run, world units
+    };
+    ZenoZoom zoom(double t, const Drawing& all) const;
     Drawing near_zeno(const Sample& now, const CameraPicture& picture) const;
     double smallest(const Approach& approach) const { return (approach.on_ground ? 1e-10 : 0.4) * limits_.size; }
     Point mean_place(double t, double reach) const;

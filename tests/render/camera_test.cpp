@@ -233,8 +233,9 @@ TEST(Camera, FollowNeverLosesTheBodyAndItsArrow) {
     }
 }
 
-// The bounces look alike at every scale: the highest remaining bounce takes a quarter of the picture's height.
-TEST(Camera, ZenoKeepsTheBouncesVisibleDownTo1e9) {
+// The bounces look alike at every scale: the highest remaining bounce takes a quarter of the picture's height, until
+// there are no more bounces.
+TEST(Camera, ZenoKeepsTheBouncesVisibleUntilTheCut) {
     for (const char* name : {"ball_on_sine", "ball_on_floor", "falling_rod"}) {
         SceneFixture staged(name);
         const Camera& camera = staged.stage.camera();
@@ -251,7 +252,7 @@ TEST(Camera, ZenoKeepsTheBouncesVisibleDownTo1e9) {
             EXPECT_LE(size, before * (1.0 + 1e-9)) << name << left;
             before = size;
             const double shown = *height / size;
-            if (size < 1.0 && *height > 1e-9) {
+            if (size < 1.0) {
                 EXPECT_NEAR(shown, 0.25, 0.01) << name << " " << left;
                 least = std::min(least, *height);
             }
@@ -260,7 +261,14 @@ TEST(Camera, ZenoKeepsTheBouncesVisibleDownTo1e9) {
             ASSERT_TRUE(ground);
             EXPECT_TRUE(holds(seen, ground->foot)) << name << " " << left;
         }
-        EXPECT_LT(least, 3e-9) << name;
+        EXPECT_LT(least, 2e-4) << name;
+        // From the last impact on the picture stays: it shows no height at which no bounce is computed.
+        const auto& events = staged.run.events;
+        const auto cut = std::find_if(events.begin(), events.end(), [](const Event& event) { return event.is_zeno(); });
+        const double last = std::prev(cut)->t;
+        const double at_cut = *camera.height_left(last), later = *camera.height_left(0.5 * (last + zeno));
+        EXPECT_DOUBLE_EQ(at_cut, later) << name;
+        EXPECT_DOUBLE_EQ(at_cut, least) << name;
         // After the Zeno point the view returns. It is a function of time only.
         const Drawing all = camera.at(CameraMode::fit, staged.at(0.0), {600.0, 400.0});
         const Drawing end = camera.at(CameraMode::zeno, staged.at(staged.run.end_time), {600.0, 400.0});
@@ -270,6 +278,47 @@ TEST(Camera, ZenoKeepsTheBouncesVisibleDownTo1e9) {
         EXPECT_EQ(once.x_low, again.x_low);
         EXPECT_EQ(once.y_high, again.y_high);
     }
+}
+
+// Words for the Zeno camera: how much it enlarges, the gap and the height of the bounce.
+TEST(Camera, ZenoTellsItsEnlargementGapAndBounce) {
+    SceneFixture staged("ball_on_floor");
+    const Camera& camera = staged.stage.camera();
+    const CameraPicture picture{600.0, 400.0};
+    std::vector<double> impacts;
+    double zeno = 0.0;
+    for (const Event& event : staged.run.events) {
+        if (event.is_zeno()) {
+            zeno = event.t;
+            break;
+        }
+        impacts.push_back(event.t);
+    }
+    ASSERT_GT(impacts.size(), 4u);
+    EXPECT_FALSE(camera.zeno_view(staged.at(0.5 * impacts.front()), picture)) << "before the first impact";
+    EXPECT_FALSE(camera.zeno_view(staged.at(staged.run.end_time), picture));
+    double enlargement = 1.0;
+    std::size_t seen_bounces = 0;
+    for (std::size_t i = 0; i + 1 < impacts.size(); ++i) {
+        const double middle = 0.5 * (impacts[i] + impacts[i + 1]);
+        const auto view = camera.zeno_view(staged.at(middle), picture);
+        if (!view && enlargement == 1.0) continue;  // a bounce as high as the picture
+        ASSERT_TRUE(view) << i;
+        ++seen_bounces;
+        EXPECT_FALSE(view->is_cut);
+        EXPECT_NEAR(view->gap, view->bounce, 1e-6 * view->bounce) << "a bounce is highest in its middle, " << i;
+        EXPECT_GT(view->enlargement, enlargement);
+        enlargement = view->enlargement;
+        // The gap of this bounce never shrinks below 5 pixels.
+        const Drawing seen = camera.at(CameraMode::zeno, staged.at(middle), picture);
+        EXPECT_GT(view->gap * picture.height / (seen.y_high - seen.y_low), 5.0) << i;
+    }
+    EXPECT_GT(seen_bounces, impacts.size() / 2);
+    const auto cut = camera.zeno_view(staged.at(0.5 * (impacts.back() + zeno)), picture);
+    ASSERT_TRUE(cut);
+    EXPECT_TRUE(cut->is_cut);
+    EXPECT_TRUE(cut->is_inside_body);
+    EXPECT_GT(cut->bounce, 0.0);
 }
 
 TEST(Strobe, IsThinNearAZenoPoint) {
