@@ -19,8 +19,8 @@ namespace achilles {
 //     follow  a part of the world in which the body is well visible; it moves with the mean position of the body and
 //             always contains the body
 //     zeno    as fit, but before a Zeno point the picture zooms in on the contact point in proportion to the remaining
-//             bounce height, so that all bounces look alike; from the cut on there is nothing more to see, and it stays;
-//             after the Zeno point it zooms out again
+//             bounce height, so that all bounces look alike; from the cut on, with nothing more to see, it stays; after
+//             the Zeno point it zooms out again
 
 enum class CameraMode { fit, fixed, follow, zeno };
 std::string_view to_text(CameraMode mode);

@@ -103,8 +103,8 @@ void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& ma
     end_strip();
 }
 
-// Lines between the cells of a map would be gray noise where the cells are small. Judged by their width alone, since the
-// legend is laid out before the height of the plot is known.
+// Lines between the cells of a map would be gray noise where the cells are small. Judged by their width alone, since
+// the legend is laid out before the height of the plot is known.
 bool has_lines_between_cells(const Panel& panel, float plot_width, const Metrics& m) {
     constexpr double min_cell = 4.0;  // points
     if (!panel.raster.cells) return false;

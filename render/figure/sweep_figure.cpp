@@ -128,8 +128,8 @@ std::vector<Panel> panels_of(const SweepData& data, const Theme& theme, const Sw
     return panels;
 }
 
-// Moves legend entries that two panels share into one legend above all panels. Lines between cells are named by the first
-// panel that has them, since the layout may leave them out.
+// Moves legend entries that two panels share into one legend above all panels. Lines between cells are named by the
+// first panel that has them, since the layout may leave them out.
 void share_keys(Figure& figure) {
     const auto is_said_twice = [&](const std::string& label) {
         const auto says = [&](const Panel& panel) {
