@@ -57,11 +57,17 @@ void export_film(const Session& session, PanelState& state, Commands&) { ask_to_
 void export_data(const Session& session, PanelState& state, Commands&) { ask_to_export(session, state, "csv"); }
 void save_session(const Session& session, PanelState& state, Commands&) { ask_to_export(session, state, "journal"); }
 
+// Hides a panel that is seen. Where the panels are tabs, it goes behind the mechanism.
+command::Show toggled_panel(const std::string& panel, bool is_seen, const PanelState& state) {
+    if (state.front.empty()) return {panel, !is_seen};
+    return {state.front == panel ? "mechanism" : panel, true};
+}
+
 // Events that a study hides are shown; events that are seen are hidden.
-void toggle_events(const Session& session, PanelState&, Commands& commands) {
+void toggle_events(const Session& session, PanelState& state, Commands& commands) {
     const std::string seen = session.scene().below();
     if (seen != "events" && !seen.empty()) commands.emplace_back(command::Show{seen, false});
-    commands.emplace_back(command::Show{"events", seen != "events"});
+    commands.emplace_back(toggled_panel("events", seen == "events", state));
 }
 
 void quit(const Session& session, PanelState& state, Commands&) {
@@ -219,10 +225,14 @@ const Shortcut gestures[] = {
 };
 
 // A command that turns something on, if it is on, becomes the one that turns it off.
-Command toggled(const Action& action, const Session& session) {
+Command toggled(const Action& action, const Session& session, const PanelState& state) {
     Command command = parse_command(action.effect.command);
     const bool on = is_on(action, session);
-    if (auto* const show = std::get_if<command::Show>(&command)) show->on = !on;
+    if (auto* const show = std::get_if<command::Show>(&command)) {
+        const auto& tabs = command::tabs;
+        const bool is_tab = std::find(tabs.begin(), tabs.end(), show->what) != tabs.end();
+        *show = is_tab ? toggled_panel(show->what, on, state) : command::Show{show->what, !on};
+    }
     if (auto* const present = std::get_if<command::Present>(&command)) present->on = !on;
     if (auto* const loop = std::get_if<command::Loop>(&command)) loop->on = !on;
     if (auto* const link = std::get_if<command::Link>(&command)) link->on = !on;
@@ -302,7 +312,7 @@ bool is_enabled(const Action& action, const Session& session) { return action.ca
 
 void perform(const Action& action, const Session& session, PanelState& state, Commands& commands) {
     if (action.effect.run != nullptr) return action.effect.run(session, state, commands);
-    commands.push_back(toggled(action, session));
+    commands.push_back(toggled(action, session, state));
 }
 
 bool takes_key_of(const Action& action, const PanelState& state) {

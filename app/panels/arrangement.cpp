@@ -9,8 +9,10 @@ namespace {
 
 // Lengths at scale 1. The minimum sizes keep panels readable.
 constexpr float margin = 10.0F, gap = 10.0F, min_controls = 240.0F, min_editor = 320.0F, min_center = 340.0F,
-                min_plots = 240.0F, min_events = 110.0F, min_top = 240.0F, min_picture = 90.0F, min_plane = 230.0F,
-                min_world = 90.0F, min_plot = 110.0F;
+                min_plots = 240.0F, min_events = 110.0F, min_study = 150.0F, min_top = 240.0F, min_picture = 90.0F,
+                min_plane = 230.0F, min_world = 90.0F, min_plot = 110.0F;
+// In a narrower window the panels are tabs.
+constexpr float min_window = 1000.0F;
 
 // The size set by the user or, without one, the preferred size; rounded down to whole pixels and clamped to [least,
 // most].
@@ -25,23 +27,115 @@ float energy_in(const Measures& m, float room) {
     return m.min_energy <= room ? m.min_energy : 0.0F;
 }
 
+// Where the next part begins, below this one.
+float below(const Rectangle& part, const Measures& m) {
+    const double end = part.y + part.height, space = part.height > 0.0 ? 0.6 * double{gap * m.unit} : 0.0;
+    return static_cast<float>(end + space);
+}
+
+// The error message and the caption of a tour, from `top` on; returns where the next part begins.
+float place_messages(Arrangement& parts, const Measures& m, float x, float top, float width, float bottom) {
+    parts.error = {x, top, width, std::min(m.error ? m.error(width) : 0.0F, bottom - top)};
+    const float caption_top = std::min(below(parts.error, m), bottom);
+    parts.caption = {x, caption_top, width,
+                     std::clamp(m.caption ? m.caption(width) : 0.0F, 0.0F, bottom - caption_top)};
+    return std::min(below(parts.caption, m), bottom);
+}
+
+// Minimum height of the mechanism's panel: numbers and heading above the axes, and the picture itself.
+float least_picture(const Scene& scene, const Measures& m, float width) {
+    return std::max((scene.shows("plane") ? min_plane : min_picture) * m.unit,
+                    (m.state ? m.state(width) : 0.0F) + min_world * m.unit);
+}
+
+// The mechanism with its results, energy and player, one below the other. The picture takes precedence: if it would be
+// too low, the results shrink, and in the end the player goes.
+void place_mechanism(Arrangement& parts, const Scene& scene, const Measures& m, const Rectangle& column) {
+    const float between = gap * m.unit, space = 0.4F * between, x = column.x, width = column.width;
+    const float bottom = column.y + column.height, least = least_picture(scene, m, width);
+    const float player = std::min(m.timeline, column.height);
+    const float timeline = column.height - player - between >= 0.5F * min_world * m.unit ? player : 0.0F;
+    const float lower = timeline > 0.0F ? bottom - timeline - between : bottom;
+    const float all_results = m.results ? m.results(width) : 0.0F;
+    float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - column.y - least));
+    if (results < 0.4F * all_results) results = 0.0F;  // less than one line
+    const float over_results = results > 0.0F ? space : 0.0F;
+    const float energy = energy_in(m, lower - results - over_results - space - column.y - least);
+    const float under = lower - (energy > 0.0F ? energy + space : 0.0F);
+    parts.mechanism = {x, column.y, width, std::max(0.0F, under - results - over_results - column.y)};
+    parts.results = {x, under - results, width, results};
+    parts.energy = {x, lower - energy, width, energy};
+    parts.timeline = {x, bottom - timeline, width, timeline};
+}
+
+// The gap on the left of the plots, or above the events.
+void add_splitter(Arrangement& parts, const Measures& m, const char* panel, const Rectangle& of) {
+    const float between = gap * m.unit;
+    const double half = 0.5 * double{between};
+    const bool is_of_plots = std::string_view(panel) == "plots";
+    const Rectangle area = is_of_plots ? Rectangle{of.x - between, of.y, between, of.height}
+                                       : Rectangle{of.x, of.y - between, of.width, between};
+    const double end = is_of_plots ? of.x + of.width : of.y + of.height;
+    parts.splitters.push_back({panel, area, is_of_plots, end - half, -double{is_of_plots ? m.width : m.height}});
+}
+
+// The panel in front where the panels are tabs: the one that was shown last. Beside the mechanism there is always one.
+std::string front_of(const Scene& scene, bool is_beside) {
+    const std::string& last = scene.front();
+    if (last == "editor" || last == "controls") return "controls";
+    if (last == "plots") return last;
+    if (last != "mechanism") return scene.below();
+    if (!is_beside) return last;
+    if (scene.shows("editor") || scene.shows("controls")) return "controls";
+    if (scene.shows("plots")) return "plots";
+    return scene.below().empty() ? last : scene.below();
+}
+
+// A window too narrow or too low for all panels: one row of tabs. Controls and plots are beside the mechanism, events
+// and studies below it; without the room for both, the panel in front is alone with the player.
+Arrangement arrange_tabs(const Scene& scene, const Measures& m) {
+    const float u = m.unit, edge = margin * u, between = gap * u, inside = std::max(0.0F, m.width - 2.0F * edge);
+    const float bottom = std::max(m.bar, m.height - m.status - 0.6F * between), beside = min_center * u + between;
+    Arrangement parts;
+    parts.bar = {0.0F, 0.0F, m.width, m.bar};
+    parts.status = {0.0F, std::max(0.0F, m.height - m.status), m.width, m.status};
+    parts.is_alone = inside < beside + min_plots * u;
+    parts.front = front_of(scene, !parts.is_alone);
+    parts.tabs = {edge, m.bar, inside, std::min(m.tabs, bottom - m.bar)};
+    const float top = place_messages(parts, m, edge, std::min(below(parts.tabs, m), bottom), inside, bottom);
+    const float height = bottom - top;
+    const bool is_study = parts.front != "controls" && parts.front != "plots";
+    Rectangle& panel = is_study ? parts.events : parts.front == "plots" ? parts.plots : parts.controls;
+    const float least = (parts.front == "controls" && scene.shows("editor") ? min_editor : min_plots) * u;
+    if (parts.front == "mechanism") {
+        place_mechanism(parts, scene, m, {edge, top, inside, height});
+    } else if (!is_study && inside >= beside + least) {
+        const float width = size_of(scene.share("plots"), m.width, 0.45F * inside, least, inside - beside);
+        panel = {edge + inside - width, top, width, height};
+        place_mechanism(parts, scene, m, {edge, top, inside - width - between, height});
+        add_splitter(parts, m, "plots", panel);
+    } else if (is_study && height >= (min_top + min_study) * u + between) {
+        const float low =
+            size_of(scene.share("events"), m.height, 0.45F * height, min_study * u, height - between - min_top * u);
+        panel = {edge, bottom - low, inside, low};
+        place_mechanism(parts, scene, m, {edge, top, inside, height - low - between});
+        add_splitter(parts, m, "events", panel);
+    } else {
+        const float timeline = height >= m.timeline + between + min_study * u ? m.timeline : 0.0F;
+        panel = {edge, top, inside, height - (timeline > 0.0F ? timeline + between : 0.0F)};
+        parts.timeline = {edge, bottom - timeline, inside, timeline};
+    }
+    return parts;
+}
+
 // Lecture: the title, the mechanism beside one plot, up to three sliders and the player; nothing else, unless the energy
 // was asked for.
 Arrangement arrange_lecture(const Scene& scene, const Measures& m) {
     const float edge = margin * m.unit, between = gap * m.unit, inside = std::max(0.0F, m.width - 2.0F * edge);
     const float bottom = std::max(0.0F, m.height - edge);
-    const auto below = [&](const Rectangle& part) {
-        const double end = part.y + part.height;
-        return static_cast<float>(part.height > 0.0 ? end + 0.6 * double{between} : end);
-    };
     Arrangement parts;
     parts.title = {edge, edge, inside, std::min(m.title, bottom - edge)};
-    const float error_top = std::min(below(parts.title), bottom);
-    parts.error = {edge, error_top, inside, std::min(m.error ? m.error(inside) : 0.0F, bottom - error_top)};
-    const float caption_top = below(parts.error);
-    parts.caption = {edge, caption_top, inside,
-                     std::clamp(m.caption ? m.caption(inside) : 0.0F, 0.0F, std::max(0.0F, bottom - caption_top))};
-    const float top = std::min(below(parts.caption), bottom);
+    const float top = place_messages(parts, m, edge, std::min(below(parts.title, m), bottom), inside, bottom);
     const float timeline = std::min(m.timeline, bottom - top), lower = bottom - timeline;
     const float left_over = lower - between - top - min_picture * m.unit;
     const float sliders = m.sliders <= left_over ? m.sliders : 0.0F;
@@ -66,6 +160,8 @@ Arrangement arrange_lecture(const Scene& scene, const Measures& m) {
 Arrangement arrange(const Scene& scene, const Measures& m) {
     if (scene.presents()) return arrange_lecture(scene, m);
     const float u = m.unit, edge = margin * u, between = gap * u;
+    const float least_height = m.bar + m.status + (min_top + min_events) * u + 2.0F * between;
+    if (m.width < min_window * u || m.height < least_height) return arrange_tabs(scene, m);
     const bool editor = scene.shows("editor"), has_left = editor || scene.shows("controls");
     const bool has_plots = scene.shows("plots");
     const bool has_events = !scene.below().empty();
@@ -97,61 +193,34 @@ Arrangement arrange(const Scene& scene, const Measures& m) {
     // Beside the editor the events would be too narrow for a certificate: put them below it.
     const bool events_below = editor && low > 0.0F;
     parts.controls = {edge, top, left, events_below ? height : all};
-    const float timeline = std::min(m.timeline, height);
-    const float lower = top + height - timeline - between;  // lower end of the parts above the player
-    const float all_results = m.results ? m.results(center) : 0.0F;
-    const auto below = [&](float part, float its_height) {
-        return part + its_height + (its_height > 0.0F ? 0.6F * between : 0.0F);
-    };
-    const float caption = m.caption ? m.caption(center) : 0.0F;
-    // Minimum height: numbers and heading above the axes, and the picture itself.
-    const float least = std::max((scene.shows("plane") ? min_plane : min_picture) * u,
-                                 (m.state ? m.state(center) : 0.0F) + min_world * u);
     // The error message is above the picture or, if that would become too low, above the plots.
-    float error = std::min(m.error ? m.error(center) : 0.0F, height);
-    const float left_over = lower - below(below(top, error), caption) - all_results - 0.4F * between;
+    const float lower = top + height - std::min(m.timeline, height) - between;
+    const float caption = m.caption ? m.caption(center) : 0.0F, error = m.error ? m.error(center) : 0.0F;
+    const float messages =
+        (error > 0.0F ? error + 0.6F * between : 0.0F) + (caption > 0.0F ? caption + 0.6F * between : 0.0F);
+    const float left_over = lower - top - messages - (m.results ? m.results(center) : 0.0F) - 0.4F * between;
     const float beside = m.error && right > 0.0F ? m.error(right) : 0.0F;
-    const bool over_plots = error > 0.0F && left_over < least && beside > 0.0F && height - beside >= min_plot * u;
-    if (over_plots) error = 0.0F;
-    parts.error = over_plots ? Rectangle{x + center + between, top, right, beside} : Rectangle{x, top, center, error};
-    const float caption_top = below(top, error), caption_height = std::min(caption, top + height - caption_top);
-    parts.caption = {x, caption_top, center, caption_height};
-    const float picture = below(caption_top, caption_height);
-    // The picture takes precedence: if it would be too low, the results shrink.
-    float results = std::clamp(all_results, 0.0F, std::max(0.0F, lower - picture - least));
-    if (results < 0.4F * all_results) results = 0.0F;  // less than one line
-    const float space = results > 0.0F ? 0.4F * between : 0.0F;
-    const float energy = energy_in(m, lower - results - space - 0.4F * between - picture - least);
-    const float under = lower - (energy > 0.0F ? energy + 0.4F * between : 0.0F);
-    parts.mechanism = {x, picture, center, std::max(0.0F, under - results - space - picture)};
-    parts.results = {x, under - results, center, results};
-    parts.energy = {x, lower - energy, center, energy};
-    parts.timeline = {x, top + height - timeline, center, timeline};
-    const float plots_at = over_plots ? below(top, beside) : top;
+    const bool over_plots =
+        error > 0.0F && left_over < least_picture(scene, m, center) && beside > 0.0F && height - beside >= min_plot * u;
+    Measures measured = m;
+    if (over_plots) measured.error = nullptr;
+    const float picture = place_messages(parts, measured, x, top, center, top + height);
+    place_mechanism(parts, scene, m, {x, picture, center, top + height - picture});
+    if (over_plots) parts.error = {x + center + between, top, right, beside};
+    const float plots_at = over_plots ? below(parts.error, m) : top;
     const float plots_height = top + height - plots_at;
     parts.plots = {x + center + between, plots_at, right, plots_height};
     const float events_x = events_below ? edge : x;
     parts.events = {events_x, top + height + between, std::max(0.0F, m.width - edge - events_x), low};
 
-    const double half = 0.5 * double{between};
     if (left > 0.0F)
         parts.splitters.push_back({left_panel,
                                    {edge + left, top, between, parts.controls.height},
                                    true,
-                                   double{edge} + half,
+                                   double{edge} + 0.5 * double{between},
                                    double{m.width}});
-    if (right > 0.0F)
-        parts.splitters.push_back({"plots",
-                                   {x + center, top, between, height},
-                                   true,
-                                   double{m.width} - double{edge} - half,
-                                   -double{m.width}});
-    if (low > 0.0F)
-        parts.splitters.push_back({"events",
-                                   {events_x, top + height, parts.events.width, between},
-                                   false,
-                                   double{bottom} - half,
-                                   -double{m.height}});
+    if (right > 0.0F) add_splitter(parts, m, "plots", {x + center + between, top, right, height});
+    if (low > 0.0F) add_splitter(parts, m, "events", parts.events);
     return parts;
 }
 

@@ -14,6 +14,10 @@ struct Arrangement {
     // A rectangle of size 0: not shown.
     Rectangle bar, controls, error, caption, mechanism, results, energy, timeline, plots, sweep, events, status;
     Rectangle title, sliders;  // of a lecture
+    // In a window too small for all panels: their tabs, and the panel in front.
+    Rectangle tabs;
+    std::string front;
+    bool is_alone = false;  // no panel has room beside the mechanism, which then has a tab, too
     // The gap beside a panel, which can be dragged to resize it.
     struct Splitter {
         std::string panel;  // as in command::Size
@@ -33,6 +37,7 @@ struct Measures {
     float width = 0.0F, height = 0.0F;  // the surface
     float unit = 1.0F;                  // one pixel at scale 1
     float bar = 30.0F, status = 30.0F, timeline = 90.0F;
+    float tabs = 30.0F;                      // of the panels in a small window
     float title = 0.0F, sliders = 0.0F;      // of a lecture; 0: not shown
     float energy = 0.0F, min_energy = 0.0F;  // with and without its time plot; 0: not shown
     // Heights, for a given width, of the error message, the tour caption, the results, and the numbers over the

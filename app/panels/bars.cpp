@@ -90,11 +90,13 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
             if (std::string_view(name) == "Help") show_help_items(state);
         });
     const float size = ImGui::GetFrameHeight(), space = units(4.0F), edge = units(10.0F);
-    const float width = 4.0F * size + 3.0F * space + edge;
+    const bool has_tabs = !state.front.empty();
+    const float width = has_tabs ? size + edge : 4.0F * size + 3.0F * space + edge;
     const float left = ImGui::GetWindowWidth() - width;
     const float title_at = ImGui::GetCursorPosX() + units(16.0F);
     // Show the system's title if no panel does.
-    if (!session.scene().shows("controls") && !session.shows_editor() && left - title_at > units(80.0F)) {
+    const bool has_title = session.scene().shows("controls") || session.shows_editor();
+    if ((has_tabs ? state.front != "controls" : !has_title) && left - title_at > units(80.0F)) {
         ImGui::SetCursorPosX(title_at);
         label(session.description().title, left - title_at);
         ImGui::SameLine(0.0F, 0.0F);
@@ -102,7 +104,8 @@ void show_bar(const Session& session, PanelState& state, Commands& commands) {
     if (left < title_at) return ImGui::EndMenuBar();
     ImGui::SetCursorPosX(left);
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {space, 0.0F});
-    for (const char* panel : {"Controls", "Events", "Plots"}) panel_switch(action(panel), session, state, commands);
+    if (!has_tabs)
+        for (const char* panel : {"Controls", "Events", "Plots"}) panel_switch(action(panel), session, state, commands);
     theme_switch(session, state, commands);
     ImGui::PopStyleVar();
     ImGui::EndMenuBar();
@@ -245,9 +248,7 @@ void show_estimate(const Session& session) {
     if (room < needed + units(edge)) return;
     ImGui::SameLine(0.0F, 0.0F);
     ImGui::TextUnformatted(text.c_str());
-    tooltip(
-        "Error of the state at the end, position and rates together: errors of steps,\nroots and cuts, propagated to "
-        "first order, and rounding.\nAn estimate, not a proof.");
+    tooltip("error of the state at the end, to first order: an estimate, not a proof");
 }
 
 }  // namespace

@@ -192,12 +192,7 @@ bool accuracy_heading(const Session& session, const Run& file, PanelState& state
         return option(key).get(now) != option(key).get(file.options);
     });
     const Color color = ImGui::IsItemHovered() ? text_color() : faint_color();
-    tooltip(open
-                ? "truncation of the impact sequence and integration tolerance. Click to close"
-                : fmt::format("truncation of the impact sequence: {} conditions, {} restart, bounds {:.3g} (position), "
-                              "{:.3g} (velocity), {:.3g} s (time); integration tolerance {:.3g}. Click to open",
-                              to_text(now.truncation.conditions), to_text(now.truncation.reinitialization),
-                              now.truncation.eps_q, now.truncation.eps_v, now.truncation.eps_t, now.tolerance));
+    tooltip(open ? "close" : "where the impact sequence is cut, and the integration tolerance");
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float r = units(4.0F);
     const ImVec2 c{at.x + r, std::floor(at.y + 0.5F * line) + 1.0F};
@@ -225,12 +220,10 @@ void accuracy(const Session& session, const Run& file, PanelState& state, Comman
     const Options& now = session.run().options;
     bounds(now, file.options, state, commands);
     choice({"conditions", "", "conditions",
-            "what must be certified before the impact sequence is truncated: the paper's inequalities (Def. 7), or the "
-            "sharp ones, which choose their own neighborhood and certify the restarted motion"},
+            "what must be certified before a cut: the paper's inequalities (Def. 7), or the sharp ones"},
            now, file.options, state, commands);
     choice({"reinitialization", "", "restart",
-            "initial velocity of the constrained motion: the paper's Euclidean projection, or the kinetic one of a "
-            "plastic impact"},
+            "velocity after a cut: the paper's Euclidean projection, or that of a plastic impact"},
            now, file.options, state, commands);
     slide({"tolerance", "tolerance", "tolerance", "integration tolerance: local error per step, absolute and relative",
            1e-14, 1e-4},

@@ -42,8 +42,8 @@ std::string no_derivative(const std::string& reason) { return "no derivative her
 std::string explanation(const Session& session, const Sensitivities& known, const Sensitivities::Sensitivity& by) {
     if (!by.reason.empty()) return no_derivative(by.reason);
     const SystemDescription& system = session.description();
-    return fmt::format("derivative of {}: {};\nlinear change over the whole slider: {}",
-                       typeset(known.quantity.expression), derivative_text(system, known, by),
+    return fmt::format("derivative of {}: {}, {} over the whole slider", typeset(known.quantity.expression),
+                       derivative_text(system, known, by),
                        (by.change_over_slider > 0.0 ? "+" : "") + formatted_quantity(known, by.change_over_slider));
 }
 
@@ -75,9 +75,7 @@ void show_quantities(const Session& session, PanelState& state, Commands& comman
     }
     if (text_row("other", "depend expression", state.depend, 150.0F, state) && !state.depend.empty())
         commands.emplace_back(command::ShowSensitivity{state.depend});
-    tooltip(
-        "an expression at the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k). "
-        "Press Enter to apply");
+    tooltip("an expression at the end, also with zeno_time(k), impact_time(k), impact_speed(k), release_time(k)");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     close_by_escape(state);
     ImGui::EndPopup();
@@ -188,7 +186,7 @@ void show_line(const Session& session, const Sensitivities& known, const Sensiti
     remember(state, "depend " + by.name);
     const bool is_hovered = ImGui::IsItemHovered();
     if (is_hovered) state.lights = by.name;
-    tooltip(explanation(session, known, by) + "\nclick to sweep " + slider_name(session.description(), by.name));
+    tooltip(explanation(session, known, by) + "; click to sweep " + slider_name(session.description(), by.name));
     if (is_hovered || by.name == state.lit || by.name == state.pointed_slider)
         ImGui::GetWindowDrawList()->AddRectFilled({at.x - units(4.0F), at.y}, {at.x + size.x, at.y + size.y},
                                                   packed(current_theme().accent, 0.16F), units(3.0F));

@@ -129,6 +129,8 @@ std::vector<StateColumn> state_columns(const Session& session);
 
 // A number or a column title that ends at x; a long title is shortened.
 void number_cell(ImVec2 at, float x, const std::string& text, const Color& color);
+// The same with aligned decimal points, in a column of numbers with at most this many decimals.
+void decimal_cell(ImVec2 at, float x, const std::string& text, int decimals, const Color& color);
 
 // The columns at the right end of the list: the energy loss, the held contacts if there are several contacts, and as
 // many coordinates and rates as fit. Beside a card the list has only the time column.
@@ -144,7 +146,8 @@ class EventColumns {
  private:
     bool is_held(std::size_t i) const { return is_of_several_ && i == 1; }
     const StateColumn& state(std::size_t i) const { return states_[i - (is_of_several_ ? 2 : 1)]; }
-    void put(ImVec2 at, std::size_t i, const std::string& text, const Color& color) const;
+    static constexpr int loss_decimals = 4, state_decimals = 5;
+    void put(ImVec2 at, std::size_t i, const std::string& text, const Color& color, int decimals = 0) const;
 
     std::vector<StateColumn> states_;
     float width_;

@@ -22,7 +22,7 @@ namespace achilles {
 
 namespace {
 
-constexpr float list_padding = 4.0F, list_beside_card = 300.0F, min_card = 540.0F;
+constexpr float list_padding = 4.0F, list_beside_card = 300.0F, min_card = 540.0F, min_with_header = 200.0F;
 
 // Index of the selected event, for which a card is shown; or none.
 std::optional<std::size_t> chosen(const Session& session) {
@@ -95,12 +95,11 @@ void show_comparing(float x, const Session& session, PanelState& state, Commands
     remember(state, "compare");
     ImGui::EndDisabled();
     tooltip(has_friction ? "the paper's conditions and the Euclidean restart cannot be used with dry friction"
-                         : "compare the paper's conditions with the Euclidean restart (pinned) and the sharp ones with "
-                           "the kinetic restart");
+                         : "compare the paper's conditions and restart (pinned) with the sharp ones");
     ImGui::SameLine(x);
     if (ImGui::Button("pin", {pin_width, 0.0F})) commands.emplace_back(command::Pin{});
     remember(state, "pin");
-    tooltip("keep the present run in the plots, in its own color, to compare with later runs");
+    tooltip("keep the present run in the plots, to compare with later ones");
 }
 
 void paint_titles(const Session& session, ImVec2 at, const EventColumns& columns) {
@@ -116,29 +115,29 @@ void show_header(const Session& session, PanelState& state, Commands& commands) 
         ImGui::GetFrameHeight() + ImGui::GetStyle().ItemInnerSpacing.x + ImGui::CalcTextSize("impacts").x;
     const float copy_width = button_width("copy");
     const float buttons = right - width - units(16.0F) - copy_width - units(button_gap) - comparing_width();
-    // On the line of the tabs, if there is room beside them; the actions are in the menus, too.
-    const Rectangle& last = state.places["tab proof"];
-    if (buttons < last.x + last.width + units(16.0F) - ImGui::GetWindowPos().x) return;
-    ImGui::SetCursorPosY(last.y - ImGui::GetWindowPos().y);
+    // On the line of the tabs, if there is room beside them; the actions are in the menus, too. Where all panels are
+    // tabs: on a line of its own.
+    if (state.front.empty()) {
+        const Rectangle& last = state.places["tab proof"];
+        if (buttons < last.x + last.width + units(16.0F) - ImGui::GetWindowPos().x) return;
+        ImGui::SetCursorPosY(last.y - ImGui::GetWindowPos().y);
+    } else if (ImGui::GetWindowHeight() < units(min_with_header) || buttons < 0.0F) {
+        return;
+    }
     ImGui::SetCursorPosX(right - width - units(4.0F));
     ImGui::Checkbox("impacts", &state.show_impacts);
     remember(state, "impacts");
-    tooltip("list every impact; otherwise consecutive impacts share one line, which a click opens");
+    tooltip("list every impact on a line of its own");
     ImGui::SameLine(right - width - units(16.0F) - copy_width);
     if (ImGui::Button("copy")) perform(action("Copy events"), session, state, commands);
     remember(state, "copy events");
-    tooltip("copy the selected event, or all events, as a table with all digits, for a spreadsheet (Ctrl+C)");
+    tooltip("copy the selected event, or all, as a table with all digits (Ctrl+C)");
     show_comparing(buttons, session, state, commands);
 }
 
-// Aligns decimal points, whatever digits the error leaves.
 void time_cell(ImVec2 at, double t, double error, const Color& color) {
     constexpr int decimals = 9;
-    const int known = known_decimals(error, decimals);
-    const float digit = label_width("0", ImGui::GetFontSize()),
-                point = known == 0 ? label_width(".", ImGui::GetFontSize()) : 0.0F;
-    const float missing = std::isfinite(error) ? static_cast<float>(decimals - known) * digit + point : 0.0F;
-    number_cell({at.x - missing, at.y}, time_at, number_with_decimals(t, error, decimals), color);
+    decimal_cell(at, time_at, number_with_decimals(t, error, decimals), decimals, color);
 }
 
 void paint_event(const Session& session, std::size_t index, ImVec2 at, const EventColumns& columns) {
@@ -342,6 +341,15 @@ void number_cell(ImVec2 at, float x, const std::string& text, const Color& color
     cell({std::floor(at.x + units(x) - width), at.y}, text, width + 0.5F, color);
 }
 
+void decimal_cell(ImVec2 at, float x, const std::string& text, int decimals, const Color& color) {
+    const std::size_t point = text.find('.'), behind = point == std::string::npos ? 0 : text.size() - point - 1;
+    const bool is_plain = text.find_first_not_of("\u22120123456789.") == std::string::npos;
+    const std::string missing = is_plain && behind < static_cast<std::size_t>(decimals)
+                                    ? (behind == 0 ? "." : "") + std::string(decimals - behind, '0')
+                                    : "";
+    number_cell({at.x - label_width(missing, ImGui::GetFontSize()), at.y}, x, text, color);
+}
+
 EventColumns::EventColumns(const Session& session, float width, bool is_alone)
     : states_(state_columns(session)), width_(width), is_of_several_(session.model()->contacts() > 1) {
     const float room = width - units(words_at + words_width);
@@ -357,9 +365,9 @@ void EventColumns::put_words(ImVec2 at, const std::string& text, const Color& co
     cell({std::floor(at.x + units(words_at)), at.y}, text, words(), color);
 }
 
-void EventColumns::put(ImVec2 at, std::size_t i, const std::string& text, const Color& color) const {
+void EventColumns::put(ImVec2 at, std::size_t i, const std::string& text, const Color& color, int decimals) const {
     const float end = width_ - units(8.0F) - units(state_width) * static_cast<float>(shown_ - 1 - i);
-    number_cell(at, end / units(1.0F), text, color);
+    decimal_cell(at, end / units(1.0F), text, decimals, color);
 }
 
 void EventColumns::titles(const Session& session, ImVec2 at) const {
@@ -375,16 +383,17 @@ void EventColumns::row(const Session& session, const Event* event, double lost, 
     const Precision& precision = session.precision();
     if (shown_ > 0 && shown_loss != 0.0)
         put(at, 0,
-            number(shown_loss, event == nullptr ? 0.0 : precision.of_energy(sample_at(session.trajectory(), *event)),
-                   4),
-            color);
+            number_of_size(shown_loss, std::abs(session.trajectory().loss), loss_decimals,
+                           event == nullptr ? 0.0 : precision.of_energy(sample_at(session.trajectory(), *event))),
+            color, loss_decimals);
     if (event == nullptr) return;
     const State errors = precision.of_state(event->t);
     for (std::size_t i = 1; i < shown_; ++i)
         put(at, i,
             is_held(i) ? joined_names(*session.model(), event->mode.held())
-                       : number_of_size(state(i).of(*event), state(i).size(session.scale()), 5, state(i).error(errors)),
-            color);
+                       : number_of_size(state(i).of(*event), state(i).size(session.scale()), state_decimals,
+                                        state(i).error(errors)),
+            color, is_held(i) ? 0 : state_decimals);
 }
 
 }  // namespace achilles

@@ -52,6 +52,7 @@ Arrangement arrange(const Session& session, const PanelState& state, const std::
     measures.unit = units(1.0F);
     measures.bar = ImGui::GetFrameHeight() + units(12.0F);
     measures.status = ImGui::GetFrameHeight() + units(6.0F);
+    measures.tabs = ImGui::GetFrameHeight();
     measures.timeline = timeline_height();
     measures.results = [&](float) { return results_height(session); };
     if (session.scene().shows("energy")) {
@@ -174,10 +175,12 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     use_action_keys(session, state, commands);
     state.lit = std::exchange(state.lights, {});
     state.pointed_slider.clear();
+    state.pointed.is_early = false;
     // Discard a click on a slider that is no longer shown.
     if (ImGui::GetTime() - state.pressed.clicked_since > 1.0) state.pressed.clicked.clear();
     const std::string message = card_text(session);
     const Arrangement parts = arrange(session, state, message);
+    state.front = parts.front, state.is_alone = parts.is_alone;
     ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {units(8.0F), units(8.0F)});
     part("bar", parts.bar, still_window | ImGuiWindowFlags_MenuBar, [&] { show_bar(session, state, commands); });
     ImGui::PopStyleVar();
@@ -196,6 +199,7 @@ std::vector<Command> explorer(const Session& session, PanelState& state) {
     show_film(state);
     part("title", parts.title, still_window, [&] { show_lecture_title(session); });
     part("sliders", parts.sliders, still_window, [&] { show_lecture_sliders(session, state, commands); });
+    part("tabs", parts.tabs, still_window, [&] { show_panel_tabs(session, state, commands); });
     part("error", parts.error, still_window, [&] { show_card(session, message); });
     part("caption", parts.caption, still_window, [&] { show_caption(session, state, commands); });
     part("mechanism", parts.mechanism, still_window, [&] { show_mechanism(session, state, commands); });

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "figure/label.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 constexpr const char* help_title = "Keys and words";
 constexpr float keys_width = 340.0F, keys_column = 142.0F, word_column = 158.0F, narrow_indent = 16.0F,
-                widest_help = 1240.0F, highest_help = 1100.0F;
+                narrow_words = 380.0F, widest_help = 1240.0F, highest_help = 1100.0F;
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
     for (std::size_t at = text.find(what); at != std::string::npos; at = text.find(what, at + with.size()))
@@ -36,9 +37,9 @@ void heading(const char* text) {
     ImGui::Dummy({0.0F, units(2.0F)});
 }
 
-void show_keys() {
+void show_keys(std::span<const Shortcut> all) {
     std::string_view group;
-    for (const Shortcut& shortcut : shortcuts()) {
+    for (const Shortcut& shortcut : all) {
         if (shortcut.group != group) {
             if (!group.empty()) ImGui::Dummy({0.0F, units(6.0F)});
             group = shortcut.group;
@@ -124,8 +125,19 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     if (!open) return;
     if (!shown) ImGui::CloseCurrentPopup();
     const float height = ImGui::GetContentRegionAvail().y - ImGui::GetFrameHeightWithSpacing();
-    column("keys", {units(keys_width), height}, show_keys);
-    ImGui::SameLine(0.0F, units(24.0F));
+    // In a low window the keys have a second column.
+    const std::span<const Shortcut> keys = shortcuts();
+    const float space = units(24.0F), line = ImGui::GetTextLineHeight() + units(3.0F);
+    const bool is_low =
+        static_cast<float>(keys.size() + 8) * line > height &&
+        ImGui::GetContentRegionAvail().x >= 2.0F * units(keys_width) + units(narrow_words) + 2.0F * space;
+    const auto first = std::min(keys.size(), static_cast<std::size_t>(std::max(1.0F, height / line - 2.0F)));
+    column("keys", {units(keys_width), height}, [&] { show_keys(is_low ? keys.first(first) : keys); });
+    ImGui::SameLine(0.0F, space);
+    if (is_low) {
+        column("more keys", {units(keys_width), height}, [&] { show_keys(keys.subspan(first)); });
+        ImGui::SameLine(0.0F, space);
+    }
     column("words", {0.0F, height}, show_words);
     const bool is_closed = takes_key(state, key::escape, false) || takes_key_of(action("Keys and words"), state);
     if (ImGui::Button("Close", {units(96.0F), 0.0F}) || is_closed) commands.emplace_back(command::Show{"help", false});

@@ -23,16 +23,16 @@ namespace achilles {
 // Length of the longest arrow of a run, as a share of the picture's smaller side.
 constexpr double longest_arrow = 0.16;
 
-// Height of the bottom line: scale bar, layer toggles, camera menu.
+// Height of the line below the picture: scale bar, layer toggles, camera menu.
 float switches_height();
-// The visible part of the world, including the bottom line; the extent of the run lies above that line.
+// The visible part of the world.
 Drawing seen_world(const Session& session, const Rectangle& area);
 // Shows the menu of cameras with its right end at `right` and returns its left end. A fixed camera keeps the current
-// view, `seen`.
-float show_camera_menu(const Session& session, const Drawing& seen, float right, float y, PanelState& state,
-                       Commands& commands);
-// In the lower left corner up to `right`; above the bottom line if there is no room.
-void show_scale_bar(const Session& session, const Rectangle& area, double unit, float right, PanelState& state);
+// view, `seen`. The menu has the layers that have no room beside it.
+float show_camera_menu(const Session& session, const Drawing& seen, float right, float y,
+                       const std::vector<const char*>& layers, PanelState& state, Commands& commands);
+// At the left end of the line below the picture, up to `right`.
+void show_scale_bar(const Session& session, const Rectangle& line, double unit, float right, PanelState& state);
 // Two side views of a 3D system, beside or above one another. Returns pixels per world unit.
 bool shows_sides(const Session& session);
 double show_sides(const Session& session, const Rectangle& area);
@@ -40,19 +40,42 @@ double show_sides(const Session& session, const Rectangle& area);
 namespace {
 
 constexpr const char* camera_popup = "camera menu";
+constexpr float label_of_scale = 56.0F, min_scale_bar = 34.0F, between_switches = 14.0F;
 
-// Extends the view downward, so that the extent of the run ends above the lowest `strip` pixels.
-void keep_clear(Drawing& drawing, const Rectangle& area, double strip) {
-    const double width = drawing.x_high - drawing.x_low, height = drawing.y_high - drawing.y_low;
-    const double unit = std::min(double{area.width} / width, double{area.height} / height);
-    const double below = 0.5 * (double{area.height} - unit * height);
-    if (!(unit > 0.0) || !std::isfinite(unit) || below >= strip || double{area.height} < 2.5 * strip) return;
-    double more = 2.0 * (strip - below) / unit;  // valid while the width limits the view
-    if (unit * (height + more) > double{area.height}) more = strip * height / (double{area.height} - strip);
-    drawing.y_low -= more;
+CameraPicture picture_in(const Session& session, const Rectangle& area) {
+    const double arrow = longest_arrow * std::min(double{area.width}, double{area.height});
+    const auto length = [&](const char* layer) { return session.scene().shows(layer) ? arrow : 0.0; };
+    return {double{area.width}, double{area.height}, length("velocity"), length("force")};
+}
+
+// "24 000", with two digits.
+std::string rounded_count(double value) {
+    const int power = std::max(0, static_cast<int>(std::floor(std::log10(value))));
+    const double digits = std::round(value / std::pow(10.0, power - 1));
+    if (power > 5) return fmt::format("{:.1f}\u00b7{}", 0.1 * digits, power_of_ten(power));
+    std::string text = fmt::format("{:.0f}", digits * std::pow(10.0, power - 1));
+    for (int at = static_cast<int>(text.size()) - 3; at > 0; at -= 3)
+        text.insert(static_cast<std::size_t>(at), "\u00a0");
+    return text;
+}
+
+// What the Zeno camera shows, since a picture of two lines does not say it: how much it enlarges, and the bounce.
+std::array<std::string, 2> zeno_words(const Session& session, const Rectangle& world) {
+    const auto view = session.mechanism_scene().camera().zeno_view(session.now(), picture_in(session, world));
+    if (!view) return {"no bounces now: the whole run", ""};
+    const auto length = [&](double value) {
+        return number_with_unit(number(value, "{:.2g}"), session.mechanism_scene().unit());
+    };
+    return {fmt::format("{}{} times enlarged", view->is_inside_body ? "inside the body, " : "",
+                        rounded_count(view->enlargement)),
+            view->is_cut ? fmt::format("the bounces are cut; the last was about {} high", length(view->bounce))
+                         : fmt::format("gap {} in a bounce about {} high", length(view->gap), length(view->bounce))};
 }
 
 }  // namespace
+
+// The state in numbers leaves this height to the picture.
+float least_world() { return units(60.0F); }
 
 float switches_height() { return ImGui::GetTextLineHeight() + units(14.0F); }
 
@@ -66,32 +89,22 @@ Drawing seen_world(const Session& session, const Rectangle& area) {
         drawing.y_low = look->y - 0.5 * high, drawing.y_high = look->y + 0.5 * high;
         return drawing;
     }
-    const double arrow = longest_arrow * std::min(width, height);
-    const CameraPicture picture{width, height, scene.shows("velocity") ? arrow : 0.0,
-                                scene.shows("force") ? arrow : 0.0};
-    Drawing drawing = session.mechanism_scene().camera().at(scene.camera(), session.now(), picture);
-    if (scene.camera() == CameraMode::fit) keep_clear(drawing, area, double{switches_height()});
-    return widened(drawing, width, height);
+    const CameraPicture picture = picture_in(session, area);
+    return widened(session.mechanism_scene().camera().at(scene.camera(), session.now(), picture), width, height);
 }
 
-float show_camera_menu(const Session& session, const Drawing& seen, float right, float y, PanelState& state,
-                       Commands& commands) {
+float show_camera_menu(const Session& session, const Drawing& seen, float right, float y,
+                       const std::vector<const char*>& layers, PanelState& state, Commands& commands) {
     const CameraMode mode = session.scene().camera();
     const std::string name(to_text(mode));
-    const ImVec2 size = ImGui::CalcTextSize(name.c_str());
-    const float height = ImGui::GetTextLineHeight(), sign = 0.35F * height;
-    const float width = size.x + 2.2F * sign + units(4.0F), x = right - width;
-    ImGui::SetCursorScreenPos({x, y});
+    const float height = ImGui::GetTextLineHeight(), width = ImGui::CalcTextSize(name.c_str()).x + units(13.0F);
+    ImGui::SetCursorScreenPos({right - width, y});
     if (ImGui::InvisibleButton("camera", {width, height})) ImGui::OpenPopup(camera_popup);
     remember(state, "camera");
     const bool lit = ImGui::IsItemHovered();
     tooltip("camera: what this view shows");
-    const ImU32 color = packed(lit ? text_color() : faint_color());
-    ImDrawList* list = ImGui::GetWindowDrawList();
-    list->AddText({x, y}, color, name.c_str());
-    const float middle = y + 0.55F * height, left = x + size.x + units(6.0F);
-    list->AddTriangleFilled({left, middle - 0.4F * sign}, {left + 1.4F * sign, middle - 0.4F * sign},
-                            {left + 0.7F * sign, middle + 0.5F * sign}, color);
+    ImGui::GetWindowDrawList()->AddText({right - width, y}, packed(lit ? text_color() : faint_color()), name.c_str());
+    paint_menu_arrow(right - units(7.0F), std::floor(y + 0.55F * height), lit);
     if (ImGui::BeginPopup(camera_popup)) {
         constexpr std::array<std::pair<CameraMode, const char*>, 4> cameras{
             {{CameraMode::fit, "fit: the whole run"},
@@ -108,21 +121,23 @@ float show_camera_menu(const Session& session, const Drawing& seen, float right,
             else
                 commands.emplace_back(command::SetCamera{std::string(to_text(camera))});
         }
+        if (!layers.empty()) ImGui::Separator();
+        for (const char* layer : layers) {
+            const bool shown = session.scene().shows(layer);
+            if (ImGui::MenuItem(layer, nullptr, shown)) commands.emplace_back(command::Show{layer, !shown});
+            remember(state, std::string("show ") + layer);
+        }
         close_by_escape(state);
         ImGui::EndPopup();
     }
-    return x;
+    return right - width;
 }
 
-void show_scale_bar(const Session& session, const Rectangle& area, double unit, float right, PanelState& state) {
-    const float left = area.x + units(12.0F), label = units(76.0F);
-    const float room = right - left - label - units(16.0F);
-    const bool beside = room >= units(40.0F);
-    const double most = beside ? std::min(0.22 * double{area.width}, double{room}) : 0.22 * double{area.width};
-    const float bottom = area.y + area.height - units(11.0F) - (beside ? 0.0F : switches_height());
+void show_scale_bar(const Session& session, const Rectangle& line, double unit, float right, PanelState& state) {
+    const float left = line.x + units(12.0F), high = ImGui::GetTextLineHeight(), bottom = line.y + units(5.0F) + high;
+    const double most = std::min<double>(0.22F * line.width, right - left - units(label_of_scale + 8.0F));
     const double length = paint_scale_bar(ImGui::GetWindowDrawList(), {left, bottom}, most, unit,
                                           session.mechanism_scene().unit(), faint_color(), double{units(1.0F)});
-    const float high = ImGui::GetTextLineHeight();
     state.places["scale bar"] = {left, bottom - high, static_cast<float>(length), high};
 }
 
@@ -470,20 +485,36 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
 // True if the plane replaces the mechanism: by the user's choice, or since the system has no drawing.
 bool shows_plane(const Session& session) { return session.scene().shows("plane") || session.mechanism().is_empty(); }
 
-// Toggles for layers, in the corner. Returns their left end.
-float show_switches(const Session& session, const Rectangle& area, float right, PanelState& state, Commands& commands) {
-    float x = right;
-    const float y = area.y + area.height - ImGui::GetTextLineHeight() - units(8.0F);
+// The layers that can be shown, from right to left. With the plane: the contours, and the plane itself only if there is
+// a mechanism. With side views: the trail.
+std::vector<const char*> layers_of(const Session& session, const PanelState& state) {
     const bool plane = shows_plane(session), sides = !plane && shows_sides(session);
     const bool has_sides = TwoViews(session.trajectory(), session.samples()).exist();
+    std::vector<const char*> layers;
     for (const char* what : {"plane", "contours", "sides", "force", "velocity", "strobe", "trail"}) {
-        // With the plane: the toggle for contours, and for the plane itself only if there is a mechanism. With side
-        // views: the trail.
+        const std::string_view word = what;
+        if (word == "plane" ? session.mechanism().is_empty() : plane != (word == "contours")) continue;
+        if (word == "contours" && !has_contours(state.plane)) continue;
+        if (word == "sides" ? !has_sides : sides && word != "trail" && word != "plane") continue;
+        layers.push_back(what);
+    }
+    return layers;
+}
+
+// Whether these toggles fit between the scale bar and `right`.
+bool have_room(const std::vector<const char*>& layers, const Rectangle& line, float right) {
+    float width = units(12.0F + min_scale_bar + label_of_scale + 8.0F);
+    for (const char* what : layers) width += ImGui::CalcTextSize(what).x + units(between_switches);
+    return width <= right - line.x;
+}
+
+// Toggles for layers in the line below the picture. Returns their left end.
+float show_switches(const Session& session, const std::vector<const char*>& layers, float right, float y,
+                    PanelState& state, Commands& commands) {
+    float x = right;
+    for (const char* what : layers) {
         const std::string_view word = what;
         const bool is_plane = word == "plane";
-        if (is_plane ? session.mechanism().is_empty() : plane != (word == "contours")) continue;
-        if (word == "contours" && !has_contours(state.plane)) continue;
-        if (word == "sides" ? !has_sides : sides && word != "trail" && !is_plane) continue;
         const bool shown = session.scene().shows(what);
         const ImVec2 size = ImGui::CalcTextSize(what);
         x -= size.x;
@@ -493,8 +524,8 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
         ImGui::PopID();
         remember(state, std::string("show ") + what);
         const bool lit = ImGui::IsItemHovered();
-        tooltip(is_plane && shown ? "back to the mechanism"
-                : is_plane ? "the configuration plane: two quantities, the region where the gap is open, and the run"
+        tooltip(is_plane && shown            ? "back to the mechanism"
+                : is_plane                   ? "the plane of two quantities, where the gap is open, and the run"
                 : word == "contours"         ? (shown ? "hide the energy contours" : "show the energy contours")
                 : word == "sides"            ? (shown ? "back to the drawing" : "show two side views: x and z, y and z")
                 : word == "strobe" && !shown ? "show the poses at the events"
@@ -502,7 +533,7 @@ float show_switches(const Session& session, const Rectangle& area, float right, 
         ImDrawList* list = ImGui::GetWindowDrawList();
         list->AddText({x, y}, packed(lit ? text_color() : faint_color(), shown || lit ? 1.0F : 0.6F), what);
         if (shown) list->AddLine({x, y + size.y}, {x + size.x, y + size.y}, packed(faint_color()), units(1.0F));
-        x -= units(14.0F);
+        x -= units(between_switches);
     }
     return x;
 }
@@ -514,32 +545,46 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
     if (area.width < 2.0F || area.height < 2.0F) return;
     ImGui::GetWindowDrawList()->AddRectFilled({area.x, area.y}, {area.x + area.width, area.y + area.height},
                                               packed(session.theme().background), units(4.0F));
-    const float strip = state_height(session, area.width);
-    show_state(session, area);
-    const Rectangle rest{area.x, area.y + strip, area.width, area.height - strip};
-    if (rest.height < 2.0F) return;
-    const float right = rest.x + rest.width - units(10.0F);
+    const float bottom = switches_height();
+    const float strip =
+        std::min(state_height(session, area.width), std::max(1.0F, area.height - bottom - least_world()));
+    show_state(session, {area.x, area.y, area.width, strip});
+    Rectangle world{area.x, area.y + strip, area.width, area.height - strip - bottom};
+    if (session.scene().camera() == CameraMode::zeno && !shows_plane(session) && world.height > least_world()) {
+        const float high = ImGui::GetTextLineHeightWithSpacing(), wide = area.width - units(24.0F);
+        world.height -= 2.0F * high;
+        const auto words = zeno_words(session, world);
+        for (const std::size_t i : {0U, 1U})
+            cell({area.x + units(12.0F), world.y + world.height + units(4.0F) + static_cast<float>(i) * high}, words[i],
+                 wide, faint_color());
+    }
+    if (world.height < 2.0F) return;
+    const Rectangle line{area.x, area.y + area.height - bottom, area.width, bottom};
+    const float right = line.x + line.width - units(10.0F), y = line.y + units(6.0F);
+    const std::vector<const char*> layers = layers_of(session, state);
     if (shows_plane(session)) {
         state.held = {};
-        show_plane(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - switches_height())}, state,
-                   commands);
-        show_switches(session, rest, right, state, commands);
+        show_plane(session, world, state, commands);
+        // With new axes the plane may have contours or none.
+        show_switches(session, layers_of(session, state), right, y, state, commands);
         return;
     }
     if (shows_sides(session)) {
         state.held = {};
-        const double unit =
-            show_sides(session, {rest.x, rest.y, rest.width, std::max(1.0F, rest.height - switches_height())});
-        return show_scale_bar(session, rest, unit, show_switches(session, rest, right, state, commands), state);
+        const double unit = show_sides(session, world);
+        return show_scale_bar(session, line, unit, show_switches(session, layers, right, y, state, commands), state);
     }
-    const Picture picture = paint_picture(session, rest, state.held);
-    const Point low = picture.placement.world({rest.x, double{rest.y} + double{rest.height}});
-    const Point high = picture.placement.world({double{rest.x} + double{rest.width}, rest.y});
+    const Picture picture = paint_picture(session, world, state.held);
+    const Point low = picture.placement.world({world.x, double{world.y} + double{world.height}});
+    const Point high = picture.placement.world({double{world.x} + double{world.width}, world.y});
     Drawing seen;
     seen.x_low = low.x, seen.x_high = high.x, seen.y_low = low.y, seen.y_high = high.y;
-    const float y = rest.y + rest.height - ImGui::GetTextLineHeight() - units(8.0F);
-    const float menu = show_camera_menu(session, seen, right, y, state, commands) - units(14.0F);
-    show_scale_bar(session, rest, picture.placement.unit, show_switches(session, rest, menu, state, commands), state);
+    const bool folds = !have_room(layers, line, right - units(50.0F));
+    const float menu =
+        show_camera_menu(session, seen, right, y, folds ? layers : std::vector<const char*>(), state, commands) -
+        units(between_switches);
+    const float left = folds ? menu : show_switches(session, layers, menu, y, state, commands);
+    show_scale_bar(session, line, picture.placement.unit, left, state);
     use_mouse(session, picture, state, commands);
 }
 

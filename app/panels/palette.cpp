@@ -38,7 +38,7 @@ std::vector<Completions> completions(const Session& session, const PanelState& s
     for (const CoordinateDescription& coordinate : session.description().coordinates)
         for (const char* prime : {"", "'"}) set.values.emplace_back(coordinate.name + prime, "");
     for (const std::string& thing : command::shown_things)
-        (session.scene().shows(thing) ? hide : show).values.emplace_back(thing, "");
+        (session.scene().shows(thing) && thing != "mechanism" ? hide : show).values.emplace_back(thing, "");
     return {std::move(open), std::move(replay), std::move(set), std::move(show), std::move(hide)};
 }
 

@@ -132,6 +132,14 @@ struct PressedSlider {
     double clicked_since = 0.0, clicked_target = 0.0;
 };
 
+// A slider under the mouse, whose tooltip appears after a while.
+struct PointedControl {
+    std::string id;
+    double since = 0.0;     // s, ImGui time
+    int frame = -1;         // the last frame with the mouse there
+    bool is_early = false;  // in that frame its tooltip was not shown yet
+};
+
 // A zoom box being drawn in a plot.
 struct PlotBox {
     int plot = -1;
@@ -225,6 +233,8 @@ struct PanelState {
     enum class TourAction { none, back, next, stop } tour_action = TourAction::none;  // button pressed
     int copies = 0;                    // Session::copies() at the last copy to the clipboard
     double width = 0.0, height = 0.0;  // surface in the last frame, pixels
+    std::string front;                 // the panel in front, if the panels are tabs; else empty
+    bool is_alone = false;             // no panel has room beside the mechanism
     bool reads_folders = true;         // false in a picture, which must not show private folders
     bool in_window = false;            // a window may show computing times; a picture must not
     bool show_impacts = false;         // event list without folding of impacts
@@ -240,6 +250,7 @@ struct PanelState {
     std::optional<RecoveryQuestion> recovery_question;
     TypedValue typed;
     PressedSlider pressed;
+    PointedControl pointed;
     PlotMenu plot_menu;
     ViewHistory views;
     PaletteState palette;
@@ -362,6 +373,8 @@ void show_orbit(const Session& session, PanelState& state, Commands& commands);
 // The proof of the run. Shown instead of the events. Until when, for what, and what it assumes.
 std::string proof_sentence(const Proof& proof);
 void show_proof(const Session& session, PanelState& state, Commands& commands);
+// In a small window: the tabs of all panels.
+void show_panel_tabs(const Session& session, PanelState& state, Commands& commands);
 // Tabs that select the events or one of these studies, and what is selected.
 void show_lower_panel(const Session& session, PanelState& state, Commands& commands);
 // The padded area of a study, ended by ImGui::EndChild().
@@ -396,6 +409,8 @@ std::string time_left(double seconds, double share);
 bool is_typing(const PanelState& state);
 // The same for a click that may become a double click.
 bool waits_for_click(const PanelState& state);
+// The same for a tooltip that is not shown yet.
+bool waits_for_tooltip(const PanelState& state);
 // Turns the typed text into a command now.
 void hand_over_text(EditorState& editor, Commands& commands);
 // Toggles between the editor and the sliders.

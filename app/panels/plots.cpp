@@ -450,9 +450,7 @@ void show_grid_bar(const Session& session, PanelState& state, Commands& commands
     bool linked = plots.linked();
     if (ImGui::Checkbox(text, &linked)) commands.emplace_back(command::Link{linked});
     remember(state, "link");
-    tooltip(
-        "use the same time range in all plots over t. Wheel: zoom; drag: move; drag with the right button: zoom to a "
-        "box; double click: fit all");
+    tooltip("one time range for all plots over time");
 }
 
 // Changes in quick succession, such as turns of the wheel, are one entry.

@@ -53,16 +53,13 @@ std::string shown_in(float width, const Slider& slider, double value) {
     return fitted(shown(slider, value, 2), width);
 }
 
+// One line; F1 has the mouse and the keys.
 std::string explanation(const Slider& slider) {
-    std::string text = slider.about + (slider.about.empty() ? "" : "\n");
+    std::string text = slider.about + (slider.about.empty() ? "" : " \u00b7 ");
     text += number(slider.low * slider.factor) + " to " + shown(slider, slider.high);
     if (is_logarithmic(slider)) text += ", logarithmic";
-    if (slider.value != slider.original) text += "\nin the file: " + shown(slider, slider.original);
-    return text +
-           (slider.factor == 1.0 ? "\ndouble click: type a value, such as 1/3; "
-                                 : "\ndouble click: type degrees, or a value such as pi/6; ") +
-           "right click: reset to the file; Shift: fine steps" +
-           (slider.bar_about.empty() ? "" : "\n" + slider.bar_about);
+    if (slider.value != slider.original) text += " \u00b7 in the file " + shown(slider, slider.original);
+    return text + (slider.bar_about.empty() ? "" : " \u00b7 " + slider.bar_about);
 }
 
 // A thin track behind a slider with invisible frame, with a mark at the file's value.
@@ -333,7 +330,7 @@ bool moved(Slider& slider, PanelState& state) {
         ImGui::TextUnformatted(("over " + slider.label).c_str());
         ImGui::EndDragDropSource();
     }
-    tooltip(about);
+    slow_tooltip(slider.id, about, state);
     if (is_changed) mark_changed();
     const bool was_reset = clicked(slider, state);
     ImGui::SameLine(0.0F, 0.0F);
@@ -344,7 +341,7 @@ bool moved(Slider& slider, PanelState& state) {
     bool changed = dragged(slider, track, state.pressed) || was_reset;
     remember(state, slider.id);
     paint_bar(slider, corner, track);
-    tooltip(about);
+    slow_tooltip(slider.id, about, state);
     changed = moved_by_keys(slider, state) || clicked(slider, state) || changed;
     ImGui::SameLine(0.0F, 0.0F);
     const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -352,7 +349,7 @@ bool moved(Slider& slider, PanelState& state) {
                            {std::max(1.0F, width - track), ImGui::GetFrameHeight()},
                            ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonRight);
     remember(state, "value of " + slider.id);
-    tooltip(about);
+    slow_tooltip(slider.id, about, state);
     changed = clicked(slider, state) || changed;
     const std::string text = shown_in(width - track - units(4.0F), slider, slider.value);
     ImGui::GetWindowDrawList()->AddText({std::floor(at.x + width - track - ImGui::CalcTextSize(text.c_str()).x),

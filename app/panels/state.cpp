@@ -77,6 +77,7 @@ void show_state(const Session& session, const Rectangle& panel) {
     const ImVec2 at{panel.x + units(edge_of_state), panel.y + units(above_state)};
     const float width = panel.width - 2.0F * units(edge_of_state);
     const bool narrow = is_narrow(width);
+    const float bottom = panel.y + panel.height;
     ImDrawList* list = ImGui::GetWindowDrawList();
     const float size = ImGui::GetFontSize(), line = ImGui::GetTextLineHeightWithSpacing();
     const PhaseLabel phase = phase_label(*session.model(), session.now());
@@ -92,6 +93,7 @@ void show_state(const Session& session, const Rectangle& panel) {
         for (const bool is_rate : {false, true}) {
             const StateValue shown = value_of(session, i, is_rate);
             const ImVec2 corner{is_rate && narrow ? x + column : x, is_rate && !narrow ? y + line : y};
+            if (corner.y + size > bottom) continue;  // the panel is too low for all values
             cell(corner, shown.name, shown.value, column - units(8.0F), is_rate ? faint_color() : text_color());
         }
     }

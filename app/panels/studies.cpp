@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <span>
 #include <string>
 
 #include "output/proof.hpp"
@@ -16,26 +17,36 @@ namespace achilles {
 
 namespace {
 
-// A tab: what the scene shows, its title, and the action of the View menu that shows it, too.
-struct StudyTab {
+// A tab: what the scene shows, its title, the action of the View menu that shows it, too, and a study's content.
+struct PanelTab {
     const char *what, *title, *action;
     void (*show)(const Session& session, PanelState& state, Commands& commands);
 };
-constexpr StudyTab study_tabs[] = {{"events", "Events", "Events", show_events},
+constexpr PanelTab panel_tabs[] = {{"mechanism", "Mechanism", "", nullptr},
+                                   {"controls", "Controls", "Controls", nullptr},
+                                   {"plots", "Plots", "Plots", nullptr},
+                                   {"events", "Events", "Events", show_events},
                                    {"equations", "Equations", "Equations", show_equations},
                                    {"depend", "Sensitivities", "Sensitivities", show_dependence},
                                    {"sweep", "Sweep", "Sweep", show_sweep},
                                    {"orbit", "Periodic", "Periodic run", show_orbit},
                                    {"proof", "Proof", "Proof", show_proof}};
+constexpr std::span<const PanelTab> study_tabs = std::span(panel_tabs).subspan(3);
+
+void choose(const PanelTab& tab, const Session& session, Commands& commands) {
+    const std::string below = session.scene().below();
+    if (std::string_view(tab.what) == "events" && below != "events" && !below.empty())
+        commands.emplace_back(command::Show{below, false});
+    commands.emplace_back(command::Show{tab.what, true});
+}
 
 // One of the tabs; the current one is underlined. Returns true if it was pressed.
-bool study_tab(const StudyTab& tab, float width, bool is_seen, PanelState& state) {
+bool show_tab(const PanelTab& tab, float width, bool is_seen, PanelState& state) {
     const ImVec2 at = ImGui::GetCursorScreenPos();
     const bool is_pressed = ImGui::InvisibleButton(tab.title, {width, ImGui::GetFrameHeight()});
     remember(state, std::string("tab ") + tab.what);
     const Color color = is_seen || ImGui::IsItemHovered() ? text_color() : faint_color();
-    const Action& shown_by = action(tab.action);
-    tooltip(std::string(shown_by.about) + (shown_by.keys.empty() ? "" : fmt::format(" ({})", shown_by.keys)));
+    if (tab.show != nullptr) tooltip(fmt::format("{} ({})", action(tab.action).about, action(tab.action).keys));
     ImDrawList* list = ImGui::GetWindowDrawList();
     list->AddText({at.x, at.y + ImGui::GetStyle().FramePadding.y}, packed(color), fitted(tab.title, width).c_str());
     const float low = at.y + ImGui::GetFrameHeight();
@@ -43,19 +54,31 @@ bool study_tab(const StudyTab& tab, float width, bool is_seen, PanelState& state
     return is_pressed && !is_seen;
 }
 
-// The tabs always have the same places. In a narrow panel their titles are shortened.
-void show_study_tabs(const std::string& seen, PanelState& state, Commands& commands) {
-    const float room = ImGui::GetContentRegionAvail().x, count = static_cast<float>(std::size(study_tabs));
+// Without room for every title: a menu of the tabs.
+void show_tab_menu(std::span<const PanelTab> tabs, const std::string& seen, const Session& session, PanelState& state,
+                   Commands& commands) {
+    const Rectangle row{remaining().x, remaining().y, 0.0F, ImGui::GetFrameHeight()};
+    for (const PanelTab& one : tabs)
+        if (one.what == seen) menu_button("tabs", one.title, row.x, row, row.x + remaining().width, state);
+    if (!ImGui::BeginPopup("tabs")) return;
+    for (const PanelTab& one : tabs) {
+        if (ImGui::MenuItem(one.title, nullptr, one.what == seen)) choose(one, session, commands);
+        remember(state, std::string("tab ") + one.what);
+    }
+    close_by_escape(state);
+    ImGui::EndPopup();
+}
+
+// The tabs always have the same places.
+void show_tabs(std::span<const PanelTab> tabs, const std::string& seen, const Session& session, PanelState& state,
+               Commands& commands) {
+    const float room = ImGui::GetContentRegionAvail().x, count = static_cast<float>(tabs.size());
     float width = 0.0F;
-    for (const StudyTab& one : study_tabs) width += ImGui::CalcTextSize(one.title).x;
-    const float between = std::clamp((room - width) / count, units(6.0F), units(16.0F));
-    const float share = std::min(1.0F, (room - between * count) / width);
-    for (const StudyTab& one : study_tabs) {
-        if (study_tab(one, std::max(1.0F, share * ImGui::CalcTextSize(one.title).x), one.what == seen, state)) {
-            if (std::string_view(one.what) == "events") commands.emplace_back(command::Show{seen, false});
-            commands.emplace_back(command::Show{one.what, true});
-        }
-        ImGui::SameLine(0.0F, between);
+    for (const PanelTab& one : tabs) width += ImGui::CalcTextSize(one.title).x;
+    if (width + units(6.0F) * count > room) return show_tab_menu(tabs, seen, session, state, commands);
+    for (const PanelTab& one : tabs) {
+        if (show_tab(one, ImGui::CalcTextSize(one.title).x, one.what == seen, state)) choose(one, session, commands);
+        ImGui::SameLine(0.0F, std::min((room - width) / count, units(16.0F)));
     }
     ImGui::NewLine();
 }
@@ -103,10 +126,14 @@ void show_proved_events(const Session& session, PanelState& state, Commands& com
 
 }  // namespace
 
+void show_panel_tabs(const Session& session, PanelState& state, Commands& commands) {
+    show_tabs(std::span(panel_tabs).subspan(state.is_alone ? 0 : 1), state.front, session, state, commands);
+}
+
 void show_lower_panel(const Session& session, PanelState& state, Commands& commands) {
     const std::string seen = session.scene().below();
-    show_study_tabs(seen, state, commands);
-    for (const StudyTab& tab : study_tabs)
+    if (state.front.empty()) show_tabs(study_tabs, seen, session, state, commands);
+    for (const PanelTab& tab : study_tabs)
         if (tab.what == seen) tab.show(session, state, commands);
 }
 

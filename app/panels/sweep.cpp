@@ -180,9 +180,7 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
     }
     std::string& typed = state.sweep.print;
     if (text_row("other", "sweep expression", typed, 150.0F, state) && !typed.empty()) ask(typed);
-    tooltip(
-        "an expression at the end of the run, with zeno_time(k), impact_time(k), impact_speed(k), release_time(k), or "
-        "its derivative with respect to a parameter or a start, d(zeno_time(1), e). Press Enter to apply");
+    tooltip("an expression at the end, such as zeno_time(1), or its derivative, d(zeno_time(1), e)");
     if (!session.error().empty()) show_message(session.error(), units(240.0F));
     ImGui::Separator();
     show_moments(sweep, session, state, commands);

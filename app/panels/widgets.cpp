@@ -92,7 +92,8 @@ void section(const char* title, float free) {
 
 namespace {
 
-constexpr float tooltip_width = 360.0F;
+// Most tooltips are one line; longer ones are wrapped.
+float tooltip_width() { return std::min(units(560.0F), ImGui::GetIO().DisplaySize.x - units(24.0F)); }
 
 bool wants_tooltip(const std::string& text) {
     // During a drag or typing a tooltip would cover what changes.
@@ -102,7 +103,7 @@ bool wants_tooltip(const std::string& text) {
 
 void show_tooltip(const std::string& text) {
     ImGui::BeginTooltip();
-    ImGui::PushTextWrapPos(units(tooltip_width));
+    ImGui::PushTextWrapPos(tooltip_width());
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
     ImGui::EndTooltip();
@@ -111,7 +112,7 @@ void show_tooltip(const std::string& text) {
 ImVec2 tooltip_size(const std::string& text) {
     const ImVec2 padding = ImGui::GetStyle().WindowPadding;
     // ImGui measures the wrap position from the window edge.
-    const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, units(tooltip_width) - padding.x);
+    const ImVec2 words = ImGui::CalcTextSize(text.c_str(), nullptr, false, tooltip_width() - padding.x);
     return {words.x + 2.0F * padding.x, words.y + 2.0F * padding.y};
 }
 
@@ -122,7 +123,33 @@ void place_tooltip(const ImVec2& at, const ImVec2& size) {
                              std::floor(std::clamp(at.y, 0.0F, std::max(0.0F, all.y - size.y)))});
 }
 
+// Beside the current window; without room there, below or above the last item.
+void show_beside_window(const std::string& text) {
+    const ImVec2 size = tooltip_size(text), window = ImGui::GetWindowPos(), low = ImGui::GetItemRectMin();
+    const float to_window = units(4.0F), right = window.x + ImGui::GetWindowWidth() + to_window;
+    const bool fits_right = right + size.x <= ImGui::GetIO().DisplaySize.x, fits_left = window.x - to_window >= size.x;
+    const float below = ImGui::GetItemRectMax().y + to_window;
+    if (fits_right || fits_left)
+        place_tooltip({fits_right ? right : window.x - to_window - size.x, low.y}, size);
+    else
+        place_tooltip({low.x, below + size.y <= ImGui::GetIO().DisplaySize.y ? below : low.y - to_window - size.y},
+                      size);
+    show_tooltip(text);
+}
+
 }  // namespace
+
+void slow_tooltip(const std::string& id, const std::string& text, PanelState& state) {
+    constexpr double pause = 1.0;  // s
+    if (!wants_tooltip(text)) return;
+    const int frame = ImGui::GetFrameCount();
+    if (state.pointed.id != id || state.pointed.frame < frame - 1) state.pointed = {id, ImGui::GetTime(), frame};
+    state.pointed.frame = frame;
+    state.pointed.is_early = ImGui::GetTime() - state.pointed.since < pause;
+    if (!state.pointed.is_early) show_beside_window(upright(text));
+}
+
+bool waits_for_tooltip(const PanelState& state) { return state.pointed.is_early; }
 
 void tooltip(const std::string& label, const Rectangle& clear) {
     if (!wants_tooltip(label)) return;
@@ -139,11 +166,7 @@ void tooltip(const std::string& label) {
     const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
     if (high.y - low.y > units(40.0F)) return show_tooltip(text);  // at the mouse
     if (!is_covered()) return tooltip(text, {low.x, low.y, high.x - low.x, high.y - low.y});
-    // Beside the menu, so that it covers no entry.
-    const ImVec2 size = tooltip_size(text), window = ImGui::GetWindowPos();
-    const float gap = units(4.0F), right = window.x + ImGui::GetWindowWidth() + gap;
-    place_tooltip({right + size.x <= ImGui::GetIO().DisplaySize.x ? right : window.x - gap - size.x, low.y}, size);
-    show_tooltip(text);
+    show_beside_window(text);  // a menu, of which it then covers no entry
 }
 
 bool is_covered() { return ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel); }

@@ -45,6 +45,8 @@ void section(const char* title, float free = 0.0F);
 void tooltip(const std::string& text);
 // The same, placed below or above `clear` without covering it.
 void tooltip(const std::string& text, const Rectangle& clear);
+// The same after a second, beside the window: for a slider, whose neighbors stay visible. `id` names the row.
+void slow_tooltip(const std::string& id, const std::string& text, PanelState& state);
 // True if a menu or a dialog is in front of the panels.
 bool is_covered();
 // True if the keys of this frame belong to the current window: no menu or dialog was in front of it when they were

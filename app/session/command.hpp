@@ -101,15 +101,18 @@ struct Reload {  // reads the file of the system again; sliders keep what they c
     static constexpr auto spec = CommandSpec("reload", alone, UndoPolicy::own_step);
 };
 inline const std::vector<std::string> shown_things{
-    "accuracy", "contours", "controls", "depend", "editor", "energy", "equations", "events",
-    "export",   "force",    "gallery",  "help",   "lens",   "orbit",  "palette",   "plane",
-    "plots",    "proof",    "runs",     "sides",  "strobe", "sweep",  "trail",     "velocity"};
+    "accuracy", "contours", "controls", "depend", "editor",    "energy", "equations", "events", "export",
+    "force",    "gallery",  "help",     "lens",   "mechanism", "orbit",  "palette",   "plane",  "plots",
+    "proof",    "runs",     "sides",    "strobe", "sweep",     "trail",  "velocity"};
 // Studies: tabs beside the event list. At most one is shown; without one, the events are.
 inline const std::vector<std::string> studies{"equations", "depend", "sweep", "orbit", "proof"};
+// Panels that are tabs in a small window; the one shown last is in front.
+inline const std::vector<std::string> tabs{"mechanism", "controls", "editor", "plots", "events",
+                                           "equations", "depend",   "sweep",  "orbit", "proof"};
 struct Show {
     // What to show or hide. Panels: `controls`, `plots`, `events`; `editor` (replaces the controls); the studies, which
-    // replace the events; `energy` (below the results); `runs` (table of pinned runs, beside the events). In the
-    // mechanism view: `trail`, `velocity`,
+    // replace the events; `energy` (below the results); `runs` (table of pinned runs, beside the events). `mechanism`
+    // brings it to the front in a small window; it cannot be hidden. In the mechanism view: `trail`, `velocity`,
     // `force`, `strobe` (poses at events); `plane` replaces the mechanism with the configuration plane, `contours` adds
     // energy contours to it; `sides` shows two side views of a 3D system. Cards: `help`, `gallery`, `palette`,
     // `export`. `accuracy` is a section of the controls.

@@ -69,6 +69,12 @@ void Scene::perform(const command::Show& command) {
     const auto& things = command::shown_things;
     if (std::find(things.begin(), things.end(), command.what) == things.end())
         throw refusal(fmt::format("there is no '{}' to show{}", command.what, did_you_mean(command.what, things)));
+    if (command.what == "mechanism" && !command.on)
+        throw refusal("the mechanism cannot be hidden", "a panel can: hide plots");
+    if (std::find(command::tabs.begin(), command::tabs.end(), command.what) != command::tabs.end()) {
+        if (command.on) front_ = command.what;
+        if (!command.on && front_ == command.what) front_ = "mechanism";
+    }
     // Only one card at a time covers the window.
     const auto is_card = [](const std::string& what) {
         return what == "help" || what == "palette" || what == "gallery" || what == "export";
@@ -106,6 +112,7 @@ void Scene::perform(const command::Loop& command) { loops_ = command.on; }
 
 void Scene::perform(const command::ShowLens& command) {
     lens_ = std::clamp(command.from, -100.0, 1e9);
+    front_ = "plots";
     shown_.insert("lens");
 }
 
@@ -126,6 +133,8 @@ void Scene::perform(const command::Say& command) { caption_ = command.text, high
 
 void Scene::perform(const command::Highlight& command) {
     highlight_ = command.panel == "none" ? std::string() : command.panel;
+    if (shows(highlight_) && std::find(command::tabs.begin(), command::tabs.end(), highlight_) != command::tabs.end())
+        front_ = highlight_;  // a tour speaks of it
 }
 
 void Scene::perform(const command::Enlarge& command) {
@@ -159,9 +168,13 @@ std::vector<Command> steps_to(const Scene& scene) {
         steps.emplace_back(command::ShowSensitivity{*quantity});
         before.perform(command::ShowSensitivity{*quantity});
     }
+    const auto show = [&](const std::string& thing, bool on) {
+        steps.emplace_back(command::Show{thing, on});
+        before.perform(command::Show{thing, on});
+    };
     for (const std::string& thing : command::shown_things)
-        if (thing != "export" && scene.shows(thing) != before.shows(thing))
-            steps.emplace_back(command::Show{thing, scene.shows(thing)});
+        if (thing != "export" && scene.shows(thing) != before.shows(thing)) show(thing, scene.shows(thing));
+    if (before.front() != scene.front()) show(scene.front(), true);
     if (!scene.finds().empty()) steps.emplace_back(command::Find{scene.finds()});
     if (scene.speed() != Scene().speed()) steps.emplace_back(command::Speed{scene.speed()});
     if (scene.loops()) steps.emplace_back(command::Loop{true});
@@ -184,6 +197,7 @@ std::string to_text(const Scene& scene) {
     for (const std::string& thing : command::shown_things)
         if (thing != "editor" && scene.shows(thing) != Scene().shows(thing))
             text += fmt::format("{} {}\n", scene.shows(thing) ? "show" : "hide", thing);
+    if (scene.front() != Scene().front()) text += fmt::format("front {}\n", scene.front());
     if (const auto& plane = scene.plane()) text += fmt::format("plane {} | {}\n", plane->x, plane->y);
     if (scene.sweep()) text += fmt::format("sweep {}\n", *scene.sweep());
     if (scene.depends()) text += fmt::format("depend {}\n", *scene.depends());

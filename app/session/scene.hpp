@@ -21,6 +21,8 @@ class Scene {
     bool shows(const std::string& what) const { return shown_.contains(what); }
     // The panel at the place of the events: one of command::studies, or "events"; empty: none.
     std::string below() const;
+    // The panel shown last, one of command::tabs: in front if the window is too small for all.
+    const std::string& front() const { return front_; }
     double speed() const { return speed_; }  // simulated seconds per second of playback
     bool loops() const { return loops_; }
     // The axes of the configuration plane; empty: the default.
@@ -77,7 +79,8 @@ class Scene {
     CameraMode camera_ = CameraMode::fit;
     std::optional<command::LookAt> look_;  // the last view of a fixed camera
     friend std::vector<Command> steps_to(const Scene& scene);
-    std::set<std::string> shown_{"trail", "velocity", "force", "controls", "plots", "events", "runs"};
+    std::set<std::string> shown_{"trail", "velocity", "force", "mechanism", "controls", "plots", "events", "runs"};
+    std::string front_ = "mechanism";
     double speed_ = 1.0;
     bool loops_ = false;
     std::optional<command::ShowPlane> plane_;

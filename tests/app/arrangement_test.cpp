@@ -30,7 +30,7 @@ std::vector<std::pair<std::string, Rectangle>> all_of(const Arrangement& a) {
     std::vector<std::pair<std::string, Rectangle>> all{
         {"bar", a.bar},         {"controls", a.controls}, {"error", a.error},       {"mechanism", a.mechanism},
         {"results", a.results}, {"energy", a.energy},     {"timeline", a.timeline}, {"plots", a.plots},
-        {"events", a.events},   {"status", a.status}};
+        {"events", a.events},   {"status", a.status},     {"tabs", a.tabs},         {"caption", a.caption}};
     for (const Arrangement::Splitter& splitter : a.splitters) all.emplace_back("splitter", splitter.area);
     std::erase_if(all, [](const auto& part) { return part.second.width < 1.0F || part.second.height < 1.0F; });
     return all;
@@ -114,6 +114,7 @@ TEST(Arrangement, ShowsAClassWhatItLooksAt) {
 TEST(Arrangement, StudiesHaveThePlaceOfTheEventsAndMoveNothing) {
     for (const auto& [width, height] : {std::pair{1600.0F, 1000.0F}, {1280.0F, 720.0F}, {640.0F, 480.0F}}) {
         Scene scene;
+        scene.perform(command::Show{"events", true});
         const Measures m = measures(width, height);
         const Arrangement before = arrange(scene, m);
         for (const std::string& study : command::studies) {
@@ -139,7 +140,7 @@ TEST(Arrangement, NothingCoversAnythingInAnyState) {
     for (const auto& [width, height, unit] : {std::tuple{1280.0F, 800.0F, 1.0F},
                                               {1600.0F, 1000.0F, 1.0F},
                                               {2560.0F, 1600.0F, 2.0F},
-                                              {900.0F, 600.0F, 1.0F}})
+                                              {1000.0F, 600.0F, 1.0F}})
         for (int hidden = 0; hidden < 16; ++hidden)
             for (const double share : {0.0, 0.02, 0.5, 0.98})
                 for (const float error : {0.0F, 70.0F}) {
@@ -162,6 +163,111 @@ TEST(Arrangement, NothingCoversAnythingInAnyState) {
                 }
 }
 
+// Below 1000 units of width the panels are tabs: the one shown last is in front, none is narrower than its least width.
+TEST(Arrangement, PanelsAreTabsInASmallWindow) {
+    struct Surface {
+        float width, height, unit;
+        bool has_room_beside;  // for a panel beside the mechanism
+    };
+    for (const Surface& s : {Surface{640, 480, 1, true},
+                             {800, 600, 1, true},
+                             {960, 540, 1, true},
+                             {999, 1200, 1, true},
+                             {1280, 720, 2, true},
+                             {1280, 480, 1.2F, true},
+                             {3840, 900, 3, true},
+                             {1280, 720, 3, false},
+                             {640, 480, 2, false},
+                             {640, 480, 3, false}})
+        for (const std::string& panel : command::tabs)
+            for (const float error : {0.0F, 70.0F}) {
+                Scene scene;
+                scene.perform(command::Show{panel, true});
+                Measures m = measures(s.width, s.height, s.unit, error);
+                m.caption = [error](float) { return error; };
+                const Arrangement a = arrange(scene, m);
+                const std::string what = std::to_string(s.width) + " x " + std::to_string(s.height) + " at " +
+                                         std::to_string(s.unit) + ", " + panel + ", error " + std::to_string(error) +
+                                         ": ";
+                expect_no_overlap(a, m, what);
+                EXPECT_EQ(a.is_alone, !s.has_room_beside) << what;
+                const bool is_side = panel == "controls" || panel == "editor" || panel == "plots";
+                const bool is_mechanism = panel == "mechanism" && a.is_alone;
+                EXPECT_EQ(a.front, panel == "editor" || (panel == "mechanism" && !a.is_alone) ? "controls" : panel)
+                    << what;
+                EXPECT_GT(a.tabs.width * a.tabs.height, 0.0F) << what;
+                // One panel only, and wide enough.
+                EXPECT_EQ((a.controls.width > 0.0F) + (a.plots.width > 0.0F) + (a.events.width > 0.0F),
+                          is_mechanism ? 0 : 1)
+                    << what;
+                const float inside = s.width - 20.0F * s.unit;
+                for (const Rectangle* one : {&a.controls, &a.plots})
+                    EXPECT_TRUE(one->width == 0.0F || one->width >= std::min(240.0F * s.unit, inside)) << what;
+                EXPECT_TRUE(panel != "editor" || a.controls.width >= std::min(320.0F * s.unit, inside)) << what;
+                EXPECT_TRUE(a.events.width == 0.0F || a.events.width >= inside - 1.0F) << what;
+                EXPECT_TRUE(a.mechanism.width == 0.0F || a.mechanism.width >= std::min(340.0F * s.unit, inside))
+                    << what;
+                if (s.has_room_beside && is_side && panel != "editor" && error == 0.0F) {
+                    EXPECT_GT(a.mechanism.height, 80.0F * s.unit) << what;
+                    EXPECT_GT(a.timeline.height, 0.0F) << what;
+                }
+                if (error == 0.0F && s.height >= 480.0F * s.unit && panel != "mechanism") {
+                    EXPECT_GE((is_side ? a.controls.height + a.plots.height : a.events.height), 150.0F) << what;
+                }
+            }
+    // Not below: at 1000 units all panels are shown.
+    EXPECT_EQ(arrange(Scene(), measures(1000.0F, 700.0F)).front, "");
+    EXPECT_EQ(arrange(Scene(), measures(1280.0F, 720.0F)).front, "");
+    EXPECT_EQ(arrange(Scene(), measures(2000.0F, 1400.0F, 2.0F)).front, "");
+    // A hidden panel makes room for another one.
+    Scene scene;
+    scene.perform(command::Show{"controls", false});
+    EXPECT_EQ(arrange(scene, measures(640.0F, 480.0F)).front, "plots");
+    scene.perform(command::Show{"plots", false});
+    EXPECT_EQ(arrange(scene, measures(640.0F, 480.0F)).front, "events");
+    scene.perform(command::Show{"events", false});
+    const Arrangement alone = arrange(scene, measures(640.0F, 480.0F));
+    EXPECT_EQ(alone.front, "mechanism");
+    EXPECT_EQ(alone.mechanism.width, 620.0F);
+}
+
+// The tabs are pressed, keys bring a panel to the front and back, and the recipe of the session leads to the same one.
+TEST(Panels, AreChosenByTabsInASmallWindow) {
+    Hands hands("ball_on_sine", test::surface(640, 480));
+    EXPECT_GE(hands.state.places.at("set g").width, 80.0F);
+    EXPECT_GE(hands.state.places.at("systems").width, 150.0F);
+    EXPECT_FALSE(hands.state.places.contains("switch Plots"));
+    EXPECT_FALSE(hands.state.places.contains("plot 1"));
+    hands.click("tab plots");
+    EXPECT_EQ(hands.all, std::vector<Command>{(command::Show{"plots", true})});
+    EXPECT_TRUE(hands.state.places.contains("plot 1"));
+    hands.press_with_control('3');
+    EXPECT_TRUE(hands.state.places.contains("impacts 1"));
+    EXPECT_TRUE(hands.state.places.contains("copy events")) << "the buttons of the list, on a line of their own";
+    const Rectangle list = hands.state.places.at("impacts 1"), button = hands.state.places.at("copy events");
+    EXPECT_LE(button.y + button.height, list.y);
+    Scene replayed;
+    for (const Command& step : steps_to(hands.session.scene()))
+        if (const auto* show = std::get_if<command::Show>(&step)) replayed.perform(*show);
+    EXPECT_EQ(replayed.front(), "events");
+    EXPECT_EQ(to_text(replayed), to_text(hands.session.scene()));
+    hands.press_with_control('4');
+    EXPECT_EQ(hands.state.front, "sweep");
+    hands.click("tab events");
+    EXPECT_EQ(hands.session.scene().below(), "events");
+    EXPECT_EQ(hands.state.front, "events");
+    hands.press_with_control('3');
+    EXPECT_EQ(hands.state.front, "controls") << "again the mechanism, and what is beside it";
+    EXPECT_THROW(Scene().perform(command::Show{"mechanism", false}), InputError);
+    // Without room for the titles: a menu of tabs.
+    Hands large("ball_on_sine", test::surface(1280, 720, 3.0));
+    EXPECT_EQ(large.state.front, "mechanism");
+    EXPECT_FALSE(large.state.places.contains("tab plots"));
+    large.click("tabs");
+    large.click("tab plots");
+    EXPECT_EQ(large.state.front, "plots");
+}
+
 TEST(Arrangement, AWindowTooSmallForAnythingHasNoNegativePart) {
     for (const float width : {1.0F, 60.0F, 300.0F})
         for (const float height : {1.0F, 40.0F, 200.0F}) {
@@ -175,7 +281,7 @@ TEST(Arrangement, AWindowTooSmallForAnythingHasNoNegativePart) {
 
 // An error message must not make the configuration plane too low: it is then shown above the plots.
 TEST(Arrangement, ThePlaneIsNeverTooLow) {
-    for (const auto& [width, height] : {std::pair{1280.0F, 800.0F}, {1024.0F, 700.0F}, {900.0F, 600.0F}})
+    for (const auto& [width, height] : {std::pair{1280.0F, 800.0F}, {1024.0F, 700.0F}, {1000.0F, 600.0F}})
         for (const float error : {0.0F, 60.0F, 130.0F, 200.0F}) {
             Scene scene;
             const Measures m = measures(width, height, 1.0F, error);
@@ -248,7 +354,9 @@ TEST(Panels, AreHiddenAndShownFromTheBarTheMenuAndTheKeyboard) {
     EXPECT_TRUE(hands.state.places.contains("plot 1"));
     EXPECT_TRUE(hands.state.places.contains("impacts 1"));
     EXPECT_LT(hands.state.places.at("mechanism").width, 0.5F * alone.width);
-    EXPECT_EQ(to_text(hands.session), to_text(test::session("ball_on_sine")));
+    Session fresh = test::session("ball_on_sine");
+    fresh.apply(command::Show{"events", true});  // shown last
+    EXPECT_EQ(to_text(hands.session), to_text(fresh));
 }
 
 TEST(Panels, AreResizedByTheGapBesideThem) {

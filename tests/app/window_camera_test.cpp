@@ -106,19 +106,44 @@ TEST(CameraPicture, SaysItsScaleAtEveryZoom) {
     EXPECT_TRUE(hands.says("1 m"));
     hands.session.apply(command::LookAt{4.6, -0.99, 1e-6});
     hands.rest(2);
-    EXPECT_TRUE(hands.says("2\u00b710\u22127 m")) << hands.letters();
-    // With any layers shown, the scale bar and the labels do not overlap.
-    for (const auto& [width, height] : {std::pair{1000, 700}, {1366, 768}, {1600, 1000}}) {
+    EXPECT_TRUE(hands.says("5\u00b710\u22128 m")) << hands.letters();
+    // The scale bar and the layers are below the picture, side by side; without room the layers are in the menu.
+    for (const auto& [width, height] : {std::pair{640, 480}, {1000, 700}, {1366, 768}, {1600, 1000}}) {
         Hands other("ball_on_egg_crate", test::surface(width, height));
-        const Rectangle bar = other.state.places.at("scale bar"), trail = other.state.places.at("show trail");
-        const bool beside = bar.x + bar.width < trail.x;
-        EXPECT_TRUE(beside || bar.y + bar.height < trail.y) << width;
+        const Rectangle bar = other.state.places.at("scale bar"), world = other.state.places.at("mechanism");
+        EXPECT_GE(bar.y, world.y + world.height) << width;
+        EXPECT_GT(bar.width, 30.0F) << width;
+        const bool folds = !other.state.places.contains("show trail");
+        EXPECT_EQ(folds, width <= 1000) << width;
+        if (folds) other.click("camera");
+        const Rectangle trail = other.state.places.at("show trail"), menu = other.state.places.at("camera");
+        EXPECT_LT(bar.x + bar.width, menu.x) << width;
+        EXPECT_TRUE(folds || bar.x + bar.width < trail.x) << width;
+        other.click("show trail");
+        EXPECT_FALSE(other.session.scene().shows("trail")) << width;
     }
+}
+
+// In words, since the picture of a bounce near a Zeno point is two lines.
+TEST(CameraPicture, ExplainsTheZenoCamera) {
+    Hands hands("ball_on_sine");
+    hands.session.apply(command::SetCamera{"zeno"});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("the whole run"));
+    hands.session.apply(command::Seek{2.72});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("inside the body")) << hands.letters();
+    EXPECT_TRUE(hands.says("times enlarged"));
+    EXPECT_TRUE(hands.says("in a bounce"));
+    hands.session.apply(command::Seek{2.725});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("the bounces are cut"));
 }
 
 TEST(SidesOfSpace, AreOfferedWhereThereIsSpace) {
     Hands ball("ball_on_sine"), crate("ball_on_egg_crate");
     EXPECT_FALSE(ball.state.places.contains("show sides"));
+    if (!crate.state.places.contains("show sides")) crate.click("camera");  // no room beside the scale
     crate.click("show sides");
     EXPECT_TRUE(crate.session.scene().shows("sides"));
     EXPECT_TRUE(crate.says("across")) << crate.letters();
