@@ -103,14 +103,15 @@ void lay_tube(const Tube& tube, Sheet& sheet, Rectangle plot, const PanelMap& ma
     end_strip();
 }
 
-// Lines between the cells of a map would be gray noise where the cells are small. Judged by their width alone, since
-// the legend is laid out before the height of the plot is known.
-bool has_lines_between_cells(const Panel& panel, float plot_width, const Metrics& m) {
-    constexpr double min_cell = 4.0;  // points
-    if (!panel.raster.cells) return false;
-    const PanelMap map(panel, {0.0F, 0.0F, plot_width, 1.0F});
-    return std::abs(map.x(panel.raster.right) - map.x(panel.raster.left)) >
-           min_cell * m.scale * panel.raster.cells->columns;
+// Lines between the cells of a map would be gray noise where the cells are small. A height of 0 is not known yet.
+bool has_lines_between_cells(const Panel& panel, float plot_width, float plot_height, const Metrics& m) {
+    const double min_cell = 4.0 * m.scale;  // 4 points
+    const Raster& raster = panel.raster;
+    if (!raster.cells) return false;
+    const PanelMap map(panel, {0.0F, 0.0F, plot_width, std::max(plot_height, 1.0F)});
+    const double width = std::abs(map.x(raster.right) - map.x(raster.left)) / raster.cells->columns;
+    const double height = std::abs(map.y(raster.top) - map.y(raster.bottom)) / raster.cells->rows;
+    return width > min_cell && (height > min_cell || plot_height <= 0.0F);
 }
 
 void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m) {
@@ -130,7 +131,7 @@ void lay_data(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics& m
     };
     if (!panel.boundary.points.empty()) lay(panel.boundary, 1.0);  // a thinner line is invisible on a screen
     for (const Curve& curve : panel.beyond.curves) lay(curve);
-    const bool between_cells = has_lines_between_cells(panel, plot.width, m);
+    const bool between_cells = has_lines_between_cells(panel, plot.width, plot.height, m);
     for (const Curve& curve : panel.curves)
         if (between_cells || !curve.is_between_cells) lay(curve);
 }
@@ -144,9 +145,9 @@ void lay_events(const Panel& panel, Sheet& sheet, Rectangle plot, const Metrics&
     lay_markers(all, sheet, plot, PanelMap(panel, plot), m);
 }
 
-std::vector<Key> keys_of(const Panel& panel, float plot_width, const Metrics& m) {
+std::vector<Key> keys_of(const Panel& panel, float plot_width, float plot_height, const Metrics& m) {
     std::vector<Key> keys;
-    const bool between_cells = has_lines_between_cells(panel, plot_width, m);
+    const bool between_cells = has_lines_between_cells(panel, plot_width, plot_height, m);
     for (const Curve& curve : panel.curves)
         if (!curve.label.empty() && (between_cells || !curve.is_between_cells))
             keys.push_back({curve.label, curve.stroke});
@@ -191,7 +192,7 @@ void lay_sign(const Key& key, Sheet& sheet, float x, float y, float length, cons
 
 // Draws a legend in the corner that the panel specifies.
 void lay_legend(const Panel& panel, const Figure& style, Sheet& sheet, Rectangle plot, const Metrics& m) {
-    const std::vector<Key> keys = keys_of(panel, plot.width, m);
+    const std::vector<Key> keys = keys_of(panel, plot.width, plot.height, m);
     if (keys.empty()) return;
     const float pad = std::round(m.text * 0.45F), inset = std::round(m.text * 0.6F);
     const float room_x = plot.width - 2.0F * inset, room_y = plot.height - 2.0F * inset;
@@ -290,7 +291,7 @@ bool title_beside(const Panel& panel, const KeyLines& keys, float plot_width, co
 
 float room_of_legend(const Panel& panel, float plot_width, const Metrics& m) {
     if (!panel.legend || !panel.legend_above) return 0.0F;
-    const KeyLines keys(keys_of(panel, plot_width, m), plot_width, m);
+    const KeyLines keys(keys_of(panel, plot_width, 0.0F, m), plot_width, m);
     const float spare = title_beside(panel, keys, plot_width, m) ? m.text * 1.35F : 0.0F;
     return std::max(keys.height(m) - spare, 0.0F);
 }
@@ -308,7 +309,7 @@ Rectangle lay_at(const Panel& panel, const Figure& style, Sheet& sheet, Rectangl
     layout_word(panel, style, sheet, inner, m);
     float lift = 0.0F;
     if (panel.legend && panel.legend_above) {
-        const KeyLines keys(keys_of(panel, inner.width, m), inner.width, m);
+        const KeyLines keys(keys_of(panel, inner.width, inner.height, m), inner.width, m);
         keys.lay(sheet, inner.x + inner.width, inner.y - m.gap - keys.height(m), 1.0F, style, m);
         if (!title_beside(panel, keys, inner.width, m)) lift = keys.height(m);
     }

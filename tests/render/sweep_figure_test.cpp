@@ -86,6 +86,23 @@ TEST(SweepMap, HasLinesOnlyBetweenLargeCells) {
     }
 }
 
+// A low plot has low cells: wide ones alone are not enough.
+TEST(SweepMap, HasNoLinesBetweenLowCells) {
+    const auto width = [](const std::string&, float) { return 40.0F; };
+    std::vector<double> numbers(64 * 64, 1.0);
+    std::vector<std::uint64_t> signatures(64 * 64, 1);
+    for (std::size_t i = 0; i < 64 * 32; ++i) signatures[i] = 2;
+    const SweepData data = grid({{"e", 0.0, 1.0, 64, false}, {"g", 0.0, 2.0, 64, false}}, numbers, signatures);
+    for (const auto& [height, is_drawn] : {std::pair{500.0F, true}, {180.0F, false}}) {
+        std::size_t words = 0;
+        for (const auto& item : layout(compose_sweep(data, only(0)), width, {0, 0, 700, height}, 1.0)) {
+            const auto* text = std::get_if<TextRun>(&item);
+            words += text != nullptr && text->label == sequence_changes ? 1 : 0;
+        }
+        EXPECT_EQ(words > 0, is_drawn) << height;
+    }
+}
+
 TEST(SweepMap, SaysWhereLinesWouldBeTooMany) {
     const SweepData data = grid({{"e", 0.0, 1.0, 2, false}, {"g", 0.0, 2.0, 2, false}}, {1, 2, 3, 4}, {1, 2, 3, 4});
     const Panel panel = compose_sweep(data, only(0)).panels[0];
