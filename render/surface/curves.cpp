@@ -80,7 +80,26 @@ void main() {
 
 ImVec2 vec(const Point& p) { return {static_cast<float>(p.x), static_cast<float>(p.y)}; }
 
+// The whole pixels with the visible part of a curve. `header` is its first vertex.
+PixelArea area_of_curve(const ImDrawVert& header, const ImDrawCmd& command) {
+    const auto whole = [](float x) { return static_cast<int>(std::clamp(x, -1e6F, 1e6F)); };
+    const auto low = [&](float a, float b) { return whole(std::floor(std::max({a, b, 0.0F}))); };
+    const auto high = [&](float a, float b) { return whole(std::ceil(std::min(a, b))); };
+    const int x = low(header.pos.x, command.ClipRect.x), y = low(header.pos.y, command.ClipRect.y);
+    return {x, y, high(header.uv.x, command.ClipRect.z) - x, high(header.uv.y, command.ClipRect.w) - y};
+}
+
 }  // namespace
+
+PixelArea common(const PixelArea& a, const PixelArea& b) {
+    const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+    return {x, y, std::min(a.x + a.width, b.x + b.width) - x, std::min(a.y + a.height, b.y + b.height) - y};
+}
+
+PixelArea around(const PixelArea& a, const PixelArea& b) {
+    const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+    return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
 
 void add_curve(ImDrawList* list, const std::vector<Point>& pixels, const ScreenStroke& stroke) {
     if (!(stroke.width > 0.0) || stroke.color.a == 0) return;
@@ -130,21 +149,21 @@ CurvePainter::~CurvePainter() {
     gl_.DeleteProgram(edges_);
 }
 
-void CurvePainter::draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target) {
+void CurvePainter::draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target,
+                        const PixelArea& part) {
     const auto first = static_cast<int>(reinterpret_cast<std::intptr_t>(command.UserCallbackData));
     const ImDrawVert& bounds = list.VtxBuffer[first];
     const ImDrawVert& size = list.VtxBuffer[first + 1];
-    const auto low = [](float a, float b) { return static_cast<int>(std::floor(std::max({a, b, 0.0F}))); };
-    const auto high = [](float a, float b, int c) { return std::min(static_cast<int>(std::ceil(std::min(a, b))), c); };
-    Region region{low(bounds.pos.x, command.ClipRect.x), low(bounds.pos.y, command.ClipRect.y), 0, 0};
-    region.width = high(bounds.uv.x, command.ClipRect.z, target.width) - region.x;
-    region.height = high(bounds.uv.y, command.ClipRect.w, target.height) - region.y;
-    if (region.width <= 0 || region.height <= 0) return;
+    // The mask has the same origin for every part of the curve.
+    const PixelArea region = common(area_of_curve(bounds, command), PixelArea{0, 0, target.width, target.height});
+    const PixelArea seen = common(region, part);
+    if (seen.width <= 0 || seen.height <= 0) return;
 
     const int fineness = std::max(region.width, region.height) * fineness_ <= largest_texture ? fineness_ : 1;
     reserve_mask(region.width * fineness, region.height * fineness);
-    draw_mask(region, fineness, size.pos.x, static_cast<std::size_t>(first) + header_vertices, size.col, vertex_buffer);
-    composite(region, fineness, bounds.col, target);
+    draw_mask(region, seen, fineness, size.pos.x, static_cast<std::size_t>(first) + header_vertices, size.col,
+              vertex_buffer);
+    composite(region, seen, fineness, bounds.col, target);
 }
 
 void CurvePainter::reserve_mask(int width, int height) {
@@ -157,12 +176,13 @@ void CurvePainter::reserve_mask(int width, int height) {
     mask_framebuffer_ = gl_.framebuffer(mask_);
 }
 
-void CurvePainter::draw_mask(const Region& region, int fineness, double width, std::size_t first, std::size_t points,
-                             GLuint vertex_buffer) {
+void CurvePainter::draw_mask(const PixelArea& region, const PixelArea& part, int fineness, double width,
+                             std::size_t first, std::size_t points, GLuint vertex_buffer) {
     const int mask_width = region.width * fineness, mask_height = region.height * fineness;
     gl_.BindFramebuffer(GL_FRAMEBUFFER, mask_framebuffer_);
     gl_.Viewport(0, 0, mask_width, mask_height);
-    gl_.Scissor(0, 0, mask_width, mask_height);
+    gl_.Scissor((part.x - region.x) * fineness, (part.y - region.y) * fineness, part.width * fineness,
+                part.height * fineness);
     gl_.ClearColor(0.0F, 0.0F, 0.0F, 0.0F);
     gl_.Clear(GL_COLOR_BUFFER_BIT);
     gl_.BlendEquation(GL_MAX);
@@ -189,10 +209,11 @@ void CurvePainter::draw_mask(const Region& region, int fineness, double width, s
     gl_.BlendEquation(GL_FUNC_ADD);
 }
 
-void CurvePainter::composite(const Region& region, int fineness, unsigned color, const Target& target) {
+void CurvePainter::composite(const PixelArea& region, const PixelArea& part, int fineness, unsigned color,
+                             const Target& target) {
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl_.Viewport(0, 0, target.width, target.height);
-    gl_.Scissor(region.x, region.y, region.width, region.height);
+    gl_.Scissor(part.x, part.y, part.width, part.height);
     gl_.UseProgram(overlay_);
     gl_.BindTexture(GL_TEXTURE_2D, mask_);
     gl_.Uniform1i(gl_.GetUniformLocation(overlay_, "mask"), 0);
@@ -261,6 +282,33 @@ void add_tiles(ImDrawList* list, const Rectangle& area, const Cells& cells) {
 
 bool are_tiles(const ImDrawCmd& command) { return command.UserCallback == tiles_mark; }
 
+PixelArea clip_of(const ImDrawCmd& command) {
+    const auto whole = [](float x) { return static_cast<int>(std::clamp(x, -1e6F, 1e6F)); };
+    const int x = std::max(whole(command.ClipRect.x), 0), y = std::max(whole(command.ClipRect.y), 0);
+    return {x, y, whole(command.ClipRect.z) - x, whole(command.ClipRect.w) - y};
+}
+
+std::span<const unsigned char> curve_or_tiles(const ImDrawList& list, const ImDrawCmd& command, PixelArea& area) {
+    if (!is_curve(command) && !are_tiles(command)) return {};
+    const auto first = static_cast<int>(reinterpret_cast<std::intptr_t>(command.UserCallbackData));
+    const auto* const bytes = reinterpret_cast<const unsigned char*>(&list.VtxBuffer[first]);
+    if (is_curve(command)) {
+        area = area_of_curve(list.VtxBuffer[first], command);
+        const std::size_t points = list.VtxBuffer[first + 1].col;
+        return {bytes, (points + header_vertices) * sizeof(ImDrawVert)};
+    }
+    Header header{};
+    std::memcpy(&header, bytes, sizeof header);
+    const auto low = [](float x) { return static_cast<int>(std::floor(x)) - 1; };
+    const auto high = [](float x) { return static_cast<int>(std::ceil(x)) + 1; };
+    area = {low(header.area.x), low(header.area.y), 0, 0};
+    area.width = high(header.area.x + header.area.width) - area.x;
+    area.height = high(header.area.y + header.area.height) - area.y;
+    area = common(area, clip_of(command));
+    const std::size_t cells = static_cast<std::size_t>(header.columns) * static_cast<std::size_t>(header.rows);
+    return {bytes, header_bytes + cells * sizeof(Color)};
+}
+
 TilesPainter::TilesPainter(const Gl& gl) : gl_(gl) {
     program_ = gl.program(tiles_vertex, tiles_fragment);
     gl.GenVertexArrays(1, &vertices_);
@@ -271,19 +319,16 @@ TilesPainter::~TilesPainter() {
     gl_.DeleteProgram(program_);
 }
 
-void TilesPainter::draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target) {
+void TilesPainter::draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target, const PixelArea& part) {
     const auto first = static_cast<int>(reinterpret_cast<std::intptr_t>(command.UserCallbackData));
     const char* const bytes = reinterpret_cast<const char*>(&list.VtxBuffer[first]);
     Header header{};
     std::memcpy(&header, bytes, sizeof header);
-    const int x = std::max(static_cast<int>(command.ClipRect.x), 0);
-    const int y = std::max(static_cast<int>(command.ClipRect.y), 0);
-    const int width = std::min(static_cast<int>(command.ClipRect.z), target.width) - x;
-    const int height = std::min(static_cast<int>(command.ClipRect.w), target.height) - y;
-    if (width <= 0 || height <= 0) return;
+    const PixelArea seen = common(clip_of(command), part);
+    if (seen.width <= 0 || seen.height <= 0) return;
     gl_.BindFramebuffer(GL_FRAMEBUFFER, target.framebuffer);
     gl_.Viewport(0, 0, target.width, target.height);
-    gl_.Scissor(x, y, width, height);
+    gl_.Scissor(seen.x, seen.y, seen.width, seen.height);
     gl_.UseProgram(program_);
     gl_.BindVertexArray(vertices_);
     gl_.ActiveTexture(GL_TEXTURE0);

@@ -6,6 +6,7 @@
 // frame needs no extra memory.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "figure/figure.hpp"
@@ -36,6 +37,19 @@ struct Target {
     int width = 0, height = 0;
 };
 
+// A rectangle of pixels, from the top left.
+struct PixelArea {
+    int x = 0, y = 0, width = 0, height = 0;
+    friend bool operator==(const PixelArea&, const PixelArea&) = default;
+};
+// The pixels in both, of no width or height if there are none; and the smallest area around both.
+PixelArea common(const PixelArea& a, const PixelArea& b);
+PixelArea around(const PixelArea& a, const PixelArea& b);
+// The pixels inside the clip rectangle of triangles or tiles.
+PixelArea clip_of(const ImDrawCmd& command);
+// The content of a curve or of tiles in the list, and the pixels that they may change; nothing for another command.
+std::span<const unsigned char> curve_or_tiles(const ImDrawList& list, const ImDrawCmd& command, PixelArea& area);
+
 // OpenGL part: the coverage mask and its two programs.
 class CurvePainter {
  public:
@@ -45,18 +59,16 @@ class CurvePainter {
     CurvePainter(const CurvePainter&) = delete;
     CurvePainter& operator=(const CurvePainter&) = delete;
 
-    // Draws the curve of one command. The vertices of the list are in `vertex_buffer`. The target stays bound; all
-    // other state may change.
-    void draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target);
+    // Draws the part of the curve of one command that lies in `part`. Its pixels do not depend on the part. The
+    // vertices of the list are in `vertex_buffer`. The target stays bound; all other state may change.
+    void draw(const ImDrawList& list, const ImDrawCmd& command, GLuint vertex_buffer, const Target& target,
+              const PixelArea& part);
 
  private:
-    struct Region {
-        int x, y, width, height;  // pixels, from the top left
-    };
     void reserve_mask(int width, int height);
-    void draw_mask(const Region& region, int fineness, double width, std::size_t first, std::size_t points,
-                   GLuint vertex_buffer);
-    void composite(const Region& region, int fineness, unsigned color, const Target& target);
+    void draw_mask(const PixelArea& region, const PixelArea& part, int fineness, double width, std::size_t first,
+                   std::size_t points, GLuint vertex_buffer);
+    void composite(const PixelArea& region, const PixelArea& part, int fineness, unsigned color, const Target& target);
 
     const Gl& gl_;
     int fineness_;
@@ -81,8 +93,8 @@ class TilesPainter {
     TilesPainter(const TilesPainter&) = delete;
     TilesPainter& operator=(const TilesPainter&) = delete;
 
-    // The target stays bound; all other state may change.
-    void draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target);
+    // Draws what lies in `part`. The target stays bound; all other state may change.
+    void draw(const ImDrawList& list, const ImDrawCmd& command, const Target& target, const PixelArea& part);
 
  private:
     const Gl& gl_;

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include "surface/imgui_version.hpp"
 
@@ -74,6 +75,7 @@ void Canvas::load_fonts() {
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
     gl_.TexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
     name_font_texture(atlas, fonts_);
+    is_stale_ = true;
 }
 
 void Canvas::resize(int width, int height) {
@@ -88,6 +90,7 @@ void Canvas::resize(int width, int height) {
     gl_.DeleteTextures(1, &picture_);
     picture_ = gl_.texture(GL_RGBA8, width, height, GL_RGBA, nullptr);
     target_ = {gl_.framebuffer(picture_), width, height};
+    is_stale_ = true;
 }
 
 void Canvas::draw(const ImDrawData& data, const float (&clear)[3]) {
@@ -98,11 +101,24 @@ void Canvas::draw_over_nothing(const ImDrawData& data) { draw_over(data, 0.0F, 0
 
 void Canvas::draw_over(const ImDrawData& data, float red, float green, float blue, float alpha) {
     resize(static_cast<int>(data.DisplaySize.x), static_cast<int>(data.DisplaySize.y));
+    const std::array clear{red, green, blue, alpha};
+    DrawnFrame frame(data);
+    const bool is_new = std::exchange(is_stale_, false) || std::exchange(cleared_, clear) != clear;
+    const std::vector<PixelArea> parts = is_new ? std::vector{PixelArea{0, 0, target_.width, target_.height}}
+                                                : frame.differences(last_, target_.width, target_.height);
+    cleared_ = clear;
+    last_ = std::move(frame);
+    has_changed_ = !parts.empty();
+    if (parts.empty()) return;
     set_state();
-    gl_.Scissor(0, 0, target_.width, target_.height);
     gl_.ClearColor(red, green, blue, alpha);
-    gl_.Clear(GL_COLOR_BUFFER_BIT);
-    for (int i = 0; i < data.CmdListsCount; ++i) draw_list(*data.CmdLists[i]);
+    for (const PixelArea& part : parts) {
+        gl_.Scissor(part.x, part.y, part.width, part.height);
+        gl_.Clear(GL_COLOR_BUFFER_BIT);
+        drawn_pixels_ += long{part.width} * part.height;
+    }
+    for (int i = 0; i < data.CmdListsCount; ++i)
+        draw_list(*data.CmdLists[i], last_.lists()[static_cast<std::size_t>(i)], parts);
 }
 
 void Canvas::set_state() {
@@ -121,33 +137,40 @@ void Canvas::set_state() {
     gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
 }
 
-void Canvas::draw_list(const ImDrawList& list) {
-    gl_.BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
-    gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data, GL_STREAM_DRAW);
-    for (const ImDrawCmd& command : list.CmdBuffer) {
-        if (is_curve(command)) {
-            curves_.draw(list, command, vertex_buffer_, target_);
-            set_state();
-        } else if (are_tiles(command)) {
-            tiles_.draw(list, command, target_);
-            set_state();
-        } else if (command.UserCallback == ImDrawCallback_ResetRenderState) {
-            set_state();
-        } else if (command.UserCallback != nullptr) {
-            command.UserCallback(&list, &command);
-        } else {
-            draw_triangles(command);
+void Canvas::draw_list(const ImDrawList& list, const DrawnFrame::DrawnList& drawn,
+                       const std::vector<PixelArea>& parts) {
+    const auto is_in = [](const PixelArea& area, const PixelArea& part) {
+        const PixelArea both = common(area, part);
+        return both.width > 0 && both.height > 0;
+    };
+    bool is_uploaded = false;
+    for (int i = 0; i < list.CmdBuffer.Size; ++i)
+        for (const PixelArea& part : parts) {
+            if (!is_in(drawn.commands[static_cast<std::size_t>(i)].area, part)) continue;
+            if (!std::exchange(is_uploaded, true)) {
+                gl_.BufferData(GL_ARRAY_BUFFER, list.VtxBuffer.size_in_bytes(), list.VtxBuffer.Data, GL_STREAM_DRAW);
+                gl_.BufferData(GL_ELEMENT_ARRAY_BUFFER, list.IdxBuffer.size_in_bytes(), list.IdxBuffer.Data,
+                               GL_STREAM_DRAW);
+            }
+            draw_command(list, list.CmdBuffer[i], part);
         }
-    }
 }
 
-void Canvas::draw_triangles(const ImDrawCmd& command) {
-    const int x = std::max(static_cast<int>(command.ClipRect.x), 0);
-    const int y = std::max(static_cast<int>(command.ClipRect.y), 0);
-    const int width = std::min(static_cast<int>(command.ClipRect.z), target_.width) - x;
-    const int height = std::min(static_cast<int>(command.ClipRect.w), target_.height) - y;
-    if (width <= 0 || height <= 0 || command.ElemCount == 0) return;
-    gl_.Scissor(x, y, width, height);
+// Draws what lies in `part`, which does not change its pixels.
+void Canvas::draw_command(const ImDrawList& list, const ImDrawCmd& command, const PixelArea& part) {
+    if (is_curve(command)) {
+        curves_.draw(list, command, vertex_buffer_, target_, part);
+        return set_state();
+    }
+    if (are_tiles(command)) {
+        tiles_.draw(list, command, target_, part);
+        return set_state();
+    }
+    if (command.UserCallback == ImDrawCallback_ResetRenderState) return set_state();
+    if (command.UserCallback != nullptr) return command.UserCallback(&list, &command);
+    const PixelArea seen = common(clip_of(command), part);
+    if (seen.width <= 0 || seen.height <= 0 || command.ElemCount == 0) return;
+    gl_.Scissor(seen.x, seen.y, seen.width, seen.height);
     gl_.BindTexture(GL_TEXTURE_2D, texture_of(command));
     gl_.DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
                                offset(command.IdxOffset * sizeof(ImDrawIdx)), static_cast<GLint>(command.VtxOffset));

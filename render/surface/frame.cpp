@@ -45,6 +45,11 @@ void Events::release_all() {
     for (const int number : {0, 1, 2}) button(number, false);
 }
 
+bool Events::are_moves() const {
+    return std::all_of(waiting_.begin(), waiting_.end(),
+                       [](const InputEvent& event) { return event.kind == InputEvent::Kind::mouse; });
+}
+
 // Whether a key only matters through its character.
 bool Events::is_letter(const InputEvent& event) const {
     const auto is_held = [this](int code) {

@@ -58,6 +58,8 @@ class Events {
     void release_all();
 
     bool empty() const { return waiting_.empty(); }
+    // True if all pending events are moves of the mouse.
+    bool are_moves() const;
     // Input during the next frame. In a text field it contains all pending characters, so that slow frames do not delay
     // typing. Keys with other effects wait for the characters before them.
     Input next(bool is_typing = false);

@@ -269,6 +269,17 @@ void press_item(unsigned id, bool takes_letters) {
     GImGui->NavNextActivateFlags = takes_letters ? ImGuiActivateFlags_PreferInput : ImGuiActivateFlags_None;
 }
 
+bool awaits_frame() {
+    const auto& windows = GImGui->Windows;
+    const bool is_new = std::any_of(windows.begin(), windows.end(), [](const ImGuiWindow* window) {
+        // A part of a window that is scrolled out of view is hidden, too.
+        return window->Active && (window->Flags & ImGuiWindowFlags_ChildWindow) == 0 &&
+               (window->Appearing || window->Hidden || window->HiddenFramesCanSkipItems > 0 ||
+                window->HiddenFramesCannotSkipItems > 0);
+    });
+    return is_new || GImGui->NavNextActivateId != 0 || front_popup() == unseen_popup;
+}
+
 unsigned front_dialog() {
     const auto& open = GImGui->OpenPopupStack;
     if (open.Size == 0) return 0;

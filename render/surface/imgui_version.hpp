@@ -103,6 +103,10 @@ unsigned popup_of_window();
 // Enables ImGui's keyboard navigation (arrows, Enter) in open menus. Call once per frame.
 void walk_menus_by_keys(bool walk);
 
+// True if the next frame may differ from the last one without input: a new window is not drawn yet, or an item is to be
+// pressed.
+bool awaits_frame();
+
 // For the active text field: its horizontal scroll in pixels, and the line of its cursor, from 1. `text` is the
 // displayed text.
 float scrolled_sideways(const ImGuiInputTextState& input);

@@ -30,8 +30,10 @@ static_assert(key::escape == GLFW_KEY_ESCAPE && key::remove == GLFW_KEY_DELETE &
 
 // A minimized window checks for events at this interval.
 constexpr double sleep_seconds = 0.5;
-// ImGui needs a few frames after an event to settle.
-constexpr int settling_frames = 4;
+// ImGui needs a few frames after an event to settle: at most four, and fewer if they draw the same.
+constexpr int settling_frames = 4, least_frames = 2;
+// Moving content is drawn this often, also by a display that does not set the pace.
+constexpr double moving_seconds = 1.0 / 60.0;
 
 // Set by another thread: the next frames must show its results.
 std::atomic<bool> was_woken = false;
@@ -127,6 +129,9 @@ struct Window::Implementation {
     void make_cursors();
     void show_cursor();
     void wait();
+    void unsettle() { unsettled = settling_frames, drawn = calm = 0; }
+    void show_again() { unsettle(), must_show = true; }
+    void settle_early();
     bool is_closing();
     void restyle();
     void frame(const FrameFunction& draw);
@@ -142,7 +147,10 @@ struct Window::Implementation {
     std::array<GLFWcursor*, ImGuiMouseCursor_COUNT> cursors{};
     double monitor_scale = 1.0, scale = 1.0;
     bool dark = false, stale = false, moving = true;
-    int unsettled = settling_frames;
+    int unsettled = settling_frames;  // frames to draw until the window may sleep
+    int drawn = 0, calm = 0;          // frames since the last event; the last of them that drew nothing new
+    bool only_moves = false;          // the last events are moves of the pointer
+    bool must_show = true;            // the window system needs the picture again
     double last_frame = -1.0, pause = 0.0;
     std::array<int, 4> before_full_screen{};  // x, y, width, height
 };
@@ -188,17 +196,17 @@ void Window::Implementation::listen() {
     glfwSetScrollCallback(window, [](GLFWwindow* w, double x, double y) { of(w).events.wheel(x, y); });
     glfwSetWindowFocusCallback(window, [](GLFWwindow* w, int focused) {
         if (focused == GLFW_FALSE) of(w).events.release_all();
-        of(w).unsettled = settling_frames;
+        of(w).show_again();
     });
-    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).unsettled = settling_frames; });
-    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).unsettled = settling_frames; });
+    glfwSetFramebufferSizeCallback(window, [](GLFWwindow* w, int, int) { of(w).show_again(); });
+    glfwSetWindowRefreshCallback(window, [](GLFWwindow* w) { of(w).show_again(); });
     glfwSetWindowContentScaleCallback(window, [](GLFWwindow* w, float across, float) {
         of(w).monitor_scale = double{across};
         of(w).stale = true;
     });
     glfwSetDropCallback(window, [](GLFWwindow* w, int count, const char** paths) {
         of(w).files.insert(of(w).files.end(), paths, paths + count);
-        of(w).unsettled = settling_frames;
+        of(w).unsettle();
     });
     listen_to_keyboard();
 }
@@ -237,7 +245,9 @@ void Window::Implementation::show_cursor() {
 }
 
 void Window::Implementation::wait() {
-    if (moving || unsettled > 0 || !events.empty()) {
+    if (moving && unsettled == 0 && events.empty()) {
+        glfwWaitEventsTimeout(std::max(moving_seconds - (glfwGetTime() - last_frame), 1e-6));
+    } else if (unsettled > 0 || !events.empty()) {
         glfwPollEvents();
     } else {
         if (pause > 0.0)
@@ -246,14 +256,24 @@ void Window::Implementation::wait() {
             glfwWaitEvents();
         unsettled = std::max(unsettled, 1);
     }
-    if (was_woken.exchange(false) || !events.empty()) unsettled = settling_frames;
+    const bool is_woken = was_woken.exchange(false);
+    if (!is_woken && events.empty()) return;
+    unsettle();
+    only_moves = !is_woken && events.are_moves();
+}
+
+// Ends the settling if nothing changes any more. A move of the pointer changes less than a click or a key.
+void Window::Implementation::settle_early() {
+    ++drawn;
+    calm = canvas->has_changed() ? 0 : calm + 1;
+    if (drawn >= least_frames && calm >= (only_moves ? 1 : 2) && !awaits_frame()) unsettled = 0;
 }
 
 bool Window::Implementation::is_closing() {
     if (glfwWindowShouldClose(window) == GLFW_FALSE) return false;
     if (!may_close || may_close()) return true;
     glfwSetWindowShouldClose(window, GLFW_FALSE);
-    unsettled = settling_frames;
+    unsettle();
     return false;
 }
 
@@ -280,6 +300,8 @@ void Window::Implementation::frame(const FrameFunction& draw) {
     show_cursor();
     const CurrentWindowContext current(window);
     canvas->draw(data, interface.background());
+    settle_early();
+    if (!std::exchange(must_show, false) && !canvas->has_changed()) return;
     canvas->show();
     glfwSwapBuffers(window);
 }
@@ -306,7 +328,10 @@ void Window::keep_drawing(bool moving, double pause) {
     implementation_->pause = pause;
 }
 
-void Window::draw_again() { implementation_->unsettled = settling_frames; }
+void Window::draw_again() {
+    implementation_->unsettle();
+    implementation_->only_moves = false;
+}
 
 void Window::wake() {
     was_woken = true;
@@ -317,7 +342,7 @@ void Window::restyle(double scale, bool dark) {
     implementation_->scale = scale;
     implementation_->dark = dark;
     implementation_->stale = true;
-    implementation_->unsettled = settling_frames;
+    implementation_->show_again();
 }
 
 void Window::fill_screen(bool full) {

@@ -1,13 +1,14 @@
 # Shared by the scripts in this folder: a virtual display with its screen in a file, a temporary folder, and an explorer
-# in a window. Sourced first, with the script's arguments; $1 is the build folder.
+# in a window. Sourced first, with the script's arguments; $1 is the build folder. $screen is the size of both.
 set -euo pipefail
 
+screen=${screen:-1280x800}
 if [ -z "${ACHILLES_WINDOW_FOLDER-}" ]; then
     ACHILLES_WINDOW_FOLDER=$(mktemp -d)
     export ACHILLES_WINDOW_FOLDER
     # The screen is as small as the window allows; the user's own display is not used. Without -noreset the server would
     # restart when an explorer closes, and the next one might not find it.
-    exec xvfb-run --auto-servernum --server-args="-screen 0 1280x800x24 -noreset -fbdir $ACHILLES_WINDOW_FOLDER" "$0" "$@"
+    exec xvfb-run --auto-servernum --server-args="-screen 0 ${screen}x24 -noreset -fbdir $ACHILLES_WINDOW_FOLDER" "$0" "$@"
 fi
 
 build=$1
@@ -47,7 +48,7 @@ recorded() { await grep -q "$1" "$folder/record" || fail "$2"; }
 open_window() {
     local why=$1
     shift
-    "$build/achilles" explore --size 1280x800 "$@" &
+    "$build/achilles" explore --size "$screen" "$@" &
     explorer=$!
     await xdotool search --onlyvisible --class achilles || fail "no window appears $why"
     window=$(xdotool search --onlyvisible --class achilles | head -1)
