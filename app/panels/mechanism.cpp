@@ -15,6 +15,7 @@
 #include "figure/mechanism_scene.hpp"
 #include "paint/paint.hpp"
 #include "panels/widgets.hpp"
+#include "session/contact_forces_text.hpp"
 
 namespace achilles {
 
@@ -362,7 +363,9 @@ void drag_body(const Session& session, const Picture& picture, const MechanismDr
     if (!held.material)
         if (auto grips = session.mechanism().grips(run.parameters); held.grip < grips.size()) point = grips[held.grip];
     if (!point) return;
-    const Vector q = dragged_start(*session.model(), run, *point, picture.placement.world(wanted(held)));
+    Vector q = dragged_start(*session.model(), run, *point, picture.placement.world(wanted(held)));
+    if (const auto body = Body::of(*point, run.options.start_time, {q, run.v}))
+        q = rounded_start(*session.model(), run, q, change_per_pixel(*body, q.size(), picture.placement.unit));
     commands.emplace_back(start_of(session, &q, nullptr));
 }
 
@@ -373,7 +376,10 @@ void drag_arrow(const Session& session, const Picture& picture, const MechanismD
     if (!(picture.scale > 0.0) || !body) return;
     const Point to = wanted(held), from = picture.placement.pixel(body->at());
     const Point velocity{(to.x - from.x) / picture.scale, (from.y - to.y) / picture.scale};
-    if (const auto v = body->rates(session.run().v, velocity)) commands.emplace_back(start_of(session, nullptr, &*v));
+    if (auto v = body->rates(session.run().v, velocity)) {
+        v = rounded_values(*session.model(), *v, change_per_pixel(*body, v->size(), picture.scale));
+        commands.emplace_back(start_of(session, nullptr, &*v));
+    }
 }
 
 // The object under the mouse: the tip of the velocity arrow, else the nearest center of a body or end of a line, else
@@ -438,6 +444,9 @@ void drag(const Session& session, const Picture& picture, MechanismDrag& held, C
             commands.emplace_back(zoomed_view(picture, mouse, 1.0, delta));
         return;
     }
+    // The camera stays where the hand has put something, until another view is asked for.
+    if (!held.has_moved && session.scene().camera() == CameraMode::fit && !session.scene().look())
+        commands.emplace_back(zoomed_view(picture, mouse, 1.0, {}));
     held.has_moved = true;
     const double start_time = session.run().options.start_time;
     if (session.time() > start_time) move_time(session, start_time, commands);  // the drag changes the start
@@ -468,7 +477,9 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
     if (is_hovered && under.what != DragTarget::background) {
         ImGui::GetWindowDrawList()->AddCircle(pixel(under.at), static_cast<float>(under.reach) + units(2.0F),
                                               packed(text_color(), 0.5F), 32, units(1.5F));
-        tooltip(under.what == DragTarget::arrow ? "drag to set the initial rates" : "drag to set the initial position");
+        const std::string forces = session.scene().shows("force") ? contact_forces_text(session) : "";
+        tooltip(forces + (under.what == DragTarget::arrow ? "drag to set the initial rates"
+                                                          : "drag to set the initial position"));
     }
     const ImVec2 delta = ImGui::GetIO().MouseDelta;
     if (is_hovered && ImGui::IsMouseDragging(ImGuiMouseButton_Middle, 0.0F) && (delta.x != 0.0F || delta.y != 0.0F))
@@ -480,6 +491,18 @@ void use_mouse(const Session& session, const Picture& picture, PanelState& state
         drag(session, picture, state.held, commands);
     else
         state.held = {};
+}
+
+// After a zoom that hides the start: what is missing, and the way back.
+void show_start_note(const Session& session, const Picture& picture) {
+    const Run& run = session.trajectory().run;
+    auto grip = session.scene().look() ? session.mechanism().grip(run.parameters) : std::nullopt;
+    const auto body = grip ? Body::of(*grip, run.options.start_time, run.start()) : std::nullopt;
+    const Rectangle& a = picture.area;
+    const Point at = body ? picture.placement.pixel(body->at()) : Point{a.x, a.y};
+    if (at.x >= a.x && at.x <= a.x + a.width && at.y >= a.y && at.y <= a.y + a.height) return;
+    const char* const note = "the start is outside this view; double click: the whole run";
+    cell({a.x + units(12.0F), a.y + units(4.0F)}, note, a.width - units(24.0F), faint_color());
 }
 
 // True if the plane replaces the mechanism: by the user's choice, or since the system has no drawing.
@@ -575,6 +598,7 @@ void show_mechanism(const Session& session, PanelState& state, Commands& command
         return show_scale_bar(session, line, unit, show_switches(session, layers, right, y, state, commands), state);
     }
     const Picture picture = paint_picture(session, world, state.held);
+    show_start_note(session, picture);
     const Point low = picture.placement.world({world.x, double{world.y} + double{world.height}});
     const Point high = picture.placement.world({double{world.x} + double{world.width}, world.y});
     Drawing seen;

@@ -1,10 +1,12 @@
 #include "figure/drag.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <utility>
 #include <vector>
 
+#include "number/angle.hpp"
 #include "system/input_error.hpp"
 
 namespace achilles {
@@ -50,6 +52,16 @@ class DraggedGaps {
             if (depth > most) most = depth, found = i;
         }
         return found;
+    }
+
+    // The least gap, in units of the coordinates.
+    double least(const Vector& q) {
+        double least = HUGE_VAL;
+        for (std::size_t i = 0; i < terms_.size(); ++i) {
+            const auto [h, gradient] = at(i, q);
+            least = std::min(least, h / gradient.norm());
+        }
+        return least;
     }
 
     // Gaps that are kept a little above 0, so that rounding does not make a start that is refused.
@@ -108,6 +120,36 @@ Vector dragged_start(const Model& model, const Run& run, AnchorPoint& point, con
         if (distance(start) < distance(run.q)) return start;
     }
     return run.q;
+}
+
+Vector change_per_pixel(const Body& body, Eigen::Index count, double unit) {
+    Vector most = Vector::Zero(count);
+    for (const Point& pixel : {Point{1.0 / unit, 0.0}, Point{0.0, 1.0 / unit}})
+        if (const auto change = body.rates(Vector::Zero(count), pixel)) most = most.cwiseMax(change->cwiseAbs());
+    return most;
+}
+
+Vector rounded_values(const Model& model, const Vector& values, const Vector& per_pixel) {
+    Vector rounded = values;
+    for (Eigen::Index i = 0; i < values.size(); ++i) {
+        const bool is_angle = model.description().coordinates[static_cast<std::size_t>(i)].unit == "rad";
+        const double unit = is_angle ? degrees(1.0) : 1.0, pixel = per_pixel[i] * unit;
+        if (!(pixel > 0.0) || !std::isfinite(pixel)) continue;
+        const int decimals = -static_cast<int>(std::floor(std::log10(pixel)));
+        const double scale = std::pow(10.0, std::abs(decimals));
+        // Divided by a whole power of ten the result is the double nearest to the short decimal number.
+        rounded[i] = (decimals >= 0 ? std::round(values[i] * unit * scale) / scale
+                                    : std::round(values[i] * unit / scale) * scale) /
+                     unit;
+    }
+    return rounded;
+}
+
+Vector rounded_start(const Model& model, const Run& run, const Vector& q, const Vector& per_pixel) {
+    constexpr double on_surface = 1e-6;  // in units of the coordinates; dragged_start() keeps 1e-9
+    if (DraggedGaps(model, run).least(q) < on_surface) return q;
+    const Vector rounded = rounded_values(model, q, per_pixel);
+    return start_towards(model, run, rounded) == rounded ? rounded : q;
 }
 
 }  // namespace achilles

@@ -14,4 +14,13 @@ Vector start_towards(const Model& model, const Run& run, const Vector& q);
 // nearer one.
 Vector dragged_start(const Model& model, const Run& run, AnchorPoint& point, const Point& place);
 
+// The change of each coordinate that moves a body by a pixel. `unit`: pixels per length; for the rates that change its
+// velocity arrow by a pixel, pixels per velocity.
+Vector change_per_pixel(const Body& body, Eigen::Index count, double unit);
+// Values that a hand sets are round. Each coordinate or rate keeps only the decimals that move the point by a pixel or
+// more, in degrees for angles. `per_pixel`: its change for a pixel.
+Vector rounded_values(const Model& model, const Vector& values, const Vector& per_pixel);
+// The same for the coordinates of a start. One that lies on a surface, or could not start if it were rounded, is kept.
+Vector rounded_start(const Model& model, const Run& run, const Vector& q, const Vector& per_pixel);
+
 }  // namespace achilles

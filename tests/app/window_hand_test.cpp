@@ -10,6 +10,7 @@
 #include "cli/inputs.hpp"
 #include "figure/axes.hpp"
 #include "journal/journal.hpp"
+#include "number/angle.hpp"
 #include "output/output.hpp"
 
 namespace achilles {
@@ -153,7 +154,7 @@ TEST(MechanismDrag, ABodyIsHeldWhereTheHandTakesIt) {
     EXPECT_NE(*again.value("theta"), again.file_run().q[1]);
 }
 
-TEST(MechanismDrag, ThePictureMovesOnlyAfterTheHandLetsGo) {
+TEST(MechanismDrag, TheCameraStaysUntilAnotherViewIsAskedFor) {
     Hands hands("ball_on_sine");
     hands.point("body");
     hands.hand.left = true;
@@ -165,11 +166,70 @@ TEST(MechanismDrag, ThePictureMovesOnlyAfterTheHandLetsGo) {
     const Placement held = hands.state.held.placement;
     hands.rest(3);
     EXPECT_EQ(hands.state.held.placement.unit, held.unit);
-    const double y = hands.middle("body").y;
+    const Point at = hands.middle("body");
     hands.hand.left = false;
     hands.rest(3);
     EXPECT_EQ(hands.state.held.what, MechanismDrag::DragTarget::none);
-    EXPECT_GT(std::abs(hands.middle("body").y - y), 5.0) << "all of the higher flight is seen";
+    EXPECT_LT(std::hypot(hands.middle("body").x - at.x, hands.middle("body").y - at.y), 0.01);
+    EXPECT_TRUE(hands.session.scene().look()) << "the camera is fixed";
+    hands.session.apply(command::LookAll{});
+    hands.rest(3);
+    EXPECT_GT(std::abs(hands.middle("body").y - at.y), 5.0) << "all of the higher flight is seen";
+}
+
+// A drag sets decimals that the eye can tell apart: a step of one in the last place is at most a pixel. In contact the
+// start stays on the surface.
+TEST(MechanismDrag, ValuesAreRoundToThePixel) {
+    for (const char* system : {"ball_on_sine", "double_pendulum"}) {
+        Hands hands(system);
+        hands.point("body");
+        hands.hand.left = true;
+        hands.rest(1);
+        for (int i = 0; i < 12; ++i) {
+            hands.hand.mouse_x += 4.0, hands.hand.mouse_y -= 3.0;
+            hands.rest(2);
+            // The pendulum's links do not reach the whole way.
+            if (std::string(system) == "ball_on_sine") {
+                EXPECT_LT(distance(hands.middle("body"), mouse(hands)), 1.5);
+            }
+        }
+        const auto& coordinates = hands.session.description().coordinates;
+        for (const CoordinateDescription& coordinate : coordinates) {
+            const double value =
+                *hands.session.value(coordinate.name) * (coordinate.unit == "rad" ? degrees(1.0) : 1.0);
+            EXPECT_NEAR(value, std::round(value * 1e3) / 1e3, 1e-9) << system << " " << coordinate.name;
+        }
+    }
+}
+
+TEST(Mechanism, AZoomThatHidesTheStartSaysSo) {
+    Hands hands("ball_on_sine");
+    EXPECT_FALSE(hands.says("outside this view"));
+    hands.session.apply(command::LookAt{10.0, 0.0, 3.0});
+    hands.rest(2);
+    EXPECT_TRUE(hands.says("the start is outside this view")) << hands.letters();
+    hands.session.apply(command::LookAt{0.0, 2.0, 3.0});
+    hands.rest(2);
+    EXPECT_FALSE(hands.says("outside this view"));
+}
+
+// The forces of the contacts that are held are said beside a body under the mouse.
+TEST(Mechanism, ForcesHaveTheirValuesUnderTheMouse) {
+    Hands hands("ball_on_floor");
+    hands.session.apply(command::Seek{2.5});
+    hands.rest(2);
+    hands.point("body");
+    EXPECT_TRUE(hands.says("force of contact: 9.81 N")) << hands.letters();
+    hands.session.apply(command::Seek{0.1});
+    hands.rest(2);
+    hands.point("body");
+    EXPECT_FALSE(hands.says("force of contact")) << "in flight there is none";
+    Hands rough("block_on_incline");
+    rough.session.apply(command::Seek{0.5 * rough.session.trajectory().end_time});
+    rough.rest(2);
+    rough.point("body");
+    ASSERT_TRUE(rough.session.now().contact);
+    EXPECT_TRUE(rough.says("friction of")) << rough.letters();
 }
 
 TEST(Marks, AClickWithinEightPixelsSelectsThatEvent) {
