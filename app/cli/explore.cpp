@@ -389,6 +389,7 @@ int explore(const ExploreOptions& options) {
     // Created last, so that an existing record file is not lost if there is no display.
     Explorer explorer(session, window, options, film, state.get(), trust);
     session.set_patience(frame_patience);
+    session.prove_behind();
     if (!journal.empty()) explorer.begin(journal);
     session.on_ready(Window::wake);
     window.on_close([&] { return explorer.may_close(); });

@@ -224,7 +224,7 @@ void show_proof_status(const Session& session) {
         ImGui::PopStyleColor();
         return ImGui::SameLine(0.0F, units(24.0F));
     }
-    const Proof* const proof = session.proof();
+    const Proof* const proof = session.shown_proof();
     if (proof == nullptr) return;
     const Enclosure& enclosure = proof->enclosure;
     const std::string about = describe(proof->spread), of = about.empty() ? "" : fmt::format(" ({})", about);
@@ -233,7 +233,7 @@ void show_proof_status(const Session& session) {
         fmt::format("proved to t = {} s{}{}", reach_text(enclosure), enclosure.end ? "" : ", then undecided", of)
             .c_str());
     ImGui::PopStyleColor();
-    tooltip(proof_sentence(*proof));
+    tooltip(proof_sentence(session, *proof));
     ImGui::SameLine(0.0F, units(24.0F));
 }
 
@@ -263,8 +263,12 @@ std::string time_left(double seconds, double share) {
     return "more than a day left";
 }
 
-std::string proof_sentence(const Proof& proof) {
+std::string proof_sentence(const Session& session, const Proof& proof) {
     const Enclosure& enclosure = proof.enclosure;
+    if (&proof != session.proof())
+        return fmt::format(
+            "Proved by itself to t = {} s: the exact motion has these events, in the intervals shown. This assumes {}.",
+            reach_text(enclosure), enclosure.assumptions);
     if (!enclosure.end)
         return fmt::format(
             "Proved to t = {} s: until then the exact motion lies in the tubes of the plots, and its "

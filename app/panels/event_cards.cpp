@@ -415,7 +415,7 @@ void show_zeno(const Session& session, std::size_t index, PanelState& state, Com
     const std::string proved = proved_text(session, index);
     paragraph(proved.empty() ? text.not_covered : proved + ". " + text.not_covered, width, faint_color());
     if (!is_plastic_landing(event)) lens_button(session, state, commands);
-    const bool can_prove = not_proved(*session.model()).empty() && session.proof() == nullptr;
+    const bool can_prove = not_proved(*session.model()).empty() && session.shown_proof() == nullptr;
     if (can_prove && session.proof_under_way() == nullptr) {
         if (!is_plastic_landing(event)) ImGui::SameLine(0.0F, units(24.0F));
         if (link_button("Prove this run", "prove run", "prove bounds on the exact motion of the whole run", state))

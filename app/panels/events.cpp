@@ -150,7 +150,8 @@ void paint_event(const Session& session, std::size_t index, ImVec2 at, const Eve
     // Beside a card, which has the details, only the name.
     const std::string name =
         has_card(session) ? event_name(session, event) : typeset_sentence(session.sentences().of(index));
-    const EnclosedEvent* const enclosed = has_card(session) ? nullptr : session.enclosed(index);
+    const bool is_told = !has_card(session) && session.proof() != nullptr;  // not of a proof made by itself
+    const EnclosedEvent* const enclosed = is_told ? session.enclosed(index) : nullptr;
     const std::string proved = enclosed == nullptr ? "" : "proved t = " + with_minus(short_text(enclosed->t)) + " s · ";
     columns.put_words(at, proved + name, text_color());
     // At a Zeno point the loss of its whole impact sequence, as in the sentence.

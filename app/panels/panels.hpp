@@ -36,6 +36,7 @@ struct EditorState {
     float scroll = 0.0F;      // scroll position in the last frame, pixels
     float height = 0.0F;      // visible height of the text, pixels
     bool is_active = false;   // it has the keyboard
+    bool takes_keys = false;  // give it the keyboard as soon as it is seen
 
     enum class OpenDialog { nothing, open, save, unsaved, export_run };
     OpenDialog asking = OpenDialog::nothing;
@@ -371,7 +372,7 @@ void show_dependence(const Session& session, PanelState& state, Commands& comman
 // The periodic orbit near the current run, and its branch. Shown instead of the events.
 void show_orbit(const Session& session, PanelState& state, Commands& commands);
 // The proof of the run. Shown instead of the events. Until when, for what, and what it assumes.
-std::string proof_sentence(const Proof& proof);
+std::string proof_sentence(const Session& session, const Proof& proof);
 void show_proof(const Session& session, PanelState& state, Commands& commands);
 // In a small window: the tabs of all panels.
 void show_panel_tabs(const Session& session, PanelState& state, Commands& commands);

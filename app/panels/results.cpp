@@ -90,8 +90,11 @@ ResultCell cell_of(const Session& session, const Result& result, const StripLayo
     const Trajectory& trajectory = session.trajectory();
     ResultCell cell{name_of(trajectory, result),
                     time_text(trajectory, result.event, session.precision().of_event(result.event)), 0.0F};
-    if (const EnclosedEvent* enclosed = session.enclosed(result.event))
-        cell.name += ", proved", cell.time = with_minus(short_text(enclosed->t));
+    // A proof made by itself leaves the cells as wide as they are, so that nothing moves when it arrives.
+    const EnclosedEvent* const enclosed = session.enclosed(result.event);
+    const bool is_asked = session.proof() != nullptr;
+    if (enclosed != nullptr && (is_asked || is_zeno_point(trajectory.events[result.event]))) cell.name += ", proved";
+    if (enclosed != nullptr && is_asked) cell.time = with_minus(short_text(enclosed->t));
     if (strip.is_low) cell.name += "  " + std::exchange(cell.time, {});
     const float room = (strip.is_low ? 1.0F : max_of_strip) * strip.room - units(sign_width);
     cell.name = fitted(cell.name, room), cell.time = fitted(cell.time, room);

@@ -165,8 +165,8 @@ void show_proof(const Session& session, PanelState& state, Commands& commands) {
     if (!what.empty())
         paragraph(fmt::format("Runs with {} cannot be proved; the status line has the estimated error.", what), width,
                   text_color());
-    else if (is_there)
-        paragraph(proof_sentence(*session.proof()), remaining().width, text_color());
+    else if (const Proof* const proof = session.shown_proof())
+        paragraph(proof_sentence(session, *proof), remaining().width, text_color());
     else
         paragraph(
             is_under_way
@@ -174,7 +174,7 @@ void show_proof(const Session& session, PanelState& state, Commands& commands) {
                 : "A proof encloses the exact motion from its start: through every impact and every Zeno point, with "
                   "all errors of integration, cuts and rounding. Events then have the intervals of their times.",
             width, faint_color());
-    if (is_there) show_proved_events(session, state, commands);
+    if (session.shown_proof() != nullptr) show_proved_events(session, state, commands);
     ImGui::EndChild();
 }
 

@@ -39,7 +39,7 @@ std::string plot_table(const Session& session, const Plot& plot) {
 
 std::string events_table(const Session& session) {
     const auto& coordinates = session.description().coordinates;
-    const bool several = session.model()->contacts() > 1, is_proved = session.proof() != nullptr;
+    const bool several = session.model()->contacts() > 1, is_proved = session.shown_proof() != nullptr;
     std::string text = several ? "#\tevent\tcontacts\topened\theld\tt\timpact speed" : "#\tevent\tt\timpact speed";
     for (const char* prime : {"", "'"})
         for (const CoordinateDescription& coordinate : coordinates) text += "\t" + coordinate.name + prime;

@@ -319,6 +319,7 @@ void Session::rerun(const Run& run) {
     system_->model->check(run);
     if (library_.budget) library_.budget->check(run.options);
     put_aside_pin();
+    stop_proof_behind();
     requested_run_ = run;
     const auto watch = std::make_shared<RunMonitor>();
     watch_ = watch;

@@ -93,6 +93,7 @@ class Session {
         receive(0.0);
         receive_proof(0.0);
         receive_estimate(0.0);
+        follow_proof_behind(0.0);
         sweep_job_->update(0.0);
         follow_dependence(0.0);
         receive_orbit(0.0);
@@ -145,6 +146,12 @@ class Session {
     const SweepJob& sweep_job() const { return *sweep_job_; }
     // The proof for the run that is shown; null: none yet. A proof for another start, parameter or end does not count.
     const Proof* proof() const;
+    // From now on every run is also proved behind the scenes, like its error estimate, if that takes few steps. A window
+    // does so. A picture shows a proof only where a command asks for one: otherwise its pixels would depend on more than
+    // its commands, and each would take the time of a proof. This proof shows intervals of event times, but no tubes.
+    void prove_behind() { proves_behind_ = true; }
+    // The proof of the run that is shown, requested or behind it; null: none.
+    const Proof* shown_proof() const;
     // The enclosure of an event of the run that is shown; null: none.
     const EnclosedEvent* enclosed(std::size_t event) const {
         return event < enclosed_.size() ? enclosed_[event] : nullptr;
@@ -331,6 +338,8 @@ class Session {
     void follow_dependence(Timeout patience);
     void follow_proof(Timeout patience);
     void receive_proof(Timeout patience);
+    void follow_proof_behind(Timeout patience);
+    void stop_proof_behind();
     void receive_orbit(Timeout patience);
     void change_system(const std::shared_ptr<const OpenSystem>& system, const Plots& plots, const Run& run);
     void rerun(const Run& run);
@@ -394,6 +403,9 @@ class Session {
     std::optional<ProofRequest> proof_request_;   // until it is finished
     std::vector<const EnclosedEvent*> enclosed_;  // one per event; empty: there is no proof
     std::unique_ptr<ProofJob> proof_job_ = std::make_unique<ProofJob>();
+    bool proves_behind_ = false;
+    std::shared_ptr<const FinishedRun> run_proved_behind_;  // the run of the job below; null: none
+    std::unique_ptr<ProofJob> proof_behind_job_ = std::make_unique<ProofJob>();
     std::unique_ptr<SensitivitiesJob> sensitivities_job_ = std::make_unique<SensitivitiesJob>();
     std::shared_ptr<OrbitJob> orbit_job_;
     std::unique_ptr<SweepJob> sweep_job_ = std::make_unique<SweepJob>();

@@ -126,6 +126,7 @@ void Session::on_ready(const std::function<void()>& ready) {
     estimator_->on_ready(ready);
     sweep_job_->on_ready(ready);
     proof_job_->on_ready(ready);
+    proof_behind_job_->on_ready(ready);
     sensitivities_job_->on_ready(ready);
     orbit_job_->on_ready(ready);
     for (const PendingPin& pin : pins_) pin.worker->on_ready(ready);
@@ -225,8 +226,8 @@ void Session::compose_pinned() {
     drawn_.clear();
     run_table_ = {};
     name_.clear();
-    enclosed_ =
-        proof() == nullptr ? std::vector<const EnclosedEvent*>() : enclosed_events(trajectory(), proof()->enclosure);
+    enclosed_ = shown_proof() == nullptr ? std::vector<const EnclosedEvent*>()
+                                         : enclosed_events(trajectory(), shown_proof()->enclosure);
     const auto is_difference = [](const Plot& plot) { return plot.framing.difference; };
     if (pinned_.empty() && proof() == nullptr &&
         std::none_of(plots_.list().begin(), plots_.list().end(), is_difference))

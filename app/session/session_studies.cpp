@@ -96,6 +96,7 @@ void Session::settle() {
     receive({});
     receive_proof({});
     receive_estimate({});
+    follow_proof_behind({});
     sweep_job_->update({});
     follow_dependence({});
     receive_orbit({});
@@ -138,6 +139,7 @@ void Session::perform(const command::Prove& command) {
 }
 
 void Session::perform(const command::StopProof&) {
+    stop_proof_behind();
     proof_request_.reset();
     proof_job_->forget();
     compose_pinned();
@@ -173,6 +175,45 @@ void Session::receive_proof(Timeout patience) {
     } catch (const InputError& problem) {
         error_ = problem.what();
     }
+}
+
+// ---- the proof behind the run ----
+
+const Proof* Session::shown_proof() const {
+    if (const Proof* const requested = proof()) return requested;
+    const Proof* const behind = proof_behind_job_->result().get();
+    // One that stops at its limit of steps says nothing about the run.
+    const bool is_its = behind != nullptr && run_proved_behind_ == simulated_ && behind->enclosure.end;
+    return is_its ? behind : nullptr;
+}
+
+void Session::stop_proof_behind() {
+    if (simulated_ == nullptr || proof() == nullptr) enclosed_.clear();  // they are events of the proof that ends here
+    proof_behind_job_->forget();
+    run_proved_behind_.reset();
+}
+
+// Starts the proof once the run and its estimate are finished. The next run stops it.
+void Session::follow_proof_behind(Timeout patience) {
+    constexpr int most_steps = 150;  // about 0.1 s for two coordinates
+    if (!proves_behind_) return;
+    const bool is_wanted = watch_ == nullptr && simulated_->estimate && !shows_start() && !proof_request_ &&
+                           proof() == nullptr && not_proved(*system_->model).empty();
+    if (!is_wanted) return stop_proof_behind();
+    try {
+        if (run_proved_behind_ != simulated_) {
+            Run run = trajectory().run;
+            run.options.max_steps = std::min(run.options.max_steps, most_steps);
+            run_proved_behind_ = simulated_;
+            proof_behind_job_->begin(system_->model, {}, problem_of(description(), run, {}));
+        }
+        if (!proof_behind_job_->update(patience)) return;
+    } catch (const InputError&) {  // no proof covers this run; "Prove this run" says why
+        return;
+    } catch (const std::bad_alloc&) {
+        return;
+    }
+    compose_pinned();
 }
 
 // ---- sensitivities of a quantity of the current run ----

@@ -206,7 +206,9 @@ TEST(TasksOnDisplay, TheWindowAnswersWhatItsRecordSays) {
         library.folder = std::filesystem::path(given).string();
         library.save = [](Document& document, const std::string& file, bool) { mark_saved(document, file); };
         Session session("ball_on_sine", test::system("ball_on_sine"), library);
+        session.prove_behind();  // as in a window
         for (const Command& command : read_journal(folder / "record")) session.apply(command);
+        session.settle();
         EXPECT_EQ(session.error(), "") << task;
         EXPECT_TRUE(session.document().problems.empty()) << task;
         std::sscanf(test::content(folder / "mouse").c_str(), "%lf %lf", &hands.hand.mouse_x, &hands.hand.mouse_y);
