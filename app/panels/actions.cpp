@@ -49,7 +49,17 @@ void size_automatically(const Session& session, PanelState&, Commands& commands)
 void open_file(const Session&, PanelState& state, Commands&) { ask_to_open(state); }
 void save_as(const Session& session, PanelState& state, Commands&) { ask_to_save(session, state); }
 void begin_system(const Session& session, PanelState& state, Commands& commands) {
+    state.editor.takes_keys = true;
+    if (!session.shows_editor()) commands.emplace_back(command::Show{"editor", true});
     request(session, state, command::New{}, commands);
+}
+
+// The file that was open last and is not open now. Without one, any file can be chosen.
+void reopen_file(const Session& session, PanelState& state, Commands& commands) {
+    const auto last = std::find_if(state.recent.begin(), state.recent.end(),
+                                   [&](const std::string& path) { return path != session.document().file; });
+    if (last == state.recent.end()) return ask_to_open(state);
+    request(session, state, command::Open{*last}, commands);
 }
 
 void export_figure(const Session& session, PanelState& state, Commands&) { ask_to_export(session, state, "svg"); }
@@ -136,13 +146,12 @@ constexpr Action all_actions[] = {
     {"File", "New", "Ctrl+N", "a new system", begin_system},
     {"File", "Open\u2026", "Ctrl+O", "open a file", open_file},
     {"File", "Open recent", "", "", show_recent, as_submenu},
+    {"File", "Open last file", "Ctrl+Shift+T", "the last file again", reopen_file},
     {"File", "Gallery\u2026", "Ctrl+G", "the gallery", "show gallery"},
     {"File", "Save", "Ctrl+S", "save the text", save_or_ask, new_group},
     {"File", "Save as\u2026", "", "save to another file", save_as},
-    {"File", "Export figure\u2026", "", "the plots or the mechanism, SVG, PDF or PNG", export_figure, new_group,
-     is_idle},
-    {"File", "Export film\u2026", "", "the mechanism in motion beside the plots (needs ffmpeg)", export_film, 0,
-     is_idle},
+    {"File", "Export figure\u2026", "Ctrl+P", "export a figure: SVG, PDF, PNG", export_figure, new_group, is_idle},
+    {"File", "Export film\u2026", "Ctrl+M", "export a film (needs ffmpeg)", export_film, 0, is_idle},
     {"File", "Export data\u2026", "", "the run as CSV, one row per instant, or as JSON", export_data, 0, is_idle},
     {"File", "Save session\u2026", "", "the commands that lead here, to replay anywhere", save_session, 0, is_idle},
     {"File", "Copy command", "", "", show_command_lines, new_group | as_submenu},
@@ -312,7 +321,11 @@ bool is_enabled(const Action& action, const Session& session) { return action.ca
 
 void perform(const Action& action, const Session& session, PanelState& state, Commands& commands) {
     if (action.effect.run != nullptr) return action.effect.run(session, state, commands);
-    commands.push_back(toggled(action, session, state));
+    const Command command = toggled(action, session, state);
+    // A step ends the playback where it is now, in a replayed journal, too.
+    if (session.playing() && std::holds_alternative<command::StepEvents>(command))
+        commands.insert(commands.end(), {Command(command::Pause{}), Command(command::Seek{session.time()})});
+    commands.push_back(command);
 }
 
 bool takes_key_of(const Action& action, const PanelState& state) {

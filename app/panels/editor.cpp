@@ -7,6 +7,7 @@
 #include <cmath>
 #include <filesystem>
 
+#include "panels/actions.hpp"
 #include "panels/widgets.hpp"
 #include "session/replay_script.hpp"
 #include "surface/imgui_version.hpp"
@@ -151,6 +152,7 @@ void show_text(const Session& session, PanelState& state, float height) {
     // A recreated widget is a new ImGui window, which would start at the top.
     if (std::exchange(editor.shown_revision, editor.revision) != editor.revision)
         scroll_next_window(editor.scroll, static_cast<float>(lines) * font + 2.0F * ImGui::GetStyle().FramePadding.y);
+    if (editor.takes_keys && !is_covered()) editor.takes_keys = false, ImGui::SetKeyboardFocusHere();
     const bool has_typed = typed(editor, {all.width - gutter, height}, more);
     remember(state, "text");
     const bool was_left = ImGui::IsItemDeactivated();
@@ -231,7 +233,7 @@ void show_buttons(const Session& session, PanelState& state, Commands& commands)
         tooltip(about);
         return pressed;
     };
-    if (button("New", "start from a short example (Ctrl+N)")) request(session, state, command::New{}, commands);
+    if (button("New", "start from a short example (Ctrl+N)")) perform(action("New"), session, state, commands);
     ImGui::SameLine(0.0F, space);
     if (button("Open\u2026", "open a system file (Ctrl+O), or drop one on the window")) ask_to_open(state);
     ImGui::SameLine(0.0F, space);
@@ -300,6 +302,7 @@ void hand_over_text(EditorState& editor, Commands& commands) {
 
 void toggle_editor(const Session& session, PanelState& state, Commands& commands) {
     hand_over_text(state.editor, commands);
+    state.editor.takes_keys = !session.shows_editor();
     commands.emplace_back(command::Show{"editor", !session.shows_editor()});
 }
 

@@ -95,22 +95,27 @@ void show_closing(const Session& session, OrbitView& view, PanelState& state) {
     ImGui::EndPopup();
 }
 
-// Menu for the parameter of the branch; its default range is that of the slider.
-void show_along(const Session& session, OrbitView& view, PanelState& state) {
+// Searches for what is typed. The run starts on the orbit when it is found.
+void search(OrbitView& view, Commands& commands) {
+    view.goes = true;
+    commands.emplace_back(command::FindOrbit{to_text(view.typed)});
+}
+
+// Menu for the parameter of the branch; its default range is that of the slider. A choice starts the search.
+void show_along(const Session& session, OrbitView& view, PanelState& state, Commands& commands) {
     if (!ImGui::BeginPopup("orbit along")) return;
     const std::size_t equals = view.typed.along.find('=');
     const std::string present = equals == std::string::npos ? "" : view.typed.along.substr(0, equals);
-    const auto take = [&] { view.typed.along = fmt::format("{}={}:{}", present, view.low, view.high); };
     if (ImGui::Selectable("none", present.empty())) view.typed.along.clear();
     remember(state, "orbit along none");
     for (const ParameterDescription& parameter : session.description().parameters) {
         const ImVec2 at = ImGui::GetCursorScreenPos();
-        if (ImGui::Selectable(("##" + parameter.name).c_str(), present == parameter.name,
-                              ImGuiSelectableFlags_DontClosePopups, {units(200.0F), 0.0F})) {
+        if (ImGui::Selectable(("##" + parameter.name).c_str(), present == parameter.name, 0, {units(200.0F), 0.0F})) {
             const double value = *session.value(parameter.name);
             view.low = fmt::format("{}", std::min(parameter.range[0], value));
             view.high = fmt::format("{}", std::max(parameter.range[1], value));
             view.typed.along = fmt::format("{}={}:{}", parameter.name, view.low, view.high);
+            search(view, commands);
         }
         remember(state, "orbit along " + parameter.name);
         cell(at, typeset(parameter.name), units(200.0F), text_color());
@@ -122,9 +127,10 @@ void show_along(const Session& session, OrbitView& view, PanelState& state) {
             view.high = view.typed.along.substr(colon + 1);
         }
         ImGui::Separator();
-        text_row("from", "orbit along from", view.low, 120.0F, state);
-        text_row("to", "orbit along to", view.high, 120.0F, state);
-        take();
+        const bool is_low = text_row("from", "orbit along from", view.low, 120.0F, state);
+        const bool is_high = text_row("to", "orbit along to", view.high, 120.0F, state);
+        view.typed.along = fmt::format("{}={}:{}", present, view.low, view.high);
+        if (is_low || is_high) search(view, commands), ImGui::CloseCurrentPopup();
     }
     close_by_escape(state);
     ImGui::EndPopup();
@@ -146,11 +152,11 @@ std::string remark(const Session& session) {
 void show_head(const Session& session, OrbitView& view, PanelState& state, Commands& commands) {
     const bool is_busy = session.orbit_under_way() != nullptr;
     if (ImGui::Button(is_busy ? "Stop" : "Make periodic")) {
-        view.goes = !is_busy;
+        view.goes = false;
         if (is_busy)
             commands.emplace_back(command::StopOrbit{});
         else
-            commands.emplace_back(command::FindOrbit{to_text(view.typed)});
+            search(view, commands);
     }
     remember(state, "make periodic");
     tooltip(is_busy ? "stop the search" : "find a periodic run near this one, and start the run there");
@@ -163,8 +169,8 @@ void show_head(const Session& session, OrbitView& view, PanelState& state, Comma
     show_from(session, view, state);
     x = menu_button("orbit along", view.typed.along.empty() ? "no branch" : "branch over " + typeset(view.typed.along),
                     x, row, right, state);
-    tooltip("parameter of the branch");
-    show_along(session, view, state);
+    tooltip("follow the periodic run in a parameter");
+    show_along(session, view, state, commands);
     if (right - x > units(60.0F)) {
         x = menu_button("orbit closing", "period and shift", x, row, right, state);
         tooltip("period of the drive, and shift of the coordinates after one period");

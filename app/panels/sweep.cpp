@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <utility>
 
 #include "expression/parse.hpp"
@@ -17,9 +16,7 @@
 #include "figure/sweep_figure.hpp"
 #include "output/contacts.hpp"
 #include "paint/paint.hpp"
-#include "panels/slider.hpp"
 #include "panels/widgets.hpp"
-#include "session/command.hpp"
 #include "system/units.hpp"
 
 namespace achilles {
@@ -28,29 +25,7 @@ namespace achilles {
 
 namespace {
 
-constexpr std::uint64_t finest_points = 512;
 constexpr std::array<const char*, 2> popups{"sweep x", "sweep y"};
-
-// Quantities offered in the menu, and the derivative of the first with respect to the x axis.
-std::vector<std::string> offered_prints(const SystemDescription& description, const SweepSpec& sweep) {
-    const bool is_section = sweep.at.has_value(), has_friction = !sliding_places(description).empty();
-    std::vector<std::string> prints;
-    if (!is_section) prints = {"zeno_time(1)", "zeno_time(2)", "zeno_points", "impacts", "releases", "least_gap"};
-    for (const CoordinateDescription& coordinate : description.coordinates) {
-        prints.push_back(coordinate.name);
-        prints.push_back(coordinate.name + "'");
-    }
-    prints.emplace_back("energy");
-    if (has_friction) prints.insert(prints.end(), {"heat", "modes"});
-    if (has_friction && !is_section)
-        prints.insert(prints.end(), {"stick_time(1)", "slip_time(1)", "sticks", "slips", "reversals"});
-    if (!is_section) prints.insert(prints.end(), {"held", "outcome"});
-    Run run = default_run(description);
-    const bool has_slope = !sweep.axes.empty() && find_value(description, run, sweep.axes.front().name) != nullptr &&
-                           (!is_section || sweep.at->event);
-    if (has_slope) prints.push_back(fmt::format("d({}, {})", prints.front(), sweep.axes.front().name));
-    return prints;
-}
 
 // Text fields for the limits of one axis, in the unit of its slider; true if they are submitted.
 bool limits_entered(const SystemDescription& description, SweepAxis& axis, SweepMenu& menu, std::size_t place,
@@ -104,9 +79,7 @@ void show_axis_menu(const Session& session, std::size_t place, PanelState& state
         if (is_other(name)) continue;
         const ImVec2 at = ImGui::GetCursorScreenPos();
         const bool chosen = has_axis && sweep.axes[place].name == name;
-        if (ImGui::Selectable(("##" + name).c_str(), chosen, ImGuiSelectableFlags_DontClosePopups,
-                              {units(200.0F), 0.0F}) &&
-            !chosen) {
+        if (ImGui::Selectable(("##" + name).c_str(), chosen, 0, {units(200.0F), 0.0F}) && !chosen) {
             SweepSpec changed = sweep;
             changed.axes.resize(std::max(changed.axes.size(), place + 1));
             changed.axes[place] = *axis_for(session, name);
@@ -189,28 +162,6 @@ void show_print_menu(const Session& session, PanelState& state, Commands& comman
 }
 
 }  // namespace
-
-command::ShowSweep showing(const SweepSpec& sweep, const SystemDescription& description) {
-    SweepSpec bare = sweep;
-    bare.base = default_run(description);
-    return {to_text(bare, description)};
-}
-
-std::optional<SweepAxis> axis_for(const Session& session, const std::string& name) {
-    const SystemDescription& description = session.description();
-    const auto over = [&](const std::array<double, 2>& range) {
-        return SweepAxis{name, range[0], range[1], finest_points, false};
-    };
-    for (const ParameterDescription& parameter : description.parameters)
-        if (parameter.name == name) return over(parameter.range);
-    for (const CoordinateDescription& coordinate : description.coordinates) {
-        if (coordinate.name == name) return over(coordinate.range);
-        if (coordinate.name + "'" == name) return over(coordinate.rate_range);
-    }
-    const Options& options = session.run().options;
-    if (name == "end") return over({options.start_time, options.end_time});
-    return std::nullopt;
-}
 
 void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& state, Commands& commands) {
     const SweepSpec sweep = session.sweep();

@@ -4,15 +4,12 @@
 #include "analysis/sweep.hpp"
 #include "panels/panels.hpp"
 #include "panels/slider.hpp"
+#include "session/sweep_choices.hpp"
 
 namespace achilles {
 
 // Drag-and-drop payload type of a slider's name that is dropped onto an axis.
 inline constexpr const char* dragged_name = "name";
-// The command that shows this sweep around the current run.
-command::ShowSweep showing(const SweepSpec& sweep, const SystemDescription& description);
-// The axis for a parameter, initial value or option of this name, over the range of its slider; empty if there is none.
-std::optional<SweepAxis> axis_for(const Session& session, const std::string& name);
 // A row of menus, up to `right`: the quantities along x and y, and the printed quantity.
 void show_sweep_menus(const Session& session, const Rectangle& row, PanelState& state, Commands& commands);
 

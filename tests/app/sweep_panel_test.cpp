@@ -224,7 +224,6 @@ TEST(SweepPanel, IsChosenFromMenus) {
     hands.click("sweep y x'");
     EXPECT_EQ(hands.session.sweep().axes.size(), 2U);
     EXPECT_EQ(hands.session.sweep().axes[1].name, "x'");
-    hands.press(key::escape);
     hands.click("sweep print");
     hands.click("sweep print outcome");
     EXPECT_EQ(hands.session.sweep().prints, std::vector<std::string>{"outcome"});

@@ -16,7 +16,6 @@ xdotool mousemove --window "$window" $(place menu) sleep 0.3 click 1 sleep 0.5
 # shellcheck disable=SC2046
 xdotool mousemove --window "$window" $(place rate) sleep 0.3 click 1
 recorded "^sweep .*x'=" "the menu makes no map"
-xdotool key Escape
 settle
 # shellcheck disable=SC2046
 xdotool mousemove --window "$window" $(place picture) sleep 0.3 click 1

@@ -4,52 +4,7 @@
 #     ten_tasks_test.sh BUILD_FOLDER
 table="$(realpath "$(dirname "$0")")/ten_tasks.txt"
 . "$(dirname "$0")/window.sh"
-
-actions=0 now=0 before=0 done=0
-# Every action goes through this function.
-act() { actions=$((actions + 1)); xdotool "$@" sleep 0.2; }
-point() {
-    local x y
-    read -r x y < <(grep "^place $1 " "$folder/places" | cut -d' ' -f3-) || fail "nobody knows where $1 is"
-    settle  # a new run moves other items
-    xdotool mousemove --window "$window" "$x" "$y" sleep 0.15
-}
-click() {
-    point "$1"
-    act click 1
-}
-entered() {
-    xdotool type --delay 8 "$1"
-    act key Return
-}
-# say LINE: types a command in the palette, two actions.
-say() {
-    act key ctrl+shift+p
-    entered "$1"
-}
-recorded() { await grep -q "$1" "$folder/record" || fail "$2: $(tail -3 "$folder/record")"; }
-# done_with TASK: checks the number of actions against the table.
-done_with() {
-    local was is
-    read -r was is < <(awk -v task="$1" '$1 == task { print $2, $3 }' "$table")
-    echo "$1: $actions actions, $was before"
-    [ "$actions" -eq "$is" ] || fail "the task '$1' takes $actions actions, and not $is"
-    now=$((now + actions)) before=$((before + was)) done=$((done + 1)) actions=0
-}
-# True if every palette that was shown is hidden again; until then the palette receives the keys.
-is_palette_closed() { [ "$(grep -c '^show palette$' "$folder/record")" -eq "$(grep -c '^hide palette$' "$folder/record")" ]; }
-# Resets the window between tasks; not counted.
-back() {
-    xdotool mousemove --window "$window" 640 4
-    for line in "$@"; do
-        xdotool key ctrl+shift+p sleep 0.25 type --delay 8 "$line"
-        xdotool key Return sleep 0.15
-        recorded "^${line}\$" "the window is not as it was"
-        await is_palette_closed || fail "the palette stays open"
-        settle
-    done
-    actions=0
-}
+. "$(dirname "$0")/counted_tasks.sh"
 
 "$build/test_app" --gtest_brief=1 --gtest_filter='TenTasks.*' > "$folder/places" || { cat "$folder/places"; fail "test_app"; }
 "$build/achilles" new "$folder/mine" > /dev/null
@@ -135,6 +90,6 @@ recorded '^open double_pendulum_two_stops$' "the gallery opens no system with se
 done_with contacts
 
 close_window
-[ "$done" -eq "$(grep -cE '^[a-z_]+ +[0-9]+ +[0-9]+ ' "$table")" ] || fail "a task is left out"
+all_done
 echo "in all: $now actions, $before before"
 [ $((3 * now)) -le $((2 * before)) ] || fail "$now actions are more than two thirds of $before"
