@@ -18,6 +18,7 @@
 #include "cli/inputs.hpp"
 #include "cli/manual.hpp"
 #include "journal/journal.hpp"
+#include "journal/link.hpp"
 #include "journal/preferences.hpp"
 #include "journal/recovery.hpp"
 #include "model/read_system.hpp"
@@ -39,24 +40,21 @@ namespace {
 // the mouse; the others are shown when they are finished.
 constexpr double frame_patience = 1.0 / 40.0;
 
-// Seconds since the last call; 0 at the first call.
-class FrameTimer {
- public:
-    double elapsed() {
-        const auto now = std::chrono::steady_clock::now();
-        const double seconds = last_ ? std::chrono::duration<double>(now - *last_).count() : 0.0;
-        last_ = now;
-        return seconds;
-    }
-    void stop() { last_.reset(); }
+constexpr const char *allow_here = "if you trust it: --allow-files",
+                     *allow_in_window = "if you trust it, in a window: achilles explore --allow-files LINK";
 
- private:
-    std::optional<std::chrono::steady_clock::time_point> last_;
-};
+// On another thread, which a page does not have.
+#if defined(__EMSCRIPTEN__)
+constexpr std::launch meanwhile = std::launch::deferred;
+#else
+constexpr std::launch meanwhile = std::launch::async;
+#endif
+
+}  // namespace
 
 // The explorer in its window. It passes commands from the user, dropped files and tours to the session, the record file
 // and the panels.
-class Explorer {
+class ExplorerWindow::Explorer {
  public:
     Explorer(Session& session, Window& window, const ExploreOptions& options, CurrentFilmJob& film, PanelState state,
              FilePolicy trust)
@@ -66,6 +64,8 @@ class Explorer {
           state_(std::move(state)),
           scale_(options.scale),
           trust_(std::move(trust)) {
+        state_.on_page = options.page.has_value();
+        if (options.page) state_.choose_file = options.page->choose_file;
         if (!options.record.empty()) record_.emplace(options.record);
         for (const Command& command : opening(session, options)) keep(command);
         for (const Command& command : preferences_.appearance()) {
@@ -82,6 +82,8 @@ class Explorer {
         tour_.begin(journal);
         session_.set_patience({});  // every run is waited for, since the result of a journal must not depend on timing
     }
+
+    const PanelState& panels() const { return state_; }
 
     bool may_close() { return request_close(session_, state_); }
 
@@ -128,6 +130,21 @@ class Explorer {
     }
 
  private:
+    // Seconds since the last call; 0 at the first call.
+    class FrameTimer {
+     public:
+        double elapsed() {
+            const auto now = std::chrono::steady_clock::now();
+            const double seconds = last_ ? std::chrono::duration<double>(now - *last_).count() : 0.0;
+            last_ = now;
+            return seconds;
+        }
+        void stop() { last_.reset(); }
+
+     private:
+        std::optional<std::chrono::steady_clock::time_point> last_;
+    };
+
     void pass_time() {
         if ((!session_.is_moving() && !tour_.runs()) || state_.file_question) return clock_.stop();
         const double seconds = clock_.elapsed();
@@ -205,14 +222,14 @@ class Explorer {
     // Replays a journal or the content of a picture. Asks once about every file it needs. If one answer is no, no
     // command of the journal runs. The same questions are asked for journals that this journal replays.
     void begin_replay(const std::string& name) {
-        const std::string file = is_picture(name) ? name : find_journal(name).string();
         if (trust_.budget) trust_.budget->limit();
         try {
             const std::vector<Command> journal =
-                is_picture(name) ? session_in(file, trust_) : parse_trusted(journal_file(file), file, trust_);
+                is_picture(name) ? session_in(name, trust_)
+                                 : parse_trusted(text_of_journal(name), name_in_messages(name), trust_);
             replayed_ += journal.size();
             if (replayed_ > max_replayed)
-                throw PermissionDenied(file, {}, fmt::format("a session replays at most {} commands", max_replayed));
+                throw PermissionDenied(name, {}, fmt::format("a session replays at most {} commands", max_replayed));
             begin(journal);
         } catch (const PermissionDenied& problem) {
             // If nothing is left to ask, or an answer was no, the error stays.
@@ -221,7 +238,8 @@ class Explorer {
                     return trust_.answered.contains(request);
                 }))
                 throw;
-            state_.file_question = FileQuestion{file, requests.front(), requests.size() - 1, {}};
+            const std::string asker = is_picture(name) || is_link(name) ? name : find_journal(name).string();
+            state_.file_question = FileQuestion{asker, requests.front(), requests.size() - 1, {}};
         }
     }
 
@@ -322,22 +340,8 @@ class Explorer {
     double waited_ = 0.0;
 };
 
-// Puts a PNG on the clipboard. A program that stays in the background serves it, since the window's library copies text
-// only.
-void copy_picture(const std::string& png) {
-    const bool is_wayland = std::getenv("WAYLAND_DISPLAY") != nullptr && !find_program("wl-copy").empty();
-    if (!is_wayland && find_program("xclip").empty())
-        throw InputError("copy picture", {}, "copying a picture needs xclip or wl-copy, and neither is installed",
-                         "install the package xclip, or write a file: export figure.png");
-    const char* const line =
-        is_wayland ? "wl-copy --type image/png" : "xclip -selection clipboard -t image/png >/dev/null";
-    std::FILE* const pipe = ::popen(line, "w");
-    const bool is_written = pipe != nullptr && std::fwrite(png.data(), 1, png.size(), pipe) == png.size();
-    if (pipe == nullptr || ::pclose(pipe) != 0 || !is_written)
-        throw InputError("copy picture", {}, "the picture could not be put on the clipboard");
-}
+namespace {
 
-// If there is no display, the message names what works without one.
 // The icon in the sizes of title bars and task lists; none if the assets have none.
 std::vector<Image> window_icons() {
     constexpr int largest = 128;
@@ -349,6 +353,7 @@ std::vector<Image> window_icons() {
     return icons;
 }
 
+// If there is no display, the message names what works without one.
 Window window_for(const ExploreOptions& options, const std::string& system) {
     try {
         return Window(surface_options(options), "Achilles");
@@ -362,39 +367,89 @@ Window window_for(const ExploreOptions& options, const std::string& system) {
 
 }  // namespace
 
-int explore(const ExploreOptions& options) {
-    std::vector<Command> journal = parse_steps(options.steps);
-    if (!options.journal.empty()) {
-        read_journal(find_journal(options.journal));  // report errors before the window opens
-        journal.insert(journal.begin(), command::Replay{options.journal});
+// What the window refers to, in the order in which it is made.
+struct ExplorerWindow::Implementation {
+    explicit Implementation(const ExploreOptions& options)
+        : on_page(options.page != nullptr),
+          journal(first_commands(options)),
+          name(options.system ? *options.system : first_system()),
+          trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal},
+                         work_options(options.overrides), options.page ? allow_in_window : allow_here)),
+          // Opening the window takes time; read the gallery meanwhile.
+          state(std::async(meanwhile, panel_state, true)),
+          session(open_session(name, read_system(find_system(name)), options.settings, options.overrides,
+                               library(options), journal.empty() ? Timeout(frame_patience) : Timeout())),
+          window(window_for(options, name)),
+          // Created last, so that an existing record file is not lost if there is no display.
+          explorer(session, window, options, film, state.get(), trust) {
+        window.set_icons(window_icons());
     }
-    if (!options.record.empty()) refuse_record(options.record);
-    const std::string name = options.system ? *options.system : first_system();
-    const FilePolicy trust =
-        trust_of(options.allow_files, {options.system.value_or(""), options.journal}, work_options(options.overrides));
-    SystemSource library;
-    library.find = find_system;
-    library.budget = trust.budget;
-    std::error_code no_folder;
-    library.folder = std::filesystem::current_path(no_folder).string();
-    library.copy_picture = copy_picture;
+
+    static std::vector<Command> first_commands(const ExploreOptions& options) {
+        std::vector<Command> journal = parse_steps(options.steps);
+        if (!options.journal.empty()) {
+            // Report errors before the window opens. A page is open already, and its explorer reports them.
+            if (!options.page) parse_journal(text_of_journal(options.journal), name_in_messages(options.journal));
+            journal.insert(journal.begin(), command::Replay{options.journal});
+        }
+        if (!options.record.empty()) refuse_record(options.record);
+        return journal;
+    }
+
+    SystemSource library(const ExploreOptions& options) {
+        SystemSource source;
+        source.find = find_system;
+        source.budget = trust.budget;
+        source.copy_picture = copy_picture;
+        source.film = [this](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
+        std::error_code no_folder;
+        if (options.page)
+            source.after_writing = options.page->download;
+        else
+            source.folder = std::filesystem::current_path(no_folder).string();
+        return source;
+    }
+
+    bool on_page;
+    std::vector<Command> journal;
+    std::string name;
+    FilePolicy trust;
     CurrentFilmJob film;
-    library.film = [&film](std::unique_ptr<FilmJob> begun) { film.begin(std::move(begun)); };
-    // Opening the window takes time; read the gallery on another thread meanwhile.
-    std::future<PanelState> state = std::async(std::launch::async, panel_state, true);
-    Session session = open_session(name, read_system(find_system(name)), options.settings, options.overrides,
-                                   std::move(library), journal.empty() ? Timeout(frame_patience) : Timeout());
-    Window window = window_for(options, name);
-    window.set_icons(window_icons());
-    // Created last, so that an existing record file is not lost if there is no display.
-    Explorer explorer(session, window, options, film, state.get(), trust);
-    session.set_patience(frame_patience);
-    session.prove_behind();
-    if (!journal.empty()) explorer.begin(journal);
-    session.on_ready(Window::wake);
-    window.on_close([&] { return explorer.may_close(); });
-    window.run([&] { explorer.frame(); });
-    explorer.finish();
+    std::future<PanelState> state;
+    Session session;
+    Window window;
+    Explorer explorer;
+};
+
+ExplorerWindow::ExplorerWindow(const ExploreOptions& options)
+    : implementation_(std::make_unique<Implementation>(options)) {}
+ExplorerWindow::~ExplorerWindow() = default;
+
+void ExplorerWindow::run() {
+    Implementation& self = *implementation_;
+    self.session.set_patience(frame_patience);
+    if (!self.on_page) self.session.prove_behind();  // a page computes in slices of its only thread
+    if (!self.journal.empty()) self.explorer.begin(self.journal);
+    self.session.on_ready(Window::wake);
+    self.window.on_close([&self] { return self.explorer.may_close(); });
+    self.window.run([&self] { self.explorer.frame(); });
+    self.explorer.finish();
+}
+
+const Session& ExplorerWindow::session() const { return implementation_->session; }
+const PanelState& ExplorerWindow::panels() const { return implementation_->explorer.panels(); }
+
+ExploreOptions with_link(ExploreOptions options) {
+    if (!options.system || !is_link(*options.system)) return options;
+    if (!options.journal.empty())
+        throw InputError({}, {}, "a link is a journal itself, and only one journal can be given",
+                         "leave out the link or --journal");
+    options.journal = *std::exchange(options.system, std::nullopt);
+    return options;
+}
+
+int explore(const ExploreOptions& options) {
+    ExplorerWindow(with_link(options)).run();
     return reached_end;
 }
 

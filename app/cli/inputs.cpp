@@ -8,6 +8,7 @@
 #include "cli/assets.hpp"
 #include "cli/commands/common.hpp"
 #include "journal/journal.hpp"
+#include "journal/link.hpp"
 #include "model/model.hpp"
 #include "model/read_system.hpp"
 #include "pictures/origin.hpp"
@@ -65,13 +66,15 @@ SystemDescription Inputs::system(const std::string& name) { return parse_system(
 
 std::string Inputs::journal_text(const std::string& path) {
     if (from_picture_) return next(path, true).text;
-    stored_.push_back({InputSource::Kind::journal, path, journal_file(files_read_.emplace_back(find_journal(path)))});
+    if (!is_link(path)) files_read_.emplace_back(find_journal(path));
+    stored_.push_back({InputSource::Kind::journal, path, text_of_journal(path)});
     return stored_.back().text;
 }
 
 std::vector<Command> Inputs::journal(const std::string& path) {
     if (trust_.budget) time_limit_.arm(trust_.budget->how_to_allow());
-    std::vector<Command> commands = parse_trusted(journal_text(path), path, trust_);
+    std::vector<Command> commands =
+        parse_trusted(journal_text(path), is_link(path) ? name_in_messages(path) : path, trust_);
     count(path, commands);
     return commands;
 }

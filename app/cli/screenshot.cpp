@@ -14,7 +14,9 @@
 
 namespace achilles {
 
-int screenshot(const ScreenshotOptions& options, PictureJob& job) {
+int screenshot(const ScreenshotOptions& given, PictureJob& job) {
+    ScreenshotOptions options = given;
+    static_cast<ExploreOptions&>(options) = with_link(given);
     job.check_size(options.width, options.height);
     format_for(options.out, "png", "; for the plots alone as SVG or PDF: achilles figure");
     job.add(options.out);

@@ -73,6 +73,16 @@ mode_t default_file_mode() {
     return 0666 & ~mask;
 }
 
+// Exchanges two files. False if the system or the file system cannot.
+bool exchange_names(const char* a, const char* b) {
+#if defined(RENAME_EXCHANGE)
+    return ::renameat2(AT_FDCWD, a, AT_FDCWD, b, RENAME_EXCHANGE) == 0;
+#else
+    static_cast<void>(a), static_cast<void>(b);
+    return false;
+#endif
+}
+
 }  // namespace
 
 int open_in_place(const std::string& path) {
@@ -170,7 +180,7 @@ void OutputFiles::commit_rename(File& file) {
     std::error_code problem;
     const fs::file_status there = fs::symlink_status(file.target, problem);
     if (fs::is_directory(there)) cannot_write(file.path, EISDIR);
-    file.swapped = fs::exists(there) && ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_EXCHANGE) == 0;
+    file.swapped = fs::exists(there) && exchange_names(from, to);
     if (file.swapped) return;
     if (::rename(from, to) != 0) cannot_write(file.path, errno);
     file.made = !fs::exists(there);
@@ -179,7 +189,7 @@ void OutputFiles::commit_rename(File& file) {
 
 void OutputFiles::roll_back(File& file) {
     if (file.swapped)
-        ::renameat2(AT_FDCWD, file.temporary.c_str(), AT_FDCWD, file.target.c_str(), RENAME_EXCHANGE);
+        exchange_names(file.temporary.c_str(), file.target.c_str());
     else if (file.made)
         ::unlink(file.target.c_str());
 }

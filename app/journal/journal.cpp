@@ -11,6 +11,7 @@
 
 #include "cli/assets.hpp"
 #include "expression/parse.hpp"
+#include "journal/link.hpp"
 
 namespace achilles {
 
@@ -41,7 +42,7 @@ FileUse file_use(const Command& command) {
     if (const auto* open = std::get_if<command::Open>(&command); open != nullptr && is_system_path(open->system))
         return {open->system};
     const auto* replay = std::get_if<command::Replay>(&command);
-    if (replay != nullptr && is_journal_path(replay->journal)) return {replay->journal};
+    if (replay != nullptr && !is_link(replay->journal) && is_journal_path(replay->journal)) return {replay->journal};
     return {};
 }
 
@@ -91,10 +92,10 @@ std::vector<Command> parse_journal(std::string_view text, const std::string& nam
     return commands;
 }
 
-FilePolicy trust_of(bool allow_files, std::vector<fs::path> named, const Options& typed) {
+FilePolicy trust_of(bool allow_files, std::vector<fs::path> named, const Options& typed, const char* how_to_allow) {
     FilePolicy trust{allow_files ? FilePolicy::Files::allowed : FilePolicy::Files::refused, std::move(named)};
     if (allow_files) return trust;
-    trust.budget = std::make_shared<Budget>("if you trust it: --allow-files");
+    trust.budget = std::make_shared<Budget>(how_to_allow);
     trust.budget->allow(typed);
     return trust;
 }

@@ -37,7 +37,9 @@ struct FilePolicy {
     std::shared_ptr<Budget> budget{};          // limits of its work; null: no limits
 };
 // Has a budget unless `allow_files`. The budget allows the default memory and max_steps, or those of `typed` if larger.
-FilePolicy trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {});
+// `how_to_allow`: what a message about its limits says to do.
+FilePolicy trust_of(bool allow_files, std::vector<std::filesystem::path> named, const Options& typed = {},
+                    const char* how_to_allow = "if you trust it: --allow-files");
 
 // Maximum number of commands in all journals that one session replays. It stops a journal that replays itself.
 constexpr std::size_t max_replayed = 10000;

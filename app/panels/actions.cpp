@@ -139,25 +139,26 @@ bool can_redo(const Session& session) { return session.can_redo(); }
 bool has_look(const Session& session) { return session.scene().look().has_value(); }
 
 constexpr unsigned new_group = Action::group, not_in_text = Action::not_typing, of_player = Action::player,
-                   held_too = Action::repeats, as_submenu = Action::submenu;
+                   held_too = Action::repeats, as_submenu = Action::submenu, on_desktop = Action::desktop;
 
 // clang-format off: one line each, so that the table can be read as one.
 constexpr Action all_actions[] = {
     {"File", "New", "Ctrl+N", "a new system", begin_system},
     {"File", "Open\u2026", "Ctrl+O", "open a file", open_file},
-    {"File", "Open recent", "", "", show_recent, as_submenu},
-    {"File", "Open last file", "Ctrl+Shift+T", "the last file again", reopen_file},
+    {"File", "Open recent", "", "", show_recent, as_submenu | on_desktop},
+    {"File", "Open last file", "Ctrl+Shift+T", "the last file again", reopen_file, on_desktop},
     {"File", "Gallery\u2026", "Ctrl+G", "the gallery", "show gallery"},
     {"File", "Save", "Ctrl+S", "save the text", save_or_ask, new_group},
     {"File", "Save as\u2026", "", "save to another file", save_as},
     {"File", "Export figure\u2026", "Ctrl+P", "export a figure: SVG, PDF, PNG", export_figure, new_group, is_idle},
-    {"File", "Export film\u2026", "Ctrl+M", "export a film (needs ffmpeg)", export_film, 0, is_idle},
+    {"File", "Export film\u2026", "Ctrl+M", "export a film (needs ffmpeg)", export_film, on_desktop, is_idle},
     {"File", "Export data\u2026", "", "the run as CSV, one row per instant, or as JSON", export_data, 0, is_idle},
     {"File", "Save session\u2026", "", "the commands that lead here, to replay anywhere", save_session, 0, is_idle},
-    {"File", "Copy command", "", "", show_command_lines, new_group | as_submenu},
+    {"File", "Copy link", "", "it opens this session in a browser", "copy link", new_group},
+    {"File", "Copy command", "", "", show_command_lines, as_submenu},
     {"File", "Copy picture", "", "the plots, to paste into a document", "copy picture", 0, is_idle},
     {"File", "Copy data", "", "the run as a table, for a spreadsheet", "copy data", 0, is_idle},
-    {"File", "Quit", "Ctrl+Q", "close the window", quit, new_group},
+    {"File", "Quit", "Ctrl+Q", "close the window", quit, new_group | on_desktop},
 
     {"Edit", "Undo", "Ctrl+Z", "undo", "undo", not_in_text | held_too, can_undo},
     {"Edit", "Redo", "Ctrl+Shift+Z, Ctrl+Y", "redo", "redo", not_in_text | held_too, can_redo},
@@ -317,6 +318,10 @@ bool is_on(const Action& action, const Session& session) {
            (action.name == "Edit System File" && scene.shows("editor"));
 }
 
+bool is_offered(const Action& action, const PanelState& state) {
+    return !state.on_page || (action.flags & on_desktop) == 0;
+}
+
 bool is_enabled(const Action& action, const Session& session) { return action.can == nullptr || action.can(session); }
 
 void perform(const Action& action, const Session& session, PanelState& state, Commands& commands) {
@@ -345,14 +350,14 @@ void use_action_keys(const Session& session, PanelState& state, Commands& comman
         if (state.editor.asking != EditorState::OpenDialog::nothing) return;
         const bool is_kept =
             ((action.flags & not_in_text) != 0 && types) || ((action.flags & of_player) != 0 && is_owned);
-        if (!is_kept && is_enabled(action, session) && takes_key_of(action, state))
+        if (!is_kept && is_offered(action, state) && is_enabled(action, session) && takes_key_of(action, state))
             perform(action, session, state, commands);
     }
 }
 
 void show_menu_entries(std::string_view menu, const Session& session, PanelState& state, Commands& commands) {
     for (const Action& action : all_actions) {
-        if (action.menu != menu) continue;
+        if (action.menu != menu || !is_offered(action, state)) continue;
         if ((action.flags & new_group) != 0) ImGui::Separator();
         const std::string name(action.name), keys(action.keys.substr(0, action.keys.find(", ")));
         const bool is_submenu = (action.flags & as_submenu) != 0;
@@ -376,7 +381,7 @@ const std::vector<Shortcut>& shortcuts() {
             if (!list.empty() && list.back().does == action.about)
                 list.back().keys += ", " + keys;
             else
-                list.push_back({"Keys", keys, action.about});
+                list.push_back({"Keys", keys, action.about, (action.flags & on_desktop) != 0});
         }
         list.insert(list.end(), std::begin(gestures), std::end(gestures));
         return list;

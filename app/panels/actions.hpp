@@ -26,7 +26,8 @@ struct Action {
         not_typing = 2,  // its key is for a text field while one has the keyboard
         player = 4,      // its key is for a control while one has the keyboard
         repeats = 8,     // while the key is held
-        submenu = 16
+        submenu = 16,
+        desktop = 32  // not on a page in a browser
     };
     std::string_view menu;  // "File"
     std::string_view name;  // its words in the menu, "Save as..."
@@ -44,6 +45,8 @@ std::span<const Action> actions();
 // The action of this name; there must be one.
 const Action& action(std::string_view name);
 
+// Whether this explorer has it: a page in a browser lacks some.
+bool is_offered(const Action& action, const PanelState& state);
 bool is_enabled(const Action& action, const Session& session);
 bool is_on(const Action& action, const Session& session);
 // Adds what the action does to `commands`, or opens its dialog.
@@ -60,6 +63,7 @@ struct Shortcut {
     std::string_view group;
     std::string keys;
     std::string_view does;
+    bool is_for_desktop = false;  // not on a page in a browser
 };
 const std::vector<Shortcut>& shortcuts();
 

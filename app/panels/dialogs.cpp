@@ -6,6 +6,7 @@
 #include <cctype>
 #include <filesystem>
 
+#include "journal/link.hpp"
 #include "panels/widgets.hpp"
 #include "pictures/film.hpp"
 #include "pictures/picture_format.hpp"
@@ -67,6 +68,7 @@ PathCheck check_export_path(const Session& session, const PanelState& state, con
         return refuse("end the name in .svg, .png or .pdf");
     if (!path.empty() && !is_picture && !is_film(path) && !is_data)
         return refuse("end the name in .svg, .png, .pdf, .json, .csv or .journal");
+    if (ending == "pdf" && state.on_page) return refuse("a page makes no PDF: choose .svg, or use achilles figure");
     if (ending == "pdf" && find_program("rsvg-convert").empty())
         return refuse("a PDF needs rsvg-convert (librsvg2-bin), which is not installed");
     const ExportNote note = is_data ? ExportNote() : export_note(session, form);
@@ -139,7 +141,7 @@ bool path_chosen(const char* action, const std::vector<std::string>& endings, Pa
     EditorState& editor = state.editor;
     const bool entered = path_line(state, ImGui::IsWindowAppearing() || editor.keeps_path);
     const bool can_choose = std::string_view(action) == "Open";
-    const BrowseResult browsed = browse(state, endings, entered);
+    const BrowseResult browsed = state.on_page ? BrowseResult() : browse(state, endings, entered);
     const PathCheck verdict = judge(expanded(editor.path));
     ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
     ImGui::TextUnformatted(verdict.note.empty() ? " " : fitted(verdict.note, remaining().width).c_str());
@@ -223,8 +225,9 @@ void file_dialog(PanelState& state) {
     const std::string more = question.more == 0   ? ""
                              : question.more == 1 ? ", and one more file"
                                                   : fmt::format(", and {} more files", question.more);
+    const std::string asker = is_link(question.asker) ? "This link" : question.asker;
     ImGui::PushTextWrapPos(0.0F);
-    for (const std::string& line : {question.asker + " wants to", "    " + question.request + more + ".",
+    for (const std::string& line : {asker + " wants to", "    " + question.request + more + ".",
                                     std::string("Allow it only if you trust its source. It never overwrites files.")})
         ImGui::TextUnformatted(line.c_str());
     ImGui::PopTextWrapPos();
@@ -275,6 +278,7 @@ void go_on_if_saved(const Session& session, EditorState& editor, Commands& comma
 }  // namespace
 
 void ask_to_open(PanelState& state) {
+    if (state.choose_file) return state.choose_file();
     state.editor.path.clear();
     state.editor.asking = EditorState::OpenDialog::open;
 }

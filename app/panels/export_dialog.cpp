@@ -106,7 +106,7 @@ void choose_what(const Session& session, PanelState& state) {
     take("all plots", ExportSubject::plots, 0);
     for (int plot = 1; count > 1 && plot <= count; ++plot) take(name_of(session, plot), ExportSubject::plots, plot);
     if (!session.mechanism().is_empty()) take("the mechanism as it is now", ExportSubject::mechanism, 0);
-    take("a film: the mechanism in motion beside the plots", ExportSubject::film, 0);
+    if (!state.on_page) take("a film: the mechanism in motion beside the plots", ExportSubject::film, 0);
     close_by_escape(state);
     ImGui::EndCombo();
 }
@@ -129,7 +129,8 @@ void choose_kind(PanelState& state) {
              {std::pair{"svg", "lines and text, for papers and for editing"},
               std::pair{"pdf", "lines and text for LaTeX (needs rsvg-convert from librsvg)"},
               std::pair{"png", "pixels"}})
-            if (word(kind, ending == kind, state, about)) end_in(state, kind);
+            if ((kind != std::string_view("pdf") || !state.on_page) && word(kind, ending == kind, state, about))
+                end_in(state, kind);
     }
     ImGui::SameLine(0.0F, units(14.0F));
     ImGui::Checkbox("dark", &state.export_form.dark);

@@ -37,6 +37,14 @@ void heading(const char* text) {
     ImGui::Dummy({0.0F, units(2.0F)});
 }
 
+// The keys that the window has: a page lacks some.
+std::vector<Shortcut> shown_keys(const PanelState& state) {
+    std::vector<Shortcut> keys;
+    for (const Shortcut& shortcut : shortcuts())
+        if (!shortcut.is_for_desktop || !state.on_page) keys.push_back(shortcut);
+    return keys;
+}
+
 void show_keys(std::span<const Shortcut> all) {
     std::string_view group;
     for (const Shortcut& shortcut : all) {
@@ -126,7 +134,8 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     if (!shown) ImGui::CloseCurrentPopup();
     const float height = ImGui::GetContentRegionAvail().y - ImGui::GetFrameHeightWithSpacing();
     // In a low window the keys have a second column.
-    const std::span<const Shortcut> keys = shortcuts();
+    const std::vector<Shortcut> all = shown_keys(state);
+    const std::span<const Shortcut> keys(all);
     const float space = units(24.0F), line = ImGui::GetTextLineHeight() + units(3.0F);
     const bool is_low =
         static_cast<float>(keys.size() + 8) * line > height &&

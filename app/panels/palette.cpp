@@ -92,7 +92,7 @@ void add_animation(const std::string& typed, const Session& session, std::vector
 std::vector<NamedEntry> named_entries(const std::string& typed, const Session& session, const PanelState& state) {
     std::vector<NamedEntry> entries;
     for (const Action& action : actions())
-        if (is_enabled(action, session) && (action.flags & Action::submenu) == 0)
+        if (is_offered(action, state) && is_enabled(action, session) && (action.flags & Action::submenu) == 0)
             entries.push_back({plain_name(action), std::string(action.about),
                                action.keys.empty() ? std::string(action.effect.command) : std::string(action.keys),
                                "action " + std::string(action.name)});

@@ -232,14 +232,16 @@ struct PanelState {
     bool on_tour = false;                                    // a tour is running: its caption has buttons
     std::size_t tour_captions_shown = 0, tour_captions = 0;  // number of captions shown so far, and in total
     enum class TourAction { none, back, next, stop } tour_action = TourAction::none;  // button pressed
-    int copies = 0;                    // Session::copies() at the last copy to the clipboard
-    double width = 0.0, height = 0.0;  // surface in the last frame, pixels
-    std::string front;                 // the panel in front, if the panels are tabs; else empty
-    bool is_alone = false;             // no panel has room beside the mechanism
-    bool reads_folders = true;         // false in a picture, which must not show private folders
-    bool in_window = false;            // a window may show computing times; a picture must not
-    bool show_impacts = false;         // event list without folding of impacts
-    std::set<std::size_t> unfolded;    // unfolded rows, by their first impact
+    int copies = 0;                       // Session::copies() at the last copy to the clipboard
+    double width = 0.0, height = 0.0;     // surface in the last frame, pixels
+    std::string front;                    // the panel in front, if the panels are tabs; else empty
+    bool is_alone = false;                // no panel has room beside the mechanism
+    bool reads_folders = true;            // false in a picture, which must not show private folders
+    bool on_page = false;                 // in a browser: files are chosen and downloaded there
+    std::function<void()> choose_file{};  // on a page: asks for a file, which is then dropped on it
+    bool in_window = false;               // a window may show computing times; a picture must not
+    bool show_impacts = false;            // event list without folding of impacts
+    std::set<std::size_t> unfolded;       // unfolded rows, by their first impact
     EditorState editor;
     BrowserState browser;
     bool browser_has_field = false;  // the path field has the keyboard

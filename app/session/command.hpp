@@ -355,17 +355,17 @@ struct Export {
         Field(&Export::pixels, {.after = "pixels", .complaint = "{} is not a valid width in pixels"}),
         Field(&Export::dark, {.yes = "dark", .may_lack = true}), Field(&Export::overwrite, command::overwrite));
 };
-inline const std::vector<std::string> copied_things{"data",    "events", "explorer", "figure",
+inline const std::vector<std::string> copied_things{"data",    "events", "explorer", "figure", "link",
                                                     "picture", "plots",  "run",      "sweep"};
 struct Copy {
-    // One of copied_things. `explorer`, `figure`, `run`, `sweep`: the shell command that makes it. `data`: the run;
+    // One of copied_things. `link`: what opens this session in a browser. `explorer`, `figure`, `run`, `sweep`: the shell command that makes it. `data`: the run;
     // `events`: the selected event, or all; `plots`: what is plotted, all as tables. `picture`: the plots.
     std::string what;
     int plot = 0;  // of `plots` and `picture`: only this plot; 0: all
     static constexpr auto spec = CommandSpec(
         "copy",
-        "write: copy explorer, figure, run or sweep (a command line); copy data or events (a table); copy plots or "
-        "picture, of one plot: copy plots 2",
+        "write: copy link; copy explorer, figure, run or sweep (a command line); copy data or events (a table); copy "
+        "plots or picture, of one plot: copy plots 2",
         UndoPolicy::view, Field(&Copy::what, {.one_of = &copied_things, .complaint = "'{}' cannot be copied{}"}),
         Field(&Copy::plot, {.may_lack = true, .complaint = "plots count from 1: there is no plot {}"}));
 };

@@ -173,6 +173,7 @@ void Session::perform(const command::Save& command) {
         library_.save(document_, command.file, command.overwrite);
     else
         save(document_, command.file, command.overwrite);
+    if (library_.after_writing) library_.after_writing(command.file);
     if (document_.source != before) read_document();  // with its new name in messages
 }
 
@@ -354,6 +355,8 @@ void Session::receive_estimate(Timeout patience) {
         simulated_->estimate = estimator_->take(patience);
     } catch (const std::bad_alloc&) {
         simulated_->estimate.emplace().no_estimate_reason = "there was not enough memory for it";
+    } catch (const InputError& problem) {
+        simulated_->estimate.emplace().no_estimate_reason = problem.message;
     }
     if (simulated_->estimate) use_horizon();
 }
@@ -375,13 +378,19 @@ void Session::use_horizon() {
 void Session::receive(Timeout patience) {
     if (watch_ == nullptr) return;
     std::optional<std::shared_ptr<FinishedRun>> motion;
+    const auto keep_previous = [this](const std::string& problem) {
+        watch_.reset();
+        requested_run_ = simulated_->trajectory.run;
+        error_ = problem;
+    };
     try {
         motion = worker_->take(patience);
     } catch (const std::bad_alloc&) {  // without a previous run the session cannot continue
         if (simulated_ == nullptr) throw;
-        watch_.reset();
-        requested_run_ = simulated_->trajectory.run;
-        error_ = "there is not enough memory for this run; the previous run is kept. Use an earlier end time";
+        keep_previous("there is not enough memory for this run; the previous run is kept. Use an earlier end time");
+    } catch (const InputError& problem) {  // a page does not wait for a long run
+        if (simulated_ == nullptr) throw;
+        keep_previous(problem.what());
     }
     if (!motion) return;
     const bool is_at_event = selected_ > 0 && simulated_ != nullptr && selected_ <= std::ssize(trajectory().events) &&

@@ -54,6 +54,7 @@ struct SystemSource {
     // Puts the bytes of a PNG on the clipboard; empty: there is no clipboard for pictures. Throws InputError.
     std::function<void(const std::string& png)> copy_picture{};
     std::function<void(const std::string& file)> before_writing{};  // called by `save` and `export`; may be empty
+    std::function<void(const std::string& file)> after_writing{};   // the same, once the file is written
     bool saves_any_text = true;                                     // false: only a text that is a valid system
     std::shared_ptr<Budget> budget{};                               // limits of its runs and sweeps; null: no limits
     bool is_from_picture = false;  // if so, the first run is subject to the budget, too

@@ -1,6 +1,7 @@
 // Export, copying of command lines, replay of journals, and the session as text.
 #include <fmt/format.h>
 
+#include "journal/link.hpp"
 #include "model/model.hpp"
 #include "output/output.hpp"
 #include "output/proof.hpp"
@@ -37,7 +38,11 @@ void Session::perform(const command::Export& command) {
     const std::string path = (file.is_absolute() ? file : library_.folder / file).lexically_normal().string();
     notice_ = "wrote " + path;
     if (!library_.exports) return;
-    if (!is_film(command.file)) return write_export(*this, command);
+    if (!is_film(command.file)) {
+        write_export(*this, command);
+        if (library_.after_writing) library_.after_writing(command.file);
+        return;
+    }
     std::unique_ptr<FilmJob> film = begin_film(*this, command);
     if (library_.film) {
         notice_.clear();
@@ -79,6 +84,12 @@ bool Session::copy_content(const command::Copy& command) {
 
 void Session::perform(const command::Copy& command) {
     if (copy_content(command)) return;
+    if (command.what == "link") {
+        copied_ = link_of(*this);
+        ++copies_;
+        notice_ = fmt::format("copied a link of {} characters", copied_.size());
+        return;
+    }
     // The command line names a file, which must contain the system that runs here.
     if (held_by_file(library_, system()) != description().source_text || !document_.problems.empty())
         throw refusal("this text is not saved in a file, and a command line needs a file", "save it first, then copy");

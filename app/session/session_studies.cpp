@@ -280,7 +280,13 @@ std::shared_ptr<const OrbitJobResult> Session::orbit() const { return orbit_job_
 
 const OrbitMonitor* Session::orbit_under_way() const { return orbit_job_->under_way(); }
 
-void Session::receive_orbit(Timeout patience) { orbit_job_->update(patience); }
+void Session::receive_orbit(Timeout patience) {
+    try {
+        orbit_job_->update(patience);
+    } catch (const InputError& problem) {
+        error_ = problem.what();
+    }
+}
 
 void Session::perform(const command::FindOrbit& command) {
     or_refuse<command::FindOrbit>([&] {

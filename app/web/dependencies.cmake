@@ -45,11 +45,12 @@ if(EXISTS ${ACHILLES_WEB_SOURCES}/zlib)
     add_source_library(achilles_zlib zlib adler32.c compress.c crc32.c deflate.c inffast.c inflate.c inftrees.c trees.c
                        uncompr.c zutil.c)
     # FreeType reads the outlines of figures as SVG: TrueType fonts alone.
-    add_source_library(achilles_freetype freetype src/base/ftbase.c src/base/ftdebug.c src/base/ftinit.c
-                       src/base/ftsystem.c src/sfnt/sfnt.c src/truetype/truetype.c)
+    add_source_library(achilles_freetype freetype src/base/ftbase.c src/base/ftbitmap.c src/base/ftdebug.c
+                       src/base/ftinit.c src/base/ftsystem.c src/gzip/ftgzip.c src/sfnt/sfnt.c src/truetype/truetype.c)
     target_include_directories(achilles_freetype SYSTEM PUBLIC ${ACHILLES_WEB_SOURCES}/freetype/include)
-    target_compile_definitions(achilles_freetype PRIVATE FT2_BUILD_LIBRARY
+    target_compile_definitions(achilles_freetype PRIVATE FT2_BUILD_LIBRARY FT_CONFIG_OPTION_SYSTEM_ZLIB
                                FT_CONFIG_MODULES_H=<${ACHILLES_WEB}/freetype_modules.h>)
+    target_link_libraries(achilles_freetype PUBLIC achilles_zlib)
     add_source_library(achilles_imgui imgui imgui.cpp imgui_draw.cpp imgui_tables.cpp imgui_widgets.cpp
                        misc/cpp/imgui_stdlib.cpp)
     # ImGui's own rasterizer draws the letters.

@@ -4,7 +4,7 @@
 
 #include "achilles.hpp"
 
-void achilles::let_page_draw() {}  // node draws nothing
+void achilles::check_page_work() {}  // node may take its time
 
 int main(int count, char** words) try {
     if (count != 2) {

@@ -313,7 +313,7 @@ std::span<const Event> events_within(const Trajectory& trajectory, double from, 
                                         [](const Event&event, double t) { return event.t < t; }),
                last =
                    std::upper_bound(first, events.end(), to, [](double t, const Event&event) { return t < event.t; });
-    return {first, last};
+    return {events.data() + (first - events.begin()), static_cast<std::size_t>(last - first)};
 }
 
 // Fills the curves and sets the axes. Samples give the approximate limits, the traced curves the exact ones. Returns

@@ -27,8 +27,7 @@ constexpr float pen_down = 1.0F, pen_up = 0.0F;
 // Marks a command as a curve. Other renderers would call it and draw nothing.
 void curve_mark(const ImDrawList*, const ImDrawCmd*) {}
 
-const char* edge_vertex = R"(#version 330 core
-layout(location = 0) in vec2 from;
+const char* edge_vertex = R"(layout(location = 0) in vec2 from;
 layout(location = 1) in vec2 to;
 layout(location = 2) in float pen;
 uniform vec4 region;   // origin in pixels, size in mask pixels
@@ -48,8 +47,7 @@ void main() {
 
 // Coverage of a pixel by a stroke with round ends: the overlap of the stroke's width with the pixel's, along the line
 // from the nearest point of the edge. Also correct for strokes thinner than a pixel.
-const char* edge_fragment = R"(#version 330 core
-flat in vec2 a, b;
+const char* edge_fragment = R"(flat in vec2 a, b;
 uniform vec2 stroke;
 layout(location = 0) out vec4 coverage;
 void main() {
@@ -59,13 +57,11 @@ void main() {
     coverage = vec4(clamp(min(r + 0.5, stroke.x) - max(r - 0.5, -stroke.x), 0.0, 1.0), 0.0, 0.0, 1.0);
 })";
 
-const char* overlay_vertex = R"(#version 330 core
-void main() {
+const char* overlay_vertex = R"(void main() {
     gl_Position = vec4((gl_VertexID & 1) == 0 ? -1.0 : 1.0, (gl_VertexID & 2) == 0 ? -1.0 : 1.0, 0.0, 1.0);
 })";
 
-const char* overlay_fragment = R"(#version 330 core
-uniform sampler2D mask;
+const char* overlay_fragment = R"(uniform sampler2D mask;
 uniform vec2 origin;
 uniform int fineness;
 uniform vec4 ink;
@@ -243,8 +239,7 @@ constexpr std::size_t header_bytes = vertices_for(sizeof(Header)) * sizeof(ImDra
 
 static_assert(sizeof(Color) == 4);
 
-const char* tiles_vertex = R"(#version 330 core
-uniform vec4 area;   // in pixels: origin, size
+const char* tiles_vertex = R"(uniform vec4 area;   // in pixels: origin, size
 uniform vec2 size;   // of the target
 out vec2 at;
 void main() {
@@ -252,8 +247,7 @@ void main() {
     gl_Position = vec4(2.0 * (area.xy + at * area.zw) / size - 1.0, 0.0, 1.0);
 })";
 
-const char* tiles_fragment = R"(#version 330 core
-in vec2 at;
+const char* tiles_fragment = R"(in vec2 at;
 uniform sampler2D cells;
 layout(location = 0) out vec4 color;
 void main() {

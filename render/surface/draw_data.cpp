@@ -16,8 +16,7 @@ namespace achilles {
 namespace {
 
 // The top row of a frame is row 0 of its texture, so that only the copy to a window must be flipped.
-const char* triangle_vertex = R"(#version 330 core
-layout(location = 0) in vec2 position;
+const char* triangle_vertex = R"(layout(location = 0) in vec2 position;
 layout(location = 1) in vec2 texture_at;
 layout(location = 2) in vec4 tint;
 uniform vec2 size;
@@ -29,8 +28,7 @@ void main() {
     gl_Position = vec4(2.0 * position / size - 1.0, 0.0, 1.0);
 })";
 
-const char* triangle_fragment = R"(#version 330 core
-in vec2 at;
+const char* triangle_fragment = R"(in vec2 at;
 in vec4 color;
 uniform sampler2D picture;
 layout(location = 0) out vec4 result;
@@ -49,10 +47,6 @@ Canvas::Canvas(const AddressFunction& address_of, int curve_fineness)
     gl_.BindVertexArray(vertices_);
     gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
     gl_.BindBuffer(GL_ELEMENT_ARRAY_BUFFER, index_buffer_);
-    constexpr GLsizei stride = sizeof(ImDrawVert);
-    gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, offset(offsetof(ImDrawVert, pos)));
-    gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, offset(offsetof(ImDrawVert, uv)));
-    gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, offset(offsetof(ImDrawVert, col)));
     for (const GLuint location : {0U, 1U, 2U}) gl_.EnableVertexAttribArray(location);
 }
 
@@ -135,6 +129,18 @@ void Canvas::set_state() {
                   static_cast<float>(target_.height));
     gl_.BindVertexArray(vertices_);
     gl_.BindBuffer(GL_ARRAY_BUFFER, vertex_buffer_);
+    read_vertices_from(0);
+}
+
+// Indices are relative to this vertex. WebGL has no glDrawElementsBaseVertex.
+void Canvas::read_vertices_from(unsigned vertex) {
+    if (vertex == first_vertex_) return;
+    first_vertex_ = vertex;
+    constexpr GLsizei stride = sizeof(ImDrawVert);
+    const std::size_t start = vertex * sizeof(ImDrawVert);
+    gl_.VertexAttribPointer(0, 2, GL_FLOAT, GL_FALSE, stride, offset(start + offsetof(ImDrawVert, pos)));
+    gl_.VertexAttribPointer(1, 2, GL_FLOAT, GL_FALSE, stride, offset(start + offsetof(ImDrawVert, uv)));
+    gl_.VertexAttribPointer(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, stride, offset(start + offsetof(ImDrawVert, col)));
 }
 
 void Canvas::draw_list(const ImDrawList& list, const DrawnFrame::DrawnList& drawn,
@@ -172,8 +178,9 @@ void Canvas::draw_command(const ImDrawList& list, const ImDrawCmd& command, cons
     if (seen.width <= 0 || seen.height <= 0 || command.ElemCount == 0) return;
     gl_.Scissor(seen.x, seen.y, seen.width, seen.height);
     gl_.BindTexture(GL_TEXTURE_2D, texture_of(command));
-    gl_.DrawElementsBaseVertex(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
-                               offset(command.IdxOffset * sizeof(ImDrawIdx)), static_cast<GLint>(command.VtxOffset));
+    read_vertices_from(command.VtxOffset);
+    gl_.DrawElements(GL_TRIANGLES, static_cast<GLsizei>(command.ElemCount), GL_UNSIGNED_SHORT,
+                     offset(command.IdxOffset * sizeof(ImDrawIdx)));
 }
 
 Image Canvas::read(bool transparent) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "image/image.hpp"
@@ -45,12 +46,14 @@ class Canvas {
     void draw_list(const ImDrawList& list, const DrawnFrame::DrawnList& drawn, const std::vector<PixelArea>& parts);
     void draw_command(const ImDrawList& list, const ImDrawCmd& command, const PixelArea& part);
     void set_state();
+    void read_vertices_from(unsigned vertex);
 
     Gl gl_;
     CurvePainter curves_;
     TilesPainter tiles_;
     GLuint program_ = 0, vertices_ = 0, vertex_buffer_ = 0, index_buffer_ = 0;
     GLuint fonts_ = 0, picture_ = 0;
+    std::optional<unsigned> first_vertex_;  // as set in vertices_; empty: not set yet
     Target target_;
     DrawnFrame last_;                 // what `picture_` shows
     std::array<float, 4> cleared_{};  // and its color

@@ -6,6 +6,17 @@
 
 namespace achilles {
 
+namespace {
+
+// The first lines of a shader.
+#if defined(__EMSCRIPTEN__)
+constexpr const char* shader_version = "#version 300 es\nprecision highp float;\n";
+#else
+constexpr const char* shader_version = "#version 330 core\n";
+#endif
+
+}  // namespace
+
 Gl::Gl(const AddressFunction& address_of) {
 // NOLINTBEGIN(bugprone-macro-parentheses): a type cannot stand in them
 #define ACHILLES_GL_LOAD(type, name)                       \
@@ -20,7 +31,8 @@ GLuint Gl::program(const char* vertex, const char* fragment) const {
     const GLuint linked = CreateProgram();
     for (const auto& [kind, text] : {std::pair{GL_VERTEX_SHADER, vertex}, std::pair{GL_FRAGMENT_SHADER, fragment}}) {
         const GLuint shader = CreateShader(static_cast<GLenum>(kind));
-        ShaderSource(shader, 1, &text, nullptr);
+        const char* const texts[] = {shader_version, text};
+        ShaderSource(shader, 2, texts, nullptr);
         CompileShader(shader);
         AttachShader(linked, shader);
         DeleteShader(shader);  // lives on inside the program

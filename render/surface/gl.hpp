@@ -1,5 +1,6 @@
-// Table of the OpenGL 3.3 core functions in use. libGL is never linked: the same functions come from OSMesa or from the
-// window system, whichever made the context, and a program may use both.
+// Table of the OpenGL functions in use, which OpenGL 3.3 core and WebGL 2 both have. libGL is never linked: the same
+// functions come from OSMesa, from the window system or from the browser, whichever made the context, and a program may
+// use several.
 #pragma once
 
 #include <GL/glcorearb.h>
@@ -41,7 +42,7 @@ constexpr int largest_texture = 16384;
     X(PFNGLDISABLEPROC, Disable)                                 \
     X(PFNGLDRAWARRAYSINSTANCEDPROC, DrawArraysInstanced)         \
     X(PFNGLDRAWARRAYSPROC, DrawArrays)                           \
-    X(PFNGLDRAWELEMENTSBASEVERTEXPROC, DrawElementsBaseVertex)   \
+    X(PFNGLDRAWELEMENTSPROC, DrawElements)                       \
     X(PFNGLENABLEPROC, Enable)                                   \
     X(PFNGLENABLEVERTEXATTRIBARRAYPROC, EnableVertexAttribArray) \
     X(PFNGLFRAMEBUFFERTEXTURE2DPROC, FramebufferTexture2D)       \
@@ -72,7 +73,8 @@ struct Gl {
     // Throws std::runtime_error with the name of the first missing function.
     explicit Gl(const AddressFunction& address_of);
 
-    // Links two shaders; throws std::runtime_error with the compiler's message.
+    // Links two shaders, whose text lacks the line with the version; throws std::runtime_error with the compiler's
+    // message.
     GLuint program(const char* vertex, const char* fragment) const;
     // A texture of the given format, nearest-neighbor filtering, clamped. `pixels` may be null.
     GLuint texture(GLint format, int width, int height, GLenum layout, const void* pixels) const;

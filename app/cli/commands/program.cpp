@@ -21,6 +21,7 @@
 #include "cli/explore.hpp"
 #include "cli/sweep_work.hpp"
 #include "cli/terminal.hpp"
+#include "journal/link.hpp"
 #include "mpi/ranks.hpp"
 #include "output/output.hpp"
 #include "pictures/picture_job.hpp"
@@ -41,7 +42,9 @@ void put_default_command(const CLI::App& program, std::vector<std::string>& word
     if (first.empty() || first[0] != '-') {
         const std::vector<std::string> known = system_names();
         const bool is_system = std::find(known.begin(), known.end(), first) != known.end();
-        if (!is_system && std::filesystem::path(first).extension() != ".toml" && !std::filesystem::exists(first))
+        std::error_code too_long;  // a link may be longer than a file name
+        if (!is_system && !is_link(first) && std::filesystem::path(first).extension() != ".toml" &&
+            !std::filesystem::exists(first, too_long))
             throw unknown_command(program, words);
     }
     words.insert(words.begin(), default_command);
@@ -157,7 +160,7 @@ int run_program(const std::vector<std::string>& words, const std::string& commit
 namespace {
 
 void add_options(CLI::App& command, ExploreOptions& options) {
-    command.add_option("SYSTEM", options.system, "the path of a .toml file, or a name from 'achilles list'")
+    command.add_option("SYSTEM", options.system, "the path of a .toml file, a name from 'achilles list', or a link")
         ->type_name("");
     command.add_option("--journal", options.journal, "journal to replay first: a path, or the name of a tour")
         ->type_name("TOUR|F.journal");
