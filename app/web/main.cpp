@@ -39,8 +39,8 @@ const char* kept(std::string text) {
 
 }  // namespace
 
-// For tests of the page (tests/web): the session as text, the event times of its run with all their bits, and the place
-// of a control, as "left top width height" in pixels.
+// For tests of the page (tests/web): the session as text, the event times of its run with all their bits, the time its
+// computation took, what was copied, and the place of a control, as "left top width height" in pixels.
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_session() { return kept(to_text(window->session())); }
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_events() {
     std::string text;
@@ -53,6 +53,9 @@ extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_place(const char* control) 
     if (found == places.end()) return "";
     const achilles::Rectangle& area = found->second;
     return kept(fmt::format("{} {} {} {}", area.x, area.y, area.width, area.height));
+}
+extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_seconds() {
+    return kept(fmt::format("{}", window->session().trajectory().statistics.seconds));
 }
 extern "C" EMSCRIPTEN_KEEPALIVE const char* achilles_copied() { return kept(window->session().copied()); }
 

@@ -65,12 +65,14 @@
     mouse('mousemove', ...at(0.47));  // far enough to be a drag
     await rest(3);
     const before = ask('events'), first = frames.length;
+    report.run_ms = [];  // of the computation alone
     report.drag_frames = 0;  // until the events are those of the new value, at most
     for (const share of [0.43, 0.39, 0.35, 0.31]) {
       const now = ask('events');
       mouse('mousemove', ...at(share));
       let count = 0;
       while (ask('events') === now && count < 10) { await next(); ++count; }
+      report.run_ms.push(1e3 * Number(ask('seconds')));
       report.drag_frames = Math.max(report.drag_frames, count);
     }
     report.drag_frame_ms = frames.slice(first).sort((a, b) => a - b);
@@ -133,6 +135,7 @@
     report.first_paint_ms = performance.now();
     await rest(5);
     if (steps.includes('tour')) await until('the first sentence of the tour', () => ask('session').includes('says '));
+    report.size = Module.canvas.width + 'x' + Module.canvas.height;
     report.events = events();
     report.picture = await drawn();
     if (steps.includes('drag')) await drag(report);
