@@ -135,6 +135,7 @@
     report.first_paint_ms = performance.now();
     await rest(5);
     if (steps.includes('tour')) await until('the first sentence of the tour', () => ask('session').includes('says '));
+    if (location.hash !== '') await rest(60);  // studies of the session end
     report.size = Module.canvas.width + 'x' + Module.canvas.height;
     report.events = events();
     report.picture = await drawn();
