@@ -142,7 +142,9 @@ bool path_chosen(const char* action, const std::vector<std::string>& endings, Pa
     const bool entered = path_line(state, ImGui::IsWindowAppearing() || editor.keeps_path);
     const bool can_choose = std::string_view(action) == "Open";
     const BrowseResult browsed = state.on_page ? BrowseResult() : browse(state, endings, entered);
-    const PathCheck verdict = judge(expanded(editor.path));
+    PathCheck verdict = judge(expanded(editor.path));
+    if (state.on_page && verdict.is_good && !verdict.asks)
+        verdict.note = "downloads " + fs::path(editor.path).filename().string();
     ImGui::PushStyleColor(ImGuiCol_Text, packed(verdict.asks ? error_color() : faint_color()));
     ImGui::TextUnformatted(verdict.note.empty() ? " " : fitted(verdict.note, remaining().width).c_str());
     ImGui::PopStyleColor();

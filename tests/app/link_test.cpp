@@ -229,6 +229,7 @@ TEST(BrowserPage, DownloadsWhatItWrites) {
     hands.rest(4);
     EXPECT_TRUE(hands.state.places.contains("take svg"));
     EXPECT_FALSE(hands.state.places.contains("take pdf"));
+    EXPECT_TRUE(hands.says("downloads ball_on_sine"));
     hands.click("take what");
     EXPECT_TRUE(hands.state.places.contains("take the mechanism as it is now"));
     EXPECT_FALSE(hands.state.places.contains("take a film: the mechanism in motion beside the plots"));
