@@ -370,7 +370,7 @@ Window window_for(const ExploreOptions& options, const std::string& system) {
 // What the window refers to, in the order in which it is made.
 struct ExplorerWindow::Implementation {
     explicit Implementation(const ExploreOptions& options)
-        : on_page(options.page != nullptr),
+        : on_page(options.page.has_value()),
           journal(first_commands(options)),
           name(options.system ? *options.system : first_system()),
           trust(trust_of(options.allow_files, {options.system.value_or(""), options.journal},
