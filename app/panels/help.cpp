@@ -5,6 +5,7 @@
 #include <cmath>
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "figure/label.hpp"
 #include "paint/paint.hpp"
@@ -134,8 +135,8 @@ void show_help(const Session& session, PanelState& state, Commands& commands) {
     if (!shown) ImGui::CloseCurrentPopup();
     const float height = ImGui::GetContentRegionAvail().y - ImGui::GetFrameHeightWithSpacing();
     // In a low window the keys have a second column.
-    const std::vector<Shortcut> all = shown_keys(state);
-    const std::span<const Shortcut> keys(all);
+    const std::vector<Shortcut> visible = shown_keys(state);
+    const std::span<const Shortcut> keys(visible);
     const float space = units(24.0F), line = ImGui::GetTextLineHeight() + units(3.0F);
     const bool is_low =
         static_cast<float>(keys.size() + 8) * line > height &&
