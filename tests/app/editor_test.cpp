@@ -193,6 +193,7 @@ TEST(Editor, AJournalOfWhatWasTypedLeadsToTheSameSession) {
     hands.write(replaced(ball(), "y - sin(x)", "y - 1.6*sin(x)"));
     hands.rest(frames_of_a_pause);
     Session again = test::session("ball_on_sine");
+    again.apply(parse_command("show editor"));
     for (const Command& command : parse_journal(journal_text(hands.all))) again.apply(command);
     EXPECT_EQ(to_text(again), to_text(hands.session));
     EXPECT_EQ(again.run().parameters[1], 2.0);

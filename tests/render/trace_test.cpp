@@ -230,7 +230,9 @@ TEST(Markers, AreThinnedBeforeTheyHideTheCurve) {
             return mark != nullptr && (mark->edge.a > 0) == with_edges;
         });
     };
-    EXPECT_EQ(marks(laid(100), true), 100);
+    EXPECT_EQ(marks(laid(80), true), 80);
+    EXPECT_LE(marks(laid(100), true), 600 / 6);  // no nearer than 6 pixels
+    EXPECT_GE(marks(laid(100), true), 40);
     const Sheet many = laid(300), most = laid(30000);
     EXPECT_EQ(marks(many, true), 0);
     EXPECT_GT(marks(many, false), 40);
