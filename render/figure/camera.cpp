@@ -299,8 +299,9 @@ std::optional<Camera::ZenoView> Camera::zeno_view(const Sample& now, const Camer
         return std::nullopt;
     const Bounce here = bounce(on_way->grip, on_way->contact, now);
     // The flight under way, or the last one.
-    const auto later = std::find_if(on_way->flights.begin(), on_way->flights.end(),
-                                    [&](const Approach::FlightHeight& f) { return f.left < on_way->zeno - now.t; });
+    const auto later =
+        std::find_if(on_way->flights.begin(), on_way->flights.end(),
+                     [left = on_way->zeno - now.t](const Approach::FlightHeight& f) { return f.left < left; });
     AnchorPoint grip = grips_[on_way->grip];
     return ZenoView{full / size, std::max(0.0, std::hypot(here.rise.x, here.rise.y) * here.gap),
                     std::prev(later)->height, now.t >= on_way->cut, grip.at(now.t, now.state).radius > size};
